@@ -13,7 +13,7 @@ LEAD = ("Every formula here is printed from the specs that the kernels are made 
         "I.-H. Jung, T.-W. Park, H. Sugiyama, A. A. Shabana, The Development of a Sliding Joint for Very Flexible "
         "Multibody Dynamics, 2005 (in Korean).")
 MAIN = {"element": "beam24", "law": "beam24_continuum", "slide": "slide_beam24_rigid", "body": "rigid",
-        "modal": "modal", "spring": "spring", "resistance": "resistance"}
+        "modal": "modal", "frame": "frame", "spring": "spring", "resistance": "resistance"}
 """What the theory is printed for: the element and the rider of the paper."""
 
 
@@ -35,13 +35,14 @@ def theory() -> Document:
             composer.add("couplings/joint_kind", {"joint": f"joint_{name}"})
     composer.add("couplings/spring", MAIN)
     composer.add("algebra/tangent_frame", MAIN)
+    composer.add("couplings/frame", MAIN)
     composer.add("couplings/slide", MAIN)
     composer.add("couplings/resistance", MAIN)
     return composer.document
 
 
 CHAPTERS = {"element": "elements/elements", "slide": "couplings/slide", "body": "bodies/rigid", "modal": "bodies/modal",
-            "joint": "couplings/joint_kind", "spring": "couplings/spring", "resistance": "couplings/resistance"}
+            "joint": "couplings/joint_kind", "frame": "couplings/frame", "spring": "couplings/spring", "resistance": "couplings/resistance"}
 
 
 def chapter_of(family: Family) -> str:

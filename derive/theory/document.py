@@ -1,9 +1,9 @@
-"""The document as data: chapters with their formulas parsed, each with what it defines and which kernel output it is."""
+"""The document as data: chapters with their formulas parsed, each with the kernel output that it is."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from .markdown import Block, Line, blocks
-from .notation.evaluate import Definitions, Value
+from .notation.evaluate import Value
 from .notation.jet import plain
 from .notation.latex import latex
 from .notation.parse import FormulaError, parse
@@ -24,6 +24,7 @@ from .scopes import Scope, compiled, programs_of, scope
 from .staged import staged_scope
 
 PRINTERS = GENERAL | LAW_PRINTERS | BODY_PRINTERS
+"""What makes the formulas of a ```print by its name."""
 DERIVE = Path(__file__).parents[1]
 
 
@@ -115,9 +116,11 @@ class Composer:
             item.formulas = [self._formula(expanded(line, self._scope)) for line in block.lines]
         elif block.kind in ("print", "print-folded"):
             assert self._scope is not None
-            name, *number = block.about.split()
+            name, *about = block.about.split()
             item.formulas = [self._formula(line) for line in PRINTERS[name](self._scope)]
-            item.block = Block(block.kind.replace("print", "formula"), about=" ".join(number))
+            folded = block.kind == "print-folded"
+            item.block = Block("formula-folded" if folded else "formula", text=" ".join(about).replace("_", " "),
+                               about="" if folded else " ".join(about))
         elif block.kind == "staged":
             self._staged(block)
             return

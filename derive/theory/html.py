@@ -195,14 +195,16 @@ class _Writer:
             doc, unit = (argument.doc, argument.unit) if argument else ("height and width of the rectangle", "m")
             rows.append([f"${symbol.latex}$", f"`{symbol.argument}`", doc, unit])
         name = item.scope.family.name
+        table = _table(["symbol", "argument", "is", "unit"], rows)
         return (f'<details class="symbols"><summary>Symbols of this chapter, arguments of the kernels '
-                f"<code>{escape(name)}_…</code></summary>{_table(['symbol', 'argument', 'is', 'unit'], rows)}</details>")
+                f"<code>{escape(name)}_…</code></summary>{table}</details>")
 
     def _stage(self, item: Item) -> str:
         return f"<h5>{escape(item.block.text)}</h5>\n{self._formula(Item(Block('formula'), item.scope, item.formulas))}"
 
     def _formula_folded(self, item: Item) -> str:
-        return (f'<details class="folded"><summary>{len(item.formulas)} formulas</summary>'
+        title = item.block.text or f"{len(item.formulas)} formulas"
+        return (f'<details class="folded"><summary>{escape(title)}</summary>'
                 f"{self._formula(item)}</details>")
 
     def _formula(self, item: Item) -> str:

@@ -59,7 +59,7 @@ def element_page(name: str) -> Document:
     done: set[str] = set()
     for law in laws(element):
         assert law.traits is not None
-        if law.traits.kind not in done and not law.traits.takes_shape or law.traits.kind == "structural":
+        if (law.traits.kind not in done and not law.traits.takes_shape) or law.traits.kind == "structural":
             done.add(law.traits.kind)
             composer.add(f"laws/{law.traits.kind}/{law.traits.kind}", {"law": law.name})
     return composer.document
@@ -70,9 +70,9 @@ def _convergence(name: str) -> str:
     table = "\n".join("| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows))
     other = (f"The figures are those of `{COUNTERPART[name]}`. In the plane both have the same kinematics and the same "
              "results, to rounding.\n" if name in COUNTERPART else "")
-    return (f"# Convergence\n\nError against the published or converged value, with the number of elements in brackets, "
-            f"then the order in the mesh.\n{other}\n{table}\n\nOrigin: `{cases()['origin'].split(',')[0]}`, where the "
-            "references and the command are.\n")
+    return ("# Convergence\n\nError against the published or converged value, with the number of elements in "
+            f"brackets, then the order in the mesh.\n{other}\n{table}\n\nOrigin: "
+            f"`{cases()['origin'].split(',')[0]}`, where the references and the command are.\n")
 
 
 def _cost(element: Element) -> str:

@@ -159,9 +159,7 @@ def tangent_frame(scope: Scope) -> list[Line]:
         return [*lines, Line(r"\mathbf{j} = 1 \times \mathbf{i}"),
                 Line(r"\mathbf{A}_{t} = \begin{bmatrix} \mathbf{i} & \mathbf{j} \end{bmatrix}",
                      output="constraint.A_t")]
-    normal = (rf"\mathbf{{n}} = \frac{{\partial \mathbf{{r}}}}{{\partial {element.director[-1]}}}" if element.director
-              else r"\mathbf{n} = \mathbf{d}")
-    return [*lines, Line(normal),
+    return [*lines, *normal(scope),
             Line(r"\mathbf{k} = \frac{\mathbf{i} \times \mathbf{n}}{\lvert \mathbf{i} \times \mathbf{n} \rvert}"),
             Line(r"\mathbf{j} = \mathbf{k} \times \mathbf{i}"),
             Line(r"\mathbf{A}_{t} = \begin{bmatrix} \mathbf{i} & \mathbf{j} & \mathbf{k} \end{bmatrix}",
@@ -224,8 +222,9 @@ PRINTERS |= {"velocities": velocities, "motion": motion, "parted_bias": parted_b
 def normal(scope: Scope) -> list[Line]:
     """Return where the frame takes its normal from."""
     element = _element(scope)
-    return [Line(rf"\mathbf{{n}} = \frac{{\partial \mathbf{{r}}}}{{\partial {element.director[-1]}}}" if element.director
-                 else r"\mathbf{n} = \mathbf{d}")]
+    if not element.director:
+        return [Line(r"\mathbf{n} = \mathbf{d}")]
+    return [Line(rf"\mathbf{{n}} = \frac{{\partial \mathbf{{r}}}}{{\partial {element.director[-1]}}}")]
 
 
 PRINTERS |= {"normal": normal}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..couplings.spring import SPRINGS
 from .lift import Lift, only
 from .markdown import Line
 from .notation.latex import latex
@@ -71,14 +72,47 @@ def modal_inertia(scope: Scope) -> list[Line]:
             Line(rf"T = {energy}", output="kinetic_energy.T")]
 
 
+# --- frames -----------------------------------------------------------------------------------------------------
+
+
+def frame_axes(scope: Scope) -> list[Line]:
+    """Return the axes of the frame of two vectors."""
+    first = Line(r"\mathbf{i} = \frac{\mathbf{a}}{\lvert \mathbf{a} \rvert}")
+    if _planar(scope):
+        return [first, Line(r"\mathbf{j} = 1 \times \mathbf{i}"),
+                Line(r"\mathbf{A} = \begin{bmatrix} \mathbf{i} & \mathbf{j} \end{bmatrix}", output="axes.A")]
+    return [first, Line(r"\mathbf{k} = \frac{\mathbf{i} \times \mathbf{b}}{\lvert \mathbf{i} \times \mathbf{b} \rvert}"),
+            Line(r"\mathbf{j} = \mathbf{k} \times \mathbf{i}"),
+            Line(r"\mathbf{A} = \begin{bmatrix} \mathbf{i} & \mathbf{j} & \mathbf{k} \end{bmatrix}", output="axes.A")]
+
+
+def frame_turn(scope: Scope) -> list[Line]:
+    """Return the turn of the frame by the entries of both vectors."""
+    def by(axis: str, vector: str) -> str:
+        return rf"\frac{{\partial \mathbf{{{axis}}}}}{{\partial \mathbf{{{vector}}}}}"
+
+    if _planar(scope):
+        row = " & ".join(rf"\mathbf{{j}}^{{\mathsf{{T}}}} {by('i', v)}" for v in "ab")
+        return [Line(rf"\mathbf{{T}} = \begin{{bmatrix}} {row} \end{{bmatrix}}", output="axes.T")]
+    parts = [" + ".join(rf"\widetilde{{\mathbf{{{axis}}}}} {by(axis, v)}" for axis in "ijk") for v in "ab"]
+    lines = [Line(rf"\mathbf{{T}}_{{{v}}} = \frac{{1}}{{2}} \left( {part} \right)")
+             for v, part in zip("ab", parts, strict=True)]
+    return [*lines, Line(r"\mathbf{T} = \begin{bmatrix} \mathbf{T}_{a} & \mathbf{T}_{b} \end{bmatrix}",
+                         output="axes.T")]
+
+
 # --- joints -----------------------------------------------------------------------------------------------------
 
 
 def turned_axes(scope: Scope) -> list[Line]:
     """Return the axes of both frames after small turns, those that the joint needs."""
     used = {s for line in joint_equations(scope) for s in _axes_in(line.latex)}
-    return [Line(rf"\mathbf{{{a}}}_{{{n}}} = \left( \mathbf{{I}} + \widetilde{{\boldsymbol{{\theta}}_{{{n}}}}} \right) "
-                 rf"\mathbf{{{a}}}_{{{n}}}^{{0}}") for a, n in sorted(used, key=lambda s: (s[1], s[0]))]
+    return [Line(rf"\mathbf{{{a}}}_{{{n}}} = {_turned(n)} {_turned(f'{n},0')} \mathbf{{{a}}}_{{{n}}}^{{0}}")
+            for a, n in sorted(used, key=lambda s: (s[1], s[0]))]
+
+
+def _turned(sub: str) -> str:
+    return rf"\left( \mathbf{{I}} + \widetilde{{\boldsymbol{{\theta}}_{{{sub}}}}} \right)"
 
 
 def _axes_in(text: str) -> set[tuple[str, str]]:
@@ -94,12 +128,61 @@ def joint_equations(scope: Scope) -> list[Line]:
 
 
 def joint_jacobian(scope: Scope) -> list[Line]:
-    """Return the derivatives of the equations, and those of the force."""
-    by = [r"\mathbf{gap}", r"\boldsymbol{\theta}_{1}", r"\boldsymbol{\theta}_{2}"]
-    columns = " & ".join(rf"\frac{{\partial \boldsymbol{{\Phi}}}}{{\partial {q}}}" for q in by)
-    return [Line(rf"\mathbf{{J}} = \begin{{bmatrix}} {columns} \end{{bmatrix}}", output="force.J")]
+    """Return the derivatives of the equations and of the force, and both second derivatives in time."""
+    def columns(of: str, *by: str) -> str:
+        row = " & ".join(rf"\frac{{\partial {of}}}{{\partial {q}}}" for q in by)
+        return rf"\begin{{bmatrix}} {row} \end{{bmatrix}}"
+
+    J = columns(r"\boldsymbol{\Phi}", r"\mathbf{gap}", r"\boldsymbol{\theta}_{1}", r"\boldsymbol{\theta}_{2}")
+    K = columns(r"\mathbf{g}", r"\mathbf{gap}", r"\boldsymbol{\theta}_{1,0}", r"\boldsymbol{\theta}_{2,0}")
+    return [Line(rf"\mathbf{{J}} = {J}", output="force.J"), Line(r"\mathbf{g} = \mathbf{J}^{\mathsf{T}} \mathbf{f}"),
+            Line(rf"\mathbf{{K}} = {K}", output="force.K")]
+
+
+def joint_motion(scope: Scope) -> list[Line]:
+    """Return the rate of the equations at rest, and their second derivative along the motion of both frames."""
+    used = {s for line in joint_equations(scope) for s in _axes_in(line.latex)}
+    driven = "c_{0}" in " ".join(line.latex for line in joint_equations(scope)) or any(
+        f"c_{{{k}}}" in line.latex for line in joint_equations(scope) for k in (1, 2))
+    change = [Line(r"\zeta = t \dot{c} + \frac{1}{2} t^{2} \ddot{c}")] if driven else []
+    drive = ([r"c_{0} \to c_{0} + \zeta", r"c_{1} \to c_{1} - \zeta c_{2} - \frac{1}{2} \zeta^{2} c_{1}",
+              r"c_{2} \to c_{2} + \zeta c_{1} - \frac{1}{2} \zeta^{2} c_{2}"] if driven else [])
+    moved = [r"\mathbf{gap} \to \mathbf{gap} + t \dot{\mathbf{gap}}"]
+    for a, n in sorted(used, key=lambda s: (s[1], s[0])):
+        spin = rf"\widetilde{{\boldsymbol{{\omega}}_{{{n}}}}}"
+        moved.append(rf"\mathbf{{{a}}}_{{{n}}} \to \left( \mathbf{{I}} + t {spin} + \frac{{1}}{{2}} t^{{2}} {spin} {spin} "
+                     rf"\right) \mathbf{{{a}}}_{{{n}}}^{{0}}")
+    lines = list(change)
+    if driven:
+        lines += [Line(rf"\boldsymbol{{\Phi}}^{{0}} = \left. \boldsymbol{{\Phi}} \right|_{{{', '.join(drive)}}}"),
+                  Line(r"\boldsymbol{\Phi}_{t} = \frac{\mathrm{d} \boldsymbol{\Phi}^{0}}{\mathrm{d} t}",
+                       output="motion.phi_t")]
+    return [*lines,
+            Line(rf"\boldsymbol{{\Phi}}^{{\ast}} = \left. \boldsymbol{{\Phi}} \right|_{{{', '.join([*moved, *drive])}}}"),
+            Line(r"\mathbf{Q}_{d} = \frac{\mathrm{d}^{2} \boldsymbol{\Phi}^{\ast}}{\mathrm{d} t^{2}}",
+                 output="motion.Q_d")]
+
+
+def spring_extension(scope: Scope) -> list[Line]:
+    """Return extension, energy, dissipated power, force and its derivatives of a spring."""
+    gap, rate = r"\mathbf{gap}", r"\dot{\mathbf{gap}}"
+    if SPRINGS[scope.family.name].has_length:
+        e, de = r"\varepsilon", r"\dot{\varepsilon}"
+        lines = [Line(rf"{e} = \lvert {gap} \rvert - L"), Line(rf"{de} = \frac{{{gap} \cdot {rate}}}{{\lvert {gap} \rvert}}")]
+        squares = rf"{e}^{{2}}", rf"{de}^{{2}}"
+        force = (rf"\left( k {e} + c {de} \right) \left( \frac{{\partial {e}}}{{\partial {gap}}} "
+                 r"\right)^{\mathsf{T}}")
+    else:
+        lines = []
+        squares = rf"\left( {gap} \cdot {gap} \right)", rf"\left( {rate} \cdot {rate} \right)"
+        force = rf"k {gap} + c {rate}"
+    return [*lines, Line(rf"U = \frac{{1}}{{2}} k {squares[0]}", output="energy.U"),
+            Line(f"P = c {squares[1]}", output="dissipation.P"), Line(rf"\mathbf{{F}} = {force}", output="force.f"),
+            Line(rf"\mathbf{{K}} = \frac{{\partial \mathbf{{F}}}}{{\partial {gap}}}", output="tangent.K"),
+            Line(rf"\mathbf{{D}} = \frac{{\partial \mathbf{{F}}}}{{\partial {rate}}}", output="tangent.D")]
 
 
 BODY_PRINTERS = {"attitude": attitude, "rigid_inertia": rigid_inertia, "modal_mass": modal_mass,
-                 "modal_inertia": modal_inertia, "turned_axes": turned_axes, "joint_equations": joint_equations,
-                 "joint_jacobian": joint_jacobian}
+                 "frame_axes": frame_axes, "frame_turn": frame_turn, "modal_inertia": modal_inertia, "turned_axes": turned_axes, "joint_equations": joint_equations,
+                 "joint_jacobian": joint_jacobian, "joint_motion": joint_motion,
+                 "spring_extension": spring_extension}

@@ -155,8 +155,8 @@ def _rule(letters: tuple[str, str], points: int) -> list[Line]:
 
 def _at(name: str, letter: str, index: str) -> Line:
     """Return the value of a quantity at the place of a quadrature point, for each of them."""
-    tree = rf"{name}_{{{index}}} = \left. {name} \right|_{{x \to \frac{{l}}{{2}} \left( 1 + {letter}_{{{index}}} \right)}}"
-    return Line(tree, index=index)
+    place = rf"\frac{{l}}{{2}} \left( 1 + {letter}_{{{index}}} \right)"
+    return Line(rf"{name}_{{{index}}} = \left. {name} \right|_{{x \to {place}}}", index=index)
 
 
 def quadrature(scope: Scope) -> list[Line]:
@@ -174,10 +174,10 @@ def cable_energy(scope: Scope) -> list[Line]:
     law, traits = _law(scope), scope.family.traits
     assert traits is not None
     axial, bending = len(law.axial_points), len(law.bending_points)
-    bend = (r"\frac{l}{4} \mathrm{EI} \sum_{g=1}^{%d} w_{g} \kappa_{g}^{2}" % bending if axial == bending else
-            r"\frac{l}{4} \mathrm{EI} \sum_{h=1}^{%d} v_{h} \kappa_{h}^{2}" % bending)
+    g, w = ("g", "w") if axial == bending else ("h", "v")
+    bend = rf"\frac{{l}}{{4}} \mathrm{{EI}} \sum_{{{g}=1}}^{{{bending}}} {w}_{{{g}}} \kappa_{{{g}}}^{{2}}"
     if traits.membrane != "assumed":
-        stretch = r"\frac{l}{4} \mathrm{EA} \sum_{g=1}^{%d} w_{g} \varepsilon_{g}^{2}" % axial
+        stretch = rf"\frac{{l}}{{4}} \mathrm{{EA}} \sum_{{g=1}}^{{{axial}}} w_{{g}} \varepsilon_{{g}}^{{2}}"
         return [Line(rf"U = {stretch} + {bend}", output="energy.U")]
     lines, terms = [], []
     X = sp.Symbol("X")
@@ -208,8 +208,9 @@ def cable_damping(scope: Scope) -> list[Line]:
                       rf"\left( \dot{{{i}}} \cdot {b} \right) {i}"))
     lines += [*_rule(("P", "p"), law.degree), *_rule(("B", "b"), law.degree - 1)]
     lines += [_at(r"\dot{\varepsilon}", "P", "j"), _at(r"\mathbf{D}", "B", "k")]
-    power = (r"\frac{l}{2} \mathrm{EA} \sum_{j=1}^{%d} p_{j} \dot{\varepsilon}_{j}^{2}" % law.degree
-             + r" + \frac{l}{2} \mathrm{EI} \sum_{k=1}^{%d} b_{k} \left( \mathbf{D}_{k} \cdot \mathbf{D}_{k} \right)" % (law.degree - 1))
+    power = (rf"\frac{{l}}{{2}} \mathrm{{EA}} \sum_{{j=1}}^{{{law.degree}}} p_{{j}} \dot{{\varepsilon}}_{{j}}^{{2}} + "
+             rf"\frac{{l}}{{2}} \mathrm{{EI}} \sum_{{k=1}}^{{{law.degree - 1}}} b_{{k}} "
+             r"\left( \mathbf{D}_{k} \cdot \mathbf{D}_{k} \right)")
     own = not traits.damped_like
     lines.append(Line(rf"P = \tau \left( {power} \right)", output="dissipation.P" if own else ""))
     lines.append(Line(r"\mathbf{Q}_{d} = -\frac{1}{2} \left( \frac{\partial P}{\partial \dot{\mathbf{e}}} "

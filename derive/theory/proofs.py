@@ -68,7 +68,8 @@ def _place(family: str, state: State, t: float) -> float:
 
 def length_of_16() -> Proof:
     """Return the length of k as printed, and as computed, at the samples of a sheared element."""
-    rows, numbers = [], {}
+    rows: list[list[str]] = []
+    numbers: dict[str, float] = {}
     for n, state in enumerate(samples_of("slide_beam24_rigid")[:2], 1):
         frame = compiled("slide_beam24_rigid", "constraint", state)["A_t"]
         slopes = compiled("beam24", "slopes", state)["S"]
@@ -90,14 +91,15 @@ def axial_mass() -> Proof:
     x, w = (x + 1) / 2, w / 2
     modes = {"middle": 4 * x * (1 - x), "end": x * (2 * x - 1)}
     pairs = [("middle", "middle", 8, "8/15"), ("middle", "end", 1, "1/15"), ("end", "end", 2, "2/15")]
-    rows, numbers = [], {}
+    rows: list[list[str]] = []
+    numbers: dict[str, float] = {}
     for a, b, published, exact in pairs:
         value = float(w @ (modes[a] * modes[b]))
         rows.append([f"{a}, {b}", f"{value:.12f}", exact, str(published), f"{published / value:.6f}"])
         numbers[f"{a} {b}"] = published / value
-    return Proof("The rod's axial displacement is quadratic, with the shapes $4 \\xi \\left( 1 - \\xi \\right)$ (middle) "
-                 "and $\\xi \\left( 2 \\xi - 1 \\right)$ (end). Their products are integrated over the length by Gauss "
-                 "quadrature, exact for these degrees.",
+    return Proof("The rod's axial displacement is quadratic, with the shapes $4 \\xi \\left( 1 - \\xi \\right)$ "
+                 "(middle) and $\\xi \\left( 2 \\xi - 1 \\right)$ (end). Their products are integrated over the "
+                 "length by Gauss quadrature, exact for these degrees.",
                  ["shapes", "integral", "is", "published code", "ratio"], rows,
                  "The published axial masses are 15 times too large. With the right ones, the rod's angle after 0.1 s "
                  "is 7e-8 rad off the published one, the slider 6e-8 m.", numbers)
@@ -105,7 +107,8 @@ def axial_mass() -> Proof:
 
 def jump_at_node() -> Proof:
     """Return how H and W differ on both sides of a node, for a cubic cable and for a quintic one."""
-    rows, numbers = [], {}
+    rows: list[list[str]] = []
+    numbers: dict[str, float] = {}
     for element in ("cable12", "cable18"):
         family = f"slide_{element}_point"
         left, right, vectors = _sides(family)
@@ -117,8 +120,8 @@ def jump_at_node() -> Proof:
         jump_W = _apart(of_left["W"], of_right["W"])
         rows.append([f"`{element}`", f"{jump_H:.1e}", f"{jump_W:.2g}"])
         numbers |= {f"{element} H": jump_H, f"{element} W": jump_W}
-    return Proof("Two elements share a node and have random nodal vectors and velocities. The slide is at the node, once "
-                 "as the end of the first element, once as the start of the second.",
+    return Proof("Two elements share a node and have random nodal vectors and velocities. The slide is at the "
+                 "node, once as the end of the first element, once as the start of the second.",
                  ["element", "change of $\\mathbf{H}$", "change of $\\mathbf{W}$"], rows,
                  "On a cubic cable the curvature jumps at a node, and with it the acceleration of the rider. On a "
                  "quintic one it does not. Changes are relative to the largest entry.", numbers)

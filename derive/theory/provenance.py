@@ -65,7 +65,7 @@ def tagged() -> dict[int, str]:
     roots = [(DERIVE, "derive", "*.py"), (DERIVE.parent / "runtime", "runtime", "*.[chp]*")]
     for root, label, pattern in roots:
         for path in sorted(root.rglob(pattern)) if root.is_dir() else ():
-            if path.suffix not in (".py", ".c", ".h", ".pxi") or "theory" in path.parts:
+            if path.suffix not in (".py", ".c", ".h", ".pxi") or path.is_relative_to(DERIVE / "theory"):
                 continue
             for k, text in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
                 for number in TAG.findall(text):

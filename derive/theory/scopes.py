@@ -212,18 +212,19 @@ def slide_scope(name: str) -> Scope:
     cable = (Symbol("l", "l", number), Symbol("s", "x", number), _nodal(dim, r"\mathbf{e}", "e"),
              _nodal(dim, r"\dot{\mathbf{e}}", "v"))
     rider = (Symbol(r"\mathbf{R}", "b", entries(0, dim)), Symbol(r"\mathbf{u}", "u", column),
-             Symbol(r"\dot{\mathbf{R}}", "w", entries(0, dim)), *_attitude(family),
-             Symbol(r"\boldsymbol{\omega}", "w", entries(dim, 6)))
+             Symbol(r"\dot{\mathbf{R}}", "w", entries(0, dim)), *_attitude(family))
+    if family.rider not in ("point", "planar_point"):
+        rider = (*rider, Symbol(r"\boldsymbol{\omega}", "w", entries(dim, 6)))
     return Scope(family, (*cable, *rider, Symbol(r"\mathbf{d}", "director", column),
                           Symbol(r"\mathbf{f}", "f", column)), constants=_at_rest)
 
 
 def _attitude(family: Family) -> tuple[Symbol, ...]:
     dim = family.facts["dim"]
+    if family.rider in ("point", "planar_point"):
+        return ()
     if dim == 2:
         return Symbol("c", "b", entry(2)), Symbol(r"\sigma", "b", entry(3))
-    if family.rider == "point":
-        return ()
     return Symbol("q_{0}", "b", entry(3)), Symbol(r"\mathbf{q}", "b", entries(4, 7))
 
 
@@ -258,25 +259,36 @@ def modal_scope(name: str) -> Scope:
     body = body_scope(name)
     return Scope(body.family, (*(s for s in body.symbols if s.argument != "J"), *moments,
                                Symbol(r"\mathbf{s}", "s", column), Symbol(r"\mathbf{g}", "g", column),
-                               Symbol(r"X_{\mathrm{rates}}", "X11", number),
-                               Symbol(r"\boldsymbol{\alpha}", "theta", column),
-                               Symbol(r"\boldsymbol{\phi}", "phi", column), Symbol(r"\boldsymbol{\psi}", "psi", column)),
-                 constants=_at_rest)
+                               Symbol(r"X_{\mathrm{rates}}", "X11", number)), constants=_at_rest)
+
+
+def _column_of(k: int) -> Callable[[np.ndarray], Any]:
+    return lambda v: column(np.asarray(v)[:, k])
 
 
 def joint_scope(name: str) -> Scope:
     """Return the scope of a joint between two frames."""
     family = families()[name]
-    axes = [Symbol(rf"\mathbf{{{a}}}_{{{n}}}^{{0}}", f"A{n}", lambda v, k=k: column(np.asarray(v)[:, k]))
+    axes = [Symbol(rf"\mathbf{{{a}}}_{{{n}}}^{{0}}", f"A{n}", _column_of(k))
             for n in (1, 2) for k, a in enumerate("xyz"[: family.dim])]
     return Scope(family, (Symbol(r"\mathbf{gap}", "gap", column), *axes,
                           *(Symbol(f"c_{{{k}}}", "c", entry(k)) for k in range(3)),
-                          Symbol(r"\mathbf{f}", "f", column)), constants=_no_turn)
+                          Symbol(r"\mathbf{f}", "f", column), Symbol(r"\dot{\mathbf{gap}}", "gap_rate", column),
+                          Symbol(r"\dot{c}", "c_rate", entry(0)), Symbol(r"\ddot{c}", "c_rate", entry(1)),
+                          *(Symbol(rf"\boldsymbol{{\omega}}_{{{n}}}", f"omega{n}", column) for n in (1, 2))),
+                 constants=_no_turn)
+
+
+def frame_scope(name: str) -> Scope:
+    """Return the scope of the frame of two vectors."""
+    vectors = [Symbol(rf"{mark}{{\mathbf{{{v}}}}}" if mark else rf"\mathbf{{{v}}}", f"{v}{suffix}", column)
+               for v in "ab" for mark, suffix in (("", ""), (r"\dot", "_rate"), (r"\ddot", "_second"))]
+    return Scope(families()[name], (*vectors, Symbol(r"\mathbf{m}", "m", column)))
 
 
 def _no_turn(scope: Scope, state: State) -> dict[str, Any]:
     turn = {2: 0.0, 3: np.zeros((3, 1)).astype(object)}[scope.family.dim or 3]
-    return {r"\boldsymbol{\theta}_{1}": turn, r"\boldsymbol{\theta}_{2}": turn}
+    return {rf"\boldsymbol{{\theta}}_{{{sub}}}": turn for sub in ("1", "2", "1,0", "2,0")}
 
 
 def spring_scope(name: str) -> Scope:
@@ -288,7 +300,8 @@ def spring_scope(name: str) -> Scope:
 
 def resistance_scope(name: str) -> Scope:
     """Return the scope of friction and buffers."""
-    friction = [Symbol(s, "friction", entry(k)) for k, s in enumerate((r"\mu", r"\mu_{v}", "v_{0}", r"\delta", "N_{0}"))]
+    letters = (r"\mu", r"\mu_{v}", "v_{0}", r"\delta", "N_{0}")
+    friction = [Symbol(s, "friction", entry(k)) for k, s in enumerate(letters)]
     buffer = [Symbol(s, "buffer", entry(k)) for k, s in enumerate(("k", "c", "x", r"\sigma"))]
     return Scope(families()[name], (Symbol(r"\mathbf{t}", "t", column), Symbol(r"\mathbf{w}", "u", column),
                                     Symbol(r"\mathbf{f}", "f", column), *friction, *buffer))
@@ -297,5 +310,5 @@ def resistance_scope(name: str) -> Scope:
 def scope(role: str, name: str) -> Scope:
     """Return the scope of a family, by its role."""
     return {"element": element_scope, "law": law_scope, "slide": slide_scope, "body": body_scope,
-            "modal": modal_scope, "joint": joint_scope, "spring": spring_scope,
+            "modal": modal_scope, "frame": frame_scope, "joint": joint_scope, "spring": spring_scope,
             "resistance": resistance_scope}[role](name)

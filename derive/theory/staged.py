@@ -10,7 +10,7 @@ from ..codegen.program import Program
 from .lift import Lift, only, scalar_name
 from .markdown import Line
 from .notation.latex import latex
-from .scopes import Scope, Symbol, State, column, entry, programs_of
+from .scopes import Scope, State, Symbol, column, entry, programs_of
 
 
 def staged_scope(scope: Scope, kernel: str, outputs: tuple[str, ...]) -> tuple[Scope, list[tuple[str, list[Line]]]]:

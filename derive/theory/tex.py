@@ -37,8 +37,9 @@ PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 """
 ESCAPES = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{",
            "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}",
-           ">": r"\textgreater{}", "→": r"$\to$", "·": r"$\cdot$", "′": r"$'$", "−": "$-$", "–": "--", "½": r"$\frac12$",
-           "²": r"\textsuperscript{2}", "³": r"\textsuperscript{3}", "°": r"$^\circ$", "×": r"$\times$",
+           ">": r"\textgreater{}", "→": r"$\to$", "·": r"$\cdot$", "′": r"$'$", "−": "$-$", "–": "--",
+           "½": r"$\frac12$", "²": r"\textsuperscript{2}", "³": r"\textsuperscript{3}", "°": r"$^\circ$",
+           "×": r"$\times$",
            "µ": r"$\mu$", "…": r"\dots{}", "∫": r"$\int$", "≥": r"$\ge$", "≤": r"$\le$", "∂": r"$\partial$",
            "¼": r"$\frac14$", "¾": r"$\frac34$", "é": r"\'e", "ö": r"\"o", "ü": r"\"u", "√": r"$\surd$",
            "⊗": r"$\otimes$", "¹": r"\textsuperscript{1}", "⁻": r"\textsuperscript{-}", "±": r"$\pm$"}

@@ -219,8 +219,9 @@ class Evaluation:
             nodes, weights = np.polynomial.legendre.leggauss(POINTS[axis])
             length = self.name(Name({"x": "l", "y": "h", "z": "b"}[axis]))
             middle = 1.0 if axis == "x" else 0.0
-            found = [(place | {axis: length * (middle + node) / 2}, weight * (length * w / 2)) for place, weight in found
-                     for node, w in zip(nodes.tolist(), weights.tolist(), strict=True)]
+            rule = list(zip(nodes.tolist(), weights.tolist(), strict=True))
+            found = [(place | {axis: length * (middle + node) / 2}, weight * (length * w / 2))
+                     for place, weight in found for node, w in rule]
         return found
 
 

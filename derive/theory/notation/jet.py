@@ -33,7 +33,7 @@ class Jet:
         if isinstance(other, np.ndarray):
             return NotImplemented  # entry by entry
         level, a, da, b, db = self._with(other)
-        return Jet(level, a + b, db if da is None else da if db is None else da + db)
+        return Jet(level, a + b, _joined(da, db))
 
     def __neg__(self) -> Jet:
         return Jet(self.level, -self.value, -self.slope)
@@ -49,7 +49,7 @@ class Jet:
             return NotImplemented  # entry by entry
         level, a, da, b, db = self._with(other)
         left, right = None if da is None else _scaled(da, b), None if db is None else _scaled(db, a)
-        return Jet(level, a * b, right if left is None else left if right is None else left + right)
+        return Jet(level, a * b, _joined(left, right))
 
     __radd__, __rmul__ = __add__, __mul__
 
@@ -79,6 +79,15 @@ class Jet:
 
     def __gt__(self, other: Scalar) -> bool:
         return plain(self) > plain(other)
+
+
+def _joined(left: np.ndarray | None, right: np.ndarray | None) -> np.ndarray:
+    """Return the sum of two slopes, of which one may be missing."""
+    if left is None or right is None:
+        slope = right if left is None else left
+        assert slope is not None
+        return slope
+    return left + right
 
 
 def _scaled(slope: np.ndarray, factor: Scalar) -> np.ndarray:

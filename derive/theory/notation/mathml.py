@@ -225,8 +225,8 @@ def _side(node: Node) -> str:
 
 _FROM = {v: f"\\{k}" for k, v in LETTERS.items()} | {"∂": r"\partial"}
 _OPERATORS = ({v: f" \\{k} " for k, v in SIGNS.items()}
-              | {TIMES: " ", APPLY: "", MINUS: " - ", "=": " = ", "+": " + ", "<": " < ", "→": r" \to ", "∑": r"\sum", "∫": r"\int",
-                 "′": r"\prime ", "∗": r"\ast ", ",": ","})
+              | {TIMES: " ", APPLY: "", MINUS: " - ", "=": " = ", "+": " + ", "<": " < ", "→": r" \to ",
+                 "∑": r"\sum", "∫": r"\int", "′": r"\prime ", "∗": r"\ast ", ",": ","})
 _ACCENT = {v: k for k, v in ACCENTS.items()}
 
 

@@ -34,8 +34,8 @@ class Name(Node):
     @property
     def key(self) -> str:
         """Return what identifies the quantity: a bold letter is another one than a plain one."""
-        return f"{'!' if self.bold else ''}{self.accent}{self.base}{self.primes * chr(39)}{self.above}" + (f"_{','.join(self.sub)}" if self.sub
-                                                                                  else "")
+        mark, primes = "!" if self.bold else "", "'" * self.primes
+        return f"{mark}{self.accent}{self.base}{primes}{self.above}" + (f"_{','.join(self.sub)}" if self.sub else "")
 
 
 @dataclass(frozen=True)
