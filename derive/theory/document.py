@@ -118,6 +118,10 @@ class Composer:
             assert self._scope is not None
             name, *about = block.about.split()
             item.formulas = [self._formula(line) for line in PRINTERS[name](self._scope)]
+            if not item.formulas:  # kernels that another family has, too
+                other = next(iter(self._scope.family.shared.values()))
+                self.document.items.append(Item(Block("paragraph", f"The kernels are those of `{other}`."), self._scope))
+                return
             folded = block.kind == "print-folded"
             item.block = Block("formula-folded" if folded else "formula", text=" ".join(about).replace("_", " "),
                                about="" if folded else " ".join(about))

@@ -81,7 +81,8 @@ def frame_axes(scope: Scope) -> list[Line]:
     if _planar(scope):
         return [first, Line(r"\mathbf{j} = 1 \times \mathbf{i}"),
                 Line(r"\mathbf{A} = \begin{bmatrix} \mathbf{i} & \mathbf{j} \end{bmatrix}", output="axes.A")]
-    return [first, Line(r"\mathbf{k} = \frac{\mathbf{i} \times \mathbf{b}}{\lvert \mathbf{i} \times \mathbf{b} \rvert}"),
+    across = r"\mathbf{i} \times \mathbf{b}"
+    return [first, Line(rf"\mathbf{{k}} = \frac{{{across}}}{{\lvert {across} \rvert}}"),
             Line(r"\mathbf{j} = \mathbf{k} \times \mathbf{i}"),
             Line(r"\mathbf{A} = \begin{bmatrix} \mathbf{i} & \mathbf{j} & \mathbf{k} \end{bmatrix}", output="axes.A")]
 
@@ -150,15 +151,15 @@ def joint_motion(scope: Scope) -> list[Line]:
     moved = [r"\mathbf{gap} \to \mathbf{gap} + t \dot{\mathbf{gap}}"]
     for a, n in sorted(used, key=lambda s: (s[1], s[0])):
         spin = rf"\widetilde{{\boldsymbol{{\omega}}_{{{n}}}}}"
-        moved.append(rf"\mathbf{{{a}}}_{{{n}}} \to \left( \mathbf{{I}} + t {spin} + \frac{{1}}{{2}} t^{{2}} {spin} {spin} "
-                     rf"\right) \mathbf{{{a}}}_{{{n}}}^{{0}}")
+        turned = rf"\left( \mathbf{{I}} + t {spin} + \frac{{1}}{{2}} t^{{2}} {spin} {spin} \right)"
+        moved.append(rf"\mathbf{{{a}}}_{{{n}}} \to {turned} \mathbf{{{a}}}_{{{n}}}^{{0}}")
     lines = list(change)
     if driven:
         lines += [Line(rf"\boldsymbol{{\Phi}}^{{0}} = \left. \boldsymbol{{\Phi}} \right|_{{{', '.join(drive)}}}"),
                   Line(r"\boldsymbol{\Phi}_{t} = \frac{\mathrm{d} \boldsymbol{\Phi}^{0}}{\mathrm{d} t}",
                        output="motion.phi_t")]
-    return [*lines,
-            Line(rf"\boldsymbol{{\Phi}}^{{\ast}} = \left. \boldsymbol{{\Phi}} \right|_{{{', '.join([*moved, *drive])}}}"),
+    every = ", ".join([*moved, *drive])
+    return [*lines, Line(rf"\boldsymbol{{\Phi}}^{{\ast}} = \left. \boldsymbol{{\Phi}} \right|_{{{every}}}"),
             Line(r"\mathbf{Q}_{d} = \frac{\mathrm{d}^{2} \boldsymbol{\Phi}^{\ast}}{\mathrm{d} t^{2}}",
                  output="motion.Q_d")]
 
@@ -168,7 +169,8 @@ def spring_extension(scope: Scope) -> list[Line]:
     gap, rate = r"\mathbf{gap}", r"\dot{\mathbf{gap}}"
     if SPRINGS[scope.family.name].has_length:
         e, de = r"\varepsilon", r"\dot{\varepsilon}"
-        lines = [Line(rf"{e} = \lvert {gap} \rvert - L"), Line(rf"{de} = \frac{{{gap} \cdot {rate}}}{{\lvert {gap} \rvert}}")]
+        lines = [Line(rf"{e} = \lvert {gap} \rvert - L"),
+                 Line(rf"{de} = \frac{{{gap} \cdot {rate}}}{{\lvert {gap} \rvert}}")]
         squares = rf"{e}^{{2}}", rf"{de}^{{2}}"
         force = (rf"\left( k {e} + c {de} \right) \left( \frac{{\partial {e}}}{{\partial {gap}}} "
                  r"\right)^{\mathsf{T}}")
@@ -183,6 +185,7 @@ def spring_extension(scope: Scope) -> list[Line]:
 
 
 BODY_PRINTERS = {"attitude": attitude, "rigid_inertia": rigid_inertia, "modal_mass": modal_mass,
-                 "frame_axes": frame_axes, "frame_turn": frame_turn, "modal_inertia": modal_inertia, "turned_axes": turned_axes, "joint_equations": joint_equations,
+                 "frame_axes": frame_axes, "frame_turn": frame_turn, "modal_inertia": modal_inertia,
+                 "turned_axes": turned_axes, "joint_equations": joint_equations,
                  "joint_jacobian": joint_jacobian, "joint_motion": joint_motion,
                  "spring_extension": spring_extension}

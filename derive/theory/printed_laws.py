@@ -134,12 +134,37 @@ def measures(scope: Scope) -> list[Line]:
     traits = scope.family.traits
     assert traits is not None
     green = traits.strain == "green"
+    if traits.takes_shape:
+        return curved_measures(green)
     strain = (r"\frac{1}{2} \left( \mathbf{r}^{\prime} \cdot \mathbf{r}^{\prime} - 1 \right)" if green else
               r"\lvert \mathbf{r}^{\prime} \rvert - 1")
     bend = r"\lvert \mathbf{r}^{\prime} \times \mathbf{r}^{\prime \prime} \rvert"
     curvature = (r"\lvert \mathbf{r}^{\prime \prime} \rvert" if traits.curvature == "linear" else
                  rf"\frac{{{bend}}}{{\lvert \mathbf{{r}}^{{\prime}} \rvert^{{{3 if green else 2}}}}}")
     return [Line(rf"\varepsilon = {strain}"), Line(rf"\kappa = {curvature}")]
+
+
+def curved_measures(green: bool) -> list[Line]:
+    """Return strain, curvature and energy per length against those of a curved stress-free shape."""
+    bend = r"\lvert \mathbf{r}^{\prime} \times \mathbf{r}^{\prime \prime} \rvert"
+    bend_0 = r"\lvert \mathbf{r}_{0}^{\prime} \times \mathbf{r}_{0}^{\prime \prime} \rvert"
+    square = r"\mathbf{r}^{\prime} \cdot \mathbf{r}^{\prime}"
+    strain = (rf"\frac{{1}}{{2}} \left( \frac{{{square}}}{{j^{{2}}}} - 1 \right)" if green else
+              r"\frac{\lvert \mathbf{r}^{\prime} \rvert}{j} - 1")
+    below = r"\lvert \mathbf{r}^{\prime} \rvert^{3}" if green else r"j \lvert \mathbf{r}^{\prime} \rvert^{2}"
+    return [Line(text) for text in (
+        r"\mathbf{r}_{0} = \sum_{k=1}^{n} N_{k} \mathbf{e}_{0,k}",
+        r"\mathbf{r}_{0}^{\prime} = \frac{\partial \mathbf{r}_{0}}{\partial x}",
+        r"\mathbf{r}_{0}^{\prime \prime} = \frac{\partial^{2} \mathbf{r}_{0}}{\partial x^{2}}",
+        r"j = \lvert \mathbf{r}_{0}^{\prime} \rvert", rf"\varepsilon = {strain}",
+        rf"\kappa = \frac{{{bend}}}{{{below}}}",
+        rf"\kappa_{{0}} = \frac{{{bend_0}}}{{j^{{3}}}}",
+        r"\phi = \frac{4}{10^{12} l^{2}}", r"\beta = \frac{\kappa_{0}^{2}}{10^{6}} + \phi",
+        r"\bar{\kappa} = \sqrt{\kappa^{2} + \beta}", r"\bar{\kappa}_{0} = \sqrt{\kappa_{0}^{2} + \beta}",
+        r"\Delta = \bar{\kappa} - \bar{\kappa}_{0}",
+        r"\sigma = \frac{\phi^{2} \bar{\kappa}_{0}}{\kappa_{0}^{4} + \phi^{2}}",
+        r"W = j \left( \frac{1}{2} \mathrm{EA} \varepsilon^{2} + \mathrm{EI} \Delta \left( \frac{1}{2} \Delta + \sigma "
+        r"\right) \right)")]
 
 
 def _rule(letters: tuple[str, str], points: int) -> list[Line]:
@@ -153,6 +178,10 @@ def _rule(letters: tuple[str, str], points: int) -> list[Line]:
     return lines
 
 
+def _curved(scope: Scope) -> bool:
+    return bool(scope.family.traits and scope.family.traits.takes_shape)
+
+
 def _at(name: str, letter: str, index: str) -> Line:
     """Return the value of a quantity at the place of a quadrature point, for each of them."""
     place = rf"\frac{{l}}{{2}} \left( 1 + {letter}_{{{index}}} \right)"
@@ -163,6 +192,8 @@ def quadrature(scope: Scope) -> list[Line]:
     """Return the places and weights of the rules, and strain and curvature there."""
     law = _law(scope)
     axial, bending = len(law.axial_points), len(law.bending_points)
+    if _curved(scope):
+        return [*_rule(("X", "w"), axial), _at("W", "X", "g")]
     if axial == bending:
         return [*_rule(("X", "w"), axial), _at(r"\varepsilon", "X", "g"), _at(r"\kappa", "X", "g")]
     return [*_rule(("X", "w"), axial), *_rule(("Y", "v"), bending), _at(r"\varepsilon", "X", "g"),
@@ -174,6 +205,8 @@ def cable_energy(scope: Scope) -> list[Line]:
     law, traits = _law(scope), scope.family.traits
     assert traits is not None
     axial, bending = len(law.axial_points), len(law.bending_points)
+    if _curved(scope):
+        return [Line(rf"U = \frac{{l}}{{2}} \sum_{{g=1}}^{{{axial}}} w_{{g}} W_{{g}}", output="energy.U")]
     g, w = ("g", "w") if axial == bending else ("h", "v")
     bend = rf"\frac{{l}}{{4}} \mathrm{{EI}} \sum_{{{g}=1}}^{{{bending}}} {w}_{{{g}}} \kappa_{{{g}}}^{{2}}"
     if traits.membrane != "assumed":
@@ -192,9 +225,13 @@ def cable_energy(scope: Scope) -> list[Line]:
 
 
 def cable_damping(scope: Scope) -> list[Line]:
-    """Return the rates of strain and bending, the dissipated power, and the force."""
+    """Return the rates of strain and bending, the dissipated power, and the force; nothing of a law that has the
+    damping kernels of another.
+    """
     law, traits = _law(scope), scope.family.traits
     assert traits is not None
+    if traits.damped_like:
+        return []
     moved = r"\mathbf{e} \to \mathbf{e} + t \dot{\mathbf{e}}"
     lines = [Line(r"\mathbf{i} = \frac{\mathbf{r}^{\prime}}{\lvert \mathbf{r}^{\prime} \rvert}")]
     for name in (r"\varepsilon", r"\mathbf{i}", r"\mathbf{r}^{\prime \prime}"):
@@ -211,10 +248,9 @@ def cable_damping(scope: Scope) -> list[Line]:
     power = (rf"\frac{{l}}{{2}} \mathrm{{EA}} \sum_{{j=1}}^{{{law.degree}}} p_{{j}} \dot{{\varepsilon}}_{{j}}^{{2}} + "
              rf"\frac{{l}}{{2}} \mathrm{{EI}} \sum_{{k=1}}^{{{law.degree - 1}}} b_{{k}} "
              r"\left( \mathbf{D}_{k} \cdot \mathbf{D}_{k} \right)")
-    own = not traits.damped_like
-    lines.append(Line(rf"P = \tau \left( {power} \right)", output="dissipation.P" if own else ""))
+    lines.append(Line(rf"P = \tau \left( {power} \right)", output="dissipation.P"))
     lines.append(Line(r"\mathbf{Q}_{d} = -\frac{1}{2} \left( \frac{\partial P}{\partial \dot{\mathbf{e}}} "
-                      r"\right)^{\mathsf{T}}", output="-damping_force.f" if own else ""))
+                      r"\right)^{\mathsf{T}}", output="-damping_force.f"))
     return lines
 
 

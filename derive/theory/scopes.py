@@ -177,7 +177,8 @@ def law_scope(name: str) -> Scope:
     element, traits = family.element, family.traits
     assert element is not None and traits is not None
     dim = element.dim
-    common = (*_BAR, _nodal(dim, r"\mathbf{e}", "e"), _nodal(dim, r"\dot{\mathbf{e}}", "v"),
+    shape = [_nodal(dim, r"\mathbf{e}_{0}", "e0")] if traits.takes_shape else []
+    common = (*_BAR, *shape, _nodal(dim, r"\mathbf{e}", "e"), _nodal(dim, r"\dot{\mathbf{e}}", "v"),
               Symbol(r"\tau", "tau", number), Symbol("c", "rate", number))
     if traits.kind == "cable":
         own = [Symbol(r"\mathrm{EA}", "S", entry(0)), Symbol(r"\mathrm{EI}", "S", entry(1))]
@@ -199,8 +200,10 @@ def law_scope(name: str) -> Scope:
 def _of_law(scope: Scope, state: State) -> dict[str, Any]:
     element = scope.family.element
     assert element is not None
-    straight = column(reference(element, float(state["l"])))
-    return _counts(scope, state) | {"y": 0.0, "z": 0.0, r"\mathbf{e}_{0}": straight}
+    known = _counts(scope, state) | {"y": 0.0, "z": 0.0}
+    if scope.family.traits and scope.family.traits.takes_shape:
+        return known
+    return known | {r"\mathbf{e}_{0}": column(reference(element, float(state["l"])))}
 
 
 def slide_scope(name: str) -> Scope:
