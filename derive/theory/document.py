@@ -120,7 +120,8 @@ class Composer:
             item.formulas = [self._formula(line) for line in PRINTERS[name](self._scope)]
             if not item.formulas:  # kernels that another family has, too
                 other = next(iter(self._scope.family.shared.values()))
-                self.document.items.append(Item(Block("paragraph", f"The kernels are those of `{other}`."), self._scope))
+                item.block = Block("paragraph", f"The kernels are those of `{other}`.")
+                self.document.items.append(item)
                 return
             folded = block.kind == "print-folded"
             item.block = Block("formula-folded" if folded else "formula", text=" ".join(about).replace("_", " "),

@@ -26,9 +26,9 @@ def html(document: Document) -> str:
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
+<meta charset="utf-8"/>
+<meta name="viewport" content="width=device-width, initial-scale=1"/>
+<meta name="color-scheme" content="light dark"/>
 <title>{escape(document.title)}</title>
 <style>
 {STYLE.read_text(encoding="utf-8")}</style>
@@ -129,7 +129,7 @@ def _index(document: Document) -> str:
                     kernels[k.name, k.output] = (f"<code>{k.name}</code> → <code>{k.output}</code> "
                                                  f'<span class="place">{k.file}:{k.line}</span>')
         rows.append(f'<tr><td><a href="#eq-{number}">{number}</a></td><td><code>{tagged().get(number, "")}</code></td>'
-                    f"<td>{'<br>'.join(kernels.values()) or 'assembled by the engine'}</td></tr>")
+                    f"<td>{'<br/>'.join(kernels.values()) or 'assembled by the engine'}</td></tr>")
     if len(rows) < len(tagged()):
         return ""  # a page of one subject
     return ('<h2 id="index-of-equations"><a href="#index-of-equations">Index of equations</a></h2>\n<div class="wide">'
