@@ -128,8 +128,8 @@ def test_the_latex_has_its_braces_and_environments_in_pairs_and_no_unknown_comma
 
 
 KNOWN = set("""documentclass usepackage setlength newcommand newsavebox sbox noindent begin end hspace ifdim wd
-linewidth resizebox usebox else fi hfill par smallskip footnotesize raggedright allowdisplaybreaks emergencystretch title author
-date maketitle tableofcontents section subsection subsubsection paragraph texttt textbf emph allowbreak item hline
+linewidth resizebox usebox else fi hfill par smallskip footnotesize raggedright allowdisplaybreaks emergencystretch
+title author date maketitle tableofcontents section subsection subsubsection paragraph texttt textbf emph allowbreak item hline
 newenvironment is wrap shown trace formulabox displaystyle left right frac sqrt sum int partial mathbf mathrm mathsf
 boldsymbol widetilde operatorname dot ddot bar hat cdot times otimes to lvert rvert prime ast text quad textbackslash
 textasciitilde textasciicircum textless textgreater textsuperscript circ surd parindent parskip dots href

@@ -118,10 +118,8 @@ class Composer:
             assert self._scope is not None
             name, *about = block.about.split()
             item.formulas = [self._formula(line) for line in PRINTERS[name](self._scope)]
-            if not item.formulas:  # kernels that another family has, too
-                other = next(iter(self._scope.family.shared.values()))
-                item.block = Block("paragraph", f"The kernels are those of `{other}`.")
-                self.document.items.append(item)
+            if not item.formulas:
+                self._nothing(self._scope)
                 return
             folded = block.kind == "print-folded"
             item.block = Block("formula-folded" if folded else "formula", text=" ".join(about).replace("_", " "),
@@ -132,6 +130,12 @@ class Composer:
         elif block.kind == "proof":
             item.proof = PROOFS[block.about]()
         self.document.items.append(item)
+
+    def _nothing(self, here: Scope) -> None:
+        """Say whose kernels a family has where it has none of its own."""
+        if here.family.shared:
+            other = next(iter(here.family.shared.values()))
+            self.document.items.append(Item(Block("paragraph", f"The kernels are those of `{other}`."), here))
 
     def _staged(self, block: Block) -> None:
         """Append a kernel stage by stage, in a scope of its own names."""
