@@ -163,7 +163,7 @@ def test_exactly_two_commands():
 
 @pytest.mark.parametrize("words", commands("funicular"))
 def test_commands_run(words, tmp_path, monkeypatch):
-    if words[0] in ("derive", "verify"):  # of .ci/run and of tests/test_user_elements.py: minutes
+    if words[0] in ("derive", "verify", "theory"):  # of .ci/run and of tests/test_user_elements.py: minutes
         words = [*words, "--help"]
     monkeypatch.chdir(tmp_path)
     (block,) = RUNTIME.of("Scene files", "toml")
