@@ -127,14 +127,16 @@ def test_the_latex_has_its_braces_and_environments_in_pairs_and_no_unknown_comma
     structurally_sound(slide[2])
 
 
-KNOWN = set("""documentclass usepackage setlength newcommand newsavebox sbox noindent begin end hspace ifdim wd
-linewidth resizebox usebox else fi hfill par smallskip footnotesize raggedright allowdisplaybreaks emergencystretch
-title author date maketitle tableofcontents section subsection subsubsection paragraph texttt textbf emph allowbreak item hline
+KNOWN = set("""
+documentclass usepackage setlength setcounter newcommand newsavebox sbox noindent begin end hspace ifdim wd linewidth
+resizebox usebox else fi hfill par smallskip footnotesize raggedright allowdisplaybreaks emergencystretch title author
+date maketitle tableofcontents section subsection subsubsection paragraph texttt textbf emph allowbreak item hline
 newenvironment is wrap shown trace formulabox displaystyle left right frac sqrt sum int partial mathbf mathrm mathsf
 boldsymbol widetilde operatorname dot ddot bar hat cdot times otimes to lvert rvert prime ast text quad textbackslash
-textasciitilde textasciicircum textless textgreater textsuperscript circ surd parindent parskip dots href
-alpha beta gamma delta varepsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi varphi chi psi omega Gamma
-Delta Theta Lambda Xi Pi Sigma Phi Psi Omega le ge pm""".split())
+textasciitilde textasciicircum textless textgreater textsuperscript circ surd parindent parskip dots href alpha beta
+gamma delta varepsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi varphi chi psi omega Gamma Delta
+Theta Lambda Xi Pi Sigma Phi Psi Omega le ge pm
+""".split())
 
 
 def structurally_sound(source: str) -> None:
@@ -212,6 +214,7 @@ FORMULAS = [
     r"x = \operatorname{sin} \left( \xi_{r,x1} + \mathrm{inv}_{C,sl} \right) + \sum_{k = 1}^{n} N_{k} \mathbf{e}_{k}",
     r"\mathbf{C}^{\ast} = \left. \mathbf{C} \right|_{\mathbf{e} \to \mathbf{e} + t \mathbf{v}, s \to s + t \dot{s}}",
     r"\boldsymbol{\omega} = \frac{\mathrm{d}^{2} \boldsymbol{\theta}_{0}}{\mathrm{d} t^{2}} \times \widetilde{q}",
+    r"\mathbf{y} = \left( \mathbf{I} + \widetilde{\boldsymbol{\theta}}_{1,0} \right) \mathrm{arm} \; \mathrm{inv}_{l}",
     r"\mathbf{x}_{1}^{0} = \mathbf{J}^{-1} \otimes \begin{bmatrix} 1 & -2.5 \\ \ddot{c} & 10^{12} \end{bmatrix}",
 ]
 

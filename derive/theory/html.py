@@ -128,8 +128,10 @@ def _index(document: Document) -> str:
                     k = kernel(item.scope.family.name, *f.kernel)
                     kernels[k.name, k.output] = (f"<code>{k.name}</code> → <code>{k.output}</code> "
                                                  f'<span class="place">{k.file}:{k.line}</span>')
-        rows.append(f'<tr><td><a href="#eq-{number}">{number}</a></td><td><code>{tagged().get(number, "")}</code></td>'
-                    f"<td>{'<br/>'.join(kernels.values()) or 'assembled by the engine'}</td></tr>")
+        place = tagged().get(number, "")
+        without = "the engine, written by hand" if place.startswith("runtime") else "a step of the derivation"
+        rows.append(f'<tr><td><a href="#eq-{number}">{number}</a></td><td><span class="place">{place}</span></td>'
+                    f"<td>{'<br/>'.join(kernels.values()) or without}</td></tr>")
     if len(rows) < len(tagged()):
         return ""  # a page of one subject
     return ('<h2 id="index-of-equations"><a href="#index-of-equations">Index of equations</a></h2>\n<div class="wide">'
@@ -188,14 +190,11 @@ class _Writer:
 
     def _scope(self, item: Item) -> str:
         assert item.scope is not None
-        rows = []
-        programs = item.scope.arguments
-        for symbol in item.scope.symbols:
-            argument = programs.get(symbol.argument)
-            doc, unit = (argument.doc, argument.unit) if argument else ("height and width of the rectangle", "m")
-            rows.append([f"${symbol.latex}$", f"`{symbol.argument}`", doc, unit])
+        if item.scope.family.role == "joint" and "joint" in self._numbered:
+            return ""  # the same for every kind
+        self._numbered.add(item.scope.family.role)
         name = item.scope.family.name
-        table = _table(["symbol", "argument", "is", "unit"], rows)
+        table = _table(["symbol", "argument", "is", "unit"], item.scope.legend())
         return (f'<details class="symbols"><summary>Symbols of this chapter, arguments of the kernels '
                 f"<code>{escape(name)}_…</code></summary>{table}</details>")
 

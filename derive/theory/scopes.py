@@ -26,6 +26,9 @@ TOLERANCE = 1e-12
 """Of a printed formula against the compiled kernel, relative to the largest entry of the output."""
 
 State = dict[str, Any]
+MOST = 6
+"""Symbols of one argument that have a row of their own in a legend."""
+_OTHERS = {"rectangle": "height and width of the section's rectangle"}
 
 
 @dataclass(frozen=True)
@@ -123,6 +126,20 @@ class Scope:
     def arguments(self) -> dict[str, Argument]:
         """Return what the programs of the family say of their inputs, by name."""
         return {a.name: a for p in programs_of(self.family.name).values() for a in p.inputs}
+
+    def legend(self) -> list[list[str]]:
+        """Return a row for each symbol: symbol, argument, what it is, unit; many of one argument share a row."""
+        rows = []
+        for argument in dict.fromkeys(s.argument for s in self.symbols):
+            of = [s for s in self.symbols if s.argument == argument]
+            known = self.arguments.get(argument)
+            about = [known.doc, known.unit] if known else [_OTHERS.get(argument, "of the sample"), "m"]
+            if len(of) > MOST:
+                of_them = f"${of[0].latex}$ to ${of[-1].latex}$"
+                rows.append([of_them, f"`{argument}`", *about])
+            else:
+                rows += [[f"${s.latex}$", f"`{argument}`", *about] for s in of]
+        return rows
 
     def definitions(self) -> Definitions:
         """Return the place for definitions, with what of the inputs has blocks."""

@@ -21,6 +21,7 @@ PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \usepackage{amsmath,amssymb,graphicx}
 \usepackage[margin=25mm]{geometry}
 \usepackage{hyperref}
+\setcounter{MaxMatrixCols}{99}
 \setlength{\parindent}{0pt}\setlength{\parskip}{5pt plus 2pt}
 \newcommand{\is}{&=}
 \newcommand{\wrap}{\\&\quad}
@@ -121,14 +122,9 @@ class _Writer:
 
     def _scope(self, item: Item) -> str:
         assert item.scope is not None
-        rows = []
-        for symbol in item.scope.symbols:
-            argument = item.scope.arguments.get(symbol.argument)
-            doc, unit = (argument.doc, argument.unit) if argument else ("height and width of the rectangle", "m")
-            rows.append([f"${symbol.latex}$", f"`{symbol.argument}`", doc, unit])
         name = item.scope.family.name
         return f"Symbols, arguments of the kernels of {text(f'`{name}`')}:\n\n" + _table(
-            ["symbol", "argument", "is", "unit"], rows, "llp{0.5\\linewidth}p{0.22\\linewidth}")
+            ["symbol", "argument", "is", "unit"], item.scope.legend(), "llp{0.5\\linewidth}p{0.22\\linewidth}")
 
     def _stage(self, item: Item) -> str:
         return f"\\paragraph{{{plain(item.block.text)}}}\n{self._formula(item)}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 from .tree import (
     At,
@@ -47,8 +48,8 @@ def latex(node: Node) -> str:
         case Sum():
             return _sum(node)
         case Product():
-            return " ".join(_factor(f, first=k == 0, last=k == len(node.factors) - 1)
-                            for k, f in enumerate(node.factors))
+            return joined(node.factors, [_factor(f, first=k == 0, last=k == len(node.factors) - 1)
+                                         for k, f in enumerate(node.factors)], " ", r" \; ")
         case Binary():
             return f"{_side(node.left)} \\{node.sign} {_side(node.right)}"
         case Fraction():
@@ -62,6 +63,9 @@ def latex(node: Node) -> str:
         case Size():
             return f"\\lvert {latex(node.of)} \\rvert"
         case Skew():
+            if isinstance(node.of, Name) and node.of.sub and not (node.of.primes or node.of.above):
+                inner = Name(node.of.base, node.of.bold, node.of.accent)
+                return f"\\widetilde{{{quantity(inner)}}}_{{{','.join(map(subscript, node.of.sub))}}}"
             return f"\\widetilde{{{latex(node.of)}}}"
         case Call():
             return f"\\operatorname{{{node.name}}} {bracket(latex(node.of))}"
@@ -102,6 +106,19 @@ def width(node: Node) -> int:
     """Return roughly how many letters wide a formula is."""
     text = re.sub(r"\\(mathbf|mathrm|boldsymbol|left|right|widetilde|dot|operatorname|mathsf)|[{}_^ ]", "", latex(node))
     return len(re.sub(r"\\[a-zA-Z]+", "x", text))
+
+
+def joined(factors: Sequence[Node], texts: Sequence[str], close: str, apart: str) -> str:
+    """Return the texts of factors one after the other, words kept apart."""
+    text = texts[0]
+    for (before, after), more in zip(pairwise(factors), texts[1:], strict=True):
+        text += (apart if is_word(before) or is_word(after) else close) + more
+    return text
+
+
+def is_word(node: Node) -> bool:
+    """Return whether a factor is a name of several letters."""
+    return isinstance(node, Name) and len(node.base) > 1 and node.base not in GREEK
 
 
 def _large(node: Node) -> str:

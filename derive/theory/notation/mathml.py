@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from xml.etree import ElementTree
 from xml.sax.saxutils import escape
 
-from .latex import GREEK, TRANSPOSE, bracket, wrapped
+from .latex import GREEK, TRANSPOSE, bracket, joined, wrapped
 from .tree import (
     At,
     Binary,
@@ -73,8 +73,9 @@ def _of(node: Node) -> str:
         case Sum():
             return _sum(node)
         case Product():
-            return _operator(TIMES).join(_factor(f, first=k == 0, last=k == len(node.factors) - 1)
-                                         for k, f in enumerate(node.factors))
+            return joined(node.factors, [_factor(f, first=k == 0, last=k == len(node.factors) - 1)
+                                         for k, f in enumerate(node.factors)], _operator(TIMES),
+                          _operator(TIMES, ' lspace="0.14em" rspace="0.14em"'))
         case Binary():
             return f"{_side(node.left)}{_operator(SIGNS[node.sign])}{_side(node.right)}"
         case Fraction():
@@ -89,11 +90,21 @@ def _of(node: Node) -> str:
         case Size():
             return _row("".join([_operator("|", ' form="prefix"'), _of(node.of), _operator("|", ' form="postfix"')]))
         case Skew():
-            return f'<mover accent="true">{_row(_of(node.of))}{_operator("~")}</mover>'
+            return _skew(node)
         case Call():
             return f'<mi class="fn">{node.name}</mi>{_operator(APPLY)}{_brackets(_of(node.of))}'
         case _:
             return _large(node)
+
+
+def _skew(node: Skew) -> str:
+    """Return a tilde above; a subscript stays outside of it."""
+    of = node.of
+    if isinstance(of, Name) and of.sub and not (of.primes or of.above):
+        letter = _name(Name(of.base, of.bold, of.accent))
+        sub = _row(_operator(",").join(_subscript(s) for s in of.sub))
+        return f'<msub><mover accent="true">{_row(letter)}{_operator("~")}</mover>{sub}</msub>'
+    return f'<mover accent="true">{_row(_of(of))}{_operator("~")}</mover>'
 
 
 def _large(node: Node) -> str:

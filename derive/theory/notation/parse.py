@@ -57,7 +57,7 @@ class _Parser:
 
     def __init__(self, text: str):
         self.text = text
-        plain = re.sub(r"\\(begin|end)\{aligned\}|\\wrap\b", " ", text)  # of long sums, see latex.display
+        plain = re.sub(r"\\(begin|end)\{aligned\}|\\wrap\b|\\;", " ", text)  # of long sums, see latex.display
         self.tokens = TOKEN.findall(re.sub(r"\\is\b", "=", plain))
         self.at = 0
 
@@ -154,7 +154,10 @@ class _Parser:
         return Root(self.braced())
 
     def _skew(self) -> Node:
-        return Skew(self.braced())
+        node = self.braced()
+        if isinstance(node, Name) and not node.sub and self.skip("_"):
+            node = Name(node.base, node.bold, node.accent, self._subscripts())
+        return Skew(node)
 
     def _size(self) -> Node:
         node = self.sum()
