@@ -187,15 +187,27 @@ def velocities(scope: Scope) -> list[Line]:
     return [Line(r"\dot{\mathbf{q}} = \begin{bmatrix} \dot{\mathbf{e}} \\ \dot{\mathbf{R}}" + turn + r" \end{bmatrix}")]
 
 
+def moved_along(changes: dict[str, str], of: str) -> list[Line]:
+    """Return what quantities become along a motion, each marked by an asterisk, and what a function of them becomes."""
+    lines = [Line(rf"{starred(name)} = {value}") for name, value in changes.items()]
+    every = ", ".join(rf"{name} \to {starred(name)}" for name in changes)
+    return [*lines, Line(rf"{starred(of)} = \left. {of} \right|_{{{every}}}")]
+
+
+def starred(name: str) -> str:
+    """Return a quantity with an asterisk, its value along a motion."""
+    return rf"{name}^{{\ast}}"
+
+
 def motion(scope: Scope) -> list[Line]:
     """Return C along the motion at constant velocities."""
-    changes = [r"\mathbf{e} \to \mathbf{e} + t \dot{\mathbf{e}}", r"\mathbf{R} \to \mathbf{R} + t \dot{\mathbf{R}}",
-               r"s \to s + t \dot{s}"]
+    changes = {r"\mathbf{e}": r"\mathbf{e} + t \dot{\mathbf{e}}", r"\mathbf{R}": r"\mathbf{R} + t \dot{\mathbf{R}}",
+               "s": r"s + t \dot{s}"}
     if not _is_point(scope):
         spin = r"\widetilde{\boldsymbol{\omega}}"
-        changes.insert(2, rf"\mathbf{{A}} \to \mathbf{{A}}_{{0}} \left( \mathbf{{I}} + t {spin} + \frac{{1}}{{2}} "
-                          rf"t^{{2}} {spin} {spin} \right)")
-    return [Line(r"\mathbf{C}^{\ast} = \left. \mathbf{C} \right|_{" + ", ".join(changes) + "}")]
+        turned = rf"\left( \mathbf{{I}} + t {spin} + \frac{{1}}{{2}} t^{{2}} {spin} {spin} \right)"
+        changes[r"\mathbf{A}"] = rf"\mathbf{{A}}_{{0}} {turned}"
+    return moved_along(changes, r"\mathbf{C}")
 
 
 def parted_bias(scope: Scope) -> list[Line]:

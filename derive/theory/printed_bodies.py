@@ -6,7 +6,7 @@ from ..couplings.spring import SPRINGS
 from .lift import Lift, only
 from .markdown import Line
 from .notation.latex import latex
-from .printed import rider
+from .printed import moved_along, rider, starred
 from .scopes import Scope, programs_of
 
 OMEGA = r"\widetilde{\boldsymbol{\omega}}"
@@ -143,23 +143,26 @@ def joint_jacobian(scope: Scope) -> list[Line]:
 def joint_motion(scope: Scope) -> list[Line]:
     """Return the rate of the equations at rest, and their second derivative along the motion of both frames."""
     used = {s for line in joint_equations(scope) for s in _axes_in(line.latex)}
-    driven = "c_{0}" in " ".join(line.latex for line in joint_equations(scope)) or any(
-        f"c_{{{k}}}" in line.latex for line in joint_equations(scope) for k in (1, 2))
-    change = [Line(r"\zeta = t \dot{c} + \frac{1}{2} t^{2} \ddot{c}")] if driven else []
-    drive = ([r"c_{0} \to c_{0} + \zeta", r"c_{1} \to c_{1} - \zeta c_{2} - \frac{1}{2} \zeta^{2} c_{1}",
-              r"c_{2} \to c_{2} + \zeta c_{1} - \frac{1}{2} \zeta^{2} c_{2}"] if driven else [])
-    moved = [r"\mathbf{gap} \to \mathbf{gap} + t \dot{\mathbf{gap}}"]
+    drive = {"c_{0}": r"c_{0} + \zeta", "c_{1}": r"c_{1} - \zeta c_{2} - \frac{1}{2} \zeta^{2} c_{1}",
+             "c_{2}": r"c_{2} + \zeta c_{1} - \frac{1}{2} \zeta^{2} c_{2}"}
+    text = " ".join(line.latex for line in joint_equations(scope))
+    drive = {name: value for name, value in drive.items() if name in text}
+    moved = {r"\mathbf{gap}": r"\mathbf{gap} + t \dot{\mathbf{gap}}"}
     for a, n in sorted(used, key=lambda s: (s[1], s[0])):
-        spin = rf"\widetilde{{\boldsymbol{{\omega}}_{{{n}}}}}"
+        spin = rf"\widetilde{{\boldsymbol{{\omega}}}}_{{{n}}}"
         turned = rf"\left( \mathbf{{I}} + t {spin} + \frac{{1}}{{2}} t^{{2}} {spin} {spin} \right)"
-        moved.append(rf"\mathbf{{{a}}}_{{{n}}} \to {turned} \mathbf{{{a}}}_{{{n}}}^{{0}}")
-    lines = list(change)
-    if driven:
-        lines += [Line(rf"\boldsymbol{{\Phi}}^{{0}} = \left. \boldsymbol{{\Phi}} \right|_{{{', '.join(drive)}}}"),
-                  Line(r"\boldsymbol{\Phi}_{t} = \frac{\mathrm{d} \boldsymbol{\Phi}^{0}}{\mathrm{d} t}",
-                       output="motion.phi_t")]
-    every = ", ".join([*moved, *drive])
-    return [*lines, Line(rf"\boldsymbol{{\Phi}}^{{\ast}} = \left. \boldsymbol{{\Phi}} \right|_{{{every}}}"),
+        moved[rf"\mathbf{{{a}}}_{{{n}}}"] = rf"{turned} \mathbf{{{a}}}_{{{n}}}^{{0}}"
+    lines = []
+    if drive:
+        every = ", ".join(rf"{name} \to {starred(name)}" for name in drive)
+        lines = [Line(r"\zeta = t \dot{c} + \frac{1}{2} t^{2} \ddot{c}"),
+                 *(Line(rf"{starred(name)} = {value}") for name, value in drive.items()),
+                 Line(rf"\boldsymbol{{\Phi}}^{{0}} = \left. \boldsymbol{{\Phi}} \right|_{{{every}}}"),
+                 Line(r"\boldsymbol{\Phi}_{t} = \frac{\mathrm{d} \boldsymbol{\Phi}^{0}}{\mathrm{d} t}",
+                      output="motion.phi_t")]
+    along = moved_along(moved | drive, r"\boldsymbol{\Phi}")
+    defined = {line.latex for line in lines}
+    return [*lines, *(line for line in along if line.latex not in defined),
             Line(r"\mathbf{Q}_{d} = \frac{\mathrm{d}^{2} \boldsymbol{\Phi}^{\ast}}{\mathrm{d} t^{2}}",
                  output="motion.Q_d")]
 

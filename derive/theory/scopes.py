@@ -28,7 +28,8 @@ TOLERANCE = 1e-12
 State = dict[str, Any]
 MOST = 6
 """Symbols of one argument that have a row of their own in a legend."""
-_OTHERS = {"rectangle": "height and width of the section's rectangle"}
+_OTHERS = {"rectangle": ("height and width of the section's rectangle", "m"),
+           "D": ("elastic constants, the same all over the section", "N/m^2")}
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,7 @@ class Scope:
         for argument in dict.fromkeys(s.argument for s in self.symbols):
             of = [s for s in self.symbols if s.argument == argument]
             known = self.arguments.get(argument)
-            about = [known.doc, known.unit] if known else [_OTHERS.get(argument, "of the sample"), "m"]
+            about = (known.doc, known.unit) if known else _OTHERS[argument]
             if len(of) > MOST:
                 of_them = f"${of[0].latex}$ to ${of[-1].latex}$"
                 rows.append([of_them, f"`{argument}`", *about])
