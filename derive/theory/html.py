@@ -163,8 +163,11 @@ class _Writer:
     def _heading(self, item: Item) -> str:
         title, level = item.block.text, item.block.level
         if level == 1:
-            self.chapter = title
-        name = anchor(title if level == 1 else f"{self.chapter} {title}")
+            self.chapter, self.section = title, ""
+        elif level == 2:
+            self.section = title
+        above = "" if level == 1 else self.chapter if level == 2 else f"{self.chapter} {self.section}"
+        name = anchor(f"{above} {title}")
         return f'<h{level + 1} id="{name}"><a href="#{name}">{escape(title)}</a></h{level + 1}>'
 
     def _paragraph(self, item: Item) -> str:
