@@ -134,6 +134,8 @@ class Scope:
         for argument in dict.fromkeys(s.argument for s in self.symbols):
             of = [s for s in self.symbols if s.argument == argument]
             known = self.arguments.get(argument)
+            if known is None and argument not in _OTHERS:
+                continue  # of kernels that another family has for this one
             about = (known.doc, known.unit) if known else _OTHERS[argument]
             if len(of) > MOST:
                 of_them = f"${of[0].latex}$ to ${of[-1].latex}$"
