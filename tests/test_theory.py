@@ -285,9 +285,8 @@ def test_the_whole_theory_agrees_with_the_kernels(tmp_path):
 
 
 def named() -> list[str]:
-    """Return the elements, and the families that have a page."""
-    return [*ELEMENTS, *(name for name, family in families().items()
-                         if family.role != "element" and not name.endswith("continuum_curved"))]
+    """Return the elements, and all families of kernels."""
+    return [*ELEMENTS, *(name for name, family in families().items() if family.role != "element")]
 
 
 @pytest.mark.slow

@@ -186,6 +186,9 @@ def element_scope(name: str) -> Scope:
 
 def _with_constants(scope: Scope, state: State) -> State:
     """Return the sample with one elastic law all over the section, and the constants A that the kernels make of it."""
+    traits = scope.family.traits
+    if traits and traits.kind == "continuum" and traits.takes_shape:
+        return state  # its constants are a sum over points
     if "D" in state:
         state["S"] = np.outer(state["D"], state["section"])
     return state | {"A": compiled(scope.family.name, "stiffness", state)["A"]}
