@@ -7,9 +7,9 @@ from ..codegen.family import Family
 from ..couplings.joint import JOINTS
 from .document import Composer, Document
 
-LEAD = ("Every formula here is printed from the specs that the kernels are made of, or read back from this page and "
-        "evaluated against the compiled kernels when the page is built. The number behind a formula is the largest "
-        "difference that was found, relative to the largest entry. Equation numbers are those of the paper: J.-H. Seo, "
+LEAD = ("Formulas are printed from the specs and programs that make the kernels, or stand beside them. Each one is read "
+        "back from this page when it is built, evaluated at random points, and compared with the compiled kernels. The "
+        "number in green is the largest difference that was found, relative to the largest entry. Equation numbers are those of the paper: J.-H. Seo, "
         "I.-H. Jung, T.-W. Park, H. Sugiyama, A. A. Shabana, The Development of a Sliding Joint for Very Flexible "
         "Multibody Dynamics, 2005 (in Korean).")
 MAIN = {"element": "beam24", "law": "beam24_continuum", "slide": "slide_beam24_rigid", "body": "rigid",

@@ -129,7 +129,8 @@ def _index(document: Document) -> str:
                     kernels[k.name, k.output] = (f"<code>{k.name}</code> → <code>{k.output}</code> "
                                                  f'<span class="place">{k.file}:{k.line}</span>')
         place = tagged().get(number, "")
-        without = "the engine, written by hand" if place.startswith("runtime") else "a step of the derivation"
+        by_hand = not place or place.startswith("runtime")  # the engine's sources are not part of a wheel
+        without = "the engine, written by hand" if by_hand else "a step of the derivation"
         rows.append(f'<tr><td><a href="#eq-{number}">{number}</a></td><td><span class="place">{place}</span></td>'
                     f"<td>{'<br/>'.join(kernels.values()) or without}</td></tr>")
     if len(rows) < len(tagged()):
