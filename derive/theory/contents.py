@@ -7,11 +7,11 @@ from ..codegen.family import Family
 from ..couplings.joint import JOINTS
 from .document import Composer, Document
 
-LEAD = ("Formulas are printed from the specs and programs that make the kernels, or stand beside them. Each one is read "
-        "back from this page when it is built, evaluated at random points, and compared with the compiled kernels. The "
-        "number in green is the largest difference that was found, relative to the largest entry. Equation numbers are those of the paper: J.-H. Seo, "
-        "I.-H. Jung, T.-W. Park, H. Sugiyama, A. A. Shabana, The Development of a Sliding Joint for Very Flexible "
-        "Multibody Dynamics, 2005 (in Korean).")
+LEAD = ("Formulas are printed from the specs and programs that make the kernels, or stand beside them. Each one is "
+        "read back from this page when it is built, evaluated at random points, and compared with the compiled "
+        "kernels. The number in green is the largest difference that was found, relative to the largest entry. "
+        "Equation numbers are those of the paper: J.-H. Seo, I.-H. Jung, T.-W. Park, H. Sugiyama, A. A. Shabana, The "
+        "Development of a Sliding Joint for Very Flexible Multibody Dynamics, 2005 (in Korean).")
 MAIN = {"element": "beam24", "law": "beam24_continuum", "slide": "slide_beam24_rigid", "body": "rigid",
         "modal": "modal", "frame": "frame", "spring": "spring", "resistance": "resistance"}
 """What the theory is printed for: the element and the rider of the paper."""

@@ -189,7 +189,7 @@ def unused(document: Document) -> list[str]:
 
 def _evaluated(document: Document, trees: dict[str, Node] | None) -> tuple[dict[str, float], list[str]]:
     found: dict[str, float] = {}
-    idle: list[str] = []
+    unchecked: list[str] = []
     for items in _by_scope(document):
         here = items[0].scope
         if here is None:
@@ -207,10 +207,10 @@ def _evaluated(document: Document, trees: dict[str, Node] | None) -> tuple[dict[
                 deviation = _deviation(f, tree[f.identifier], value, here, state)
                 if deviation is not None:
                     found[f.identifier] = max(found.get(f.identifier, 0.0), deviation)
-        idle += [f.line.latex for f in formulas if f.identifier not in found
+        unchecked += [f.line.latex for f in formulas if f.identifier not in found
                  and not (isinstance(t := tree[f.identifier], Equation) and isinstance(t.sides[0], Name)
                           and t.sides[0].key in definitions.used)]
-    return found, idle
+    return found, unchecked
 
 
 def _by_scope(document: Document) -> Iterator[list[Item]]:
