@@ -258,5 +258,17 @@ def verify(names: Names = None) -> None:
     raise typer.Exit(main(names or []))
 
 
+@app.command()
+def theory(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="theory, an element, or a family of kernels "
+                                               "(default: the theory and all elements)")] = None,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="where the files are written")] = Path(),
+) -> None:
+    """Write the equations as HTML and LaTeX, from the specs that make the kernels, and check them against these."""
+    from funicular.derive.theory.command import main
+
+    raise typer.Exit(main(name, output))
+
+
 if __name__ == "__main__":
     app()

@@ -19,7 +19,7 @@ from pages import PAGES, ROOT, page
 from typer.testing import CliRunner
 
 README, DERIVE, RUNTIME, BENCHMARKS, _ = pages = [page(path) for path in PAGES]
-OUTSIDE = "python3 -m venv", "funicular derive", "funicular verify", "funicular derive --check"
+OUTSIDE = "python3 -m venv", "funicular derive", "funicular verify", "funicular derive --check", "funicular theory"
 """Commands that .ci/run starts; `funicular derive --spec` is in tests/test_user_elements.py."""
 SHORT = {"bench": ["--duration", "0.02", "--repetitions", "1"]}
 """What a command gets here so that it is quick."""
@@ -168,7 +168,7 @@ def test_exactly_two_commands():
 
 @pytest.mark.parametrize("words", commands("funicular"))
 def test_commands_run(words, tmp_path, monkeypatch):
-    if words[0] in ("derive", "verify"):  # of .ci/run and of tests/test_user_elements.py: minutes
+    if words[0] in ("derive", "verify", "theory"):  # of .ci/run and of tests/test_user_elements.py: minutes
         words = [*words, "--help"]
     monkeypatch.chdir(tmp_path)
     (block,) = RUNTIME.of("Scene files", "toml")

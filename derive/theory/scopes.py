@@ -1,0 +1,340 @@
+"""What the symbols of a chapter stand for: the inputs of the kernels that it explains, at random points.
+
+Samples are those of `funicular verify`: bent, stretched, turned; sizes of order one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Any
+
+import numpy as np
+
+from ..catalogue import families
+from ..codegen.family import Family
+from ..codegen.program import Argument, Program
+from ..verify import numbers as verify_numbers
+from ..verify.samples import states
+from ..verify.samples.shapes import reference
+from .notation.evaluate import Definitions, Evaluation
+from .notation.parse import parse
+from .notation.tree import Name
+
+TOLERANCE = 1e-12
+"""Of a printed formula against the compiled kernel, relative to the largest entry of the output."""
+
+State = dict[str, Any]
+MOST = 6
+"""Symbols of one argument that have a row of their own in a legend."""
+_OTHERS = {"rectangle": ("height and width of the section's rectangle", "m"),
+           "D": ("elastic constants, the same all over the section", "N/m^2")}
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A symbol in LaTeX, the argument of the kernels that it is, and the part of it."""
+
+    latex: str
+    argument: str
+    part: Callable[[np.ndarray], Any]
+    blocks: int = 0
+    words: str = ""
+
+    @property
+    def name(self) -> Name:
+        """Return the symbol as it stands in formulas."""
+        found = parse(self.latex)
+        assert isinstance(found, Name)
+        return found
+
+
+def _key(latex: str) -> str:
+    name = parse(latex)
+    assert isinstance(name, Name)
+    return name.key
+
+
+def number(v: np.ndarray) -> float:
+    """Return the only entry."""
+    return float(np.asarray(v).item())
+
+
+def column(v: np.ndarray) -> np.ndarray:
+    """Return all entries, one below the other, row by row; one entry alone is a number."""
+    flat = np.asarray(v, dtype=object).reshape(-1, 1)
+    return flat if flat.size > 1 else flat.item()
+
+
+def matrix(v: np.ndarray) -> np.ndarray:
+    """Return it as it is."""
+    return np.asarray(v, dtype=object)
+
+
+def entry(*index: int) -> Callable[[np.ndarray], float]:
+    """Return what takes one entry."""
+    return lambda v: float(np.asarray(v)[index])
+
+
+def entries(first: int, last: int) -> Callable[[np.ndarray], Any]:
+    """Return what takes a run of entries as a column."""
+    return lambda v: column(np.asarray(v)[first:last])
+
+
+@cache
+def programs_of(family: str) -> dict[str, Program]:
+    """Return the programs of a family by the name without the family's."""
+    return {p.name.removeprefix(f"{family}_"): p.prune() for p in families()[family].build()}
+
+
+@cache
+def samples_of(family: str) -> list[State]:
+    """Return the states at which the formulas of a family are evaluated."""
+    exact = verify_numbers.exact(family, list(programs_of(family).values()))
+    return states(families()[family], exact)
+
+
+def compiled(family: str, kernel: str, state: Mapping[str, Any]) -> dict[str, np.ndarray]:
+    """Return the outputs of a compiled kernel of this installation, by name."""
+    from ...generated import kernels
+
+    program = programs_of(family)[kernel]
+    values = getattr(kernels, program.name)(*(state[a.name] for a in program.inputs))
+    values = values if isinstance(values, tuple) else (values,)
+    return {a.name: np.asarray(v) for a, v in zip(program.outputs, values, strict=True)}
+
+
+@dataclass(frozen=True)
+class Scope:
+    """A family of kernels whose inputs the symbols of a chapter are.
+
+    adapted   changes a sample before it is used, as where a constant of the section is to be known to the formulas
+    constants values of symbols that no kernel takes, from a sample
+    """
+
+    family: Family
+    symbols: tuple[Symbol, ...]
+    adapted: Callable[[Scope, State], State] = lambda scope, state: state
+    constants: Callable[[Scope, State], dict[str, Any]] = lambda scope, state: {}
+
+    @cached_property
+    def states(self) -> list[State]:
+        """Return the sample states, the ordinary ones."""
+        return [self.adapted(self, dict(state)) for state in samples_of(self.family.name)[:2]]
+
+    @cached_property
+    def arguments(self) -> dict[str, Argument]:
+        """Return what the programs of the family say of their inputs, by name."""
+        return {a.name: a for p in programs_of(self.family.name).values() for a in p.inputs}
+
+    def legend(self) -> list[list[str]]:
+        """Return a row for each symbol: symbol, argument, what it is, unit; many of one argument share a row."""
+        rows = []
+        for argument in dict.fromkeys(s.argument for s in self.symbols):
+            of = [s for s in self.symbols if s.argument == argument]
+            known = self.arguments.get(argument)
+            if known is None and argument not in _OTHERS:
+                continue  # of kernels that another family has for this one
+            about = (known.doc, known.unit) if known else _OTHERS[argument]
+            if len(of) > MOST:
+                of_them = f"${of[0].latex}$ to ${of[-1].latex}$"
+                rows.append([of_them, f"`{argument}`", *about])
+            else:
+                rows += [[f"${s.latex}$", f"`{argument}`", *about] for s in of]
+        return rows
+
+    def definitions(self) -> Definitions:
+        """Return the place for definitions, with what of the inputs has blocks."""
+        return Definitions(blocks={s.name.key: s.blocks for s in self.symbols if s.blocks})
+
+    def evaluation(self, definitions: Definitions, state: State) -> Evaluation:
+        """Return what evaluates formulas at a state."""
+        values = {s.name.key: s.part(state[s.argument]) for s in self.symbols if s.argument in state}
+        dim = self.family.facts.get("dim") or self.family.dim or (self.family.element.dim if self.family.element else 3)
+        constants = {r"\mathbf{I}": np.eye(dim).astype(object), "t": 0.0} | self.constants(self, state)
+        return Evaluation(definitions, values | {_key(latex): value for latex, value in constants.items()})
+
+
+# --- the scopes of the chapters ---------------------------------------------------------------------------------
+
+_PLACE = (Symbol("x", "at", entry(0)), Symbol("y", "at", entry(1)), Symbol("z", "at", entry(2)))
+_BAR = (Symbol("l", "l", number), Symbol("h", "rectangle", entry(0)), Symbol("b", "rectangle", entry(1)))
+
+
+def _nodal(dim: int, latex: str, argument: str) -> Symbol:
+    return Symbol(latex, argument, column, dim)
+
+
+def _counts(scope: Scope, state: State) -> dict[str, Any]:
+    element = scope.family.element
+    assert element is not None
+    return {"n": float(element.n_vectors)}
+
+
+def element_scope(name: str) -> Scope:
+    """Return the scope of an element's own kernels."""
+    family = families()[name]
+    dim = family.facts["dim"]
+    rows = ("A", "I_{yy}", "I_{zz}", "I_{yyyy}", "I_{yyzz}", "I_{zzzz}")
+    return Scope(family, (*_BAR, *_PLACE, Symbol(r"\rho", "density", number), _nodal(dim, r"\mathbf{e}", "e"),
+                          Symbol(r"\mathbf{g}", "g", column), _nodal(dim, r"\ddot{\mathbf{e}}", "a"),
+                          *(Symbol(s, "section", entry(k)) for k, s in enumerate(rows)),
+                          Symbol(r"\mathbf{c}", "c", column), Symbol(r"\boldsymbol{\mu}", "M", column)),
+                 constants=_counts)
+
+
+def _with_constants(scope: Scope, state: State) -> State:
+    """Return the sample with one elastic law all over the section, and the constants A that the kernels make of it."""
+    traits = scope.family.traits
+    if traits and traits.kind == "continuum" and traits.takes_shape:
+        return state  # its constants are a sum over points
+    if "D" in state:
+        state["S"] = np.outer(state["D"], state["section"])
+    return state | {"A": compiled(scope.family.name, "stiffness", state)["A"]}
+
+
+def law_scope(name: str) -> Scope:
+    """Return the scope of a law on an element."""
+    family = families()[name]
+    element, traits = family.element, family.traits
+    assert element is not None and traits is not None
+    dim = element.dim
+    shape = [_nodal(dim, r"\mathbf{e}_{0}", "e0")] if traits.takes_shape else []
+    common = (*_BAR, *shape, _nodal(dim, r"\mathbf{e}", "e"), _nodal(dim, r"\dot{\mathbf{e}}", "v"),
+              Symbol(r"\tau", "tau", number), Symbol("c", "rate", number))
+    if traits.kind == "cable":
+        own = [Symbol(r"\mathrm{EA}", "S", entry(0)), Symbol(r"\mathrm{EI}", "S", entry(1))]
+        if traits.membrane == "assumed":
+            own.append(Symbol(r"\mathrm{EA}_{u}", "S", entry(2)))
+    elif traits.kind == "structural":
+        return Scope(family, (*common, Symbol("x", "x", number)), constants=_of_law)
+    else:
+        axes = range(1, dim + 1)
+        pairs = [(i, j) for i in axes for j in axes if i < j]
+        names = [f"D_{{{i}{i}}}" for i in axes] + [f"D_{{{i}{j}}}" for i, j in pairs] + [f"G_{{{i}{j}}}"
+                                                                                         for i, j in pairs]
+        own = [Symbol(s, "D", entry(k)) for k, s in enumerate(names)]
+        own += [Symbol(f"S_{{{k},{m}}}", "S", entry(k - 1, m - 1)) for k in range(1, len(names) + 1)
+                for m in range(1, 7)]
+    return Scope(family, (*common, *own, Symbol("x", "x", number)), adapted=_with_constants, constants=_of_law)
+
+
+def _of_law(scope: Scope, state: State) -> dict[str, Any]:
+    element = scope.family.element
+    assert element is not None
+    known = _counts(scope, state) | {"y": 0.0, "z": 0.0}
+    if scope.family.traits and scope.family.traits.takes_shape:
+        return known
+    return known | {r"\mathbf{e}_{0}": column(reference(element, float(state["l"])))}
+
+
+def slide_scope(name: str) -> Scope:
+    """Return the scope of the slide of a rider on an element."""
+    family = families()[name]
+    element = family.element
+    assert element is not None
+    dim = element.dim
+    cable = (Symbol("l", "l", number), Symbol("s", "x", number), _nodal(dim, r"\mathbf{e}", "e"),
+             _nodal(dim, r"\dot{\mathbf{e}}", "v"))
+    rider = (Symbol(r"\mathbf{R}", "b", entries(0, dim)), Symbol(r"\mathbf{u}", "u", column),
+             Symbol(r"\dot{\mathbf{R}}", "w", entries(0, dim)), *_attitude(family))
+    if family.rider not in ("point", "planar_point"):
+        rider = (*rider, Symbol(r"\boldsymbol{\omega}", "w", entries(dim, 6)))
+    return Scope(family, (*cable, *rider, Symbol(r"\mathbf{d}", "director", column),
+                          Symbol(r"\mathbf{f}", "f", column)), constants=_at_rest)
+
+
+def _attitude(family: Family) -> tuple[Symbol, ...]:
+    dim = family.facts["dim"]
+    if family.rider in ("point", "planar_point"):
+        return ()
+    if dim == 2:
+        return Symbol("c", "b", entry(2)), Symbol(r"\sigma", "b", entry(3))
+    return Symbol("q_{0}", "b", entry(3)), Symbol(r"\mathbf{q}", "b", entries(4, 7))
+
+
+def _at_rest(scope: Scope, state: State) -> dict[str, Any]:
+    turns = {2: 0.0, 3: np.zeros((3, 1)).astype(object)}[scope.family.facts["dim"]]
+    more = _counts(scope, state) if scope.family.element else {}
+    return more | {r"\boldsymbol{\theta}": turns, r"\boldsymbol{\theta}_{0}": turns, "y": 0.0, "z": 0.0}
+
+
+def body_scope(name: str) -> Scope:
+    """Return the scope of a rigid body."""
+    family = families()[name]
+    dim = family.facts["dim"]
+    return Scope(family, (Symbol("m", "mass", number), *_inertia(dim),
+                          Symbol(r"\mathbf{R}", "b", entries(0, dim)), *_attitude(family),
+                          Symbol(r"\mathbf{u}", "u", column), Symbol(r"\dot{\mathbf{R}}", "w", entries(0, dim)),
+                          Symbol(r"\boldsymbol{\omega}", "w", entries(dim, 6)),
+                          Symbol(r"\ddot{\mathbf{R}}", "a", entries(0, dim)),
+                          Symbol(r"\dot{\boldsymbol{\omega}}", "a", entries(dim, 6)),
+                          Symbol(r"\mathbf{f}", "f", column)), constants=_at_rest)
+
+
+def _inertia(dim: int) -> tuple[Symbol, ...]:
+    return (Symbol(r"\mathbf{J}", "J", matrix),) if dim == 3 else (Symbol("J", "J", entry(2, 2)),)
+
+
+def modal_scope(name: str) -> Scope:
+    """Return the scope of a modal body."""
+    moments = [Symbol(rf"\mathbf{{S}}_{{{k}}}", f"S{k or ''}", column) for k in range(3)]
+    moments += [Symbol(rf"\mathbf{{X}}_{{{k}}}", f"X{k or ''}", matrix) for k in range(3)]
+    moments += [Symbol(rf"\mathbf{{Y}}_{{{k}}}", f"Y{k or ''}", matrix) for k in range(3)]
+    body = body_scope(name)
+    return Scope(body.family, (*(s for s in body.symbols if s.argument != "J"), *moments,
+                               Symbol(r"\mathbf{s}", "s", column), Symbol(r"\mathbf{g}", "g", column),
+                               Symbol(r"X_{\mathrm{rates}}", "X11", number)), constants=_at_rest)
+
+
+def _column_of(k: int) -> Callable[[np.ndarray], Any]:
+    return lambda v: column(np.asarray(v)[:, k])
+
+
+def joint_scope(name: str) -> Scope:
+    """Return the scope of a joint between two frames."""
+    family = families()[name]
+    axes = [Symbol(rf"\mathbf{{{a}}}_{{{n}}}^{{0}}", f"A{n}", _column_of(k))
+            for n in (1, 2) for k, a in enumerate("xyz"[: family.dim])]
+    return Scope(family, (Symbol(r"\mathbf{gap}", "gap", column), *axes,
+                          *(Symbol(f"c_{{{k}}}", "c", entry(k)) for k in range(3)),
+                          Symbol(r"\mathbf{f}", "f", column), Symbol(r"\dot{\mathbf{gap}}", "gap_rate", column),
+                          Symbol(r"\dot{c}", "c_rate", entry(0)), Symbol(r"\ddot{c}", "c_rate", entry(1)),
+                          *(Symbol(rf"\boldsymbol{{\omega}}_{{{n}}}", f"omega{n}", column) for n in (1, 2))),
+                 constants=_no_turn)
+
+
+def frame_scope(name: str) -> Scope:
+    """Return the scope of the frame of two vectors."""
+    vectors = [Symbol(rf"{mark}{{\mathbf{{{v}}}}}" if mark else rf"\mathbf{{{v}}}", f"{v}{suffix}", column)
+               for v in "ab" for mark, suffix in (("", ""), (r"\dot", "_rate"), (r"\ddot", "_second"))]
+    return Scope(families()[name], (*vectors, Symbol(r"\mathbf{m}", "m", column)))
+
+
+def _no_turn(scope: Scope, state: State) -> dict[str, Any]:
+    turn = {2: 0.0, 3: np.zeros((3, 1)).astype(object)}[scope.family.dim or 3]
+    return {rf"\boldsymbol{{\theta}}_{{{sub}}}": turn for sub in ("1", "2", "1,0", "2,0")}
+
+
+def spring_scope(name: str) -> Scope:
+    """Return the scope of a spring with a damper."""
+    return Scope(families()[name], (Symbol("k", "stiffness", number), Symbol("c", "damping", number),
+                                    Symbol("L", "rest_length", number), Symbol(r"\mathbf{gap}", "gap", column),
+                                    Symbol(r"\dot{\mathbf{gap}}", "gap_rate", column)))
+
+
+def resistance_scope(name: str) -> Scope:
+    """Return the scope of friction and buffers."""
+    letters = (r"\mu", r"\mu_{v}", "v_{0}", r"\delta", "N_{0}")
+    friction = [Symbol(s, "friction", entry(k)) for k, s in enumerate(letters)]
+    buffer = [Symbol(s, "buffer", entry(k)) for k, s in enumerate(("k", "c", "x", r"\sigma"))]
+    return Scope(families()[name], (Symbol(r"\mathbf{t}", "t", column), Symbol(r"\mathbf{w}", "u", column),
+                                    Symbol(r"\mathbf{f}", "f", column), *friction, *buffer))
+
+
+def scope(role: str, name: str) -> Scope:
+    """Return the scope of a family, by its role."""
+    return {"element": element_scope, "law": law_scope, "slide": slide_scope, "body": body_scope,
+            "modal": modal_scope, "frame": frame_scope, "joint": joint_scope, "spring": spring_scope,
+            "resistance": resistance_scope}[role](name)
