@@ -18,14 +18,17 @@ from .parts.friction import Friction
 from .parts.material import Material
 from .parts.section import Circle, GeneralSection, Rectangle, Tube
 from .parts.signal import Harmonic, Pulse, Ramp, TableSignal
+from .parts.solids import Box, Cylinder, MeshShape, Sphere
 from .results.run import Run
 from .scene import Scene
 from .scene_file import bundled_scenes, load_run, load_scene
 
 __all__ = [
+    "Box",
     "Buffer",
     "Circle",
     "ConvergenceError",
+    "Cylinder",
     "EndOfCableError",
     "EquilibriumError",
     "Friction",
@@ -35,6 +38,7 @@ __all__ = [
     "HardStop",
     "Harmonic",
     "Material",
+    "MeshShape",
     "Pulse",
     "Ramp",
     "Rectangle",
@@ -42,6 +46,7 @@ __all__ = [
     "Run",
     "Scene",
     "SceneError",
+    "Sphere",
     "TableSignal",
     "Tube",
     "UnknownResultError",

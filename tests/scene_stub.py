@@ -36,6 +36,7 @@ from .parts.scene_data import SceneData
 from .parts.section import Section
 from .parts.signal import Signal
 from .parts.slide import Slide
+from .parts.solids import Solid
 from .parts.spring import Spring
 from .parts.support import Clamp, Motion, Pin, Tie
 from .parts.validation import Part
@@ -53,7 +54,7 @@ class SceneMethods(SceneData):
 
 TYPES = {
     "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points",
-    "AnySection": "Section", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
+    "AnySection": "Section", "AnySolid": "Solid", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
     "CableEnd": "str | Stop", "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Material": "Material", "Friction": "Friction",
     "float": "float", "str": "str", "int": "int", "bool": "bool", "Callable": "Callable[..., Any]",
