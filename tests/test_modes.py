@@ -117,3 +117,14 @@ def test_more_than_there_are():
     with pytest.raises(SceneError, match="modes: the scene has 6 degrees of freedom, 7 modes were asked for; ask for "
                                          "fewer modes, or take more elements"):
         scene.modes(7)
+
+
+def test_nodes_of_a_modal_body_move_from_the_state_that_they_swing_about():
+    """A beam on a hinge is drawn level and hangs at rest: its end swings to the side."""
+    scene = Scene()
+    scene.modal_body("link", start=(0, 0, 0), end=(1, 0, 0), section=SQUARE, boundary="attached", modes=2,
+                     material=TABLE_1)
+    scene.joint("revolute", "link", (0, 0, 0), axis=(0, 0, 1))
+    rest = scene.equilibrium()
+    np.testing.assert_allclose(rest["link.nodes"][-1], (0, -1, 0), atol=1e-3)
+    np.testing.assert_allclose(np.abs(scene.modes(1, about=rest)["link.nodes"][0, -1]), (1, 0, 0), atol=1e-3)
