@@ -140,9 +140,7 @@ def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
     if len(run.time):
         rows.append(("results", str(path)))
     if pictures is not None and len(run.time):
-        from .view.plot import save_plots
-
-        written = save_plots(run, pictures, f"{path.stem}-", forces)
+        written = run.save_plots(pictures, f"{path.stem}-", forces)
         rows.append(("pictures", "\n".join(map(str, written))))
     table = Table(box=box.SIMPLE, show_header=False)
     table.add_column(style="bold")

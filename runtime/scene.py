@@ -19,8 +19,9 @@ from .errors import (
 from .parts.modal_body import ModalBody
 from .parts.scene_text import dumps, read
 from .parts.settings import EquilibriumSettings, ModeSettings, RunSettings
-from .parts.validation import Part, shown
+from .parts.validation import Part, show, shown
 from .results.run import Run
+from .results.viewable import Viewable
 from .scene_methods import SceneMethods
 from .solve.progress import progress_bar
 from .solve.threads import one_blas_thread
@@ -30,12 +31,16 @@ if TYPE_CHECKING:
     # a tenth of it. So they are imported by the methods that need them, here and below.
     from .parts.body_shape import Shape
     from .results.equilibrium import Equilibrium
-    from .solve.modes import Modes
+    from .results.modes import Modes
+    from .view.animation import Animation
 
 P = TypeVar("P", bound=Part)
 
+MOST_NAMED = 12
+"""Parts of a kind that a notebook names."""
 
-class Scene(SceneMethods):
+
+class Scene(Viewable, SceneMethods):
     """Cables, bodies, and what joins, holds and loads them.
 
     ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``springs``, ``events``
@@ -208,10 +213,37 @@ class Scene(SceneMethods):
         state = None if about is None else _equilibrium_state(self, about)
         self.check()
 
-        from .solve.modes import modes  # brings SciPy
+        from .results.modes import Modes  # brings SciPy
+        from .solve.modes import modes
 
         with one_blas_thread, enough_memory():
-            return modes(self, settings.n, state)
+            return Modes.of(modes(self, settings.n, state), self, state)
+
+    def animation(self, title: str | None = None) -> Animation:
+        """Return the scene as it is drawn, before it runs, as pictures show it; see `Viewable.animation`."""
+        from .results.animation.clips import of_scene  # brings SciPy
+
+        return of_scene(self, title or "scene")
+
+    def overview(self) -> list[tuple[str, str]]:
+        """Return what is in the scene, for a notebook; see `Viewable.overview`."""
+        found = [("gravity", show(self.gravity, "m/s²"))]
+        for kind, names in self._names().items():
+            more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+            found.append((kind, ", ".join(names[:MOST_NAMED]) + more))
+        return found + [("note", message) for message in self.messages]
+
+    def __repr__(self) -> str:
+        """Return how many parts of which kind there are, in a line."""
+        counts = ", ".join(f"{len(names)} {kind}" for kind, names in self._names().items())
+        return f"<funicular.Scene: {counts or 'empty'}>"
+
+    def _names(self) -> dict[str, list[str]]:
+        """Return the names of the parts by their kind; those of supports are the names in results."""
+        found: dict[str, list[str]] = {}
+        for part in self.parts():
+            found.setdefault(part.kind, []).append(part.given_name or getattr(part, "label", part.kind))
+        return found
 
 
 def _modes_of_mesh(body: ModalBody) -> Shape:

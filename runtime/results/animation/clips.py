@@ -17,7 +17,7 @@ from . import sources
 from .bodies import body_shape
 from .cables import cable_shape, modal_line, stations
 from .curves import curves, events, thinned
-from .frames import Frames
+from .frames import Frames, no_forces
 from .marks import marks, segments
 from .recorded import Recorded
 
@@ -33,8 +33,11 @@ MOST_NODES = 200
 """Of a modal body whose nodes are on no line: with more, some of them are drawn."""
 
 
-def of_run(run: Recorded, title: str, frames: int = FRAMES) -> Animation:
-    """Return the animation of a run, of at most so many of its output times. Raises FunicularError without any."""
+def of_run(run: Recorded, title: str, frames: int = FRAMES, with_results: bool = True) -> Animation:
+    """Return the animation of a run, of at most so many of its output times. Raises FunicularError without any.
+
+    with_results: with quantities along cables and curves, or places alone, which is quicker.
+    """
     if not len(run.time):
         raise FunicularError("the run has no output times: there is nothing to see")
     notes = list(run.report["messages"])
@@ -42,6 +45,9 @@ def of_run(run: Recorded, title: str, frames: int = FRAMES) -> Animation:
     chosen = thinned(len(run.time), max(2, min(frames, MOST_POINTS // max(1, points))))
     if len(chosen) < len(run.time):
         notes.append(f"{len(chosen)} of the run's {len(run.time)} output times are drawn")
+    if not with_results:
+        return _animation(run.scene, title, [_clip(replace(sources.of_run(run, chosen), section_forces=no_forces), title,
+                                                   notes)], notes)
     notes += [f'tension of "{name}" is that of the elastic law, not in balance with what acts: the run is large'
               for name, cable in run.scene.cables.items()
               if not sources.is_balanced(len(chosen), len(stations(cable)))]

@@ -19,6 +19,10 @@ class Balance(Protocol):
     def residual(self) -> np.ndarray:
         """Return what is missing (time,) in J."""
 
+    @property
+    def relative(self) -> np.ndarray:
+        """Return what is missing (time,) over the energy that was exchanged."""
+
 
 class Recorded(Protocol):
     """What pictures take of a run."""
