@@ -9,7 +9,7 @@ import numpy as np
 
 from .animation import Animation, BodyShape, Clip
 from .placed import outline, placed_surface
-from .projections import Directions, Projection, directions
+from .projections import Directions, Projection, all_points, directions
 
 if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
@@ -40,10 +40,10 @@ SEGMENTS: dict[str, dict[str, Any]] = {
     "spring": {"linestyle": (0, (1, 1)), "linewidth": 1.6},
     "lever": {"linestyle": "-", "linewidth": 1.0},
     "joint": {"linestyle": (0, (5, 1)), "linewidth": 1.2},
-    "load": {"linestyle": "-", "linewidth": 1.2},
 }
-SMALL = 0.012
-"""Of the picture's size: a body that looks smaller has a marker, too."""
+LOAD = "#b3261e"
+LOW = 0.45
+"""Of its width: the height that a picture can take."""
 PATHS = ((0, (4, 2)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5)), (0, (3, 1, 1, 1, 1, 1)))
 """Lines of the paths of bodies, in turn."""
 CLIP_COLOURS = ("#1f6f8b", "#c8553d", "#5b8e3e", "#7b5ea7", "#b08900")
@@ -72,8 +72,7 @@ def shape_figure(animation: Animation, figure: Figure | None = None, every_view:
         elif seen.flat and not every_view:
             figure.set_size_inches(8, 3.9)
             axes = figure.add_subplot()
-            panel = PlanePanel(axes, seen.front)
-            _draw_all(animation, [panel], figure)
+            _draw_all(animation, [PlanePanel(axes, seen.front, stretch=_stretch(animation, seen))], figure)
         else:
             figure.set_size_inches(10, 7.2)
             grid = figure.add_gridspec(2, 2)
@@ -83,6 +82,15 @@ def shape_figure(animation: Animation, figure: Figure | None = None, every_view:
                                                               (1, 1, seen.top, "from above"))]
             _draw_all(animation, panels, figure)
     return figure
+
+
+def _stretch(animation: Animation, seen: Directions) -> float:
+    """Return the round factor by which the upright scale of a flat scene can be exaggerated, 1 for none."""
+    width, height = np.ptp(seen.front(all_points(animation)), axis=0)
+    if not width > 0:
+        return 1.0
+    most = LOW * width / max(1.24 * height, 1e-3 * width)
+    return max((f * 10.0**e for e in range(7) for f in (1, 2, 5) if f * 10**e <= most), default=1.0)
 
 
 class Panel:
@@ -99,6 +107,10 @@ class Panel:
         """Draw points (n, 3)."""
         self.axes.scatter(*self.points(points).T, **look)
 
+    def arrow(self, start: np.ndarray, end: np.ndarray, label: str | None) -> None:
+        """Draw an arrow from point to point (3,)."""
+        self.line(np.stack([start, end]), color=LOAD, linewidth=1.2, zorder=3, label=label)
+
     def body(self, body: BodyShape, frame: int, colour: Any) -> None:
         """Draw the shape of a body."""
         raise NotImplementedError
@@ -111,23 +123,30 @@ class Panel:
 class PlanePanel(Panel):
     """A projection on a plane."""
 
-    def __init__(self, axes: Any, projection: Projection, title: str = ""):
+    def __init__(self, axes: Any, projection: Projection, title: str = "", stretch: float = 1.0):
+        """stretch: of the upright scale; bodies are dots then, since their shapes would be stretched, too."""
         super().__init__(axes, projection)
-        self.projection, self.title = projection, title
+        self.projection, self.title, self.stretch = projection, title, stretch
+
+    def arrow(self, start: np.ndarray, end: np.ndarray, label: str | None) -> None:
+        """Draw an arrow from point to point (3,), with a head where it is long enough in this view."""
+        super().arrow(start, end, label)
+        self.axes.annotate("", self.points(end), self.points(start), zorder=4,
+                           arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0})
 
     def body(self, body: BodyShape, frame: int, colour: Any) -> None:
-        """Draw the outline of a body's shape."""
+        """Draw the outline of a body's shape, or a dot."""
+        if self.stretch > 1:
+            self.dots(body.position[frame : frame + 1], color=colour, marker="h", s=48, edgecolors="0.1",
+                      linewidths=0.7, zorder=4)
+            return
         corners = outline(self.projection(placed_surface(body, frame)[0]))
         self.axes.fill(*corners.T, facecolor=(*colour[:3], 0.25), edgecolor=colour, linewidth=0.8, zorder=3)
 
     def finish(self) -> None:
-        """Take equal scales, or the upright one exaggerated by a round factor that its label states."""
-        axes = self.axes
+        """Take equal scales, or an upright one exaggerated by a factor that its label states."""
+        axes, stretch = self.axes, self.stretch
         axes.margins(0.04, 0.12)
-        width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
-        most = 0.42 * width / height  # the height of a picture that the page can take, over its width
-        stretch = max((f * 10**e for e in range(-1, 7) for f in (1, 2, 5) if f * 10**e <= most), default=0.1)
-        stretch = max(stretch, 1)
         axes.set_aspect(stretch, adjustable="datalim")
         axes.set_xlabel(f"{self.projection.names[0]} / m")
         axes.set_ylabel(f"{self.projection.names[1]} / m" + (f"  (stretched {stretch:g} : 1)" if stretch > 1 else ""))
@@ -152,14 +171,20 @@ class SpacePanel(Panel):
 
     def finish(self) -> None:
         """Take equal scales about the middle of what is drawn."""
+        from matplotlib.ticker import MaxNLocator
+
         axes = self.axes
         limits = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
         span = np.maximum(np.ptp(limits, axis=1), 0.2 * np.ptp(limits, axis=1).max())
         for middle, size, set_limits in zip(limits.mean(axis=1), span,
                                             (axes.set_xlim, axes.set_ylim, axes.set_zlim), strict=True):
             set_limits(middle - size / 2, middle + size / 2)
-        axes.set_box_aspect(span, zoom=0.95)
+        axes.set_box_aspect(span, zoom=1.2)
         axes.view_init(elev=22, azim=-60)
+        for axis, size in zip((axes.xaxis, axes.yaxis, axes.zaxis), span, strict=True):
+            axis.set_major_locator(MaxNLocator(max(2, round(6 * size / span.max()))))
+            axis.labelpad = 2 + 6 * size / span.max()
+        axes.tick_params(labelsize=8, pad=1)
         for set_label, name in zip((axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), self.names, strict=True):
             set_label(f"{name} / m")
 
@@ -235,13 +260,14 @@ def draw_clip(panel: Panel, clip: Clip, frames: np.ndarray, colours: list[Any], 
         for frame, colour in zip(frames, colours, strict=True):
             panel.body(body, frame, colour)
     for name, segment in _named_once(clip.segments):
+        label = name if named else None
+        if segment.kind == "load":  # at all times they would hide what they act on
+            panel.arrow(_at(segment.start, frames[-1]), _at(segment.end, frames[-1]), label)
+            continue
         for frame, colour in zip(frames, colours, strict=True):
-            ends = np.stack([_at(segment.start, frame), _at(segment.end, frame)])
-            panel.line(ends, color="#b3261e" if segment.kind == "load" else colour, zorder=3, **SEGMENTS[segment.kind],
-                       label=name if named else None)
-            name = None
-            if segment.kind == "load":
-                panel.dots(ends[1:], color="#b3261e", marker="o", s=8, zorder=4)
+            panel.line(np.stack([_at(segment.start, frame), _at(segment.end, frame)]), color=colour, zorder=3,
+                       label=label, **SEGMENTS[segment.kind])
+            label = None
     for name, mark in _named_once(clip.marks):
         rides = mark.kind in ("slide", "joint", "point", "tie")
         positions = np.concatenate([_at(mark.position, frame)[None] for frame in frames])

@@ -29,6 +29,8 @@ PERIOD = 48
 """Frames of one period of a mode."""
 SWING = 0.08
 """Of the scene's size: the largest displacement of a mode in its picture."""
+TURN = 0.6
+"""In rad: what a body turns by at most in the picture of a mode, also where it hardly moves otherwise."""
 MOST_NODES = 200
 """Of a modal body whose nodes are on no line: with more, some of them are drawn."""
 
@@ -108,10 +110,12 @@ def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], ti
     for k in range(len(modes)):
         frequency, growth = float(modes.frequency[k]), float(modes.growth_rate[k])
         what = f"{frequency:.4g} Hz" if frequency > 0 or growth == 0 else f"grows by {growth:.4g} 1/s"
-        clip = _clip(sources.of_mode(modes, k, scene, about, swing, phase), f"mode {k + 1}: {what}", notes if not k else [])
+        turns = [np.linalg.norm(modes[f"{name}.rotation"][k]) for name in scene.bodies]
+        largest = min(swing, TURN / max([*turns, 1e-300]))
+        clip = _clip(sources.of_mode(modes, k, scene, about, largest, phase), f"mode {k + 1}: {what}", [] if k else notes)
         clips.append(replace(clip, time=phase / (2 * np.pi * frequency) if frequency > 0 else phase / (2 * np.pi),
                              segments=tuple(each for each in clip.segments if each.kind != "load"), periodic=True,
-                             details={"frequency": what, "drawn with": f"{swing:.3g} m at most"}))
+                             details={"frequency": what, "drawn with": f"{largest:.3g} m at most"}))
     notes.append(f"modes have no size of their own: they are drawn with a largest displacement of {swing:.3g} m")
     return replace(_animation(scene, title, clips, notes), arrangement="menu")
 

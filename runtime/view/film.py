@@ -1,0 +1,193 @@
+"""A figure that shows an animation at one time after the other, its background drawn once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import FunicularError, near
+from .animation import Animation, CableShape, Clip
+from .placed import outline, placed_surface
+from .plot import CLIP_COLOURS, LOAD, MARKERS, SEGMENTS, SIZES
+from .projections import Directions, Projection, all_points, directions
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+SIZE, DOTS = (9.6, 5.4), 100
+"""Of a picture in inches, and dots an inch."""
+TURNED, RAISED = 0.55, 0.35
+"""From where a spatial scene is seen: aside from its main view and above it, in rad."""
+MARGIN = 0.07
+
+Update = Callable[[int], None]
+"""Moves an artist to a frame of its clip."""
+
+
+class Film:
+    """A figure that shows an animation at one time after the other."""
+
+    def __init__(self, animation: Animation, clips: tuple[Clip, ...], colour: str | None, pace: float):
+        """colour: the key of a quantity along cables that colours them; pace: said in the picture."""
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
+        self.animation, self.clips, self.pace = animation, clips, pace
+        self.canvas = FigureCanvasAgg(Figure(figsize=SIZE, dpi=DOTS))
+        figure = self.canvas.figure
+        seen = directions(animation)
+        self.view = seen.front if seen.flat else oblique(seen)
+        self.colour, self.scale = colour, _quantity_scale(clips, colour)
+        self.axes: Axes = figure.add_axes((0.07, 0.1, 0.8 if colour else 0.9, 0.8))
+        self._set_limits()
+        if seen.flat:
+            self.axes.set(xlabel=f"{self.view.names[0]} / m", ylabel=f"{self.view.names[1]} / m")
+        else:
+            self.axes.set_axis_off()
+            self._draw_box(seen)
+        if self.scale is not None:
+            figure.colorbar(self.scale, cax=figure.add_axes((0.9, 0.15, 0.015, 0.7)), label=_label(clips, colour))
+        self.said = figure.text(0.02, 0.94, "", fontsize=11, animated=True)
+        figure.text(0.98, 0.94, animation.title, fontsize=11, ha="right", color="0.35")
+        self.moving: list[tuple[int, Artist, Update]] = []
+        for number, clip in enumerate(clips):
+            self._add(number, clip, CLIP_COLOURS[number % len(CLIP_COLOURS)])
+        self.moving.sort(key=lambda each: each[1].get_zorder())
+
+    def pictures(self, times: np.ndarray) -> Iterator[np.ndarray]:
+        """Yield the pictures (height, width, 3) in bytes of the motion at these times."""
+        self.canvas.draw()
+        background = self.canvas.copy_from_bbox(self.canvas.figure.bbox)
+        unit = self.animation.time_unit
+        pace = f"   (played at {self.pace:.3g} times its speed)" * (unit == "s")
+        for time in times:
+            self.canvas.restore_region(background)
+            frames = [frame_at(clip, float(time)) for clip in self.clips]
+            for clip, artist, update in self.moving:
+                update(frames[clip])
+                self.axes.draw_artist(artist)
+            self.said.set_text(f"{self.animation.time_label} {time:.4g} {unit}".rstrip() + pace)
+            self.canvas.figure.draw_artist(self.said)
+            yield np.asarray(self.canvas.buffer_rgba())[..., :3].copy()
+
+    def _set_limits(self) -> None:
+        """Take equal scales about the middle of all places that are reached, in the shape of the axes."""
+        places = self.view(all_points(self.animation))
+        low, high = places.min(axis=0), places.max(axis=0)
+        box = self.axes.get_position()
+        across, up = SIZE[0] * box.width, SIZE[1] * box.height
+        size = (1 + 2 * MARGIN) * max((high[0] - low[0]) / across, (high[1] - low[1]) / up, 1e-9)
+        middle = (low + high) / 2
+        self.axes.set_xlim(middle[0] - size * across / 2, middle[0] + size * across / 2)
+        self.axes.set_ylim(middle[1] - size * up / 2, middle[1] + size * up / 2)
+
+    def _draw_box(self, seen: Directions) -> None:
+        """Draw the edges of the box that holds all places, with the lengths of three of them."""
+        places = all_points(self.animation) @ seen.matrix
+        low, high = places.min(axis=0), places.max(axis=0)
+        for axis in range(3):
+            for a in (0, 1):
+                for b in (0, 1):
+                    ends = np.tile(low, (2, 1))
+                    others = [k for k in range(3) if k != axis]
+                    ends[:, others[0]] = (low, high)[a][others[0]]
+                    ends[:, others[1]] = (low, high)[b][others[1]]
+                    ends[1, axis] = high[axis]
+                    drawn = self.view(ends @ seen.matrix.T)
+                    self.axes.plot(*drawn.T, color="0.85", linewidth=0.8, zorder=0)
+            start = np.array([low[0], low[1], low[2]])
+            end = start.copy()
+            end[axis] = high[axis]
+            at = self.view(((start + end) / 2) @ seen.matrix.T)
+            self.axes.annotate(f"{seen.names[axis]}: {high[axis] - low[axis]:.3g} m", at, fontsize=8, color="0.45",
+                               ha="center", va="top")
+
+    def _add(self, number: int, clip: Clip, colour: str) -> None:
+        """Add the artists of a clip."""
+        from matplotlib.colors import to_rgb
+        from matplotlib.lines import Line2D
+        from matplotlib.patches import Polygon
+
+        def line(points: Callable[[int], np.ndarray], **look: Any) -> None:
+            artist = Line2D([], [], animated=True, **look)
+            self.axes.add_line(artist)
+            self.moving.append((number, artist, lambda frame: artist.set_data(*self.view(points(frame)).T)))
+
+        for cable in clip.cables:
+            self._add_cable(number, cable, colour)
+        for body in clip.bodies:
+            line(lambda frame, body=body: body.position[: frame + 1], color="0.6", linewidth=0.7, zorder=1)
+            patch = Polygon(np.zeros((3, 2)), facecolor=(*to_rgb(colour), 0.35), edgecolor=colour, animated=True,
+                            zorder=3)
+            self.axes.add_patch(patch)
+            self.moving.append((number, patch, lambda frame, body=body, patch=patch: patch.set_xy(
+                outline(self.view(placed_surface(body, frame)[0])))))
+        for segment in clip.segments:
+            look = {"color": LOAD if segment.kind == "load" else "0.3", **SEGMENTS.get(segment.kind, {})}
+            line(lambda frame, each=segment: np.stack([at(each.start, frame), at(each.end, frame)]), zorder=4, **look)
+        for mark in clip.marks:
+            line(lambda frame, each=mark: at(each.position, frame)[None], marker=MARKERS[mark.kind], linestyle="",
+                 markersize=np.sqrt(SIZES[mark.kind]), color="0.15", zorder=5)
+
+    def _add_cable(self, number: int, cable: CableShape, colour: str) -> None:
+        from matplotlib.collections import LineCollection
+
+        quantity = next((q for q in cable.quantities if q.key == self.colour), None)
+        artist = LineCollection([], linewidths=3, colors=colour, animated=True, zorder=2, capstyle="round")
+        self.axes.add_collection(artist, autolim=False)
+
+        def update(frame: int) -> None:
+            points = self.view(cable.position[frame])
+            artist.set_segments(np.stack([points[:-1], points[1:]], axis=1))
+            if quantity is not None and self.scale is not None:
+                values = quantity.values[frame]
+                artist.set_color(self.scale.to_rgba((values[:-1] + values[1:]) / 2))
+
+        self.moving.append((number, artist, update))
+
+
+def at(values: np.ndarray, frame: int) -> np.ndarray:
+    """Return the value at a frame of what may stand still."""
+    return values[frame if len(values) > 1 else 0]
+
+
+def frame_at(clip: Clip, time: float) -> int:
+    """Return the number of the frame of a clip nearest to a time; a periodic one begins anew."""
+    if clip.periodic:
+        return round(time / period(clip) * len(clip.time)) % len(clip.time)
+    return int(np.argmin(np.abs(clip.time - time)))
+
+
+def period(clip: Clip) -> float:
+    """Return the period of a clip whose last frame joins the first."""
+    return float(clip.time[-1] - clip.time[0]) * len(clip.time) / (len(clip.time) - 1)
+
+
+def oblique(seen: Directions) -> Projection:
+    """Return the view of a spatial scene from aside and above."""
+    across = np.cos(TURNED) * seen.across + np.sin(TURNED) * seen.depth
+    into = np.cross(seen.up, across)
+    return Projection(across, np.cos(RAISED) * seen.up + np.sin(RAISED) * into, ("", ""))
+
+
+def _quantity_scale(clips: tuple[Clip, ...], key: str | None) -> Any:
+    """Return the colours of a quantity along cables, None where none is asked for. Raises FunicularError."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    if key is None:
+        return None
+    known = {q.key: None for clip in clips for cable in clip.cables for q in cable.quantities}
+    if key not in known:
+        raise FunicularError(f'cables have no quantity "{key}"; {near(key, known)}')
+    values = np.concatenate([q.values.ravel() for clip in clips for cable in clip.cables for q in cable.quantities
+                             if q.key == key])
+    return ScalarMappable(Normalize(np.nanmin(values), np.nanmax(values)), "viridis")
+
+
+def _label(clips: tuple[Clip, ...], key: str | None) -> str:
+    quantity = next(q for clip in clips for cable in clip.cables for q in cable.quantities if q.key == key)
+    return f"{quantity.label} / {quantity.unit}"
