@@ -41,7 +41,8 @@ class Film:
         seen = directions(animation)
         self.view = seen.front if seen.flat else oblique(seen)
         self.colour, self.scale = colour, _quantity_scale(clips, colour)
-        self.axes: Axes = figure.add_axes((0.07, 0.1, 0.8 if colour else 0.9, 0.8))
+        self.axes: Axes = figure.add_axes((0.07, 0.1, 0.77 if colour else 0.9, 0.8))
+        self.box = _corners(animation, seen)
         self._set_limits()
         if seen.flat:
             self.axes.set(xlabel=f"{self.view.names[0]} / m", ylabel=f"{self.view.names[1]} / m")
@@ -49,7 +50,7 @@ class Film:
             self.axes.set_axis_off()
             self._draw_box(seen)
         if self.scale is not None:
-            figure.colorbar(self.scale, cax=figure.add_axes((0.9, 0.15, 0.015, 0.7)), label=_label(clips, colour))
+            figure.colorbar(self.scale, cax=figure.add_axes((0.87, 0.15, 0.015, 0.7)), label=_label(clips, colour))
         self.said = figure.text(0.02, 0.94, "", fontsize=11, animated=True)
         figure.text(0.98, 0.94, animation.title, fontsize=11, ha="right", color="0.35")
         self.moving: list[tuple[int, Artist, Update]] = []
@@ -75,7 +76,7 @@ class Film:
 
     def _set_limits(self) -> None:
         """Take equal scales about the middle of all places that are reached, in the shape of the axes."""
-        places = self.view(all_points(self.animation))
+        places = self.view(self.box)
         low, high = places.min(axis=0), places.max(axis=0)
         box = self.axes.get_position()
         across, up = SIZE[0] * box.width, SIZE[1] * box.height
@@ -86,30 +87,21 @@ class Film:
 
     def _draw_box(self, seen: Directions) -> None:
         """Draw the edges of the box that holds all places, with the lengths of three of them."""
-        places = all_points(self.animation) @ seen.matrix
-        low, high = places.min(axis=0), places.max(axis=0)
-        for axis in range(3):
-            for a in (0, 1):
-                for b in (0, 1):
-                    ends = np.tile(low, (2, 1))
-                    others = [k for k in range(3) if k != axis]
-                    ends[:, others[0]] = (low, high)[a][others[0]]
-                    ends[:, others[1]] = (low, high)[b][others[1]]
-                    ends[1, axis] = high[axis]
-                    drawn = self.view(ends @ seen.matrix.T)
-                    self.axes.plot(*drawn.T, color="0.85", linewidth=0.8, zorder=0)
-            start = np.array([low[0], low[1], low[2]])
-            end = start.copy()
-            end[axis] = high[axis]
-            at = self.view(((start + end) / 2) @ seen.matrix.T)
-            self.axes.annotate(f"{seen.names[axis]}: {high[axis] - low[axis]:.3g} m", at, fontsize=8, color="0.45",
-                               ha="center", va="top")
+        corners = self.box.reshape(2, 2, 2, 3)
+        drawn = self.view(corners)
+        for axis, name in enumerate(seen.names):
+            for edge in np.moveaxis(drawn, axis, 0).reshape(2, 4, 2).swapaxes(0, 1):
+                self.axes.plot(*edge.T, color="0.85", linewidth=0.8, zorder=0)
+            first = np.moveaxis(drawn, axis, 0)[:, 0, 0]
+            length = np.linalg.norm(np.diff(np.moveaxis(corners, axis, 0)[:, 0, 0], axis=0))
+            self.axes.annotate(f"{name}: {length:.3g} m", first.mean(axis=0), fontsize=8, color="0.45", ha="center",
+                               va="top")
 
     def _add(self, number: int, clip: Clip, colour: str) -> None:
         """Add the artists of a clip."""
         from matplotlib.colors import to_rgb
         from matplotlib.lines import Line2D
-        from matplotlib.patches import Polygon
+        from matplotlib.patches import FancyArrowPatch, Polygon
 
         def line(points: Callable[[int], np.ndarray], **look: Any) -> None:
             artist = Line2D([], [], animated=True, **look)
@@ -126,8 +118,15 @@ class Film:
             self.moving.append((number, patch, lambda frame, body=body, patch=patch: patch.set_xy(
                 outline(self.view(placed_surface(body, frame)[0])))))
         for segment in clip.segments:
-            look = {"color": LOAD if segment.kind == "load" else "0.3", **SEGMENTS.get(segment.kind, {})}
-            line(lambda frame, each=segment: np.stack([at(each.start, frame), at(each.end, frame)]), zorder=4, **look)
+            if segment.kind == "load":
+                arrow = FancyArrowPatch((0, 0), (1, 1), arrowstyle="-|>", mutation_scale=9, color=LOAD, animated=True,
+                                        shrinkA=0, shrinkB=0, zorder=4)
+                self.axes.add_patch(arrow)
+                self.moving.append((number, arrow, lambda frame, each=segment, arrow=arrow: arrow.set_positions(
+                    *(tuple(self.view(at(point, frame))) for point in (each.start, each.end)))))
+                continue
+            line(lambda frame, each=segment: np.stack([at(each.start, frame), at(each.end, frame)]), color="0.3",
+                 zorder=4, **SEGMENTS[segment.kind])
         for mark in clip.marks:
             line(lambda frame, each=mark: at(each.position, frame)[None], marker=MARKERS[mark.kind], linestyle="",
                  markersize=np.sqrt(SIZES[mark.kind]), color="0.15", zorder=5)
@@ -147,6 +146,13 @@ class Film:
                 artist.set_color(self.scale.to_rgba((values[:-1] + values[1:]) / 2))
 
         self.moving.append((number, artist, update))
+
+
+def _corners(animation: Animation, seen: Directions) -> np.ndarray:
+    """Return the corners (8, 3) of the box along the directions that holds all places."""
+    places = all_points(animation) @ seen.matrix
+    ends = np.stack([places.min(axis=0), places.max(axis=0)])
+    return np.array([[x, y, z] for x in ends[:, 0] for y in ends[:, 1] for z in ends[:, 2]]) @ seen.matrix.T
 
 
 def at(values: np.ndarray, frame: int) -> np.ndarray:

@@ -179,7 +179,7 @@ class SpacePanel(Panel):
         for middle, size, set_limits in zip(limits.mean(axis=1), span,
                                             (axes.set_xlim, axes.set_ylim, axes.set_zlim), strict=True):
             set_limits(middle - size / 2, middle + size / 2)
-        axes.set_box_aspect(span, zoom=1.2)
+        axes.set_box_aspect(span, zoom=1.05)
         axes.view_init(elev=22, azim=-60)
         for axis, size in zip((axes.xaxis, axes.yaxis, axes.zaxis), span, strict=True):
             axis.set_major_locator(MaxNLocator(max(2, round(6 * size / span.max()))))
