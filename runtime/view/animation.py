@@ -28,14 +28,14 @@ class CableShape:
     """A cable: the centre line at P stations, with its section.
 
     section: ``{"shape": "circle", "diameter": d}``, ``{"shape": "tube", "diameter": d, "thickness": t}``,
-    ``{"shape": "rectangle", "height": h, "width": w}``, or ``{"shape": "unknown", "size": d}``, the diameter of a circle
-    of plausible size.
+    ``{"shape": "rectangle", "height": h, "width": w}``, or ``{"shape": "unknown", "size": d}``, the diameter of a
+    circle of plausible size.
     """
 
     name: str
     s: np.ndarray  # (P,) arc-length of the undeformed cable in m
     position: np.ndarray  # (T, P, 3)
-    section_y: np.ndarray | None  # (T, P, 3) unit vector of the height of the section; None: the section has no direction
+    section_y: np.ndarray | None  # (T, P, 3) unit vector of the section's height; None: the section has no direction
     section: Mapping[str, object]
     reference: np.ndarray  # (P, 3) what an exaggerated displacement is measured from
     quantities: tuple[Quantity, ...] = ()
@@ -45,37 +45,42 @@ class CableShape:
 class BodyShape:
     """A body: its frame over time, and what is drawn in it.
 
-    shape: ``{"kind": "box", "size": [x, y, z]}``, ``{"kind": "sphere", "radius": r}``, ``{"kind": "cylinder", "radius": r,
-    "length": l, "axis": [x, y, z]}``, or ``{"kind": "mesh", "vertices": (V, 3) array, "triangles": (F, 3) array}``, each
-    with ``"offset": [x, y, z]``, its centre in axes of the body.
+    shape: ``{"kind": "box", "size": [x, y, z]}``, ``{"kind": "sphere", "radius": r}``, ``{"kind": "cylinder",
+    "radius": r, "length": l, "axis": [x, y, z]}``, or ``{"kind": "mesh", "vertices": (V, 3) array, "triangles": (F, 3)
+    array}``, each with ``"offset": [x, y, z]``, its centre in axes of the body.
     """
 
     name: str
     position: np.ndarray  # (T, 3)
     orientation: np.ndarray  # (T, 4) unit quaternion, scalar first, from axes of the body to those of space
     shape: Mapping[str, object]
-    reference: np.ndarray  # (3,)
+    reference: np.ndarray  # (3,), or (T, 3) for what slides: what an exaggerated displacement is measured from
     quantities: Mapping[str, tuple[str, np.ndarray]] = field(default_factory=dict)  # label: (unit, (T,) values)
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A point that means something."""
+    """A point that means something.
+
+    reference: what an exaggerated displacement is measured from; None: the mean of a periodic clip, else the start.
+    """
 
     name: str
     kind: Literal["pin", "clamp", "tie", "joint", "slide", "ground", "point"]
     position: np.ndarray  # (T or 1, 3)
     detail: str = ""  # said when the pointer is on it
+    reference: np.ndarray | None = None  # (3,), or (T, 3) for what slides
 
 
 @dataclass(frozen=True)
 class Segment:
-    """A straight connection of two points."""
+    """A straight connection of two points; ``reference`` is like that of a mark, start and end."""
 
     name: str
     kind: Literal["spring", "lever", "joint", "load"]
     start: np.ndarray  # (T or 1, 3)
     end: np.ndarray  # (T or 1, 3)
+    reference: np.ndarray | None = None  # (2, 3), or (T, 2, 3)
 
 
 @dataclass(frozen=True)
@@ -118,8 +123,8 @@ class Clip:
 class Animation:
     """What a page shows.
 
-    arrangement: ``"overlay"`` draws all clips at once, each in its own shade (two runs); ``"menu"`` one at a time, chosen
-    by its label (modes).
+    arrangement: ``"overlay"`` draws all clips at once, each in its own shade (two runs); ``"menu"`` one at a time,
+    chosen by its label (modes).
     """
 
     title: str

@@ -1,0 +1,48 @@
+// What the reader chooses about the picture: colours, exaggeration, what is drawn.
+
+import { MAP_NAMES } from "./colours.js";
+import { choice, fill, make } from "./dom.js";
+import { number } from "./format.js";
+
+const FACTORS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 10000];
+
+export class Panel {
+  /** `state` has quantity, map, factor, trails, reference, marks, grid; `changed(state)` is called with the new one. */
+  constructor(element, state, changed) {
+    this.state = state;
+    const set = (key, value) => {
+      state[key] = value;
+      changed(key);
+    };
+    this.quantity = choice("Colour by", [], state.quantity, (value) => set("quantity", value));
+    this.map = choice("Colour map", MAP_NAMES.map((name) => [name, name]), state.map, (value) => set("map", value));
+    this.factor = choice("Displacements", FACTORS.map((factor) => [String(factor), factor === 1 ? "true scale" : `\u00d7 ${number(factor, 6)}`]),
+      "1", (value) => set("factor", Number(value)));
+    this.boxes = Object.fromEntries([["trails", "trails"], ["reference", "reference shape"], ["marks", "supports, joints"], ["grid", "grid"]]
+      .map(([key, text]) => [key, this.box(key, text, set)]));
+    this.mapRow = this.row("Colour map", this.map);
+    element.append(this.mapRow, this.row("Displacement", this.factor),
+      ...Object.values(this.boxes).map(({ label }) => label));
+  }
+
+  row(text, control) {
+    return make("div", { class: "row" }, make("span", {}, text), control);
+  }
+
+  box(key, text, set) {
+    const input = make("input", { type: "checkbox", onchange: () => set(key, input.checked) });
+    return { input, label: make("label", {}, input, ` ${text}`) };
+  }
+
+  /** Draw the state; `quantities`: [key, label] to choose from; `has`: which boxes make sense. */
+  show(quantities, plain, has) {
+    fill(this.quantity, [...quantities.map(([key, label]) => [key, label]), ["", plain]], this.state.quantity);
+    this.quantity.hidden = quantities.length === 0;
+    this.mapRow.hidden = this.state.quantity === "";
+    this.factor.value = String(this.state.factor);
+    for (const [key, { input, label }] of Object.entries(this.boxes)) {
+      input.checked = this.state[key];
+      label.hidden = has[key] === false;
+    }
+  }
+}
