@@ -242,7 +242,8 @@ class Scene(Viewable, SceneMethods):
         """Return the names of the parts by their kind; those of supports are the names in results."""
         found: dict[str, list[str]] = {}
         for part in self.parts():
-            found.setdefault(part.kind, []).append(part.given_name or getattr(part, "label", part.kind))
+            name = part.given_name or getattr(part, "label", part.kind)
+            found.setdefault(part.kind, []).append(str(name))
         return found
 
 

@@ -71,7 +71,7 @@ class Viewable:
         return save_figure(shape_figure(self._with(others), every_view=True), path)
 
     def save_vtk(self, folder: str | os.PathLike) -> Path:
-        """Write a folder of .vtu files with a .pvd file for ParaView, which needs meshio (pip install 'funicular[vtk]').
+        """Write a folder of .vtu files with a .pvd file, for ParaView; needs meshio (pip install 'funicular[vtk]').
 
         Cables are lines with tension and the like at their points, bodies are surfaces. Returns the path of the .pvd
         file. Raises ResultFileError; FunicularError.

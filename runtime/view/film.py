@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import FunicularError, near
-from .animation import Animation, CableShape, Clip
+from .animation import Animation, BodyShape, CableShape, Clip, Mark, Segment
 from .placed import outline, placed_surface
 from .plot import CLIP_COLOURS, LOAD, MARKERS, SEGMENTS, SIZES
 from .projections import Directions, Projection, all_points, directions
@@ -76,7 +76,7 @@ class Film:
 
     def _set_limits(self) -> None:
         """Take equal scales about the middle of all places that are reached, in the shape of the axes."""
-        places = self.view(self.box)
+        places = self.view.of(self.box)
         low, high = places.min(axis=0), places.max(axis=0)
         box = self.axes.get_position()
         across, up = SIZE[0] * box.width, SIZE[1] * box.height
@@ -88,7 +88,7 @@ class Film:
     def _draw_box(self, seen: Directions) -> None:
         """Draw the edges of the box that holds all places, with the lengths of three of them."""
         corners = self.box.reshape(2, 2, 2, 3)
-        drawn = self.view(corners)
+        drawn = self.view.of(corners)
         for axis, name in enumerate(seen.names):
             for edge in np.moveaxis(drawn, axis, 0).reshape(2, 4, 2).swapaxes(0, 1):
                 self.axes.plot(*edge.T, color="0.85", linewidth=0.8, zorder=0)
@@ -99,37 +99,68 @@ class Film:
 
     def _add(self, number: int, clip: Clip, colour: str) -> None:
         """Add the artists of a clip."""
-        from matplotlib.colors import to_rgb
-        from matplotlib.lines import Line2D
-        from matplotlib.patches import FancyArrowPatch, Polygon
-
-        def line(points: Callable[[int], np.ndarray], **look: Any) -> None:
-            artist = Line2D([], [], animated=True, **look)
-            self.axes.add_line(artist)
-            self.moving.append((number, artist, lambda frame: artist.set_data(*self.view(points(frame)).T)))
-
         for cable in clip.cables:
             self._add_cable(number, cable, colour)
         for body in clip.bodies:
-            line(lambda frame, body=body: body.position[: frame + 1], color="0.6", linewidth=0.7, zorder=1)
-            patch = Polygon(np.zeros((3, 2)), facecolor=(*to_rgb(colour), 0.35), edgecolor=colour, animated=True,
-                            zorder=3)
-            self.axes.add_patch(patch)
-            self.moving.append((number, patch, lambda frame, body=body, patch=patch: patch.set_xy(
-                outline(self.view(placed_surface(body, frame)[0])))))
+            self._add_body(number, body, colour)
         for segment in clip.segments:
-            if segment.kind == "load":
-                arrow = FancyArrowPatch((0, 0), (1, 1), arrowstyle="-|>", mutation_scale=9, color=LOAD, animated=True,
-                                        shrinkA=0, shrinkB=0, zorder=4)
-                self.axes.add_patch(arrow)
-                self.moving.append((number, arrow, lambda frame, each=segment, arrow=arrow: arrow.set_positions(
-                    *(tuple(self.view(at(point, frame))) for point in (each.start, each.end)))))
-                continue
-            line(lambda frame, each=segment: np.stack([at(each.start, frame), at(each.end, frame)]), color="0.3",
-                 zorder=4, **SEGMENTS[segment.kind])
+            self._add_segment(number, segment)
         for mark in clip.marks:
-            line(lambda frame, each=mark: at(each.position, frame)[None], marker=MARKERS[mark.kind], linestyle="",
-                 markersize=np.sqrt(SIZES[mark.kind]), color="0.15", zorder=5)
+            self._add_mark(number, mark)
+
+    def _add_line(self, number: int, points: Callable[[int], np.ndarray], **look: Any) -> None:
+        """Add a line through points (n, 3) of a frame."""
+        from matplotlib.lines import Line2D
+
+        artist = Line2D([], [], animated=True, **look)
+        self.axes.add_line(artist)
+
+        def update(frame: int) -> None:
+            artist.set_data(*self.view.of(points(frame)).T)
+
+        self.moving.append((number, artist, update))
+
+    def _add_body(self, number: int, body: BodyShape, colour: str) -> None:
+        from matplotlib.colors import to_rgb
+        from matplotlib.patches import Polygon
+
+        patch = Polygon(np.zeros((3, 2)), facecolor=(*to_rgb(colour), 0.35), edgecolor=colour, animated=True, zorder=3)
+        self.axes.add_patch(patch)
+
+        def path(frame: int) -> np.ndarray:
+            return body.position[: frame + 1]
+
+        def update(frame: int) -> None:
+            patch.set_xy(outline(self.view.of(placed_surface(body, frame)[0])))
+
+        self._add_line(number, path, color="0.6", linewidth=0.7, zorder=1)
+        self.moving.append((number, patch, update))
+
+    def _add_segment(self, number: int, segment: Segment) -> None:
+        from matplotlib.patches import FancyArrowPatch
+
+        def ends(frame: int) -> np.ndarray:
+            return np.stack([at(segment.start, frame), at(segment.end, frame)])
+
+        if segment.kind != "load":
+            self._add_line(number, ends, color="0.3", zorder=4, **SEGMENTS[segment.kind])
+            return
+        arrow = FancyArrowPatch((0, 0), (1, 1), arrowstyle="-|>", mutation_scale=9, color=LOAD, animated=True,
+                                shrinkA=0, shrinkB=0, zorder=4)
+        self.axes.add_patch(arrow)
+
+        def update(frame: int) -> None:
+            start, end = self.view.of(ends(frame)).tolist()
+            arrow.set_positions(tuple(start), tuple(end))
+
+        self.moving.append((number, arrow, update))
+
+    def _add_mark(self, number: int, mark: Mark) -> None:
+        def place(frame: int) -> np.ndarray:
+            return at(mark.position, frame)[None]
+
+        self._add_line(number, place, marker=MARKERS[mark.kind], linestyle="", color="0.15", zorder=5,
+                       markersize=np.sqrt(SIZES[mark.kind]))
 
     def _add_cable(self, number: int, cable: CableShape, colour: str) -> None:
         from matplotlib.collections import LineCollection
@@ -139,8 +170,8 @@ class Film:
         self.axes.add_collection(artist, autolim=False)
 
         def update(frame: int) -> None:
-            points = self.view(cable.position[frame])
-            artist.set_segments(np.stack([points[:-1], points[1:]], axis=1))
+            points = self.view.of(cable.position[frame])
+            artist.set_segments(list(np.stack([points[:-1], points[1:]], axis=1)))
             if quantity is not None and self.scale is not None:
                 values = quantity.values[frame]
                 artist.set_color(self.scale.to_rgba((values[:-1] + values[1:]) / 2))

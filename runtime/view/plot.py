@@ -86,7 +86,7 @@ def shape_figure(animation: Animation, figure: Figure | None = None, every_view:
 
 def _stretch(animation: Animation, seen: Directions) -> float:
     """Return the round factor by which the upright scale of a flat scene can be exaggerated, 1 for none."""
-    width, height = np.ptp(seen.front(all_points(animation)), axis=0)
+    width, height = np.ptp(seen.front.of(all_points(animation)), axis=0)
     if not width > 0:
         return 1.0
     most = LOW * width / max(1.24 * height, 1e-3 * width)
@@ -125,14 +125,14 @@ class PlanePanel(Panel):
 
     def __init__(self, axes: Any, projection: Projection, title: str = "", stretch: float = 1.0):
         """stretch: of the upright scale; bodies are dots then, since their shapes would be stretched, too."""
-        super().__init__(axes, projection)
+        super().__init__(axes, projection.of)
         self.projection, self.title, self.stretch = projection, title, stretch
 
     def arrow(self, start: np.ndarray, end: np.ndarray, label: str | None) -> None:
         """Draw an arrow from point to point (3,), with a head where it is long enough in this view."""
         super().arrow(start, end, label)
         self.axes.annotate("", self.points(end), self.points(start), zorder=4,
-                           arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0})
+                           arrowprops={"arrowstyle": "-|>", "color": LOAD, "shrinkA": 0, "shrinkB": 0})
 
     def body(self, body: BodyShape, frame: int, colour: Any) -> None:
         """Draw the outline of a body's shape, or a dot."""
@@ -140,7 +140,7 @@ class PlanePanel(Panel):
             self.dots(body.position[frame : frame + 1], color=colour, marker="h", s=48, edgecolors="0.1",
                       linewidths=0.7, zorder=4)
             return
-        corners = outline(self.projection(placed_surface(body, frame)[0]))
+        corners = outline(self.projection.of(placed_surface(body, frame)[0]))
         self.axes.fill(*corners.T, facecolor=(*colour[:3], 0.25), edgecolor=colour, linewidth=0.8, zorder=3)
 
     def finish(self) -> None:
@@ -213,9 +213,9 @@ def _draw_all(animation: Animation, panels: list[Panel], figure: Figure) -> None
         for number, clip in enumerate(animation.clips):
             frames = shown_frames(clip)
             if several:
-                colours = [to_rgba(CLIP_COLOURS[number % len(CLIP_COLOURS)])] * len(frames)
+                colours: list[Any] = [to_rgba(CLIP_COLOURS[number % len(CLIP_COLOURS)])] * len(frames)
             else:
-                colours = [colour.to_rgba(time) if moves else to_rgba("#1f6f8b") for time in clip.time[frames]]
+                colours = [tuple(colour.to_rgba(time)) if moves else to_rgba("#1f6f8b") for time in clip.time[frames]]
             draw_clip(panel, clip, frames, colours, clip.label if several else None)
         panel.finish()
     handles, labels = panels[0].axes.get_legend_handles_labels()

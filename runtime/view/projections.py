@@ -20,7 +20,7 @@ class Projection(NamedTuple):
     up: np.ndarray
     names: tuple[str, str]
 
-    def __call__(self, points: np.ndarray) -> np.ndarray:
+    def of(self, points: np.ndarray) -> np.ndarray:
         """Return points (..., 3) as (..., 2) in the plane."""
         return points @ np.stack([self.across, self.up], axis=1)
 

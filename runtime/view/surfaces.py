@@ -61,7 +61,8 @@ def surface(shape: Mapping[str, Any]) -> Surface:
             vertices, triangles = _turned_profile(shape["radius"] * np.sin(polar), shape["radius"] * np.cos(polar))
         case "cylinder":
             radius, half = shape["radius"], shape["length"] / 2
-            vertices, triangles = _turned_profile(np.array([0, radius, radius, 0]), np.array([-half, -half, half, half]))
+            profile = np.array([0, radius, radius, 0]), np.array([-half, -half, half, half])
+            vertices, triangles = _turned_profile(*profile)
             axis = np.asarray(shape["axis"], dtype=float)
             vertices = vertices @ _along(axis / np.linalg.norm(axis)).T
         case "mesh":

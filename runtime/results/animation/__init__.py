@@ -1,1 +1,1 @@
-"""Runs, scenes, equilibria and modes as the plain data that pages, plots and exports are made of (view/animation.py)."""
+"""Runs, scenes, equilibria and modes as plain data, of which pictures, pages and exports are made."""

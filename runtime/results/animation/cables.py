@@ -12,7 +12,7 @@ from ...rotations import rotate
 from ...view.animation import CableShape, Quantity
 from .frames import Frames, along
 
-LEAST, FEWEST, MOST = 160, 2, 16
+LEAST, FEWEST, MOST = 120, 2, 16
 """Stations that a cable has at least if its elements take so many each, and the fewest and most of an element."""
 SLENDERNESS = 200.0
 """Length over diameter of a line whose section is not known."""

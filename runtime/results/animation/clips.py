@@ -21,7 +21,7 @@ from .frames import Frames, no_forces
 from .marks import marks, segments
 from .recorded import Recorded
 
-FRAMES = 1000
+FRAMES = 600
 """Of a run, at most."""
 MOST_POINTS = 2_000_000
 """Of all cables over all frames: with more, there are fewer frames."""
@@ -48,8 +48,8 @@ def of_run(run: Recorded, title: str, frames: int = FRAMES, with_results: bool =
     if len(chosen) < len(run.time):
         notes.append(f"{len(chosen)} of the run's {len(run.time)} output times are drawn")
     if not with_results:
-        return _animation(run.scene, title, [_clip(replace(sources.of_run(run, chosen), section_forces=no_forces), title,
-                                                   notes)], notes)
+        places = replace(sources.of_run(run, chosen), section_forces=no_forces)
+        return _animation(run.scene, title, [_clip(places, title, notes)], notes)
     notes += [f'tension of "{name}" is that of the elastic law, not in balance with what acts: the run is large'
               for name, cable in run.scene.cables.items()
               if not sources.is_balanced(len(chosen), len(stations(cable)))]
@@ -110,9 +110,10 @@ def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], ti
     for k in range(len(modes)):
         frequency, growth = float(modes.frequency[k]), float(modes.growth_rate[k])
         what = f"{frequency:.4g} Hz" if frequency > 0 or growth == 0 else f"grows by {growth:.4g} 1/s"
-        turns = [np.linalg.norm(modes[f"{name}.rotation"][k]) for name in scene.bodies]
+        turns = [float(np.linalg.norm(modes[f"{name}.rotation"][k])) for name in scene.bodies]
         largest = min(swing, TURN / max([*turns, 1e-300]))
-        clip = _clip(sources.of_mode(modes, k, scene, about, largest, phase), f"mode {k + 1}: {what}", [] if k else notes)
+        clip = _clip(sources.of_mode(modes, k, scene, about, largest, phase), f"mode {k + 1}: {what}",
+                     [] if k else notes)
         clips.append(replace(clip, time=phase / (2 * np.pi * frequency) if frequency > 0 else phase / (2 * np.pi),
                              segments=tuple(each for each in clip.segments if each.kind != "load"), periodic=True,
                              details={"frequency": what, "drawn with": f"{largest:.3g} m at most"}))
@@ -144,7 +145,8 @@ def _animation(scene: SceneData, title: str, clips: list[Clip], notes: list[str]
 
 def _is_planar(clips: list[Clip]) -> bool:
     """Return whether all centre lines and bodies stay in a plane z = const., to a thousandth of their size."""
-    points = [part.position.reshape(-1, 3) for clip in clips for part in (*clip.cables, *clip.bodies)]
+    points = [cable.position.reshape(-1, 3) for clip in clips for cable in clip.cables]
+    points += [body.position for clip in clips for body in clip.bodies]
     if not points:
         return False
     size = np.ptp(np.concatenate(points), axis=0)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Literal
 
 import numpy as np
 
 from ...parts.attachment import Attachment
-from ...parts.joint import Joint
 from ...parts.load import DistributedForce, Force, Load, Moment
 from ...parts.modal_body import ModalBody
 from ...parts.places import ends_of, node_of
@@ -62,7 +62,7 @@ def marks(frames: Frames, size: float) -> Iterator[Mark]:
                        f"moment {show(load.value, 'N m')} on {_on(_loaded(frames, load))}")
 
 
-def _support(support: Support) -> tuple[str, str]:
+def _support(support: Support) -> tuple[Literal["pin", "clamp"], str]:
     """Return the kind of the mark of a support, and what it is in words."""
     if isinstance(support, Motion):
         return ("pin" if support.rotation is None else "clamp"), "prescribed motion"

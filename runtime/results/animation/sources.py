@@ -16,9 +16,10 @@ from ...solve.modes import Modes
 from ...solve.rest_state import RestState
 from ..section_balance import Cuts
 from ..section_components import components
-from ..section_forces import Results, constitutive, of_equilibrium
+from ..section_forces import constitutive, of_equilibrium
 from ..section_forces import of_run as forces_of_run
 from .frames import Frames, SectionForces
+from .recorded import Recorded
 
 MOST_BALANCED = 400_000
 """Sections, over all instants, up to which forces are those in balance; beyond, those of the elastic law."""
@@ -70,7 +71,7 @@ def of_scene(scene: SceneData) -> Frames:
 class _Chosen(Mapping):
     """Results of a run at some of its times, read when they are asked for."""
 
-    def __init__(self, run: Results, numbers: np.ndarray):
+    def __init__(self, run: Recorded, numbers: np.ndarray):
         self.run, self.numbers = run, numbers
         self._kept: dict[str, np.ndarray] = {}
 
@@ -82,7 +83,7 @@ class _Chosen(Mapping):
 
     def __contains__(self, name: object) -> bool:
         """Return whether the run has a result of that name."""
-        return name in self.run
+        return isinstance(name, str) and name in self.run
 
     def __iter__(self):
         """Iterate over the names of the run's results."""
@@ -93,7 +94,7 @@ class _Chosen(Mapping):
         return len(self.run.keys())
 
 
-def of_run(run: Results, numbers: np.ndarray) -> Frames:
+def of_run(run: Recorded, numbers: np.ndarray) -> Frames:
     """Return the frames of a run at the output times with these numbers."""
     found = _Chosen(run, numbers)
     by_law = _law(run.scene, found)
