@@ -235,7 +235,7 @@ class Scene(Viewable, SceneMethods):
 
     def __repr__(self) -> str:
         """Return how many parts of which kind there are, in a line."""
-        counts = ", ".join(f"{len(names)} {kind}" for kind, names in self._names().items())
+        counts = ", ".join(_counted(len(names), kind.replace("_", " ")) for kind, names in self._names().items())
         return f"<funicular.Scene: {counts or 'empty'}>"
 
     def _names(self) -> dict[str, list[str]]:
@@ -245,6 +245,12 @@ class Scene(Viewable, SceneMethods):
             name = part.given_name or getattr(part, "label", part.kind)
             found.setdefault(part.kind, []).append(str(name))
         return found
+
+
+def _counted(number: int, thing: str) -> str:
+    """Return a number of things in words."""
+    plural = thing[:-1] + "ies" if thing.endswith("y") else thing + "s"
+    return f"{number} {thing if number == 1 else plural}"
 
 
 def _modes_of_mesh(body: ModalBody) -> Shape:

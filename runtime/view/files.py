@@ -27,12 +27,14 @@ def unwritable(path: str | os.PathLike, error: OSError | ValueError) -> ResultFi
 def new_figure() -> Figure:
     """Return an empty figure that a notebook shows where it is returned, and pyplot.show() in a script."""
     from matplotlib import pyplot, rc_context
-    from matplotlib.figure import Figure
 
     from .plot import STYLE
 
     with rc_context(STYLE):
-        return Figure() if in_notebook() else pyplot.figure()  # pyplot's own a notebook would show twice
+        figure = pyplot.figure()
+    if in_notebook():
+        pyplot.close(figure)  # which would show it a second time
+    return figure
 
 
 def save_figure(figure: Figure, path: str | os.PathLike) -> Path:
