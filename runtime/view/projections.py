@@ -108,5 +108,5 @@ def directions(animation: Animation) -> Directions:
     axes = [axis for axis in np.eye(3) if abs(axis @ up) < 1e-9]
     if not flat and len(axes) == 2:
         across = max(axes, key=lambda axis: np.ptp(found @ axis))
-    across = across * np.sign(across[np.argmax(np.abs(across))])
+    across = across * np.sign(across[np.argmax(np.abs(across))]) + 0.0  # no -0
     return Directions(across, np.cross(up, across), up, flat)

@@ -90,7 +90,7 @@ def _tension_at(run: Recorded, slide: str, notes: list[str]) -> Iterator[Curve]:
 
 def events(run: Recorded) -> Iterator[EventMark]:
     """Yield what has happened, with its name and what it was."""
-    for event in run.events:
+    for event in run.report.get("events", []):  # older files have none
         yield EventMark(float(event["time"]), _in_words(event))
 
 

@@ -90,15 +90,11 @@ def place(frames: Frames, attachment: Attachment) -> np.ndarray:
     if attachment.on in frames.scene.cables:
         s = np.array([attachment.arc_length])
         return along(frames.scene.cables[attachment.on], s, frames.value(f"{attachment.on}.nodal_vectors"))[:, 0]
-    return frames.value(f"{attachment.on}.position") + rotate(frames.value(f"{attachment.on}.orientation"),
-                                                              _arm(frames, attachment))
-
-
-def _arm(frames: Frames, attachment: Attachment) -> np.ndarray:
-    """Return an attachment's point of a body from the body's origin, in body axes: (3,), of a modal body (T, 3)."""
-    assert attachment.on is not None
     body = frames.scene.bodies[attachment.on]
-    if not isinstance(body, ModalBody):
-        return np.array(attachment.point)
-    point, modes, _ = body.spot(attachment.point)
-    return point + np.einsum("tm,md->td", frames.value(f"{attachment.on}.modal_coordinates"), modes)
+    orientation = frames.value(f"{attachment.on}.orientation")
+    if isinstance(body, ModalBody):  # its point goes with the section at its node
+        node = int(np.argmin(np.linalg.norm(body.shape.nodes - attachment.point, axis=1)))
+        arm = np.array(attachment.point) - body.shape.nodes[node]
+        turn = frames.value(f"{attachment.on}.modal_coordinates") @ body.shape.rotations[:, node]
+        return frames.value(f"{attachment.on}.nodes")[:, node] + rotate(orientation, arm + np.cross(turn, arm))
+    return frames.value(f"{attachment.on}.position") + rotate(orientation, attachment.point)

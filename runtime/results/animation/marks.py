@@ -17,6 +17,7 @@ from ...rotations import product, rotate, turned_by
 from ...view.animation import Mark, Segment
 from .frames import Frames, along, moving, place
 
+ROUNDING = 1e-13
 APART = 1e-6
 """Of the scene's size: points that are farther apart are drawn as two."""
 ARROWS = 9
@@ -26,8 +27,9 @@ ARROW = 0.15
 
 
 def still(position: np.ndarray) -> np.ndarray:
-    """Return positions (T, 3), or the first of them as (1, 3) where all are the same."""
-    return position[:1] if np.all(position == position[:1]) else position
+    """Return positions (T, 3), or the first of them as (1, 3) where all are the same but for rounding."""
+    moves = np.abs(position - position[:1]).max() > ROUNDING * np.abs(position).max()
+    return position if moves else position[:1]
 
 
 def _node(frames: Frames, cable: str, node: int) -> np.ndarray:

@@ -49,10 +49,6 @@ class Recorded(Protocol):
     def time(self) -> np.ndarray:
         """Return the times (time,) in s."""
 
-    @property
-    def events(self) -> list[dict]:
-        """Return what has happened."""
-
     def keys(self) -> list[str]:
         """Return the names of all results."""
 

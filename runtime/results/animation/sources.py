@@ -123,7 +123,8 @@ def of_mode(modes: Modes, number: int, scene: SceneData, about: Mapping[str, np.
             phase: np.ndarray) -> Frames:
     """Return the frames of a mode at phases (T,) in rad, its largest displacement ``amplitude`` in m.
 
-    about: the state that it swings about, by name. Sections and bodies turn by finite angles in proportion.
+    about: the state that it swings about, by name. Rigid bodies turn by finite angles in proportion, so that they stay
+    whole; nodes of cables and modal bodies move along straight lines.
     """
     share = amplitude * np.cos(phase)
     found: dict[str, np.ndarray] = {}
@@ -151,6 +152,5 @@ def _swinging(modes: Modes, number: int, name: str, body: RigidBody | ModalBody,
     strained = rotate(back, modes[f"{name}.nodes"][number] - moved) - np.cross(turn, bent)
     eta = np.linalg.lstsq(fields.modes.reshape(fields.n, -1).T, strained.ravel(), rcond=None)[0]
     coordinates = about[f"{name}.modal_coordinates"] + np.multiply.outer(share, eta)
-    local = fields.nodes + np.einsum("tm,mnd->tnd", coordinates, fields.modes)
-    return {"position": position, "orientation": turned, "modal_coordinates": coordinates,
-            "nodes": position[:, None] + rotate(turned[:, None], local)}
+    nodes = about[f"{name}.nodes"] + np.multiply.outer(share, modes[f"{name}.nodes"][number])
+    return {"position": position, "orientation": turned, "modal_coordinates": coordinates, "nodes": nodes}
