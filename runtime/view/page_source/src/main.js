@@ -17,6 +17,7 @@ import { Theme } from "./theme.js";
 import { Timeline } from "./timeline.js";
 
 const MOST_TIMES = 2000; // of clips drawn together
+const LEAST_RANGE = 1e-3; // of colours, in parts of the largest value
 
 class App {
   constructor(data) {
@@ -31,7 +32,7 @@ class App {
     this.charts = new Charts(parts.curves, this.player, data);
     this.state = { quantity: null, map: "viridis", factor: 1, trails: true, reference: data.clips.some((clip) => clip.period),
       marks: true, grid: true };
-    this.panel = new Panel(parts.options, this.state, () => this.redraw());
+    this.panel = new Panel(parts.options, this.state, () => this.redraw(), () => this.savePicture());
     this.legend = new Legend(parts.legend, this.panel.quantity);
     this.theme = new Theme(parts.theme, () => this.redraw());
     this.chooseViews();
@@ -90,7 +91,10 @@ class App {
         }
       }
     }
-    return { quantity: found, range: low <= high ? [low, high] : [0, 1] };
+    if (!(low <= high)) return { quantity: found, range: [0, 1] };
+    const least = LEAST_RANGE * Math.max(Math.abs(low), Math.abs(high)); // rounding is no change of colour
+    const more = Math.max(0, (least - (high - low)) / 2);
+    return { quantity: found, range: [low - more, high + more] };
   }
 
   /** Draw everything anew after a choice of the reader. */
@@ -204,6 +208,11 @@ class App {
     });
     this.details.replaceChildren(...rows);
     this.details.hidden = rows.length === 0;
+  }
+
+  /** Save the picture, as large as it is on the screen. */
+  savePicture() {
+    make("a", { href: this.stage.image(), download: `${this.data.title}.png` }).click();
   }
 
   showHelp() {

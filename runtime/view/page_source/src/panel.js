@@ -7,12 +7,12 @@ import { number } from "./format.js";
 const FACTORS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 10000];
 
 export class Panel {
-  /** `state` has quantity, map, factor, trails, reference, marks, grid; `changed(state)` is called with the new one. */
-  constructor(element, state, changed) {
+  /** `state` has quantity, map, factor, trails, reference, marks, grid; `changed()` is called when one is another. */
+  constructor(element, state, changed, savePicture) {
     this.state = state;
     const set = (key, value) => {
       state[key] = value;
-      changed(key);
+      changed();
     };
     this.quantity = choice("Colour by", [], state.quantity, (value) => set("quantity", value));
     this.map = choice("Colour map", MAP_NAMES.map((name) => [name, name]), state.map, (value) => set("map", value));
@@ -22,7 +22,8 @@ export class Panel {
       .map(([key, text]) => [key, this.box(key, text, set)]));
     this.mapRow = this.row("Colour map", this.map);
     element.append(this.mapRow, this.row("Displacement", this.factor),
-      ...Object.values(this.boxes).map(({ label }) => label));
+      ...Object.values(this.boxes).map(({ label }) => label),
+      make("button", { type: "button", onclick: savePicture }, "Save picture (PNG)"));
   }
 
   row(text, control) {
