@@ -40,7 +40,7 @@ def test_floats_come_back_to_half_a_bit(values):
     packer = Packer()
     packer.floats(values)
     read, = unpack(packer.text(), packer.descriptions)
-    normal = np.where(np.abs(values) > 1e-30, values, 0)
+    normal = np.where(np.abs(values) < 1e-30, 0, values)
     np.testing.assert_allclose(read, normal, rtol=2.0 ** -(FLOAT_BITS + 1) * 1.01, atol=1e-29)
 
 

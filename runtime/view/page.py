@@ -198,7 +198,7 @@ class _ScenePacker(Packer):
         }
 
     def _body(self, body: BodyShape, frames: int) -> dict[str, Any]:
-        shape = dict(body.shape)
+        shape: dict[str, Any] = dict(body.shape)
         if shape["kind"] == "mesh":
             shape["vertices"] = self.floats(shape["vertices"])
             shape["triangles"] = self.integers(shape["triangles"])

@@ -4,7 +4,6 @@ import { Charts } from "./charts.js";
 import { SERIES } from "./colours.js";
 import { read } from "./data.js";
 import { choice, make } from "./dom.js";
-import { number } from "./format.js";
 import { hook } from "./hook.js";
 import { KEYS, listen } from "./keyboard.js";
 import { layout } from "./layout.js";
@@ -128,7 +127,7 @@ class App {
     this.legend.show({ quantity, range, map: state.map, clips: quantity ? [] : named });
     this.parts.legend.hidden = !keys.length && !several;
     this.parts.badge.textContent = state.factor === 1 ? ""
-      : `Displacements are drawn ${number(state.factor, 6)} times as large, rotations of bodies as they are`;
+      : `Displacements are drawn ${state.factor} times as large, rotations of bodies as they are`;
     this.parts.badge.hidden = state.factor === 1;
     const has = (kind) => stage.of(kind).length > 0;
     this.panel.show(keys, several ? "each run its own" : "plain", { trails: has("trail"), reference: has("reference"), marks: has("mark") });
