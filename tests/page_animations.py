@@ -61,8 +61,9 @@ def clip_of(run: Run, label: str, sizes: dict[str, tuple[list[float], list[float
         marks.append(Mark(f"pin at s = {pin.s:g} m", "pin", cable.position[:1, where]))
     curves = [Curve(f"{name}.force", f"force of {name}", "N", ("x", "y", "z"), run.time, run[f"{name}.force"])
               for name in run.scene.slides]
-    curves += [Curve(f"energy.{name}", f"energy: {name}", "J", (), run.time, run[f"energy.{name}"])
-               for name in ("kinetic", "elastic", "potential", "dissipated") if f"energy.{name}" in run]
+    energies = tuple(name for name in ("kinetic", "elastic", "potential", "dissipated") if f"energy.{name}" in run)
+    curves.append(Curve("energy", "energy", "J", energies, run.time,
+                        np.stack([run[f"energy.{name}"] for name in energies], axis=-1)))
     events = tuple(EventMark(float(e["time"]), str(e.get("name", e.get("kind", "event")))) for e in run.events)
     return Clip(label, run.time, cables, tuple(body_shape(run, name, *sizes[name]) for name in run.scene.bodies),
                 tuple(marks), (), tuple(curves), events)
@@ -94,7 +95,7 @@ def twisted(frames: int = 41, stations: int = 60) -> Animation:
                         end[0]),)
     ground, arm = np.array([[1.0, -0.75, 0.0]]), end + 0.2 * axis[:, -1]
     segments = (Segment("spring", "spring", ground, end), Segment("arm", "lever", end, arm),
-                Segment("pull", "load", arm, arm + [0.15, 0, 0]))
+                Segment("pull", "load", arm, arm + np.array([0.15, 0, 0])))
     marks = (Mark("clamp", "clamp", position[:1, 0], "all held"), Mark("foot", "pin", ground))
     curve = Curve("twist", "twist of the end", "rad", (), time, turn[:, -1])
     clip = Clip("twisting", time, (cable,), bodies, marks, segments, (curve,), (EventMark(1.0, "half-way"),))

@@ -18,6 +18,7 @@ PIXELS = 2000  # across a large screen
 CHORD_ERROR = 0.25  # pixels, where the picture shows the whole motion
 ZOOM = 5  # cables much thinner than a pixel are followed so much closer
 COLOUR_STEPS = 128
+LEAST_RANGE = 1e-3  # of colours, in parts of the largest value: main.js has the same
 SECTION_TURN = 0.02  # rad between a section's direction and the one interpolated
 SAMPLED_FRAMES = 48
 
@@ -100,8 +101,9 @@ def _with_fewer_stations(cable: CableShape, size: float) -> tuple[CableShape, fl
     columns = [cable.position / chord]
     columns += [] if cable.section_y is None else [cable.section_y / SECTION_TURN]
     for quantity in cable.quantities:
-        span = np.ptp(quantity.values[np.isfinite(quantity.values)]) if np.isfinite(quantity.values).any() else 0.0
-        if span > 0:
+        finite = quantity.values[np.isfinite(quantity.values)]
+        span = np.ptp(finite) if len(finite) else 0.0
+        if span > LEAST_RANGE * np.abs(finite).max(initial=0):
             columns.append(np.nan_to_num(quantity.values)[..., None] / (span / COLOUR_STEPS))
     kept, excess = needed_stations(cable.s, columns)
 

@@ -25,9 +25,9 @@ from .decimation import decimated
 from .page_arrays import FLOAT_BITS, Packer, power_of_two
 
 FORMAT = 1
-POSITION_STEPS = 2**20  # steps of positions across the picture
-TURN_STEPS = 2**14  # steps of components of unit vectors and quaternions
-VALUE_STEPS = 2**17  # steps of a quantity up to its largest value
+POSITION_STEPS = 2**19  # steps of positions across the picture
+TURN_STEPS = 2**11  # steps of components of unit vectors
+VALUE_STEPS = 2**14  # steps of a quantity up to its largest value
 
 
 def write_page(animation: Animation, path: str | os.PathLike) -> Path:
@@ -164,20 +164,20 @@ class _ScenePacker(Packer):
         """Return a clip with its arrays replaced by their numbers."""
         frames = len(clip.time)
         return {
-            "label": clip.label, "time": self.times(clip.time), "period": period(clip),
+            "label": clip.label, "time": self.fine(clip.time), "period": period(clip),
             "details": {str(key): str(value) for key, value in clip.details.items()},
             "cables": [self._cable(cable) for cable in clip.cables],
             "bodies": [self._body(body, frames) for body in clip.bodies],
             "marks": [self._mark(mark, clip) for mark in clip.marks],
             "segments": [self._segment(segment, clip) for segment in clip.segments],
             "curves": [{"key": c.key, "label": c.label, "unit": c.unit, "columns": list(c.columns),
-                        "time": self.times(c.time), "values": self.floats(c.values)} for c in clip.curves],
+                        "time": self.fine(c.time), "values": self.floats(c.values)} for c in clip.curves],
             "events": [{"time": float(e.time), "label": e.label} for e in clip.events],
         }
 
-    def times(self, time: np.ndarray) -> int:
-        """Add times, in steps of 2^-30 of the last: rows that are close stay apart."""
-        return self.fixed(time, max(float(np.abs(time).max(initial=0)), 1e-300) * 2.0**-30)
+    def fine(self, values: np.ndarray) -> int:
+        """Add times or arc-lengths, in steps of 2^-30 of the largest: those that are close stay apart."""
+        return self.fixed(values, max(float(np.abs(values).max(initial=0)), 1e-300) * 2.0**-30)
 
     def points(self, points: np.ndarray) -> int:
         """Add positions in m."""
@@ -190,7 +190,7 @@ class _ScenePacker(Packer):
 
     def _cable(self, cable: CableShape) -> dict[str, Any]:
         return {
-            "name": cable.name, "s": self.floats(cable.s), "section": _plain(cable.section),
+            "name": cable.name, "s": self.fine(cable.s), "section": _plain(cable.section),
             "position": self.points(cable.position), "reference": self.points(cable.reference),
             "section_y": None if cable.section_y is None else self.fixed(cable.section_y, 1 / TURN_STEPS),
             "quantities": [{"key": q.key, "label": q.label, "unit": q.unit, "values": self.values(q.values)}
@@ -198,13 +198,13 @@ class _ScenePacker(Packer):
         }
 
     def _body(self, body: BodyShape, frames: int) -> dict[str, Any]:
-        shape = dict(body.shape)
+        shape: dict[str, Any] = dict(body.shape)
         if shape["kind"] == "mesh":
             shape["vertices"] = self.floats(shape["vertices"])
             shape["triangles"] = self.integers(shape["triangles"])
         return {
             "name": body.name, "shape": _plain(shape), "position": self.points(body.position),
-            "orientation": self.fixed(body.orientation, 1 / TURN_STEPS),
+            "orientation": self.floats(body.orientation),
             "reference": self.points(np.reshape(body.reference, (-1, 3))),
             "quantities": [{"label": label, "unit": unit, "values": self.floats(values)}
                            for label, (unit, values) in body.quantities.items()],

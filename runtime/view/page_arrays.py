@@ -14,7 +14,8 @@ All arrays follow one another, are deflated (zlib) together, and become one base
 shape, kind, step and differences; its bytes start where those of the array before it end.
 
 To read: inflate, join the planes, restore the signs, take cumulative sums modulo 2^32 along the axes in reverse order,
-and multiply by ``step`` or reinterpret. Times need double precision; float32 is enough for the rest. ``page_source/src/data.js`` does this in the browser, ``unpack`` does it here.
+and multiply by ``step`` or reinterpret. Times need double precision; float32 is enough for the rest.
+``page_source/src/data.js`` does this in the browser, ``unpack`` does it here.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from typing import Any
 import numpy as np
 
 FLOAT_BITS = 16  # of 23: five digits
+SAMPLED_ROWS = 64  # that say which differences are the smallest
 MISSING = np.int32(-(2**31))
 # The axes along which differences are tried: time is the first, stations the second.
 DIFFERENCES = ((), (0,), (0, 0), (0, 1), (0, 0, 1), (1,), (1, 1), (0, 1, 1))
@@ -88,19 +90,23 @@ def rounded(values: np.ndarray) -> np.ndarray:
 
 def smallest_differences(integers: np.ndarray) -> tuple[tuple[int, ...], np.ndarray]:
     """Return the axes along which differences leave the fewest bits, and what they leave (uint32, the same shape)."""
-    best: tuple[float, tuple[int, ...], np.ndarray] | None = None
-    for axes in DIFFERENCES:
-        if any(axis >= integers.ndim or integers.shape[axis] < 2 for axis in axes):
-            continue
-        rest = integers
-        for axis in axes:
-            rest = np.diff(rest, axis=axis, prepend=np.uint32(0))
-        signed = rest.view(np.int32).astype(float)
-        bits = float(np.log2(1 + np.abs(signed)).sum())
-        if best is None or bits < best[0]:
-            best = bits, axes, rest
-    assert best is not None  # no differences at all are always possible
-    return best[1], zigzag(best[2])
+    middle = max(0, (len(integers) - SAMPLED_ROWS) // 2)
+    sample = integers[middle: middle + SAMPLED_ROWS]
+    possible = [axes for axes in DIFFERENCES
+                if all(axis < integers.ndim and integers.shape[axis] > 1 for axis in axes)]
+    axes = min(possible, key=lambda axes: _bits(differences(sample, axes)))
+    return axes, zigzag(differences(integers, axes))
+
+
+def differences(integers: np.ndarray, axes: Sequence[int]) -> np.ndarray:
+    """Return the differences along ``axes``, one after the other; the first ones are from 0."""
+    for axis in axes:
+        integers = np.diff(integers, axis=axis, prepend=np.uint32(0))
+    return integers
+
+
+def _bits(integers: np.ndarray) -> float:
+    return float(np.log2(1.0 + np.abs(integers.view(np.int32).astype(float))).sum())
 
 
 def zigzag(integers: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ const HEIGHT = 150;
 const FRAME = { left: 46, right: 10, top: 8, bottom: 20 };
 const DASHES = ["", "6 3", "2 2", "8 3 2 3"];
 
-/** Return what can be drawn of a clip: curves, values of bodies, and groups of curves that belong together. */
+/** Return what can be drawn of a clip: its curves and the values of its bodies. */
 export function curvesOf(clip) {
   const single = clip.curves.map((curve) => ({ key: curve.key, label: curve.label, unit: curve.unit,
     columns: columnsOf(curve.values, curve.columns, curve.time) }));
@@ -17,16 +17,6 @@ export function curvesOf(clip) {
     for (const { label, unit, values } of body.quantities) {
       single.push({ key: `body:${body.name}:${label}`, label: `${body.name}: ${label}`, unit, columns: columnsOf(values, [], clip.time) });
     }
-  }
-  const groups = new Map();
-  for (const curve of single) {
-    const [group, name] = [curve.key.split(".")[0], curve.key.split(".").slice(1).join(".")];
-    if (group !== "energy" || curve.columns.length !== 1) continue;
-    if (!groups.has(curve.unit)) groups.set(curve.unit, []);
-    groups.get(curve.unit).push({ ...curve.columns[0], name });
-  }
-  for (const [unit, columns] of groups) {
-    if (columns.length > 1) single.push({ key: `group:energy:${unit}`, label: "energy balance", unit, columns });
   }
   return single;
 }
@@ -61,11 +51,12 @@ export class Charts {
     this.draw();
   }
 
+  /** Two results and the energies, to begin with. */
   initial() {
     const keys = [...this.keys.keys()];
-    const energy = keys.filter((key) => key.startsWith("group:"));
-    const others = keys.filter((key) => !key.startsWith("group:") && !key.startsWith("energy."));
-    return [...others.slice(0, energy.length ? 2 : 3), ...energy.slice(0, 1)];
+    const energy = keys.filter((key) => key === "energy");
+    const others = keys.filter((key) => !key.startsWith("energy"));
+    return [...others.slice(0, 3 - energy.length), ...energy];
   }
 
   open(key = null, draw = true) {

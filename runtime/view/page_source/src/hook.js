@@ -63,6 +63,8 @@ export function hook(app) {
       const found = pick(stage, x, y);
       return found && { kind: found.kind, name: found.name, lines: found.lines, s: found.s, values: found.values };
     },
+    /** The picture as a PNG in a data URL. */
+    image: () => stage.image(),
     /** Draw `count` frames one after the other and return the seconds that each took, the graphics included. */
     measure(count) {
       const gl = stage.renderer.getContext();

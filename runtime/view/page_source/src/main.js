@@ -4,7 +4,6 @@ import { Charts } from "./charts.js";
 import { SERIES } from "./colours.js";
 import { read } from "./data.js";
 import { choice, make } from "./dom.js";
-import { number } from "./format.js";
 import { hook } from "./hook.js";
 import { KEYS, listen } from "./keyboard.js";
 import { layout } from "./layout.js";
@@ -17,6 +16,7 @@ import { Theme } from "./theme.js";
 import { Timeline } from "./timeline.js";
 
 const MOST_TIMES = 2000; // of clips drawn together
+const LEAST_RANGE = 1e-3; // of colours, in parts of the largest value
 
 class App {
   constructor(data) {
@@ -31,7 +31,7 @@ class App {
     this.charts = new Charts(parts.curves, this.player, data);
     this.state = { quantity: null, map: "viridis", factor: 1, trails: true, reference: data.clips.some((clip) => clip.period),
       marks: true, grid: true };
-    this.panel = new Panel(parts.options, this.state, () => this.redraw());
+    this.panel = new Panel(parts.options, this.state, () => this.redraw(), () => this.savePicture());
     this.legend = new Legend(parts.legend, this.panel.quantity);
     this.theme = new Theme(parts.theme, () => this.redraw());
     this.chooseViews();
@@ -90,7 +90,10 @@ class App {
         }
       }
     }
-    return { quantity: found, range: low <= high ? [low, high] : [0, 1] };
+    if (!(low <= high)) return { quantity: found, range: [0, 1] };
+    const least = LEAST_RANGE * Math.max(Math.abs(low), Math.abs(high)); // rounding is no change of colour
+    const more = Math.max(0, (least - (high - low)) / 2);
+    return { quantity: found, range: [low - more, high + more] };
   }
 
   /** Draw everything anew after a choice of the reader. */
@@ -124,7 +127,7 @@ class App {
     this.legend.show({ quantity, range, map: state.map, clips: quantity ? [] : named });
     this.parts.legend.hidden = !keys.length && !several;
     this.parts.badge.textContent = state.factor === 1 ? ""
-      : `Displacements are drawn ${number(state.factor, 6)} times as large, rotations of bodies as they are`;
+      : `Displacements are drawn ${state.factor} times as large, rotations of bodies as they are`;
     this.parts.badge.hidden = state.factor === 1;
     const has = (kind) => stage.of(kind).length > 0;
     this.panel.show(keys, several ? "each run its own" : "plain", { trails: has("trail"), reference: has("reference"), marks: has("mark") });
@@ -204,6 +207,11 @@ class App {
     });
     this.details.replaceChildren(...rows);
     this.details.hidden = rows.length === 0;
+  }
+
+  /** Save the picture, as large as it is on the screen. */
+  savePicture() {
+    make("a", { href: this.stage.image(), download: `${this.data.title}.png` }).click();
   }
 
   showHelp() {

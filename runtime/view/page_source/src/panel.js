@@ -2,27 +2,27 @@
 
 import { MAP_NAMES } from "./colours.js";
 import { choice, fill, make } from "./dom.js";
-import { number } from "./format.js";
 
 const FACTORS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 10000];
 
 export class Panel {
-  /** `state` has quantity, map, factor, trails, reference, marks, grid; `changed(state)` is called with the new one. */
-  constructor(element, state, changed) {
+  /** `state` has quantity, map, factor, trails, reference, marks, grid; `changed()` is called when one is another. */
+  constructor(element, state, changed, savePicture) {
     this.state = state;
     const set = (key, value) => {
       state[key] = value;
-      changed(key);
+      changed();
     };
     this.quantity = choice("Colour by", [], state.quantity, (value) => set("quantity", value));
     this.map = choice("Colour map", MAP_NAMES.map((name) => [name, name]), state.map, (value) => set("map", value));
-    this.factor = choice("Displacements", FACTORS.map((factor) => [String(factor), factor === 1 ? "true scale" : `\u00d7 ${number(factor, 6)}`]),
+    this.factor = choice("Displacements", FACTORS.map((factor) => [String(factor), factor === 1 ? "true scale" : `\u00d7 ${factor}`]),
       "1", (value) => set("factor", Number(value)));
     this.boxes = Object.fromEntries([["trails", "trails"], ["reference", "reference shape"], ["marks", "supports, joints"], ["grid", "grid"]]
       .map(([key, text]) => [key, this.box(key, text, set)]));
     this.mapRow = this.row("Colour map", this.map);
     element.append(this.mapRow, this.row("Displacement", this.factor),
-      ...Object.values(this.boxes).map(({ label }) => label));
+      ...Object.values(this.boxes).map(({ label }) => label),
+      make("button", { type: "button", onclick: savePicture }, "Save picture (PNG)"));
   }
 
   row(text, control) {

@@ -177,6 +177,12 @@ export class Stage {
     this.drawn(this);
   }
 
+  /** Return the picture as a PNG in a data URL. */
+  image() {
+    this.render(); // what is drawn lasts until the browser shows it
+    return this.canvas.toDataURL("image/png");
+  }
+
   /** A grid that is looked at squarely stands behind everything. */
   placeBackGrid(facing) {
     const grid = this.grids[facing];
