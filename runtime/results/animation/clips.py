@@ -31,6 +31,7 @@ SWING = 0.08
 """Of the scene's size: the largest displacement of a mode in its picture."""
 TURN = 0.6
 """In rad: what a body turns by at most in the picture of a mode, also where it hardly moves otherwise."""
+ROUNDING = 1e-6
 MOST_NODES = 200
 """Of a modal body whose nodes are on no line: with more, some of them are drawn."""
 
@@ -88,9 +89,11 @@ def of_path(state: RestState, title: str) -> Animation:
     time = load if rises else np.arange(len(states), dtype=float)
     frames = sources.of_states(states)
     clip = _clip(frames, title, notes)
-    shown = [Curve("load_factor", "load factor", "", (), time, load)]
-    shown += [Curve(f"{cable.name}.tip", f"{cable.name}: position of its end", "m", ("x", "y", "z"), time,
-                    cable.position[:, -1]) for cable in clip.cables]
+    shown = [] if rises else [Curve("load_factor", "load factor", "", (), time, load)]
+    shown += [Curve(f"{cable.name}.displacement", f"{cable.name}: largest displacement", "m", (), time,
+                    np.linalg.norm(cable.position - cable.reference, axis=-1).max(axis=1)) for cable in clip.cables]
+    shown += [Curve(f"{cable.name}.tension", f"{cable.name}: largest tension", "N", (), time, q.values.max(axis=1))
+              for cable in clip.cables for q in cable.quantities if q.key == "tension"]
     shown += [Curve(f"{body.name}.position", f"{body.name}: position", "m", ("x", "y", "z"), time, body.position)
               for body in clip.bodies]
     stable = np.array([each.stable for each in states])
@@ -116,9 +119,15 @@ def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], ti
                      [] if k else notes)
         clips.append(replace(clip, time=phase / (2 * np.pi * frequency) if frequency > 0 else phase / (2 * np.pi),
                              segments=tuple(each for each in clip.segments if each.kind != "load"), periodic=True,
-                             details={"frequency": what, "drawn with": f"{largest:.3g} m at most"}))
+                             details={"frequency": what, "drawn with": _amplitude(largest, largest * max([*turns, 0]))}))
     notes.append(f"modes have no size of their own: they are drawn with a largest displacement of {swing:.3g} m")
     return replace(_animation(scene, title, clips, notes), arrangement="menu")
+
+
+def _amplitude(moved: float, turned: float) -> str:
+    """Return the largest displacement and turn of a mode in its picture in words, but for what rounding leaves."""
+    words = [f"{moved:.3g} m"] * (moved > ROUNDING * SWING) + [f"a turn of {turned:.3g} rad"] * (turned > ROUNDING)
+    return " and ".join(words) + " at most"
 
 
 def overlaid(animations: Sequence[Animation]) -> Animation:
