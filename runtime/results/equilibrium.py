@@ -43,7 +43,7 @@ class Equilibrium(Viewable, RestState):
 
     def overview(self) -> list[tuple[str, str]]:
         """Return what the state is, for a notebook; see `Viewable.overview`."""
-        from .animation.clips import details
+        from .animation.clips import details  # likewise
 
         return [*details(self).items(), ("iterations", str(self.iterations)),
                 *(("note", message) for message in self.messages)]

@@ -42,7 +42,7 @@ class Modes(Viewable, solved.Modes):
 
     def animation(self, title: str | None = None) -> Animation:
         """Return the modes as pictures show them, one clip each; see `Viewable.animation`."""
-        from .animation.clips import of_modes
+        from .animation.clips import of_modes  # for pictures alone
         from .animation.sources import drawn
 
         assert self.scene is not None, "modes are made by Scene.modes"

@@ -1,4 +1,7 @@
-"""Pictures of a run: what `Run.plot` draws, and the files that `funicular run --plot` writes."""
+"""Pictures of a run: what `Run.plot` draws, and the files that `funicular run --plot` writes.
+
+Matplotlib is imported only when a picture is made.
+"""
 
 from __future__ import annotations
 

@@ -256,7 +256,7 @@ class Run(Viewable):
 
         A notebook shows it, `matplotlib.pyplot.show` in a script. Raises FunicularError.
         """
-        from ..view.files import new_figure
+        from ..view.files import new_figure  # brings Matplotlib
         from .pictures import plot
 
         return plot(self, what, new_figure())
@@ -266,7 +266,7 @@ class Run(Viewable):
 
         forces: tension and moment along each cable, too. Raises ResultFileError.
         """
-        from .pictures import save_plots
+        from .pictures import save_plots  # likewise
 
         return save_plots(self, directory, prefix, forces)
 

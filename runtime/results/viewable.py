@@ -1,4 +1,7 @@
-"""What can be seen: runs, scenes, equilibria and modes have the same methods for it."""
+"""What can be seen: runs, scenes, equilibria and modes have the same methods for it.
+
+What makes pictures is imported only when one is asked for: `import funicular` does without.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,6 @@ from typing import TYPE_CHECKING
 from ..notebook import in_notebook
 
 if TYPE_CHECKING:
-    # Pictures and the packages that make them: `import funicular` does without.
     from matplotlib.figure import Figure
 
     from ..view.animation import Animation

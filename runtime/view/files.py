@@ -1,4 +1,7 @@
-"""Pictures as files and as parts of pages."""
+"""Pictures as files and as parts of pages.
+
+Matplotlib is imported only when a picture is made.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""A figure that shows an animation at one time after the other, its background drawn once."""
+"""A figure that shows an animation at one time after the other, its background drawn once.
+
+Matplotlib is imported only when a picture is made.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Films of an animation: GIF by Pillow, MP4 by the ffmpeg of imageio-ffmpeg."""
+"""Films of an animation: GIF by Pillow, MP4 by the ffmpeg of imageio-ffmpeg.
+
+Matplotlib is imported only when a picture is made.
+"""
 
 from __future__ import annotations
 
