@@ -199,6 +199,8 @@ def test_what_does_not_fit_is_refused():
     wrong = replace(clip, bodies=(replace(clip.bodies[0], position=np.zeros((3, 3))),))
     with pytest.raises(ValueError, match=r'clip "twisting": body "disc": position has the shape \(3, 3\), \(41, 3\)'):
         page(replace(animation, clips=(wrong,)))
+    with pytest.raises(ValueError, match=r'clip "twisting": its times must rise'):
+        page(replace(animation, clips=(replace(clip, time=clip.time[::-1]),)))
     with pytest.raises(ValueError, match="without a clip"):
         page(Animation("nothing", (), (0.0, 1.0, 0.0), False))
     odd = replace(clip, bodies=(replace(clip.bodies[0], shape={"kind": "cone"}),))

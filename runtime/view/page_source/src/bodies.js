@@ -32,7 +32,7 @@ export class BodyView {
     this.radius = geometry.boundingSphere.radius;
     this.offset = new Vector3(...(body.shape.offset ?? [0, 0, 0])).add(geometry.boundingSphere.center);
     this.material = new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide,
-      uniforms: { colour: { value: new Color() } } });
+      uniforms: { colour: { value: new Color() }, rim: { value: 0 } } });
     this.edgeMaterial = new LineBasicMaterial();
     const mesh = new Mesh(geometry, this.material);
     const edges = new LineSegments(new EdgesGeometry(geometry, 30), this.edgeMaterial);
@@ -53,7 +53,8 @@ export class BodyView {
     group.quaternion.set(x, y, z, w).normalize();
   }
 
-  colour(colour, edge) {
+  colour(colour, edge, rim) {
+    this.material.uniforms.rim.value = rim;
     this.material.uniforms.colour.value.set(colour);
     this.edgeMaterial.color.set(edge);
   }

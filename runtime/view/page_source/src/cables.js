@@ -104,14 +104,15 @@ export class CableView {
       uniforms: {
         stations: { value: this.texture }, colours: { value: this.colours }, size: { value: this.size }, height: { value: 1 },
         plain: { value: new Color() }, missing: { value: new Color("#8a8a8a") }, range: { value: new Vector2(0, 1) },
-        coloured: { value: false }, striped: { value: striped },
+        rim: { value: 0 }, coloured: { value: false }, striped: { value: striped },
       },
     });
   }
 
-  /** Colour the cable by a quantity (its key, the range of its values, a map), or plainly (key null). */
-  colour({ key, range, map, plain }) {
+  /** Colour the cable by a quantity (its key, the range of its values, a map), or plainly (key null); `rim`: see shading.js. */
+  colour({ key, range, map, plain, rim }) {
     const uniforms = this.mesh.material.uniforms;
+    uniforms.rim.value = rim;
     this.quantity = this.cable.quantities.find((quantity) => quantity.key === key) ?? null;
     uniforms.coloured.value = this.quantity !== null;
     uniforms.plain.value.set(plain);

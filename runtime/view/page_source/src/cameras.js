@@ -5,6 +5,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 const ANGLE = 35; // degrees, of the perspective
 const MARGIN = 1.14;
+const LABELS = 90; // pixels across that the labels of grids need
 
 export class Cameras {
   /** Cameras for the box [low, high] with its grids; `up` is against gravity; `changed` is called when the view has moved. */
@@ -23,13 +24,14 @@ export class Cameras {
     this.preset = "3d";
   }
 
-  resize(aspect) {
+  resize(width, height) {
+    const aspect = width / height;
     this.aspect = aspect;
+    this.usable = Math.max(0.5, 1 - LABELS / width) * aspect * MARGIN; // of the width that a height of 1 goes with
     this.perspective.aspect = aspect;
     this.perspective.updateProjectionMatrix();
-    const height = this.flat.top;
-    this.flat.left = -height * aspect;
-    this.flat.right = height * aspect;
+    this.flat.left = -this.flat.top * aspect;
+    this.flat.right = this.flat.top * aspect;
     this.flat.updateProjectionMatrix();
   }
 
@@ -46,13 +48,14 @@ export class Cameras {
     this.controls.object = this.camera;
     this.controls.target.copy(centre);
     if (flat) {
-      const half = MARGIN * Math.max(...corners.map(([x, y]) => Math.max(Math.abs(y), Math.abs(x) / this.aspect)), this.size * 1e-3);
+      const half = MARGIN * Math.max(...corners.map(([x, y]) => Math.max(Math.abs(y), Math.abs(x) / this.usable)), this.size * 1e-3);
       Object.assign(this.flat, { top: half, bottom: -half, zoom: 1 });
-      this.resize(this.aspect);
+      this.flat.left = -half * this.aspect;
+      this.flat.right = half * this.aspect;
       this.camera.position.copy(centre).addScaledVector(forward, -this.size * 2);
     } else {
       const tangent = Math.tan((ANGLE / 2) * (Math.PI / 180)) / MARGIN;
-      const needed = corners.map(([x, y, near]) => near + Math.max(Math.abs(y), Math.abs(x) / this.aspect) / tangent);
+      const needed = corners.map(([x, y, near]) => near + Math.max(Math.abs(y), Math.abs(x) / this.usable) / tangent);
       this.camera.position.copy(centre).addScaledVector(forward, -Math.max(...needed, this.size * 0.05));
     }
     this.camera.updateProjectionMatrix();

@@ -16,6 +16,7 @@ import { Theme } from "./theme.js";
 import { Timeline } from "./timeline.js";
 
 const MOST_TIMES = 2000; // of clips drawn together
+const RIM = { dark: 0.35, light: -0.1 }; // of the range of brightness
 const LEAST_RANGE = 1e-3; // of colours, in parts of the largest value
 
 class App {
@@ -93,7 +94,7 @@ class App {
     if (!(low <= high)) return { quantity: found, range: [0, 1] };
     const least = LEAST_RANGE * Math.max(Math.abs(low), Math.abs(high)); // rounding is no change of colour
     const more = Math.max(0, (least - (high - low)) / 2);
-    return { quantity: found, range: [low - more, high + more] };
+    return { quantity: found, range: [low - more, high + more], uniform: more > 0 };
   }
 
   /** Draw everything anew after a choice of the reader. */
@@ -104,16 +105,17 @@ class App {
     const several = clips.length > 1;
     const series = SERIES[theme.dark ? "dark" : "light"];
     const shades = clips.map((_, k) => series[k % series.length]);
-    const { quantity, range } = this.range(state.quantity);
+    const { quantity, range, uniform } = this.range(state.quantity);
     const ground = theme.colour("canvas");
     stage.scene.background.set(ground);
+    const rim = theme.dark ? RIM.dark : RIM.light;
     let bodies = 0;
     for (const { kind, item, clip } of stage.views) {
       const shade = shades[clips.indexOf(clip)];
       const body = several ? shade : series[(1 + bodies) % series.length];
-      if (kind === "cable") item.colour({ key: state.quantity, range, map: state.map, plain: several ? shade : theme.colour("cable") });
+      if (kind === "cable") item.colour({ key: state.quantity, range, map: state.map, rim, plain: several ? shade : theme.colour("cable") });
       if (kind === "body") {
-        item.colour(body, theme.colour("edge"));
+        item.colour(body, theme.colour("edge"), rim);
         this.lastBody = body;
         bodies += 1;
       }
@@ -124,7 +126,7 @@ class App {
     }
     stage.grids.forEach((grid) => grid.colour(theme.colour("grid"), theme.colour("grid-strong"), theme.colour("muted")));
     const named = several ? clips.map((clip, k) => ({ label: data.clips[clip].label, colour: shades[k] })) : [];
-    this.legend.show({ quantity, range, map: state.map, clips: quantity ? [] : named });
+    this.legend.show({ quantity, range, uniform, map: state.map, clips: quantity ? [] : named });
     this.parts.legend.hidden = !keys.length && !several;
     this.parts.badge.textContent = state.factor === 1 ? ""
       : `Displacements are drawn ${state.factor} times as large, rotations of bodies as they are`;
@@ -193,9 +195,10 @@ class App {
   showNotes() {
     const { data, parts } = this;
     this.details = make("dl");
-    const notes = data.notes.map((note) => make("li", {}, note));
-    const notice = "Cables are drawn at least 3 pixels wide and bodies at least 9; values between frames are interpolated.";
-    parts.notes.append(this.details, make("details", {}, make("summary", {}, "About this picture"), make("ul", {}, ...notes, make("li", {}, notice))));
+    const notes = data.notes.map((note) => make("p", { class: "note" }, note));
+    const about = data.about.map((note) => make("li", {}, note));
+    const notice = "Cables are drawn at least 3 pixels wide and bodies at least 9; values between frames and between stations are interpolated.";
+    parts.notes.append(...notes, this.details, make("details", {}, make("summary", {}, "About this picture"), make("ul", {}, ...about, make("li", {}, notice))));
   }
 
   showDetails() {

@@ -3,7 +3,7 @@
 import { Vector3 } from "three";
 import { gradient } from "./colours.js";
 import { make, svg } from "./dom.js";
-import { niceStep, scaled, tick } from "./format.js";
+import { niceStep, number, scaled, tick } from "./format.js";
 
 const SCALE_PIXELS = 60; // at least
 const ARM = 24;
@@ -49,15 +49,17 @@ export class Legend {
   }
 
   /** Show the colours of a quantity with its range, or the names of clips, or nothing. */
-  show({ quantity, range, map, clips }) {
+  show({ quantity, range, uniform, map, clips }) {
     const parts = [];
     this.unit.textContent = "";
     if (quantity) {
       const { scale, unit } = scaled(quantity.unit, Math.max(Math.abs(range[0]), Math.abs(range[1])));
       const step = (range[1] - range[0]) / 2 / scale;
       const digits = step > 0 ? 10 ** Math.floor(Math.log10(step) - 1) : 1;
-      const ends = [range[0], (range[0] + range[1]) / 2, range[1]].map((value) => make("span", {}, tick(value / scale, digits)));
-      parts.push(make("div", { class: "ramp", style: `background:${gradient(map)}` }), make("div", { class: "ends" }, ...ends));
+      const middle = (range[0] + range[1]) / 2;
+      const ends = uniform ? [`${number(middle / scale)} everywhere`]
+        : [range[0], middle, range[1]].map((value) => tick(value / scale, digits));
+      parts.push(make("div", { class: "ramp", style: `background:${gradient(map)}` }), make("div", { class: "ends" }, ...ends.map((text) => make("span", {}, text))));
       this.unit.textContent = unit;
     }
     for (const { label, colour } of clips) {

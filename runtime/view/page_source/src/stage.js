@@ -144,7 +144,7 @@ export class Stage {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.height = height;
-    this.cameras.resize(width / height);
+    this.cameras.resize(width, height);
     for (const { item } of this.of("cable")) item.resize(height);
     this.invalidate();
   }
