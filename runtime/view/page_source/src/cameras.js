@@ -8,7 +8,8 @@ const MARGIN = 1.14;
 const LABELS = 90; // pixels across that the labels of grids need
 
 export class Cameras {
-  /** Cameras for the box [low, high] with its grids; `up` is against gravity; `changed` is called when the view has moved. */
+  /** Cameras for the box [low, high] with its grids; `up` is against gravity.
+   *  `changed` is called when the view has moved. */
   constructor(canvas, { low, high, up }, changed) {
     this.box = { low: new Vector3(...low), high: new Vector3(...high) };
     this.up = new Vector3(...up).normalize();
@@ -44,11 +45,17 @@ export class Cameras {
     const right = forward.clone().cross(up).normalize();
     const screenUp = right.clone().cross(forward).normalize();
     const centre = this.box.low.clone().add(this.box.high).multiplyScalar(0.5);
-    const corners = this.corners(centre).map((corner) => [corner.dot(right), corner.dot(screenUp), -corner.dot(forward)]);
+    const corners = this.corners(centre).map((corner) => [
+      corner.dot(right),
+      corner.dot(screenUp),
+      -corner.dot(forward),
+    ]);
     this.controls.object = this.camera;
     this.controls.target.copy(centre);
     if (flat) {
-      const half = MARGIN * Math.max(...corners.map(([x, y]) => Math.max(Math.abs(y), Math.abs(x) / this.usable)), this.size * 1e-3);
+      const half =
+        MARGIN *
+        Math.max(...corners.map(([x, y]) => Math.max(Math.abs(y), Math.abs(x) / this.usable)), this.size * 1e-3);
       Object.assign(this.flat, { top: half, bottom: -half, zoom: 1 });
       this.flat.left = -half * this.aspect;
       this.flat.right = half * this.aspect;
@@ -65,7 +72,8 @@ export class Cameras {
   /** Two horizontal directions (positive axes where these are horizontal) and up. */
   horizontal() {
     const axes = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
-    const level = axes.filter((axis) => Math.abs(axis.dot(this.up)) < 0.9)
+    const level = axes
+      .filter((axis) => Math.abs(axis.dot(this.up)) < 0.9)
       .map((axis) => axis.clone().addScaledVector(this.up, -axis.dot(this.up)).normalize());
     return level[0];
   }
@@ -98,7 +106,8 @@ export class Cameras {
   corners(centre) {
     const { low, high } = this.box;
     return Array.from({ length: 8 }, (_, k) =>
-      new Vector3(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z).sub(centre));
+      new Vector3(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z).sub(centre),
+    );
   }
 
   /** Move the view as something moved that it follows. */

@@ -28,18 +28,28 @@ function nearestMark(stage, x, y) {
   }
   if (!best) return null;
   const { mark } = best.item;
-  const lines = [mark.kind, ...(mark.detail ? [mark.detail] : [])].filter((text) => text !== mark.name);
+  const lines = [mark.detail || mark.kind];
   const given = ownCurves(stage, mark.name, best.clip);
   const cable = onCable(stage, best.object.position, best.clip, given.keys);
-  return { kind: mark.kind, name: mark.name, clip: best.clip, point: best.object.position.clone(),
-    lines: [...lines, ...(cable?.lines ?? []), ...given.lines], s: cable?.s, values: { ...cable?.values, ...given.values } };
+  return {
+    kind: mark.kind,
+    name: mark.name,
+    clip: best.clip,
+    point: best.object.position.clone(),
+    lines: [...lines, ...(cable?.lines ?? []), ...given.lines],
+    s: cable?.s,
+    values: { ...cable?.values, ...given.values },
+  };
 }
 
-/** Curves of a mark, such as "rope.tension@trolley", are exact where a cable's values jump: return their values of now. */
+/** Return the values of now of a mark's curves, such as "rope.tension@trolley": exact where a cable's values jump. */
 function ownCurves(stage, name, clip) {
   const found = { keys: new Set(), lines: [], values: {} };
   for (const curve of stage.data.clips[clip].curves.filter(({ key }) => key.endsWith(`@${name}`))) {
-    const quantity = curve.key.slice(0, -name.length - 1).split(".").at(-1);
+    const quantity = curve.key
+      .slice(0, -name.length - 1)
+      .split(".")
+      .at(-1);
     const sample = sampleAt(curve.time, stage.time, stage.data.clips[clip].period);
     found.keys.add(quantity);
     (curve.columns.length ? curve.columns : [""]).forEach((column, k) => {
@@ -73,7 +83,10 @@ function bodyAt(stage, x, y) {
   const caster = new Raycaster();
   caster.setFromCamera(new Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), stage.cameras.camera);
   const views = stage.of("body");
-  const hits = caster.intersectObjects(views.map(({ item }) => item.mesh), false);
+  const hits = caster.intersectObjects(
+    views.map(({ item }) => item.mesh),
+    false,
+  );
   if (!hits.length) return null;
   const { clip, item, object } = views.find((view) => view.item.mesh === hits[0].object);
   const sample = stage.sample(clip);
@@ -90,7 +103,8 @@ function bodyAt(stage, x, y) {
 function nearestOnCable(stage, x, y) {
   let best = null;
   for (const view of stage.of("cable")) {
-    const reach = REACH + view.item.size / 2 / stage.cameras.pixelAt(new Vector3(...view.item.centres.slice(0, 3)), stage.height);
+    const reach =
+      REACH + view.item.size / 2 / stage.cameras.pixelAt(new Vector3(...view.item.centres.slice(0, 3)), stage.height);
     const near = nearestStation(view.item, (a, b) => {
       const [ax, ay] = screen(stage, a);
       const [bx, by] = screen(stage, b);
@@ -101,7 +115,12 @@ function nearestOnCable(stage, x, y) {
     if (near.distance < reach && near.distance < (best?.near.distance ?? Infinity)) best = { near, view };
   }
   if (!best) return null;
-  return { kind: "cable", name: best.view.item.cable.name, clip: best.view.clip, ...along(stage, best.view, best.near) };
+  return {
+    kind: "cable",
+    name: best.view.item.cable.name,
+    clip: best.view.clip,
+    ...along(stage, best.view, best.near),
+  };
 }
 
 /** Return the nearest piece of a cable: {p, w, distance}; `distance(a, b)` gives that of a piece, and where on it. */
