@@ -64,6 +64,12 @@ def clip_of(run: Run, label: str, sizes: dict[str, tuple[list[float], list[float
     energies = tuple(name for name in ("kinetic", "elastic", "potential", "dissipated") if f"energy.{name}" in run)
     curves.append(Curve("energy", "energy", "J", energies, run.time,
                         np.stack([run[f"energy.{name}"] for name in energies], axis=-1)))
+    for name, slide in run.scene.slides.items():
+        marks.append(Mark(name, "slide", run[f"{slide.rider.on}.position"], f"slide of {slide.rider.on}"))
+        sides = np.stack([of_run(run, slide.along, run[f"{name}.s"][:, None], side=side)["tension"][:, 0]
+                          for side in ("before", "after")], axis=-1)
+        curves.append(Curve(f"{slide.along}.tension@{name}", f"tension at {name}", "N", ("before", "after"), run.time,
+                            sides))
     events = tuple(EventMark(float(e["time"]), str(e.get("name", e.get("kind", "event")))) for e in run.events)
     return Clip(label, run.time, cables, tuple(body_shape(run, name, *sizes[name]) for name in run.scene.bodies),
                 tuple(marks), (), tuple(curves), events)

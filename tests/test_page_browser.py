@@ -147,12 +147,27 @@ def test_pointing_says_name_place_and_value(opened):
     assert (foot["kind"], foot["name"]) == ("pin", "foot")
 
 
+def test_pointing_at_a_slide_says_the_tension_on_both_sides(opened):
+    """It is that of the run, also between stations, where the cable's own tension is interpolated."""
+    page, clip = opened("paper51"), animations.paper51().clips[0]
+    page("f.goToFrame(25)")
+    page.drawn()
+    found = page("f.pick(...f.pixel(f.mark('trolley')))")
+    curve = next(curve for curve in clip.curves if curve.key == "wire.tension@trolley")
+    assert found["name"] == "trolley"
+    for side, tension in zip(("before", "after"), curve.values[25], strict=True):
+        assert found["values"][f"tension {side}"] == pytest.approx(tension, rel=1e-5)
+        assert f"tension {side} {tension / 1000:.3f} kN" in found["lines"]
+    assert found["s"] == pytest.approx(np.interp(25 / 50, clip.time, clip.bodies[0].position[:, 0]), abs=0.01)
+    assert "tension" not in found["values"]
+
+
 def test_pointing_at_a_body(opened):
     page, clip = opened("paper51"), animations.paper51().clips[0]
     page("f.goToFrame(25)")
     page("f.look('z')")
     page.drawn()
-    found = page("f.pick(...f.pixel(a))", (clip.bodies[0].position[25] + [0.02, 0.0, 0.0]).tolist())
+    found = page("f.pick(...f.pixel(a))", (clip.bodies[0].position[25] + [0.04, 0.0, 0.0]).tolist())
     assert (found["kind"], found["name"]) == ("body", "A")
     assert found["values"]["speed"] == pytest.approx(clip.bodies[0].quantities["speed"][1][25], rel=1e-4)
 
@@ -272,7 +287,7 @@ def test_any_curve_can_be_chosen(opened):
     page.page.get_by_label("Curve", exact=True).last.select_option("energy")
     page("f.goToFrame(10)")
     shown = page.page.locator(".chart").last.locator(".legend").inner_text()
-    kinetic = animations.paper51().clips[0].curves[-1].values[10, 0]
+    kinetic = next(c for c in animations.paper51().clips[0].curves if c.key == "energy").values[10, 0]
     assert f"kinetic {kinetic:.3f}" in shown
     page.page.get_by_role("button", name="Remove this curve").last.click()
     assert page.page.locator(".chart").count() == before

@@ -71,7 +71,8 @@ def described(animation: Animation) -> tuple[dict[str, Any], str]:
         check(clip)
     low, high = bounds(animation)
     size = float(np.linalg.norm(high - low)) or 1.0
-    clips, notes = [], []
+    clips: list[Clip] = []
+    notes: list[str] = []
     for clip in animation.clips:
         fewer, said = decimated(clip, size)
         clips.append(fewer)
@@ -83,9 +84,9 @@ def described(animation: Animation) -> tuple[dict[str, Any], str]:
         "planar": bool(animation.planar), "arrangement": animation.arrangement, "time_label": animation.time_label,
         "time_unit": animation.time_unit, "origin": packer.origin.tolist(), "low": (low - packer.origin).tolist(),
         "high": (high - packer.origin).tolist(), "clips": [packer.clip(clip) for clip in clips],
-        "notes": [*animation.notes, *notes,
-                  f"Positions are rounded to {step:.2g} m, quantities along cables to {1 / VALUE_STEPS:.1g} of their "
-                  f"largest value, and curves to {FLOAT_BITS} bits, five digits."],
+        "notes": list(animation.notes),
+        "about": [*notes, f"Positions are rounded to {step:.2g} m, quantities along cables to {1 / VALUE_STEPS:.1g} of "
+                          f"their largest value, and curves to {FLOAT_BITS} bits, five digits."],
     }
     return {**header, "arrays": packer.descriptions}, packer.text()
 
@@ -130,6 +131,8 @@ def body_reach(shape: Mapping[str, Any]) -> float:
 def check(clip: Clip) -> None:
     """Raise ValueError where an array of a clip does not have the shape that its other arrays ask for."""
     frames = len(clip.time)
+    if frames == 0 or not (np.diff(clip.time) >= 0).all():
+        raise ValueError(f'clip "{clip.label}": its times must rise, and there must be one at least')
     expected: list[tuple[str, np.ndarray, tuple[int, ...]]] = []
     for cable in clip.cables:
         where, count = f'cable "{cable.name}"', len(cable.s)

@@ -19,6 +19,8 @@ await build({
   target: "es2022",
   charset: "ascii", // the bundle stands in pages of any encoding
   legalComments: "none", // the banner and the licence file say it once
-  banner: { js: `/* Viewer of funicular (MIT), with three.js ${version} (MIT, three.js authors): three-LICENSE.txt */` },
+  banner: {
+    js: `/* Viewer of funicular (MIT), with three.js ${version} (MIT, three.js authors): three-LICENSE.txt */`,
+  },
 });
 await copyFile(join(here, "node_modules/three/LICENSE"), join(output, "three-LICENSE.txt"));

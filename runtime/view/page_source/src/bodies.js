@@ -1,7 +1,22 @@
 // Bodies: a shape with dark edges in a frame that moves.
 
-import { BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, DoubleSide, EdgesGeometry, Group, LineBasicMaterial,
-  LineSegments, Mesh, Quaternion, ShaderMaterial, SphereGeometry, Vector3 } from "three";
+import {
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  CylinderGeometry,
+  DoubleSide,
+  EdgesGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  Quaternion,
+  ShaderMaterial,
+  SphereGeometry,
+  Vector3,
+} from "three";
 import { pointAt, valueAt } from "./sampling.js";
 import { SHADE } from "./shading.js";
 
@@ -31,8 +46,12 @@ export class BodyView {
     geometry.computeBoundingSphere();
     this.radius = geometry.boundingSphere.radius;
     this.offset = new Vector3(...(body.shape.offset ?? [0, 0, 0])).add(geometry.boundingSphere.center);
-    this.material = new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide,
-      uniforms: { colour: { value: new Color() } } });
+    this.material = new ShaderMaterial({
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      side: DoubleSide,
+      uniforms: { colour: { value: new Color() }, rim: { value: 0 } },
+    });
     this.edgeMaterial = new LineBasicMaterial();
     const mesh = new Mesh(geometry, this.material);
     const edges = new LineSegments(new EdgesGeometry(geometry, 30), this.edgeMaterial);
@@ -53,7 +72,8 @@ export class BodyView {
     group.quaternion.set(x, y, z, w).normalize();
   }
 
-  colour(colour, edge) {
+  colour(colour, edge, rim) {
+    this.material.uniforms.rim.value = rim;
     this.material.uniforms.colour.value.set(colour);
     this.edgeMaterial.color.set(edge);
   }
@@ -86,8 +106,9 @@ function shapeGeometry(shape) {
   if (shape.kind === "sphere") return new SphereGeometry(shape.radius, 32, 20);
   if (shape.kind === "cylinder") {
     const axis = new Vector3(...shape.axis).normalize();
-    return new CylinderGeometry(shape.radius, shape.radius, shape.length, 32)
-      .applyQuaternion(new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), axis));
+    return new CylinderGeometry(shape.radius, shape.radius, shape.length, 32).applyQuaternion(
+      new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), axis),
+    );
   }
   const smooth = new BufferGeometry();
   smooth.setAttribute("position", new BufferAttribute(new Float32Array(shape.vertices.values), 3));

@@ -1,8 +1,21 @@
 // Cables with their sections. The vertices stand still; the shader sweeps them along the stations, whose positions,
 // axes and values are in a texture of 3 texels a station: one small upload a frame.
 
-import { BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, FloatType, LinearFilter, Mesh, NearestFilter,
-  RGBAFormat, ShaderMaterial, Vector2, Vector3 } from "three";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DataTexture,
+  DoubleSide,
+  FloatType,
+  LinearFilter,
+  Mesh,
+  NearestFilter,
+  RGBAFormat,
+  ShaderMaterial,
+  Vector2,
+  Vector3,
+} from "three";
 import { mapColours } from "./colours.js";
 import { frameAt } from "./sampling.js";
 import { outline, sweptVertices } from "./sections.js";
@@ -83,16 +96,37 @@ export class CableView {
     this.coarse = geometry(outline(cable.section, COARSE.corners), this.count);
     const rows = Math.ceil((3 * this.count) / TEXELS);
     this.texels = new Float32Array(4 * TEXELS * rows);
-    this.texture = new DataTexture(this.texels, TEXELS, rows, RGBAFormat, FloatType, undefined, undefined, undefined,
-      NearestFilter, NearestFilter);
-    this.colours = new DataTexture(mapColours("viridis"), 256, 1, RGBAFormat, undefined, undefined, undefined, undefined,
-      LinearFilter, LinearFilter);
+    this.texture = new DataTexture(
+      this.texels,
+      TEXELS,
+      rows,
+      RGBAFormat,
+      FloatType,
+      undefined,
+      undefined,
+      undefined,
+      NearestFilter,
+      NearestFilter,
+    );
+    this.colours = new DataTexture(
+      mapColours("viridis"),
+      256,
+      1,
+      RGBAFormat,
+      undefined,
+      undefined,
+      undefined,
+      undefined,
+      LinearFilter,
+      LinearFilter,
+    );
     this.colours.needsUpdate = true;
     this.centres = new Float32Array(3 * this.count);
     this.axes = new Float32Array(3 * this.count);
     this.values = new Float32Array(this.count);
     this.quantity = null;
-    const striped = cable.section_y !== null && cable.section.shape !== "rectangle"; // a round section shows no twist by itself
+    // a round section shows no twist by itself
+    const striped = cable.section_y !== null && cable.section.shape !== "rectangle";
     this.mesh = new Mesh(this.fine, this.material(striped));
     this.mesh.frustumCulled = false; // the shader moves it
     this.mesh.name = cable.name;
@@ -100,18 +134,29 @@ export class CableView {
 
   material(striped) {
     return new ShaderMaterial({
-      vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      side: DoubleSide,
       uniforms: {
-        stations: { value: this.texture }, colours: { value: this.colours }, size: { value: this.size }, height: { value: 1 },
-        plain: { value: new Color() }, missing: { value: new Color("#8a8a8a") }, range: { value: new Vector2(0, 1) },
-        coloured: { value: false }, striped: { value: striped },
+        stations: { value: this.texture },
+        colours: { value: this.colours },
+        size: { value: this.size },
+        height: { value: 1 },
+        plain: { value: new Color() },
+        missing: { value: new Color("#8a8a8a") },
+        range: { value: new Vector2(0, 1) },
+        rim: { value: 0 },
+        coloured: { value: false },
+        striped: { value: striped },
       },
     });
   }
 
-  /** Colour the cable by a quantity (its key, the range of its values, a map), or plainly (key null). */
-  colour({ key, range, map, plain }) {
+  /** Colour the cable by a quantity (its key, the range of its values, a map), or plainly (key null).
+   *  `rim`: see shading.js. */
+  colour({ key, range, map, plain, rim }) {
     const uniforms = this.mesh.material.uniforms;
+    uniforms.rim.value = rim;
     this.quantity = this.cable.quantities.find((quantity) => quantity.key === key) ?? null;
     uniforms.coloured.value = this.quantity !== null;
     uniforms.plain.value.set(plain);

@@ -5,9 +5,11 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 const ANGLE = 35; // degrees, of the perspective
 const MARGIN = 1.14;
+const LABELS = 90; // pixels across that the labels of grids need
 
 export class Cameras {
-  /** Cameras for the box [low, high] with its grids; `up` is against gravity; `changed` is called when the view has moved. */
+  /** Cameras for the box [low, high] with its grids; `up` is against gravity.
+   *  `changed` is called when the view has moved. */
   constructor(canvas, { low, high, up }, changed) {
     this.box = { low: new Vector3(...low), high: new Vector3(...high) };
     this.up = new Vector3(...up).normalize();
@@ -23,13 +25,14 @@ export class Cameras {
     this.preset = "3d";
   }
 
-  resize(aspect) {
+  resize(width, height) {
+    const aspect = width / height;
     this.aspect = aspect;
+    this.usable = Math.max(0.5, 1 - LABELS / width) * aspect * MARGIN; // of the width that a height of 1 goes with
     this.perspective.aspect = aspect;
     this.perspective.updateProjectionMatrix();
-    const height = this.flat.top;
-    this.flat.left = -height * aspect;
-    this.flat.right = height * aspect;
+    this.flat.left = -this.flat.top * aspect;
+    this.flat.right = this.flat.top * aspect;
     this.flat.updateProjectionMatrix();
   }
 
@@ -42,17 +45,24 @@ export class Cameras {
     const right = forward.clone().cross(up).normalize();
     const screenUp = right.clone().cross(forward).normalize();
     const centre = this.box.low.clone().add(this.box.high).multiplyScalar(0.5);
-    const corners = this.corners(centre).map((corner) => [corner.dot(right), corner.dot(screenUp), -corner.dot(forward)]);
+    const corners = this.corners(centre).map((corner) => [
+      corner.dot(right),
+      corner.dot(screenUp),
+      -corner.dot(forward),
+    ]);
     this.controls.object = this.camera;
     this.controls.target.copy(centre);
     if (flat) {
-      const half = MARGIN * Math.max(...corners.map(([x, y]) => Math.max(Math.abs(y), Math.abs(x) / this.aspect)), this.size * 1e-3);
+      const half =
+        MARGIN *
+        Math.max(...corners.map(([x, y]) => Math.max(Math.abs(y), Math.abs(x) / this.usable)), this.size * 1e-3);
       Object.assign(this.flat, { top: half, bottom: -half, zoom: 1 });
-      this.resize(this.aspect);
+      this.flat.left = -half * this.aspect;
+      this.flat.right = half * this.aspect;
       this.camera.position.copy(centre).addScaledVector(forward, -this.size * 2);
     } else {
       const tangent = Math.tan((ANGLE / 2) * (Math.PI / 180)) / MARGIN;
-      const needed = corners.map(([x, y, near]) => near + Math.max(Math.abs(y), Math.abs(x) / this.aspect) / tangent);
+      const needed = corners.map(([x, y, near]) => near + Math.max(Math.abs(y), Math.abs(x) / this.usable) / tangent);
       this.camera.position.copy(centre).addScaledVector(forward, -Math.max(...needed, this.size * 0.05));
     }
     this.camera.updateProjectionMatrix();
@@ -62,7 +72,8 @@ export class Cameras {
   /** Two horizontal directions (positive axes where these are horizontal) and up. */
   horizontal() {
     const axes = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
-    const level = axes.filter((axis) => Math.abs(axis.dot(this.up)) < 0.9)
+    const level = axes
+      .filter((axis) => Math.abs(axis.dot(this.up)) < 0.9)
       .map((axis) => axis.clone().addScaledVector(this.up, -axis.dot(this.up)).normalize());
     return level[0];
   }
@@ -95,7 +106,8 @@ export class Cameras {
   corners(centre) {
     const { low, high } = this.box;
     return Array.from({ length: 8 }, (_, k) =>
-      new Vector3(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z).sub(centre));
+      new Vector3(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z).sub(centre),
+    );
   }
 
   /** Move the view as something moved that it follows. */

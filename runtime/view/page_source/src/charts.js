@@ -11,11 +11,20 @@ const DASHES = ["", "6 3", "2 2", "8 3 2 3"];
 
 /** Return what can be drawn of a clip: its curves and the values of its bodies. */
 export function curvesOf(clip) {
-  const single = clip.curves.map((curve) => ({ key: curve.key, label: curve.label, unit: curve.unit,
-    columns: columnsOf(curve.values, curve.columns, curve.time) }));
+  const single = clip.curves.map((curve) => ({
+    key: curve.key,
+    label: curve.label,
+    unit: curve.unit,
+    columns: columnsOf(curve.values, curve.columns, curve.time),
+  }));
   for (const body of clip.bodies) {
     for (const { label, unit, values } of body.quantities) {
-      single.push({ key: `body:${body.name}:${label}`, label: `${body.name}: ${label}`, unit, columns: columnsOf(values, [], clip.time) });
+      single.push({
+        key: `body:${body.name}:${label}`,
+        label: `${body.name}: ${label}`,
+        unit,
+        columns: columnsOf(values, [], clip.time),
+      });
     }
   }
   return single;
@@ -23,7 +32,11 @@ export function curvesOf(clip) {
 
 function columnsOf(array, names, time) {
   const count = names.length || 1;
-  return Array.from({ length: count }, (_, c) => ({ name: names[c] ?? "", time, at: (row) => array.values[row * count + c] }));
+  return Array.from({ length: count }, (_, c) => ({
+    name: names[c] ?? "",
+    time,
+    at: (row) => array.values[row * count + c],
+  }));
 }
 
 export class Charts {
@@ -91,11 +104,27 @@ class Chart {
       this.key = chosen;
       this.draw();
     });
-    const close = make("button", { type: "button", class: "close", "aria-label": "Remove this curve", title: "Remove", onclick: () => charts.close(this) }, "\u00d7");
+    const close = make(
+      "button",
+      {
+        type: "button",
+        class: "close",
+        "aria-label": "Remove this curve",
+        title: "Remove",
+        onclick: () => charts.close(this),
+      },
+      "\u00d7",
+    );
     this.unit = make("span", { class: "unit" });
     this.plot = svg("svg", { class: "plot", role: "img", height: HEIGHT });
     this.legend = make("div", { class: "legend" });
-    this.element = make("section", { class: "chart" }, make("div", { class: "head" }, this.select, this.unit, close), this.plot, this.legend);
+    this.element = make(
+      "section",
+      { class: "chart" },
+      make("div", { class: "head" }, this.select, this.unit, close),
+      this.plot,
+      this.legend,
+    );
     const go = (event) => {
       const { left } = this.plot.getBoundingClientRect();
       const { first, duration } = charts.player;
@@ -126,7 +155,9 @@ class Chart {
     return charts.clips.flatMap((clip, k) => {
       const curve = charts.curves[k].find(({ key }) => key === this.key);
       return (curve?.columns ?? []).map((column, c) => ({
-        ...column, unit: curve.unit, colour: charts.series[(several ? k : c) % charts.series.length],
+        ...column,
+        unit: curve.unit,
+        colour: charts.series[(several ? k : c) % charts.series.length],
         dash: DASHES[(several ? c : Math.floor(c / charts.series.length)) % DASHES.length],
         name: [several ? charts.data.clips[clip].label : "", column.name].filter(Boolean).join(" "),
         period: charts.data.clips[clip].period,
@@ -153,12 +184,32 @@ class Chart {
     this.dots = this.drawn.map(({ colour }) => svg("circle", { r: 3.5, fill: colour, class: "dot" }));
     this.plot.setAttribute("width", this.width);
     this.plot.setAttribute("viewBox", `0 0 ${this.width} ${HEIGHT}`);
-    this.plot.setAttribute("aria-label", `${this.charts.keys.get(this.key)}, from ${number(low / scale)} to ${number(high / scale)} ${unit}`);
-    this.plot.replaceChildren(...this.axes(low, high, scale), ...this.drawn.map((one) => this.path(one)), this.cursor, ...this.dots);
+    this.plot.setAttribute(
+      "aria-label",
+      `${this.charts.keys.get(this.key)}, from ${number(low / scale)} to ${number(high / scale)} ${unit}`,
+    );
+    this.plot.replaceChildren(
+      ...this.axes(low, high, scale),
+      ...this.drawn.map((one) => this.path(one)),
+      this.cursor,
+      ...this.dots,
+    );
     this.values = this.drawn.map(() => make("b"));
-    this.legend.replaceChildren(...this.drawn.map(({ name, colour, dash }, k) => make("span", {},
-      svg("svg", { width: 18, height: 8, "aria-hidden": "true" }, svg("line", { x1: 0, x2: 18, y1: 4, y2: 4, stroke: colour, "stroke-width": 2.2, "stroke-dasharray": dash })),
-      name ? ` ${name} ` : " ", this.values[k])));
+    this.legend.replaceChildren(
+      ...this.drawn.map(({ name, colour, dash }, k) =>
+        make(
+          "span",
+          {},
+          svg(
+            "svg",
+            { width: 18, height: 8, "aria-hidden": "true" },
+            svg("line", { x1: 0, x2: 18, y1: 4, y2: 4, stroke: colour, "stroke-width": 2.2, "stroke-dasharray": dash }),
+          ),
+          name ? ` ${name} ` : " ",
+          this.values[k],
+        ),
+      ),
+    );
     this.update(player.time);
   }
 
@@ -169,18 +220,30 @@ class Chart {
     const vertical = ticks(low / scale, high / scale, 6);
     for (const value of vertical) {
       const y = this.y(value * scale);
-      parts.push(svg("line", { class: value === 0 ? "zero" : "rule", x1: FRAME.left, x2: this.width - FRAME.right, y1: y, y2: y }),
-        text(tick(value, vertical[1] - vertical[0] || 1), { x: FRAME.left - 5, y: y + 3.5, "text-anchor": "end" }));
+      parts.push(
+        svg("line", {
+          class: value === 0 ? "zero" : "rule",
+          x1: FRAME.left,
+          x2: this.width - FRAME.right,
+          y1: y,
+          y2: y,
+        }),
+        text(tick(value, vertical[1] - vertical[0] || 1), { x: FRAME.left - 5, y: y + 3.5, "text-anchor": "end" }),
+      );
     }
     const end = player.first + player.duration;
-    const { scale: by, unit } = data.time_unit === "s" ? scaled("s", Math.max(Math.abs(end), 1e-12)) : { scale: 1, unit: data.time_unit };
+    const { scale: by, unit } =
+      data.time_unit === "s" ? scaled("s", Math.max(Math.abs(end), 1e-12)) : { scale: 1, unit: data.time_unit };
     const horizontal = ticks(player.first / by, end / by, Math.max(2, Math.floor(this.width / 75)));
     const name = unit ? `${data.time_label} / ${unit}` : data.time_label;
     const edge = this.width - FRAME.right - 7 * name.length;
     for (const value of horizontal) {
       const x = this.x(value * by);
       parts.push(svg("line", { class: "rule", x1: x, x2: x, y1: FRAME.top, y2: HEIGHT - FRAME.bottom }));
-      if (x < edge) parts.push(text(tick(value, horizontal[1] - horizontal[0] || 1), { x, y: HEIGHT - 6, "text-anchor": "middle" }));
+      if (x < edge)
+        parts.push(
+          text(tick(value, horizontal[1] - horizontal[0] || 1), { x, y: HEIGHT - 6, "text-anchor": "middle" }),
+        );
     }
     parts.push(text(name, { x: this.width - FRAME.right, y: HEIGHT - 6, "text-anchor": "end" }));
     return parts;

@@ -25,7 +25,10 @@ export function mapColours(name) {
 
 /** Return a map as a CSS gradient from left to right. */
 export function gradient(name) {
-  return `linear-gradient(to right, ${MAPS[name].match(/.{6}/g).map((hex) => "#" + hex).join(", ")})`;
+  return `linear-gradient(to right, ${MAPS[name]
+    .match(/.{6}/g)
+    .map((hex) => "#" + hex)
+    .join(", ")})`;
 }
 
 function channels(hex) {

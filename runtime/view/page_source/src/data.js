@@ -22,8 +22,11 @@ function decode(bytes, descriptions) {
     const count = description.shape.reduce((product, length) => product * length, 1);
     const integers = new Int32Array(count);
     for (let i = 0; i < count; i++) {
-      const coded = bytes[start + i] | (bytes[start + count + i] << 8) | (bytes[start + 2 * count + i] << 16)
-        | (bytes[start + 3 * count + i] << 24);
+      const coded =
+        bytes[start + i] |
+        (bytes[start + count + i] << 8) |
+        (bytes[start + 2 * count + i] << 16) |
+        (bytes[start + 3 * count + i] << 24);
       integers[i] = (coded >>> 1) ^ -(coded & 1);
     }
     start += 4 * count;
@@ -50,9 +53,10 @@ function numbers(integers, { kind, shape, step }) {
 }
 
 function resolve(clip, arrays) {
-  const take = (object, ...keys) => keys.forEach((key) => {
-    object[key] = object[key] === null ? null : arrays[object[key]];
-  });
+  const take = (object, ...keys) =>
+    keys.forEach((key) => {
+      object[key] = object[key] === null ? null : arrays[object[key]];
+    });
   take(clip, "time");
   clip.time = clip.time.values;
   for (const cable of clip.cables) {

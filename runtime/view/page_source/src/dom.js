@@ -28,6 +28,8 @@ export function choice(label, options, value, onchange, attributes = {}) {
 }
 
 export function fill(select, options, value) {
-  select.replaceChildren(...options.map(([key, text]) => make("option", { value: key, selected: key === value }, text)));
+  select.replaceChildren(
+    ...options.map(([key, text]) => make("option", { value: key, selected: key === value }, text)),
+  );
   select.value = value;
 }

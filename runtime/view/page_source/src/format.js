@@ -1,17 +1,26 @@
 // Numbers as an engineer reads them.
 
-const PREFIXES = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "\u00b5"], [1e-9, "n"]];
+const PREFIXES = [
+  [1e9, "G"],
+  [1e6, "M"],
+  [1e3, "k"],
+  [1, ""],
+  [1e-3, "m"],
+  [1e-6, "\u00b5"],
+  [1e-9, "n"],
+];
 const PREFIXED = new Set(["N", "J", "W", "Pa", "N m", "N\u00b7m", "Hz", "V"]);
 const SMALL_ONLY = new Set(["m", "s", "m/s", "rad"]); // nobody says kilosecond
 
 /** Return {scale, unit}: what numbers up to `largest` are divided by, and the unit they have then. */
-export function scaled(unit, largest) {
+export function scaled(given, largest) {
+  const unit = given === "1" ? "" : given;
   const size = Math.abs(largest);
   if (!(size > 0) || !Number.isFinite(size)) return { scale: 1, unit };
   const prefixed = PREFIXED.has(unit);
   if (prefixed || SMALL_ONLY.has(unit)) {
-    const [scale, prefix] = PREFIXES.find(([factor]) => size >= factor * 0.9995 && (prefixed || factor <= 1))
-      ?? PREFIXES.at(-1);
+    const [scale, prefix] =
+      PREFIXES.find(([factor]) => size >= factor * 0.9995 && (prefixed || factor <= 1)) ?? PREFIXES.at(-1);
     return { scale, unit: prefix + unit };
   }
   if (size >= 1e-3 && size < 1e5) return { scale: 1, unit };
@@ -20,7 +29,9 @@ export function scaled(unit, largest) {
 }
 
 function superscript(number) {
-  return [...String(number)].map((c) => (c === "-" ? "\u207b" : "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"[c])).join("");
+  return [...String(number)]
+    .map((c) => (c === "-" ? "\u207b" : "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"[c]))
+    .join("");
 }
 
 /** Return a number with four digits, or fewer if its last one would lie below `step`; a true minus sign. */
@@ -31,9 +42,10 @@ export function number(value, digits = 4, step = 0) {
   const last = Math.max(first - digits + 1, step > 0 ? Math.ceil(Math.log10(step)) : -Infinity);
   const rounded = Math.round(value / 10 ** last) * 10 ** last;
   if (rounded === 0) return "0";
-  const text = Math.abs(rounded) >= 1e6 || Math.abs(rounded) < 1e-4
-    ? rounded.toExponential(Math.max(0, first - last)).replace("e+", "e")
-    : rounded.toFixed(Math.min(20, Math.max(0, -last)));
+  const text =
+    Math.abs(rounded) >= 1e6 || Math.abs(rounded) < 1e-4
+      ? rounded.toExponential(Math.max(0, first - last)).replace("e+", "e")
+      : rounded.toFixed(Math.min(20, Math.max(0, -last)));
   return text.replace(/-/g, "\u2212");
 }
 

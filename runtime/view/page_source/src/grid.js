@@ -1,6 +1,16 @@
 // Grids with their scale in metres: on the ground, and behind the picture when it is looked at along an axis.
 
-import { BufferAttribute, BufferGeometry, CanvasTexture, Group, LineBasicMaterial, LineSegments, Sprite, SpriteMaterial, Vector3 } from "three";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  CanvasTexture,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Sprite,
+  SpriteMaterial,
+  Vector3,
+} from "three";
 import { niceStep, scaled, tick } from "./format.js";
 
 const LABEL_PIXELS = 13;
@@ -35,7 +45,10 @@ export class GridView {
   }
 
   addLines({ normal, level, origin, step, ranges }, along, across) {
-    for (const [material, chosen] of [[this.material, (k) => k !== 0], [this.strong, (k) => k === 0]]) {
+    for (const [material, chosen] of [
+      [this.material, (k) => k !== 0],
+      [this.strong, (k) => k === 0],
+    ]) {
       const points = [];
       for (let k = ranges[across][0]; k <= ranges[across][1]; k++) {
         if (!chosen(k)) continue;
@@ -55,7 +68,10 @@ export class GridView {
 
   addLabels({ normal, level, origin, step, ranges, u, v }, longest) {
     const { scale, unit } = scaled("m", longest);
-    for (const [along, across] of [[u, v], [v, u]]) {
+    for (const [along, across] of [
+      [u, v],
+      [v, u],
+    ]) {
       const [first, last] = ranges[along];
       const every = Math.max(1, Math.ceil((last - first) / 6));
       for (let k = first; k <= last; k++) {

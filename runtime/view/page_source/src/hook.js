@@ -6,7 +6,11 @@ import { pick } from "./picking.js";
 export function hook(app) {
   const { stage, player, data } = app;
   const view = (kind, name, clip = app.clips[0]) => {
-    const found = stage.of(kind).find(({ item, clip: of }) => of === clip && (item.body ?? item.cable ?? item.mark ?? item.segment).name === name);
+    const found = stage
+      .of(kind)
+      .find(
+        ({ item, clip: of }) => of === clip && (item.body ?? item.cable ?? item.mark ?? item.segment).name === name,
+      );
     if (!found) throw new Error(`there is no ${kind} "${name}" in the picture`);
     return found;
   };

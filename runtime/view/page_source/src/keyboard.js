@@ -20,14 +20,31 @@ export function listen(document, actions) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { target } = event;
     if (target.closest?.("dialog")) return;
-    if (target.tagName === "SELECT" || (target.tagName === "INPUT" && target.type !== "range" && target.type !== "checkbox")) return;
+    if (
+      target.tagName === "SELECT" ||
+      (target.tagName === "INPUT" && target.type !== "range" && target.type !== "checkbox")
+    )
+      return;
     const onButton = target.tagName === "BUTTON" || target.tagName === "SUMMARY" || target.type === "checkbox";
     if (onButton && (event.key === " " || event.key === "Enter")) return;
     const by = event.shiftKey ? 10 : 1;
     const bound = {
-      " ": actions.toggle, ArrowLeft: () => actions.step(-by), ArrowRight: () => actions.step(by), Home: actions.home, End: actions.end,
-      0: actions.fit, 1: () => actions.look("3d"), 2: () => actions.look("x"), 3: () => actions.look("y"), 4: () => actions.look("z"),
-      5: actions.followNext, "[": () => actions.clip(-1), "]": () => actions.clip(1), l: actions.loop, t: actions.trails, d: actions.theme,
+      " ": actions.toggle,
+      ArrowLeft: () => actions.step(-by),
+      ArrowRight: () => actions.step(by),
+      Home: actions.home,
+      End: actions.end,
+      0: actions.fit,
+      1: () => actions.look("3d"),
+      2: () => actions.look("x"),
+      3: () => actions.look("y"),
+      4: () => actions.look("z"),
+      5: actions.followNext,
+      "[": () => actions.clip(-1),
+      "]": () => actions.clip(1),
+      l: actions.loop,
+      t: actions.trails,
+      d: actions.theme,
       "?": actions.help,
     }[event.key];
     if (!bound) return;

@@ -21,15 +21,28 @@ export function layout(root, data) {
     dialog: make("dialog", { "aria-label": "Keys" }),
   };
   parts.aside = make("aside", { "aria-label": "Curves and notes" }, parts.curves, parts.notes);
-  const settings = make("details", { class: "settings" },
-    make("summary", {}, "Display"), parts.options);
-  parts.picture = make("div", { class: "picture" }, parts.canvas,
-    make("div", { class: "over left" }, settings), make("div", { class: "over right" }, parts.legend),
-    parts.badge, parts.rulers, parts.tip);
+  const settings = make("details", { class: "settings" }, make("summary", {}, "Display"), parts.options);
+  parts.picture = make(
+    "div",
+    { class: "picture" },
+    parts.canvas,
+    make("div", { class: "over left" }, settings),
+    make("div", { class: "over right" }, parts.legend),
+    parts.badge,
+    parts.rulers,
+    parts.tip,
+  );
   root.replaceChildren(
-    make("header", {}, make("h1", {}, data.title), parts.clip, parts.views, make("div", { class: "buttons" }, parts.theme, parts.help)),
-    make("main", {}, make("div", { class: "stage" }, parts.picture, parts.timeline),
-      parts.aside),
-    parts.dialog);
+    make(
+      "header",
+      {},
+      make("h1", {}, data.title),
+      parts.clip,
+      parts.views,
+      make("div", { class: "buttons" }, parts.theme, parts.help),
+    ),
+    make("main", {}, make("div", { class: "stage" }, parts.picture, parts.timeline), parts.aside),
+    parts.dialog,
+  );
   return parts;
 }

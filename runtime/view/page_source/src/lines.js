@@ -56,8 +56,11 @@ export class SegmentView {
     const helper = Math.abs(x.z) < 0.9 ? new Vector3(0, 0, 1) : new Vector3(0, 1, 0);
     const y = helper.cross(x).normalize();
     const z = x.clone().cross(y);
-    this.group.matrix.copy(new Matrix4().makeBasis(along, y.clone().multiplyScalar(this.radius), z.multiplyScalar(this.radius))
-      .setPosition(this.start));
+    this.group.matrix.copy(
+      new Matrix4()
+        .makeBasis(along, y.clone().multiplyScalar(this.radius), z.multiplyScalar(this.radius))
+        .setPosition(this.start),
+    );
     this.group.matrixWorldNeedsUpdate = true;
     if (this.head) {
       this.head.position.copy(this.end);

@@ -5,17 +5,19 @@ import { SERIES } from "./colours.js";
 import { read } from "./data.js";
 import { choice, make } from "./dom.js";
 import { hook } from "./hook.js";
-import { KEYS, listen } from "./keyboard.js";
+import { listen } from "./keyboard.js";
 import { layout } from "./layout.js";
+import { help, Notes } from "./notes.js";
 import { Panel } from "./panel.js";
-import { pick } from "./picking.js";
 import { Player } from "./player.js";
+import { Pointer } from "./pointer.js";
 import { Legend, Rulers } from "./rulers.js";
 import { Stage } from "./stage.js";
 import { Theme } from "./theme.js";
 import { Timeline } from "./timeline.js";
 
 const MOST_TIMES = 2000; // of clips drawn together
+const RIM = { dark: 0.35, light: -0.1 }; // of the range of brightness
 const LEAST_RANGE = 1e-3; // of colours, in parts of the largest value
 
 class App {
@@ -26,19 +28,34 @@ class App {
     this.overlay = data.arrangement === "overlay";
     this.rulers = new Rulers(parts.rulers);
     this.stage = new Stage(data, parts.canvas, (stage) => this.rulers.update(stage));
-    this.player = new Player((time) => this.timeChanged(time), () => this.timeline.playing());
+    this.player = new Player(
+      (time) => this.timeChanged(time),
+      () => this.timeline.playing(),
+    );
     this.timeline = new Timeline(parts.timeline, this.player, data);
     this.charts = new Charts(parts.curves, this.player, data);
-    this.state = { quantity: null, map: "viridis", factor: 1, trails: true, reference: data.clips.some((clip) => clip.period),
-      marks: true, grid: true };
-    this.panel = new Panel(parts.options, this.state, () => this.redraw(), () => this.savePicture());
+    this.state = {
+      quantity: null,
+      map: "viridis",
+      factor: 1,
+      trails: true,
+      reference: data.clips.some((clip) => clip.period),
+      marks: true,
+      grid: true,
+    };
+    this.panel = new Panel(
+      parts.options,
+      this.state,
+      () => this.redraw(),
+      () => this.savePicture(),
+    );
     this.legend = new Legend(parts.legend, this.panel.quantity);
     this.theme = new Theme(parts.theme, () => this.redraw());
     this.chooseViews();
     this.chooseClip();
-    this.showNotes();
-    this.showHelp();
-    this.point();
+    this.notes = new Notes(parts.notes, data);
+    this.pointer = new Pointer(parts, this.stage, () => this.clips.length > 1);
+    help(parts.dialog, parts.help);
     listen(document, this.actions());
     new ResizeObserver(() => this.stage.resize()).observe(parts.picture);
     document.documentElement.dataset.theme = this.theme.dark ? "dark" : "light";
@@ -60,10 +77,10 @@ class App {
     player.load(together(times), period);
     this.clips = clips;
     stage.show(clips);
-    if (this.state.quantity === null) this.state.quantity = clips.length > 1 ? "" : this.quantities()[0]?.[0] ?? "";
+    if (this.state.quantity === null) this.state.quantity = clips.length > 1 ? "" : (this.quantities()[0]?.[0] ?? "");
     this.timeline.show(clips);
     if (this.clipSelect) this.clipSelect.value = String(clips[0]);
-    this.showDetails();
+    this.notes.show(clips, clips.length > 1 || Boolean(this.clipSelect));
     this.redraw();
     player.go(player.time);
     if (period && !matchMedia("(prefers-reduced-motion: reduce)").matches) player.play();
@@ -93,7 +110,7 @@ class App {
     if (!(low <= high)) return { quantity: found, range: [0, 1] };
     const least = LEAST_RANGE * Math.max(Math.abs(low), Math.abs(high)); // rounding is no change of colour
     const more = Math.max(0, (least - (high - low)) / 2);
-    return { quantity: found, range: [low - more, high + more] };
+    return { quantity: found, range: [low - more, high + more], uniform: more > 0 };
   }
 
   /** Draw everything anew after a choice of the reader. */
@@ -104,34 +121,57 @@ class App {
     const several = clips.length > 1;
     const series = SERIES[theme.dark ? "dark" : "light"];
     const shades = clips.map((_, k) => series[k % series.length]);
-    const { quantity, range } = this.range(state.quantity);
+    const { quantity, range, uniform } = this.range(state.quantity);
     const ground = theme.colour("canvas");
     stage.scene.background.set(ground);
+    const rim = theme.dark ? RIM.dark : RIM.light;
     let bodies = 0;
     for (const { kind, item, clip } of stage.views) {
       const shade = shades[clips.indexOf(clip)];
       const body = several ? shade : series[(1 + bodies) % series.length];
-      if (kind === "cable") item.colour({ key: state.quantity, range, map: state.map, plain: several ? shade : theme.colour("cable") });
+      if (kind === "cable")
+        item.colour({
+          key: state.quantity,
+          range,
+          map: state.map,
+          rim,
+          plain: several ? shade : theme.colour("cable"),
+        });
       if (kind === "body") {
-        item.colour(body, theme.colour("edge"));
+        item.colour(body, theme.colour("edge"), rim);
         this.lastBody = body;
         bodies += 1;
       }
       if (kind === "trail") item.colour(this.lastBody);
-      if (kind === "segment") item.colour(several ? shade : theme.colour(item.segment.kind === "load" ? "load" : "segment"));
+      if (kind === "segment")
+        item.colour(several ? shade : theme.colour(item.segment.kind === "load" ? "load" : "segment"));
       if (kind === "mark") item.colour(several ? shade : theme.colour("ink"), ground);
       if (kind === "reference") item.colour(theme.colour("ghost"));
     }
-    stage.grids.forEach((grid) => grid.colour(theme.colour("grid"), theme.colour("grid-strong"), theme.colour("muted")));
+    stage.grids.forEach((grid) =>
+      grid.colour(theme.colour("grid"), theme.colour("grid-strong"), theme.colour("muted")),
+    );
     const named = several ? clips.map((clip, k) => ({ label: data.clips[clip].label, colour: shades[k] })) : [];
-    this.legend.show({ quantity, range, map: state.map, clips: quantity ? [] : named });
+    this.legend.show({ quantity, range, uniform, map: state.map, clips: named });
     this.parts.legend.hidden = !keys.length && !several;
-    this.parts.badge.textContent = state.factor === 1 ? ""
-      : `Displacements are drawn ${state.factor} times as large, rotations of bodies as they are`;
+    this.parts.badge.textContent =
+      state.factor === 1
+        ? ""
+        : `Displacements are drawn ${state.factor} times as large, rotations of bodies as they are`;
     this.parts.badge.hidden = state.factor === 1;
     const has = (kind) => stage.of(kind).length > 0;
-    this.panel.show(keys, several ? "each run its own" : "plain", { trails: has("trail"), reference: has("reference"), marks: has("mark") });
-    stage.set({ factor: state.factor, trails: state.trails, reference: state.reference, marks: state.marks, grid: state.grid });
+    this.panel.show(keys, several ? "each run its own" : "plain", {
+      trails: has("trail"),
+      reference: has("reference"),
+      marks: has("mark"),
+    });
+    stage.set({
+      factor: state.factor,
+      trails: state.trails,
+      reference: state.reference,
+      marks: state.marks,
+      grid: state.grid,
+    });
     this.charts.show(clips, theme.dark);
     this.parts.aside.classList.toggle("narrow", this.charts.keys.size === 0);
   }
@@ -140,8 +180,11 @@ class App {
     this.stage.update(time);
     this.timeline.update();
     this.charts.update(time);
-    this.parts.canvas.setAttribute("aria-label", `${this.data.title}, ${this.data.time_label} ${this.timeline.timeText(time)}`);
-    if (!this.parts.tip.hidden) this.tell(...this.pointer); // what is pointed at changes with time
+    this.parts.canvas.setAttribute(
+      "aria-label",
+      `${this.data.title}, ${this.data.time_label} ${this.timeline.timeText(time)}`,
+    );
+    this.pointer.update();
   }
 
   look(preset) {
@@ -158,14 +201,32 @@ class App {
 
   chooseViews() {
     const { parts } = this;
-    const texts = { "3d": ["3D", "Perspective (1)"], x: ["x", "Along x (2)"], y: ["y", "Along y (3)"], z: ["z", "Along z (4)"] };
-    this.viewButtons = Object.fromEntries(Object.entries(texts).map(([preset, [text, title]]) => [preset,
-      make("button", { type: "button", title, "aria-label": title, "aria-pressed": "false", onclick: () => this.look(preset) }, text)]));
+    const texts = {
+      "3d": ["3D", "Perspective (1)"],
+      x: ["x", "Along x (2)"],
+      y: ["y", "Along y (3)"],
+      z: ["z", "Along z (4)"],
+    };
+    this.viewButtons = Object.fromEntries(
+      Object.entries(texts).map(([preset, [text, title]]) => [
+        preset,
+        make(
+          "button",
+          { type: "button", title, "aria-label": title, "aria-pressed": "false", onclick: () => this.look(preset) },
+          text,
+        ),
+      ]),
+    );
     parts.views.append(...Object.values(this.viewButtons));
     const names = this.bodyNames();
     if (!names.length) return;
-    this.followSelect = choice("Follow a body", [["", "follow \u2026"], ...names.map((name) => [name, name])], "", (name) => this.follow(name || null),
-      { title: "Follow a body (5)" });
+    this.followSelect = choice(
+      "Follow a body",
+      [["", "follow \u2026"], ...names.map((name) => [name, name])],
+      "",
+      (name) => this.follow(name || null),
+      { title: "Follow a body (5)" },
+    );
     parts.views.append(this.followSelect);
   }
 
@@ -190,44 +251,20 @@ class App {
     parts.clip.append(this.clipSelect);
   }
 
-  showNotes() {
-    const { data, parts } = this;
-    this.details = make("dl");
-    const notes = data.notes.map((note) => make("li", {}, note));
-    const notice = "Cables are drawn at least 3 pixels wide and bodies at least 9; values between frames are interpolated.";
-    parts.notes.append(this.details, make("details", {}, make("summary", {}, "About this picture"), make("ul", {}, ...notes, make("li", {}, notice))));
-  }
-
-  showDetails() {
-    const rows = this.clips.flatMap((clip) => {
-      const { label, details } = this.data.clips[clip];
-      const entries = Object.entries(details);
-      const head = entries.length && (this.clips.length > 1 || this.clipSelect) ? [make("dt", { class: "clip" }, label), make("dd")] : [];
-      return [...head, ...entries.flatMap(([key, value]) => [make("dt", {}, key), make("dd", {}, value)])];
-    });
-    this.details.replaceChildren(...rows);
-    this.details.hidden = rows.length === 0;
-  }
-
   /** Save the picture, as large as it is on the screen. */
   savePicture() {
     make("a", { href: this.stage.image(), download: `${this.data.title}.png` }).click();
   }
 
-  showHelp() {
-    const { dialog, help } = this.parts;
-    const close = make("button", { type: "button", onclick: () => dialog.close() }, "Close");
-    dialog.append(make("h2", {}, "Keys"), make("dl", {}, ...KEYS.flatMap(([key, text]) => [make("dt", {}, key), make("dd", {}, text)])),
-      make("p", {}, "Drag turns the picture, the right button or two fingers move it, the wheel zooms. Point at something to read its values; double-click to look at it."), close);
-    help.addEventListener("click", () => dialog.showModal());
-  }
-
   actions() {
     const { player, data } = this;
     return {
-      toggle: () => player.toggle(), step: (by) => player.step(by),
-      home: () => (player.pause(), player.goFrame(0)), end: () => (player.pause(), player.goFrame(player.times.length - 1)),
-      fit: () => this.look(this.stage.cameras.preset), look: (preset) => this.look(preset),
+      toggle: () => player.toggle(),
+      step: (by) => player.step(by),
+      home: () => (player.pause(), player.goFrame(0)),
+      end: () => (player.pause(), player.goFrame(player.times.length - 1)),
+      fit: () => this.look(this.stage.cameras.preset),
+      look: (preset) => this.look(preset),
       followNext: () => {
         const names = [...this.bodyNames(), null];
         this.follow(names[(names.indexOf(this.stage.followed) + 1) % names.length]);
@@ -240,47 +277,9 @@ class App {
         this.state.trails = !this.state.trails;
         this.redraw();
       },
-      theme: () => this.theme.toggle(), help: () => this.parts.dialog.showModal(),
+      theme: () => this.theme.toggle(),
+      help: () => this.parts.dialog.showModal(),
     };
-  }
-
-  /** Say what is under the pointer. */
-  point() {
-    const { canvas } = this.parts;
-    const at = (event) => {
-      const { left, top } = canvas.getBoundingClientRect();
-      return [event.clientX - left, event.clientY - top];
-    };
-    canvas.addEventListener("pointermove", (event) => {
-      if (event.buttons) this.hideTip();
-      else this.tell(...at(event));
-    });
-    canvas.addEventListener("pointerleave", () => this.hideTip());
-    canvas.addEventListener("click", (event) => this.tell(...at(event)));
-    canvas.addEventListener("dblclick", (event) => {
-      const found = pick(this.stage, ...at(event));
-      if (found) this.stage.cameras.approach(found.point, this.stage.size * 0.08);
-    });
-  }
-
-  tell(x, y) {
-    this.pointer = [x, y];
-    const found = pick(this.stage, x, y);
-    if (!found) {
-      this.hideTip();
-      return;
-    }
-    const { tip, picture } = this.parts;
-    const clip = this.clips.length > 1 ? [make("div", { class: "of" }, this.data.clips[found.clip].label)] : [];
-    tip.replaceChildren(make("b", {}, found.name), ...clip, ...found.lines.map((text) => make("div", {}, text)));
-    tip.hidden = false;
-    const { clientWidth: width, clientHeight: height } = picture;
-    tip.style.left = `${Math.max(4, Math.min(x + 14, width - tip.offsetWidth - 6))}px`;
-    tip.style.top = `${Math.max(4, y + 16 + tip.offsetHeight > height ? y - tip.offsetHeight - 12 : y + 16)}px`;
-  }
-
-  hideTip() {
-    this.parts.tip.hidden = true;
   }
 }
 
@@ -299,8 +298,17 @@ async function start() {
     window.funicular = hook(app);
     window.dispatchEvent(new Event("funicular-ready"));
   } catch (error) {
-    document.getElementById("viewer").replaceChildren(make("p", { id: "message", role: "alert" },
-      /WebGL/i.test(error.message) ? "The picture needs WebGL 2, which this browser does not offer or has switched off." : `The page cannot be drawn: ${error.message}`));
+    document
+      .getElementById("viewer")
+      .replaceChildren(
+        make(
+          "p",
+          { id: "message", role: "alert" },
+          /WebGL/i.test(error.message)
+            ? "The picture needs WebGL 2, which this browser does not offer or has switched off."
+            : `The page cannot be drawn: ${error.message}`,
+        ),
+      );
     throw error;
   }
 }

@@ -14,15 +14,33 @@ export class Panel {
       changed();
     };
     this.quantity = choice("Colour by", [], state.quantity, (value) => set("quantity", value));
-    this.map = choice("Colour map", MAP_NAMES.map((name) => [name, name]), state.map, (value) => set("map", value));
-    this.factor = choice("Displacements", FACTORS.map((factor) => [String(factor), factor === 1 ? "true scale" : `\u00d7 ${factor}`]),
-      "1", (value) => set("factor", Number(value)));
-    this.boxes = Object.fromEntries([["trails", "trails"], ["reference", "reference shape"], ["marks", "supports, joints"], ["grid", "grid"]]
-      .map(([key, text]) => [key, this.box(key, text, set)]));
+    this.map = choice(
+      "Colour map",
+      MAP_NAMES.map((name) => [name, name]),
+      state.map,
+      (value) => set("map", value),
+    );
+    this.factor = choice(
+      "Displacements",
+      FACTORS.map((factor) => [String(factor), factor === 1 ? "true scale" : `\u00d7 ${factor}`]),
+      "1",
+      (value) => set("factor", Number(value)),
+    );
+    this.boxes = Object.fromEntries(
+      [
+        ["trails", "trails"],
+        ["reference", "reference shape"],
+        ["marks", "supports, joints"],
+        ["grid", "grid"],
+      ].map(([key, text]) => [key, this.box(key, text, set)]),
+    );
     this.mapRow = this.row("Colour map", this.map);
-    element.append(this.mapRow, this.row("Displacement", this.factor),
+    element.append(
+      this.mapRow,
+      this.row("Displacement", this.factor),
       ...Object.values(this.boxes).map(({ label }) => label),
-      make("button", { type: "button", onclick: savePicture }, "Save picture (PNG)"));
+      make("button", { type: "button", onclick: savePicture }, "Save picture (PNG)"),
+    );
   }
 
   row(text, control) {

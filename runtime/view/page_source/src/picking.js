@@ -2,7 +2,7 @@
 
 import { Raycaster, Vector2, Vector3 } from "three";
 import { withUnit } from "./format.js";
-import { frameAt, valueAt } from "./sampling.js";
+import { frameAt, sampleAt, valueAt } from "./sampling.js";
 
 const REACH = 12; // pixels
 
@@ -28,14 +28,41 @@ function nearestMark(stage, x, y) {
   }
   if (!best) return null;
   const { mark } = best.item;
-  const lines = [mark.kind, ...(mark.detail ? [mark.detail] : [])].filter((text) => text !== mark.name);
-  const cable = onCable(stage, best.object.position, best.clip);
-  return { kind: mark.kind, name: mark.name, clip: best.clip, point: best.object.position.clone(),
-    lines: [...lines, ...(cable?.lines ?? [])], s: cable?.s, values: cable?.values ?? {} };
+  const lines = [mark.detail || mark.kind];
+  const given = ownCurves(stage, mark.name, best.clip);
+  const cable = onCable(stage, best.object.position, best.clip, given.keys);
+  return {
+    kind: mark.kind,
+    name: mark.name,
+    clip: best.clip,
+    point: best.object.position.clone(),
+    lines: [...lines, ...(cable?.lines ?? []), ...given.lines],
+    s: cable?.s,
+    values: { ...cable?.values, ...given.values },
+  };
 }
 
-/** The values of a cable of the clip at a point that lies on it. */
-function onCable(stage, point, clip) {
+/** Return the values of now of a mark's curves, such as "rope.tension@trolley": exact where a cable's values jump. */
+function ownCurves(stage, name, clip) {
+  const found = { keys: new Set(), lines: [], values: {} };
+  for (const curve of stage.data.clips[clip].curves.filter(({ key }) => key.endsWith(`@${name}`))) {
+    const quantity = curve.key
+      .slice(0, -name.length - 1)
+      .split(".")
+      .at(-1);
+    const sample = sampleAt(curve.time, stage.time, stage.data.clips[clip].period);
+    found.keys.add(quantity);
+    (curve.columns.length ? curve.columns : [""]).forEach((column, k) => {
+      const text = [quantity, column].filter(Boolean).join(" ");
+      found.values[text] = valueAt(curve.values, sample, k);
+      found.lines.push(`${text} ${withUnit(found.values[text], curve.unit)}`);
+    });
+  }
+  return found;
+}
+
+/** The values of a cable of the clip at a point that lies on it, without those of the quantities `but`. */
+function onCable(stage, point, clip, but) {
   let best = null;
   for (const view of stage.of("cable").filter((one) => one.clip === clip)) {
     const near = nearestStation(view.item, (a, b) => {
@@ -47,7 +74,7 @@ function onCable(stage, point, clip) {
     if (near.distance < (best?.near.distance ?? Infinity)) best = { near, view };
   }
   if (!best || best.near.distance > Math.max(2 * best.view.item.size, stage.size * 1e-3)) return null;
-  const values = along(stage, best.view, best.near);
+  const values = along(stage, best.view, best.near, but);
   return { ...values, lines: [`on ${best.view.item.cable.name}`, ...values.lines] };
 }
 
@@ -56,7 +83,10 @@ function bodyAt(stage, x, y) {
   const caster = new Raycaster();
   caster.setFromCamera(new Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), stage.cameras.camera);
   const views = stage.of("body");
-  const hits = caster.intersectObjects(views.map(({ item }) => item.mesh), false);
+  const hits = caster.intersectObjects(
+    views.map(({ item }) => item.mesh),
+    false,
+  );
   if (!hits.length) return null;
   const { clip, item, object } = views.find((view) => view.item.mesh === hits[0].object);
   const sample = stage.sample(clip);
@@ -73,7 +103,8 @@ function bodyAt(stage, x, y) {
 function nearestOnCable(stage, x, y) {
   let best = null;
   for (const view of stage.of("cable")) {
-    const reach = REACH + view.item.size / 2 / stage.cameras.pixelAt(new Vector3(...view.item.centres.slice(0, 3)), stage.height);
+    const reach =
+      REACH + view.item.size / 2 / stage.cameras.pixelAt(new Vector3(...view.item.centres.slice(0, 3)), stage.height);
     const near = nearestStation(view.item, (a, b) => {
       const [ax, ay] = screen(stage, a);
       const [bx, by] = screen(stage, b);
@@ -84,7 +115,12 @@ function nearestOnCable(stage, x, y) {
     if (near.distance < reach && near.distance < (best?.near.distance ?? Infinity)) best = { near, view };
   }
   if (!best) return null;
-  return { kind: "cable", name: best.view.item.cable.name, clip: best.view.clip, ...along(stage, best.view, best.near) };
+  return {
+    kind: "cable",
+    name: best.view.item.cable.name,
+    clip: best.view.clip,
+    ...along(stage, best.view, best.near),
+  };
 }
 
 /** Return the nearest piece of a cable: {p, w, distance}; `distance(a, b)` gives that of a piece, and where on it. */
@@ -100,14 +136,14 @@ function nearestStation({ centres, count }, distance) {
   return best;
 }
 
-function along(stage, { clip, item }, { p, w }) {
+function along(stage, { clip, item }, { p, w }, but = new Set()) {
   const { cable, centres } = item;
   const between = (array) => array[p] + w * (array[p + 1] - array[p]);
   const s = between(cable.s.values);
   const sample = stage.sample(clip);
   const values = {};
   const lines = [`s = ${withUnit(s, "m")}`];
-  for (const quantity of cable.quantities) {
+  for (const quantity of cable.quantities.filter(({ key }) => !but.has(key))) {
     const frame = frameAt(quantity.values, sample, new Float32Array(cable.s.values.length));
     values[quantity.key] = between(frame);
     lines.push(`${quantity.label} ${withUnit(values[quantity.key], quantity.unit, quantity.values.step)}`);

@@ -41,7 +41,9 @@ export class Player {
     if (!this.period && this.duration >= 4 && this.duration <= 60) return 1;
     const rate = this.duration / wanted;
     const power = 10 ** Math.floor(Math.log10(rate));
-    const nice = [1, 2, 5, 10].reduce((best, x) => (Math.abs(Math.log((x * power) / rate)) < Math.abs(Math.log((best * power) / rate)) ? x : best));
+    const nice = [1, 2, 5, 10].reduce((best, x) =>
+      Math.abs(Math.log((x * power) / rate)) < Math.abs(Math.log((best * power) / rate)) ? x : best,
+    );
     return Number((nice * power).toPrecision(3));
   }
 

@@ -1,6 +1,7 @@
 // Values of arrays over time: exact at frames, linear between them.
 
-/** Return {i, j, w}: the frames around a time and the weight of the second; before the first and after the last it rests. */
+/** Return {i, j, w}: the frames around a time and the weight of the second.
+ *  Before the first and after the last it rests. */
 export function sampleAt(times, time, period = null) {
   const last = times.length - 1;
   if (last === 0) return { i: 0, j: 0, w: 0 };

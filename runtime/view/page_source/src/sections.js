@@ -20,14 +20,42 @@ function circle(radius, round) {
 
 function rectangle(height, width) {
   const [y, z] = [height / 2, width / 2];
-  const faces = [[[y, -z], [y, z], [1, 0]], [[y, z], [-y, z], [0, 1]], [[-y, z], [-y, -z], [-1, 0]], [[-y, -z], [y, -z], [0, -1]]];
-  const corners = faces.flatMap(([a, b, normal]) => [[...a, ...normal], [...b, ...normal]]);
+  const faces = [
+    [
+      [y, -z],
+      [y, z],
+      [1, 0],
+    ],
+    [
+      [y, z],
+      [-y, z],
+      [0, 1],
+    ],
+    [
+      [-y, z],
+      [-y, -z],
+      [-1, 0],
+    ],
+    [
+      [-y, -z],
+      [y, -z],
+      [0, -1],
+    ],
+  ];
+  const corners = faces.flatMap(([a, b, normal]) => [
+    [...a, ...normal],
+    [...b, ...normal],
+  ]);
   return { corners, sides: [0, 2, 4, 6].map((i) => [i, i + 1]), size: Math.min(height, width), inner: 0 };
 }
 
 /** Return {corner, side, station, cap, index}: the vertices of a cable with `count` stations, caps at both ends. */
 export function sweptVertices({ corners, sides, inner }, count) {
-  const corner = [], side = [], station = [], cap = [], index = [];
+  const corner = [],
+    side = [],
+    station = [],
+    cap = [],
+    index = [];
   const add = (p, [y, z, ny, nz], facing) => {
     corner.push(y, z);
     side.push(ny, nz);
@@ -42,11 +70,15 @@ export function sweptVertices({ corners, sides, inner }, count) {
       index.push(i, k, j, j, k, l);
     }
   }
-  for (const [p, facing] of [[0, -1], [count - 1, 1]]) {
+  for (const [p, facing] of [
+    [0, -1],
+    [count - 1, 1],
+  ]) {
     const first = station.length;
     corners.forEach((c) => add(p, c, facing));
     corners.forEach(([y, z, ny, nz]) => add(p, [inner * y, inner * z, ny, nz], facing)); // inner 0: the centre
-    for (const [a, b] of sides) index.push(first + a, first + b, first + n + a, first + b, first + n + b, first + n + a);
+    for (const [a, b] of sides)
+      index.push(first + a, first + b, first + n + a, first + b, first + n + b, first + n + a);
   }
   return { corner, side, station, cap, index };
 }

@@ -144,7 +144,7 @@ export class Stage {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.height = height;
-    this.cameras.resize(width / height);
+    this.cameras.resize(width, height);
     for (const { item } of this.of("cable")) item.resize(height);
     this.invalidate();
   }
@@ -191,10 +191,19 @@ export class Stage {
     const { low, high } = this.data;
     const middle = grid.bounds.level;
     const behind = forward.getComponent(facing) > 0 ? high[facing] : low[facing];
-    grid.group.position.setComponent(facing, flat ? behind + Math.sign(forward.getComponent(facing)) * this.size * 0.02 - middle : 0);
+    grid.group.position.setComponent(
+      facing,
+      flat ? behind + Math.sign(forward.getComponent(facing)) * this.size * 0.02 - middle : 0,
+    );
   }
 }
 
 function twice(object) {
-  return [{ dispose: () => (object.geometry.dispose(), object.material.dispose()), colour: (c) => object.material.color.set(c) }, object];
+  return [
+    {
+      dispose: () => (object.geometry.dispose(), object.material.dispose()),
+      colour: (c) => object.material.color.set(c),
+    },
+    object,
+  ];
 }

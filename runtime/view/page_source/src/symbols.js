@@ -9,22 +9,48 @@ const CANVAS = 88;
 /** Draw a symbol; the point that it stands for is the middle of a square from -1 to 1, y down. */
 const DRAW = {
   pin(c) {
-    path(c, [[0, 0], [-0.5, 0.7], [0.5, 0.7]], true);
+    path(
+      c,
+      [
+        [0, 0],
+        [-0.5, 0.7],
+        [0.5, 0.7],
+      ],
+      true,
+    );
     hatch(c, 0.7);
     dot(c, 0.17);
   },
   clamp(c) {
     c.fillRect(-0.4, -0.4, 0.8, 0.8);
     c.strokeRect(-0.4, -0.4, 0.8, 0.8);
-    path(c, [[-0.4, -0.4], [0.4, 0.4]]);
-    path(c, [[-0.4, 0.4], [0.4, -0.4]]);
+    path(c, [
+      [-0.4, -0.4],
+      [0.4, 0.4],
+    ]);
+    path(c, [
+      [-0.4, 0.4],
+      [0.4, -0.4],
+    ]);
   },
   ground(c) {
-    path(c, [[-0.6, 0], [0.6, 0]]);
+    path(c, [
+      [-0.6, 0],
+      [0.6, 0],
+    ]);
     hatch(c, 0);
   },
   tie(c) {
-    path(c, [[-0.4, 0], [0, -0.4], [0.4, 0], [0, 0.4]], true);
+    path(
+      c,
+      [
+        [-0.4, 0],
+        [0, -0.4],
+        [0.4, 0],
+        [0, 0.4],
+      ],
+      true,
+    );
   },
   joint(c) {
     dot(c, 0.3);
@@ -59,8 +85,15 @@ function dot(c, radius) {
 }
 
 function hatch(c, y) {
-  path(c, [[-0.65, y], [0.65, y]]);
-  for (const x of [-0.35, 0, 0.35]) path(c, [[x + 0.1, y], [x - 0.12, y + 0.24]]);
+  path(c, [
+    [-0.65, y],
+    [0.65, y],
+  ]);
+  for (const x of [-0.35, 0, 0.35])
+    path(c, [
+      [x + 0.1, y],
+      [x - 0.12, y + 0.24],
+    ]);
 }
 
 export class MarkView {

@@ -11,19 +11,48 @@ export class Timeline {
   constructor(element, player, data) {
     this.player = player;
     this.data = data;
-    this.play = make("button", { type: "button", class: "play", "aria-label": "Play", title: "Play (space)", onclick: () => player.toggle() });
-    this.slider = make("input", { type: "range", min: 0, step: 1, value: 0, "aria-label": data.time_label,
+    this.play = make("button", {
+      type: "button",
+      class: "play",
+      "aria-label": "Play",
+      title: "Play (space)",
+      onclick: () => player.toggle(),
+    });
+    this.slider = make("input", {
+      type: "range",
+      min: 0,
+      step: 1,
+      value: 0,
+      "aria-label": data.time_label,
       oninput: () => {
         player.pause();
         player.goFrame(Number(this.slider.value));
-      } });
+      },
+    });
     this.events = make("div", { class: "events" });
     this.readout = make("output", { class: "time", "aria-live": "off" });
     this.rate = choice("Speed of playing", [], "", (value) => (player.rate = Number(value)));
     this.rate.title = "Speed of playing";
-    this.loop = make("button", { type: "button", "aria-pressed": "true", "aria-label": "Loop", title: "Loop (l)", class: "toggle", onclick: () => this.toggleLoop() }, "\u21bb");
+    this.loop = make(
+      "button",
+      {
+        type: "button",
+        "aria-pressed": "true",
+        "aria-label": "Loop",
+        title: "Loop (l)",
+        class: "toggle",
+        onclick: () => this.toggleLoop(),
+      },
+      "\u21bb",
+    );
     this.element = element;
-    element.append(this.play, make("div", { class: "track" }, this.slider, this.events), this.readout, this.rate, this.loop);
+    element.append(
+      this.play,
+      make("div", { class: "track" }, this.slider, this.events),
+      this.readout,
+      this.rate,
+      this.loop,
+    );
   }
 
   toggleLoop() {
@@ -38,8 +67,13 @@ export class Timeline {
     this.slider.max = player.times.length - 1;
     const suits = player.suitableRate();
     player.rate = suits;
-    fill(this.rate, player.rates(suits).map((rate) => [String(rate), this.rateText(rate)]), String(suits));
-    const events = clips.flatMap((clip) => data.clips[clip].events.map((event) => ({ ...event, clip })))
+    fill(
+      this.rate,
+      player.rates(suits).map((rate) => [String(rate), this.rateText(rate)]),
+      String(suits),
+    );
+    const events = clips
+      .flatMap((clip) => data.clips[clip].events.map((event) => ({ ...event, clip })))
       .sort((a, b) => a.time - b.time);
     this.events.replaceChildren(...events.map((event) => this.event(event, clips.length > 1, events.length)));
     this.happened = events;
@@ -48,7 +82,8 @@ export class Timeline {
   }
 
   rateText(rate) {
-    if (this.data.time_unit !== "s") return `${plain(rate)}${this.data.time_unit ? " " + this.data.time_unit : ""} per second`;
+    if (this.data.time_unit !== "s")
+      return `${plain(rate)}${this.data.time_unit ? " " + this.data.time_unit : ""} per second`;
     if (rate === 1) return "real time";
     return rate < 1 ? `1/${plain(1 / rate)} of real time` : `${plain(rate)} \u00d7 real time`;
   }
@@ -57,12 +92,18 @@ export class Timeline {
     const { player, data } = this;
     const text = `${this.timeText(time)}: ${several ? data.clips[clip].label + ": " : ""}${label}`;
     const left = `left:${(100 * (time - player.first)) / (player.duration || 1)}%`;
-    return make("button", { type: "button", style: left, title: text, "aria-label": text, tabindex: count > MOST_BUTTONS ? -1 : 0,
+    return make("button", {
+      type: "button",
+      style: left,
+      title: text,
+      "aria-label": text,
+      tabindex: count > MOST_BUTTONS ? -1 : 0,
       onclick: () => {
         player.pause();
         player.go(time);
         player.goFrame(player.frame);
-      } });
+      },
+    });
   }
 
   timeText(time) {
