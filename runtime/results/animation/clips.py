@@ -117,9 +117,10 @@ def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], ti
         largest = min(swing, TURN / max([*turns, 1e-300]))
         clip = _clip(sources.of_mode(modes, k, scene, about, largest, phase), f"mode {k + 1}: {what}",
                      [] if k else notes)
+        drawn = _amplitude(largest, largest * max([*turns, 0.0]))
         clips.append(replace(clip, time=phase / (2 * np.pi * frequency) if frequency > 0 else phase / (2 * np.pi),
                              segments=tuple(each for each in clip.segments if each.kind != "load"), periodic=True,
-                             details={"frequency": what, "drawn with": _amplitude(largest, largest * max([*turns, 0]))}))
+                             details={"frequency": what, "drawn with": drawn}))
     notes.append(f"modes have no size of their own: they are drawn with a largest displacement of {swing:.3g} m")
     return replace(_animation(scene, title, clips, notes), arrangement="menu")
 
