@@ -15,6 +15,7 @@ from .animation import Animation, BodyShape, CableShape, Clip, Mark, Segment
 from .placed import outline, placed_surface
 from .plot import CLIP_COLOURS, LOAD, MARKERS, SEGMENTS, SIZES
 from .projections import Directions, Projection, all_points, directions
+from .surfaces import surface
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -78,9 +79,14 @@ class Film:
             yield np.asarray(self.canvas.buffer_rgba())[..., :3].copy()
 
     def _set_limits(self) -> None:
-        """Take equal scales about the middle of all places that are reached, in the shape of the axes."""
-        places = self.view.of(self.box)
-        low, high = places.min(axis=0), places.max(axis=0)
+        """Take equal scales about the middle of all that is reached, bodies whole, in the shape of the axes."""
+        places = [self.view.of(self.box)]
+        for body in (body for clip in self.clips for body in clip.bodies):
+            reach = np.linalg.norm(surface(body.shape)[0], axis=1).max()
+            positions = self.view.of(body.position)
+            places += [positions - reach, positions + reach]
+        reached = np.concatenate(places)
+        low, high = reached.min(axis=0), reached.max(axis=0)
         box = self.axes.get_position()
         across, up = SIZE[0] * box.width, SIZE[1] * box.height
         size = (1 + 2 * MARGIN) * max((high[0] - low[0]) / across, (high[1] - low[1]) / up, 1e-9)
