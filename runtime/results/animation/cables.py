@@ -101,9 +101,7 @@ def modal_line(frames: Frames, name: str) -> CableShape | None:
         section = section_data(body.section)
         up = rotate(frames.value(f"{name}.orientation"), (0.0, 1.0, 0.0))[:, None]
         height = np.broadcast_to(up, position.shape)
-    quantities = ()
-    reference = frames.reference(f"{name}.nodes")[order]
-    return CableShape(name, s, position, height, section, reference, quantities)
+    return CableShape(name, s, position, height, section, frames.reference(f"{name}.nodes")[order])
 
 
 def line_order(nodes: np.ndarray) -> np.ndarray | None:

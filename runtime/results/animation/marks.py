@@ -53,7 +53,8 @@ def marks(frames: Frames, size: float) -> Iterator[Mark]:
         if _apart(a, b, size):
             yield Mark(name, "joint", still(a), f"{joint.pair} joint, its end on {_on(joint.a)}")
     for name, slide in scene.slides.items():
-        yield Mark(name, "slide", still(slide_place(frames, name)), f'slide of {_on(slide.rider)} along "{slide.along}"')
+        yield Mark(name, "slide", still(slide_place(frames, name)),
+                   f'slide of {_on(slide.rider)} along "{slide.along}"')
     for part in scene.parts():
         for end in (value for _, value in part if isinstance(value, Attachment)):
             if end.on is None:
