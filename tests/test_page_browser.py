@@ -9,7 +9,7 @@ import numpy as np
 import page_animations as animations
 import pytest
 from browser import Opened, browser
-from funicular.view.animation import EventMark
+from funicular.view.animation import Clip, EventMark, Mark
 from funicular.view.page import write_page
 from matplotlib.image import imread
 
@@ -30,7 +30,8 @@ def chromium():
 def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pages")
     paper, beam = animations.paper51(), animations.twisted()
-    slower = replace(paper.clips[0], label="half as fast", time=2 * paper.clips[0].time)
+    slower = replace(paper.clips[0], label="half as fast", time=2 * paper.clips[0].time,
+                     curves=tuple(replace(curve, time=2 * curve.time) for curve in paper.clips[0].curves))
     disc = beam.clips[0].bodies[0]
     still = replace(beam.clips[0], time=np.zeros(1), cables=(), segments=(), curves=(), events=(),
                     bodies=(replace(disc, position=disc.position[:1], orientation=disc.orientation[:1]),))
@@ -38,6 +39,7 @@ def files(tmp_path_factory):
         "paper51": paper, "twisted": beam, "modes": animations.modes(),
         "two": replace(paper, clips=(paper.clips[0], slower)),
         "still": replace(beam, clips=(still,)),
+        "point": replace(beam, clips=(Clip("point", np.zeros(1), marks=(Mark("P", "point", np.ones((1, 3))),)),)),
         "loads": replace(beam, time_label="load factor", time_unit=""),
         "events": replace(beam, clips=(replace(beam.clips[0], events=tuple(
             EventMark(0.1 * k, f"event {k}") for k in range(1, 15))),)),
@@ -225,9 +227,9 @@ def test_axis_views_look_along_axes(opened):
             else:
                 assert np.hypot(*moved) < 0.5
         everything = page("f.cable('beam').map((p) => f.pixel(p))")
-        size = page("[document.querySelector('canvas').clientWidth, document.querySelector('canvas').clientHeight]")
+        box = page.page.locator("canvas").bounding_box()
         assert (np.array(everything) > 0).all()
-        assert (np.array(everything) < size).all()
+        assert (np.array(everything) < [box["width"], box["height"]]).all()
 
 
 def test_the_menu_of_modes(opened):
@@ -253,7 +255,18 @@ def test_two_runs_each_at_its_own_time(opened):
     page("f.goTo(0.8)")
     np.testing.assert_allclose(page("f.body('A', 0)")["position"], clip.bodies[0].position[40], atol=5e-6)
     np.testing.assert_allclose(page("f.body('A', 1)")["position"], clip.bodies[0].position[20], atol=5e-6)
+    page("f.goTo(1.5)")  # one run has ended
+    values = page.page.locator(".chart .legend").first.locator("span").all_inner_texts()
+    assert [text.split()[-1] == "\u2013" for text in values] == [True] * 3 + [False] * 3
     assert page.page.locator(".colours .clip").all_inner_texts() == ["paper51", "half as fast"]
+
+
+def test_a_scene_with_a_single_point(opened):
+    page = opened("point")
+    x, y = page("f.pixel(f.mark('P'))")
+    box = page.page.locator("canvas").bounding_box()
+    assert 0 < x < box["width"]
+    assert 0 < y < box["height"]
 
 
 def test_a_single_frame_has_no_time(opened):
