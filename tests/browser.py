@@ -31,8 +31,8 @@ class Opened:
     """A page in a browser, with what it said and asked for since."""
 
     def __init__(self, browser, path: Path, **settings) -> None:
-        """settings: of a browser context, such as viewport and color_scheme. There is no network."""
-        self.context = browser.new_context(offline=True, reduced_motion="reduce", **settings)
+        """settings: of a browser context, such as viewport and color_scheme. There is no network; modes stand still."""
+        self.context = browser.new_context(**({"offline": True, "reduced_motion": "reduce"} | settings))
         self.page = self.context.new_page()
         self.page.set_default_timeout(PATIENCE)
         self.said: list[str] = []

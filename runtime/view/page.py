@@ -70,7 +70,7 @@ def described(animation: Animation) -> tuple[dict[str, Any], str]:
     for clip in animation.clips:
         check(clip)
     low, high = bounds(animation)
-    size = float(np.linalg.norm(high - low)) or 1.0
+    size = float(np.linalg.norm(high - low))
     clips: list[Clip] = []
     notes: list[str] = []
     for clip in animation.clips:
@@ -92,13 +92,15 @@ def described(animation: Animation) -> tuple[dict[str, Any], str]:
 
 
 def bounds(animation: Animation) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and the highest coordinates (3,) of all that is drawn, in m."""
+    """Return the lowest and the highest coordinates (3,) of all that is drawn, in m; some room around a point."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for points in _positions(animation):
         finite = points[np.isfinite(points).all(axis=-1)]
         if len(finite):
             low, high = np.minimum(low, finite.min(axis=0)), np.maximum(high, finite.max(axis=0))
-    return (low, high) if np.isfinite(low).all() else (np.zeros(3), np.zeros(3))
+    if not np.isfinite(low).all():
+        low, high = np.zeros(3), np.zeros(3)
+    return (low, high) if (high > low).any() else (low - 0.5, high + 0.5)  # a single point
 
 
 def _positions(animation: Animation) -> Iterator[np.ndarray]:

@@ -3,7 +3,7 @@
 import { SERIES } from "./colours.js";
 import { choice, fill, make, svg } from "./dom.js";
 import { number, scaled, tick, ticks } from "./format.js";
-import { sampleAt } from "./sampling.js";
+import { isOutside, sampleAt } from "./sampling.js";
 
 const HEIGHT = 150;
 const FRAME = { left: 46, right: 10, top: 8, bottom: 20 };
@@ -271,7 +271,7 @@ class Chart {
     this.drawn.forEach((one, k) => {
       const { i, j, w } = sampleAt(one.time, time, one.period);
       const value = w === 0 ? one.at(i) : one.at(i) + w * (one.at(j) - one.at(i));
-      const valid = Number.isFinite(value);
+      const valid = Number.isFinite(value) && !isOutside(one.time, time, one.period);
       this.values[k].textContent = valid ? number(value / this.scale, 4, this.finest) : "\u2013";
       this.dots[k].setAttribute("visibility", valid ? "visible" : "hidden");
       if (!valid) return;

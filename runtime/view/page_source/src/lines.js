@@ -116,12 +116,15 @@ export class TrailView {
     this.factor = factor;
     const point = [0, 0, 0];
     const points = [];
+    let last = [0, 0, 0];
     for (let i = 0; i < this.frames; i++) {
-      points.push(...pointAt(this.body.position, this.body.reference, { i, j: i, w: 0 }, factor, point));
+      pointAt(this.body.position, this.body.reference, { i, j: i, w: 0 }, factor, point);
+      if (!point.some(Number.isNaN)) last = [...point]; // where nothing is known the trail waits
+      points.push(...last);
     }
     this.line.geometry.dispose();
     this.line.geometry = new LineGeometry();
-    this.line.geometry.setPositions(points.map((x) => (Number.isNaN(x) ? 0 : x)));
+    this.line.geometry.setPositions(points);
   }
 
   colour(colour) {

@@ -286,7 +286,9 @@ class App {
 /** Return the times of several clips in one sorted list; of the longest clip alone where that would be too many. */
 function together(times) {
   if (times.length === 1) return times[0];
-  const all = [...new Set(times.flatMap((one) => [...one]))].sort((a, b) => a - b);
+  const sorted = times.flatMap((one) => [...one]).sort((a, b) => a - b);
+  const apart = 1e-6 * (sorted.at(-1) - sorted[0]); // what is closer is the same
+  const all = sorted.filter((time, k) => k === 0 || time - sorted[k - 1] > apart);
   if (all.length <= MOST_TIMES) return all;
   const longest = times.reduce((best, one) => (one.at(-1) - one[0] > best.at(-1) - best[0] ? one : best));
   return longest;

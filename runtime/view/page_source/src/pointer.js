@@ -2,6 +2,7 @@
 
 import { make } from "./dom.js";
 import { pick } from "./picking.js";
+import { isOutside } from "./sampling.js";
 
 const NEAR = 0.08; // of the picture's size: how far from what is double-clicked
 
@@ -34,7 +35,9 @@ export class Pointer {
       return;
     }
     const { tip, picture } = this;
-    const clip = this.several() ? [make("div", { class: "of" }, this.stage.data.clips[found.clip].label)] : [];
+    const { label, time, period } = this.stage.data.clips[found.clip];
+    const ended = isOutside(time, this.stage.time, period) ? " (not at this time: its nearest state)" : "";
+    const clip = this.several() ? [make("div", { class: "of" }, label + ended)] : [];
     tip.replaceChildren(make("b", {}, found.name), ...clip, ...found.lines.map((text) => make("div", {}, text)));
     tip.hidden = false;
     const { clientWidth: width, clientHeight: height } = picture;

@@ -22,6 +22,12 @@ export function sampleAt(times, time, period = null) {
   return { i: low, j: high, w: (t - times[low]) / (times[high] - times[low]) };
 }
 
+/** Return whether a time lies outside of what is known. */
+export function isOutside(times, time, period = null) {
+  const margin = 1e-6 * (times.at(-1) - times[0]);
+  return !period && times.length > 1 && (time < times[0] - margin || time > times.at(-1) + margin);
+}
+
 /** Return the value at offset `k` of a frame of an array; what has one frame stands still. */
 export function valueAt(array, sample, k) {
   const stride = array.values.length / array.shape[0];
