@@ -251,6 +251,12 @@ class Run(Viewable):
         file = getattr(self.variables, "file", None)
         return of_run(self, title or ("run" if file is None else Path(file.path).stem))
 
+    def sketch(self) -> Animation:
+        """Return the motion without quantities and curves; see `Viewable.sketch`. Raises FunicularError."""
+        from .animation.clips import of_run  # likewise
+
+        return of_run(self, "run", with_results=False)
+
     def plot(self, what: str = "shape") -> Figure:
         """Return a Matplotlib figure: "shape", "acceleration", "slide", "energy", or "forces-wire" of the cable "wire".
 

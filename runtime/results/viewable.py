@@ -27,6 +27,10 @@ class Viewable:
         """Return what pictures show of it, as plain data; title: what they are called."""
         raise NotImplementedError
 
+    def sketch(self) -> Animation:
+        """Return as much of its animation as a picture without quantities needs."""
+        return self.animation()
+
     def overview(self) -> list[tuple[str, str]]:
         """Return what a notebook tells of it: pairs of a heading and a text."""
         raise NotImplementedError
@@ -113,6 +117,6 @@ class Viewable:
         from ..view.plot import shape_figure
 
         try:
-            return image_tag(shape_figure(self.animation()))
+            return image_tag(shape_figure(self.sketch()))
         except FunicularError as error:  # a table without a picture is better than none
             return f"<p>{escape(str(error))}</p>"
