@@ -9,7 +9,7 @@ from funicular.results.animation.bodies import plausible_size
 from funicular.results.animation.cables import line_order
 from funicular.results.animation.clips import overlaid
 from funicular.results.animation.curves import thinned
-from funicular.rotations import rotate
+from funicular.rotations import product, rotate, turned_by
 from numpy.testing import assert_allclose
 from shared_scenes import SQUARE, TABLE_1, cable_scene
 from viewed_scenes import spatial
@@ -259,6 +259,13 @@ def test_shapes_go_through_files():
     scene = spatial()
     read = fu.Scene.from_toml(scene.to_toml())
     assert [body.shape for body in read.bodies.values()] == [body.shape for body in scene.bodies.values()]
+
+
+def test_quaternions_follow_one_another():
+    first, second = turned_by([0.3, -0.2, 0.9]), turned_by([[1.0, 0.5, -0.4], [0, 0, 0]])
+    vector = np.array([0.2, 0.7, -1.1])
+    assert_allclose(rotate(product(first, second), vector), rotate(first, rotate(second, vector)), atol=1e-14)
+    assert_allclose(rotate(turned_by([0, 0, np.pi / 2]), (1, 0, 0)), (0, 1, 0), atol=1e-15)
 
 
 # ---- modal bodies

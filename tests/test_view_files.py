@@ -118,6 +118,15 @@ def test_an_mp4_has_its_pictures(run, tmp_path):
     assert frames == 14 and seconds == pytest.approx(0.56, abs=0.05)
 
 
+def test_modes_follow_one_another_in_a_film(tmp_path):
+    """Three periods each, 25 pictures a second."""
+    scene = fu.load_scene("cable_car")
+    modes = scene.modes(2, about=scene.equilibrium())
+    path = modes.save_video(tmp_path / "modes.gif", speed=20)
+    with Image.open(path) as film:
+        assert abs(film.n_frames - np.sum(3 / modes.frequency / 20 * 25 + 1.5)) <= 2
+
+
 def test_the_times_of_a_film():
     times, pace = film_times((Clip("a", np.linspace(1.0, 3.0, 5)),), 1.0)
     assert pace == 1.0 and len(times) == 51
@@ -166,6 +175,7 @@ def test_files_for_paraview_hold_the_results(in_space, tmp_path):
     clip = in_space.animation().clips[0]
     for k in (0, len(listed) - 1):
         mesh = meshio.read(path.parent / listed[k].get("file"))
+        assert listed[k].get("part") == "0"
         rope, boom = clip.cables
         n, m = len(rope.s), len(boom.s)
         assert_allclose(mesh.points[: n + m], np.concatenate([rope.position[k], boom.position[k]]), atol=1e-14)
@@ -178,6 +188,17 @@ def test_files_for_paraview_hold_the_results(in_space, tmp_path):
         cells = mesh.cells_dict
         assert len(cells["line"]) == n + m - 2 and len(cells["triangle"]) > 12
         assert cells["triangle"].min() == n + m
+
+
+def test_both_of_two_runs_are_parts_for_paraview(run, tmp_path):
+    pytest.importorskip("meshio")
+    from funicular.results.animation.clips import overlaid
+    from funicular.view.vtk import write_vtk
+
+    path = write_vtk(overlaid([run.animation("one"), fu.load_scene("paper51").animation("other")]), tmp_path / "two")
+    listed = ElementTree.parse(path).getroot().findall("./Collection/DataSet")
+    assert [sum(each.get("part") == part for each in listed) for part in "01"] == [21, 1]
+    assert all((path.parent / each.get("file")).exists() for each in listed)
 
 
 # ---- the command line

@@ -56,7 +56,8 @@ class Film:
         if self.scale is not None:
             figure.colorbar(self.scale, cax=figure.add_axes((0.87, 0.15, 0.015, 0.7)), label=_label(clips, colour))
         self.said = figure.text(0.02, 0.94, "", fontsize=11, animated=True)
-        figure.text(0.98, 0.94, animation.title, fontsize=11, ha="right", color="0.35")
+        title = f"{animation.title}, {clips[0].label}" if animation.arrangement == "menu" else animation.title
+        figure.text(0.98, 0.94, title, fontsize=11, ha="right", color="0.35")
         self.moving: list[tuple[int, Artist, Update]] = []
         for number, clip in enumerate(clips):
             self._add(number, clip, CLIP_COLOURS[number % len(CLIP_COLOURS)])

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,7 @@ def write_video(animation: Animation, path: str | os.PathLike, speed: float | No
                 colour: str | None = None) -> Path:
     """Write a film of an animation, .gif or .mp4, and return its path; see `Viewable.save_video`.
 
-    Of a menu of clips the first one is filmed. Raises ResultFileError; FunicularError.
+    The clips of a menu, such as modes, follow one another. Raises ResultFileError; FunicularError.
     """
     from matplotlib import rc_context
 
@@ -41,12 +42,13 @@ def write_video(animation: Animation, path: str | os.PathLike, speed: float | No
     path = Path(path)
     if path.suffix.lower() not in KINDS:
         raise FunicularError(f"{shown_path(path)}: a film ends in {' or '.join(KINDS)}")
-    clips = animation.clips[:1] if animation.arrangement == "menu" else animation.clips
-    times, pace = film_times(clips, speed)
+    together = [(clip,) for clip in animation.clips] if animation.arrangement == "menu" else [animation.clips]
+    timings = [film_times(clips, speed) for clips in together]
     settings: dict[Any, Any] = {**STYLE, "figure.constrained_layout.use": False}
     write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
     with rc_context(settings):
-        pictures = Film(animation, clips, colour, pace).pictures(times)
+        pictures = chain.from_iterable(Film(animation, clips, colour, pace).pictures(times)
+                                       for clips, (times, pace) in zip(together, timings, strict=True))
         try:
             write(path, pictures)
         except (OSError, ValueError) as error:

@@ -17,25 +17,25 @@ from .placed import placed_surface
 
 
 def write_vtk(animation: Animation, folder: str | os.PathLike) -> Path:
-    """Write the frames of the first clip into a folder and return the path of its .pvd file; see `Viewable.save_vtk`.
+    """Write the frames into a folder and return the path of its .pvd file; see `Viewable.save_vtk`.
 
-    Points have the quantities along cables, NaN where there is none, the direction and the diameter of the section, and
-    the number of the cable or body that they are of, cables first. Raises ResultFileError; FunicularError.
+    Each clip, such as a mode or one of two runs, is a part of the collection. Points have the quantities along cables,
+    NaN where there is none, the direction and the diameter of the section, and the number of the cable or body that
+    they are of, cables first. Raises ResultFileError; FunicularError.
     """
     meshio = extra("meshio", "vtk")
-    if not animation.clips:
-        raise FunicularError("there is nothing to write for ParaView")
-    folder, clip = Path(folder), animation.clips[0]
+    folder = Path(folder)
     named = folder / f"{folder.name or 'frames'}.pvd"
-    digits = len(str(len(clip.time) - 1))
     lines = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "<Collection>"]
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for frame, time in enumerate(clip.time):
-            file = f"frame_{frame:0{digits}}.vtu"
-            points, cells, data = frame_arrays(clip, frame)
-            meshio.write(folder / file, meshio.Mesh(points, cells, point_data=data))
-            lines.append(f'<DataSet timestep="{float(time)!r}" group="" part="0" file={quoteattr(file)}/>')
+        for part, clip in enumerate(animation.clips):
+            digits = len(str(len(clip.time) - 1))
+            for frame, time in enumerate(clip.time):
+                file = f"part{part}_frame{frame:0{digits}}.vtu"
+                points, cells, data = frame_arrays(clip, frame)
+                meshio.write(folder / file, meshio.Mesh(points, cells, point_data=data))
+                lines.append(f'<DataSet timestep="{float(time)!r}" group="" part="{part}" file={quoteattr(file)}/>')
         named.write_text("\n".join([*lines, "</Collection>", "</VTKFile>", ""]), encoding="utf-8")
     except (OSError, ValueError) as error:
         raise unwritable(folder, error) from error
