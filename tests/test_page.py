@@ -9,7 +9,6 @@ import numpy as np
 import page_animations as animations
 import pytest
 from funicular import ResultFileError
-from funicular.view import page as pages
 from funicular.view.animation import Animation, BodyShape, CableShape, Clip, Curve, Mark, Quantity, Segment
 from funicular.view.decimation import MAX_FRAMES, MAX_ROWS, decimated, even_frames
 from funicular.view.page import described, is_exaggerable, page, period, write_page
@@ -18,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-SOURCE = Path(pages.__file__).with_name("page_source")
+SOURCE = Path(__file__).parents[1] / "runtime" / "view" / "page_source"
 SHAPES = hnp.array_shapes(min_dims=1, max_dims=3, max_side=7)
 
 
