@@ -9,16 +9,15 @@ import numpy as np
 import page_animations as animations
 import pytest
 from funicular import ResultFileError
-from funicular.view import page as pages
 from funicular.view.animation import Animation, BodyShape, CableShape, Clip, Curve, Mark, Quantity, Segment
 from funicular.view.decimation import MAX_FRAMES, MAX_ROWS, decimated, even_frames
-from funicular.view.page import described, page, period, write_page
+from funicular.view.page import described, is_exaggerable, page, period, write_page
 from funicular.view.page_arrays import FLOAT_BITS, Packer, power_of_two, unpack
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-SOURCE = Path(pages.__file__).with_name("page_source")
+SOURCE = Path(__file__).parents[1] / "runtime" / "view" / "page_source"
 SHAPES = hnp.array_shapes(min_dims=1, max_dims=3, max_side=7)
 
 
@@ -173,6 +172,15 @@ def test_the_period_of_a_mode(count, closed):
     assert len(clip.time) == count
     assert period(clip) == pytest.approx(0.5)
     assert period(replace(clip, periodic=False)) is None
+
+
+def test_what_slides_needs_a_reference_that_goes_along():
+    clip = animations.paper51().clips[0]
+    assert not is_exaggerable(clip)
+    marks = tuple(replace(m, reference=m.position - [0, 0.01, 0]) if m.kind == "slide" else m for m in clip.marks)
+    assert is_exaggerable(replace(clip, marks=marks))
+    assert is_exaggerable(replace(clip, periodic=True))
+    assert is_exaggerable(animations.twisted().clips[0])
 
 
 def test_the_file_is_complete_and_small():

@@ -130,6 +130,17 @@ def test_exaggeration_is_drawn_and_said(opened):
     np.testing.assert_allclose(page("f.cable('beam')")[-1], expected, atol=3e-5)
 
 
+def test_what_slides_is_not_exaggerated(opened):
+    """The body would leave its cable: its way along it would be enlarged, too."""
+    page, clip = opened("paper51"), animations.paper51().clips[0]
+    page("f.set({factor: 5})")
+    page("f.goToFrame(25)")
+    np.testing.assert_allclose(page("f.body('A')")["position"], clip.bodies[0].position[25], atol=5e-6)
+    page.page.get_by_text("Display").click()
+    assert page.page.get_by_label("Displacements").is_disabled()
+    assert page.page.locator(".badge").is_hidden()
+
+
 def test_pointing_says_name_place_and_value(opened):
     page, clip = opened("twisted"), animations.twisted().clips[0]
     page("f.goToFrame(40)")

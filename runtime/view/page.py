@@ -170,6 +170,7 @@ class _ScenePacker(Packer):
         frames = len(clip.time)
         return {
             "label": clip.label, "time": self.fine(clip.time), "period": period(clip),
+            "exaggerable": is_exaggerable(clip),
             "details": {str(key): str(value) for key, value in clip.details.items()},
             "cables": [self._cable(cable) for cable in clip.cables],
             "bodies": [self._body(body, frames) for body in clip.bodies],
@@ -243,6 +244,15 @@ def period(clip: Clip) -> float | None:
     moved = max((np.abs(cable.position - cable.position[0]).max() for cable in clip.cables), default=0.0)
     closed = all(np.abs(last - first).max() <= 1e-6 * max(moved, 1e-300) for first, last in pairs)
     return float(clip.time[-1] - clip.time[0] + (0 if closed else clip.time[-1] - clip.time[-2]))
+
+
+def is_exaggerable(clip: Clip) -> bool:
+    """Return whether larger displacements make a picture that hangs together.
+
+    What slides leaves its cable if its way along it is enlarged, too: it needs a reference that goes along.
+    """
+    sliding = (mark for mark in clip.marks if mark.kind == "slide" and np.ptp(mark.position, axis=0).any())
+    return clip.periodic or all(mark.reference is not None and mark.reference.ndim == 2 for mark in sliding)
 
 
 def _plain(mapping: Mapping[str, Any]) -> dict[str, Any]:

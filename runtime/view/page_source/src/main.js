@@ -113,19 +113,16 @@ class App {
     return { quantity: found, range: [low - more, high + more], uniform: more > 0 };
   }
 
-  /** Draw everything anew after a choice of the reader. */
-  redraw() {
-    const { state, stage, theme, data, clips } = this;
-    const keys = this.quantities();
-    if (state.quantity && !keys.some(([key]) => key === state.quantity)) state.quantity = keys[0]?.[0] ?? "";
+  /** Colour all that is drawn, cables by the quantity over its range; return the shades of the clips. */
+  colourViews(range) {
+    const { state, stage, theme, clips } = this;
     const several = clips.length > 1;
     const series = SERIES[theme.dark ? "dark" : "light"];
     const shades = clips.map((_, k) => series[k % series.length]);
-    const { quantity, range, uniform } = this.range(state.quantity);
     const ground = theme.colour("canvas");
-    stage.scene.background.set(ground);
     const rim = theme.dark ? RIM.dark : RIM.light;
     let bodies = 0;
+    stage.scene.background.set(ground);
     for (const { kind, item, clip } of stage.views) {
       const shade = shades[clips.indexOf(clip)];
       const body = several ? shade : series[(1 + bodies) % series.length];
@@ -148,6 +145,19 @@ class App {
       if (kind === "mark") item.colour(several ? shade : theme.colour("ink"), ground);
       if (kind === "reference") item.colour(theme.colour("ghost"));
     }
+    return shades;
+  }
+
+  /** Draw everything anew after a choice of the reader. */
+  redraw() {
+    const { state, stage, theme, data, clips } = this;
+    const keys = this.quantities();
+    if (state.quantity && !keys.some(([key]) => key === state.quantity)) state.quantity = keys[0]?.[0] ?? "";
+    const several = clips.length > 1;
+    const exaggerable = clips.every((clip) => data.clips[clip].exaggerable);
+    if (!exaggerable) state.factor = 1;
+    const { quantity, range, uniform } = this.range(state.quantity);
+    const shades = this.colourViews(range);
     stage.grids.forEach((grid) =>
       grid.colour(theme.colour("grid"), theme.colour("grid-strong"), theme.colour("muted")),
     );
@@ -160,11 +170,8 @@ class App {
         : `Displacements are drawn ${state.factor} times as large, rotations of bodies as they are`;
     this.parts.badge.hidden = state.factor === 1;
     const has = (kind) => stage.of(kind).length > 0;
-    this.panel.show(keys, several ? "each run its own" : "plain", {
-      trails: has("trail"),
-      reference: has("reference"),
-      marks: has("mark"),
-    });
+    const boxes = { trails: has("trail"), reference: has("reference"), marks: has("mark") };
+    this.panel.show(keys, several ? "each run its own" : "plain", boxes, exaggerable);
     stage.set({
       factor: state.factor,
       trails: state.trails,

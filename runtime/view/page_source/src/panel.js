@@ -52,12 +52,15 @@ export class Panel {
     return { input, label: make("label", {}, input, ` ${text}`) };
   }
 
-  /** Draw the state; `quantities`: [key, label] to choose from; `has`: which boxes make sense. */
-  show(quantities, plain, has) {
+  /** Draw the state; `quantities`: [key, label] to choose from; `has`: which boxes make sense.
+   *  `exaggerable`: whether displacements can be drawn larger. */
+  show(quantities, plain, has, exaggerable) {
     fill(this.quantity, [...quantities.map(([key, label]) => [key, label]), ["", plain]], this.state.quantity);
     this.quantity.hidden = quantities.length === 0;
     this.mapRow.hidden = this.state.quantity === "";
     this.factor.value = String(this.state.factor);
+    this.factor.disabled = !exaggerable;
+    this.factor.title = exaggerable ? "" : "What slides along a cable would leave it";
     for (const [key, { input, label }] of Object.entries(this.boxes)) {
       input.checked = this.state[key];
       label.hidden = has[key] === false;
