@@ -26,6 +26,7 @@ from .parts.section import Circle, GeneralSection, Rectangle, Tube
 from .parts.settings import EquilibriumSettings, RunSettings
 from .parts.signal import Harmonic, Pulse, Ramp, TableSignal
 from .parts.slide import Slide
+from .parts.solids import Box, Cylinder, MeshShape, Sphere
 from .parts.spring import Spring
 from .parts.support import Clamp, Motion, Pin, Tie
 from .results.combination import combine
@@ -34,11 +35,13 @@ from .scene import Scene
 from .scene_file import bundled_scenes, load_run, load_scene
 
 __all__ = [
+    "Box",
     "Buffer",
     "Cable",
     "Circle",
     "Clamp",
     "ConvergenceError",
+    "Cylinder",
     "DistributedForce",
     "EndOfCableError",
     "EquilibriumError",
@@ -53,6 +56,7 @@ __all__ = [
     "Harmonic",
     "Joint",
     "Material",
+    "MeshShape",
     "ModalBody",
     "Moment",
     "Motion",
@@ -67,6 +71,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Slide",
+    "Sphere",
     "Spring",
     "TableSignal",
     "Tie",

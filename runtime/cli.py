@@ -140,9 +140,7 @@ def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
     if len(run.time):
         rows.append(("results", str(path)))
     if pictures is not None and len(run.time):
-        from .view.plot import save_plots
-
-        written = save_plots(run, pictures, f"{path.stem}-", forces)
+        written = run.save_plots(pictures, f"{path.stem}-", forces)
         rows.append(("pictures", "\n".join(map(str, written))))
     table = Table(box=box.SIMPLE, show_header=False)
     table.add_column(style="bold")
@@ -150,6 +148,36 @@ def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
     for heading, text in rows:
         table.add_row(heading, escape(text))
     Console().print(table)
+
+
+@app.command()
+def view(
+    files: Annotated[list[str], typer.Argument(metavar="FILE...", autocompletion=_bundled, help=
+                                               "results of runs (.nc), drawn over each other, or a scene")],
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="page to write (default: FILE.html, here)")
+                      ] = None,
+    open_it: Annotated[bool, typer.Option("--open", help="open the page in the browser")] = False,
+    equilibrium: Annotated[bool, typer.Option("--equilibrium", help="of a scene, its state of rest")] = False,
+    path: Annotated[bool, typer.Option("--path", help="of a scene, the load path to its state of rest")] = False,
+    modes: Annotated[int | None, typer.Option(help="of a scene, so many modes; about its rest with --equilibrium")
+                     ] = None,
+    png: Annotated[Path | None, typer.Option(help="a picture with several views, instead of the page")] = None,
+    gif: Annotated[Path | None, typer.Option(help="a film, instead of the page")] = None,
+    mp4: Annotated[Path | None, typer.Option(help="a film, instead of the page")] = None,
+    vtk: Annotated[Path | None, typer.Option(metavar="DIR", help="files for ParaView, instead of the page")] = None,
+    speed: Annotated[float | None, typer.Option(help="of films: how many times as fast as the motion")] = None,
+    colour: Annotated[str | None, typer.Option(help="of films: a quantity along cables, such as tension")] = None,
+    library: Libraries = None,
+) -> None:
+    """Show runs, or a scene as drawn, at rest or in its modes: a page that opens from disk, or other pictures."""
+    from .view_command import Outputs, Wanted
+    from .view_command import view as write
+
+    outputs = Outputs(output, png, [film for film in (gif, mp4) if film], vtk, speed, colour)
+    with _reported_without_traceback():
+        written = write(files, Wanted(equilibrium, path, modes), outputs, open_it, library or ())
+    for file in written:
+        print(f"written: {file}")
 
 
 @app.command()

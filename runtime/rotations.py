@@ -9,9 +9,25 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
+
 def rotate(quaternion: ArrayLike, vector: ArrayLike) -> np.ndarray:
     """Return vectors (..., 3) given in body axes in the ground's, by unit quaternions (..., 4)."""
     components, drawn = np.asarray(quaternion), np.asarray(vector)
     w, axis = components[..., :1], components[..., 1:]
     turn = 2 * np.cross(axis, drawn)
     return drawn + w * turn + np.cross(axis, turn)
+
+
+def product(first: ArrayLike, second: ArrayLike) -> np.ndarray:
+    """Return the quaternion (..., 4) of the rotation ``second``, in the axes that ``first`` turns, after ``first``."""
+    a, b = np.asarray(first), np.asarray(second)
+    w = a[..., :1] * b[..., :1] - np.sum(a[..., 1:] * b[..., 1:], axis=-1, keepdims=True)
+    return np.concatenate([w, a[..., :1] * b[..., 1:] + b[..., :1] * a[..., 1:] + np.cross(a[..., 1:], b[..., 1:])],
+                          axis=-1)
+
+
+def turned_by(rotation: ArrayLike) -> np.ndarray:
+    """Return the unit quaternions (..., 4) of rotation vectors (..., 3) in rad."""
+    vector = np.asarray(rotation, dtype=float)
+    half = np.linalg.norm(vector, axis=-1, keepdims=True) / 2
+    return np.concatenate([np.cos(half), vector * np.sinc(half / np.pi) / 2], axis=-1)

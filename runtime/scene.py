@@ -20,8 +20,9 @@ from .errors import (
 from .parts.modal_body import ModalBody
 from .parts.scene_text import dumps, read
 from .parts.settings import EquilibriumSettings, ModeSettings, RunSettings
-from .parts.validation import Part, shown
+from .parts.validation import Part, show, shown
 from .results.run import Run
+from .results.viewable import Viewable
 from .scene_methods import SceneMethods
 from .solve.progress import progress_bar
 from .solve.threads import one_blas_thread
@@ -33,8 +34,9 @@ if TYPE_CHECKING:
 
     from .parts.body_shape import Shape
     from .results.equilibrium import Equilibrium
-    from .solve.modes import Modes
+    from .results.modes import Modes
     from .solve.run import Start
+    from .view.animation import Animation
 
 P = TypeVar("P", bound=Part)
 
@@ -45,7 +47,11 @@ SYNONYMS = {"dt": "step", "time_step": "step", "timestep": "step", "h": "step", 
 """What other programs call the settings of a run."""
 
 
-class Scene(SceneMethods):
+MOST_NAMED = 12
+"""Parts of a kind that a notebook names."""
+
+
+class Scene(Viewable, SceneMethods):
     """Cables, bodies, and what joins, holds and loads them.
 
     ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``point_forces``,
@@ -246,10 +252,44 @@ class Scene(SceneMethods):
         state = None if about is None else _equilibrium_state(self, about)
         self.check()
 
-        from .solve.modes import modes  # brings SciPy
+        from .results.modes import Modes  # brings SciPy
+        from .solve.modes import modes
 
         with one_blas_thread, enough_memory():
-            return modes(self, settings.n, state)
+            return Modes.of(modes(self, settings.n, state), self, state)
+
+    def animation(self, title: str | None = None) -> Animation:
+        """Return the scene as it is drawn, before it runs, as pictures show it; see `Viewable.animation`."""
+        from .results.animation.clips import of_scene  # brings SciPy
+
+        return of_scene(self, title or "scene")
+
+    def overview(self) -> list[tuple[str, str]]:
+        """Return what is in the scene, for a notebook; see `Viewable.overview`."""
+        found = [("gravity", show(self.gravity, "m/s²"))]
+        for kind, names in self._names().items():
+            more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+            found.append((kind, ", ".join(names[:MOST_NAMED]) + more))
+        return found + [("note", message) for message in self.messages]
+
+    def __repr__(self) -> str:
+        """Return how many parts of which kind there are, in a line."""
+        counts = ", ".join(_counted(len(names), kind.replace("_", " ")) for kind, names in self._names().items())
+        return f"<funicular.Scene: {counts or 'empty'}>"
+
+    def _names(self) -> dict[str, list[str]]:
+        """Return the names of the parts by their kind; those of supports are the names in results."""
+        found: dict[str, list[str]] = {}
+        for part in self.parts():
+            name = part.given_name or getattr(part, "label", part.kind)
+            found.setdefault(part.kind, []).append(str(name))
+        return found
+
+
+def _counted(number: int, thing: str) -> str:
+    """Return a number of things in words."""
+    plural = thing[:-1] + "ies" if thing.endswith("y") else thing + "s"
+    return f"{number} {thing if number == 1 else plural}"
 
 
 def _modes_of_mesh(body: ModalBody) -> Shape:

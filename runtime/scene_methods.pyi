@@ -20,6 +20,7 @@ from .parts.scene_data import SceneData
 from .parts.section import Section
 from .parts.signal import Signal
 from .parts.slide import Slide
+from .parts.solids import Solid
 from .parts.spring import Spring
 from .parts.support import Clamp, Motion, Pin, Tie
 from .parts.validation import Part
@@ -108,6 +109,7 @@ class SceneMethods(SceneData):
         centre: Numbers = (0.0, 0.0, 0.0),
         velocity: Numbers = (0.0, 0.0, 0.0),
         angular_velocity: Numbers = (0.0, 0.0, 0.0),
+        shape: Solid | None = None,
     ) -> RigidBody:
         """Add a RigidBody, which see."""
 
@@ -154,7 +156,7 @@ class SceneMethods(SceneData):
 
     def slide(
         self,
-        body: Named | tuple[Named, float],
+        body: Named | tuple[Named, float] | Numbers,
         *,
         along: Named,
         s: float,

@@ -9,6 +9,13 @@ from funicular.results import recording, streaming
 from interrupted_runs import SETTINGS, WRITES, Killed, content, failing, short
 
 
+def pytest_terminal_summary(terminalreporter, config):
+    """Say what the default run leaves out."""
+    if "not browser" in config.option.markexpr:
+        terminalreporter.write_line("Browser tests were left out. To run them: pip install -e '.[test,browser]', "
+                                    "install Chromium and npm, and python -m pytest -m browser")
+
+
 @pytest.fixture
 def engine(monkeypatch, tmp_path):
     """A stand-in for funicular.solve.run, whose recordings are hand-made; runs take place in an empty directory."""

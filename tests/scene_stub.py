@@ -15,6 +15,7 @@ from funicular.parts.material import Material
 from funicular.parts.scene_data import SceneData
 from funicular.parts.section import Section
 from funicular.parts.signal import Signal
+from funicular.parts.solids import Solid
 from funicular.parts.validation import Part
 from funicular.scene_methods import signature
 
@@ -43,12 +44,12 @@ def signature(kind: type[Part]) -> Signature: ...
 class SceneMethods(SceneData):
 '''
 
-OTHERS = (Stop, Friction, Material, SceneData, Section, Signal, Part)
+OTHERS = (Stop, Friction, Material, SceneData, Section, Signal, Solid, Part)
 """What signatures need beside the kinds of parts."""
 
 TYPES = {
     "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points",
-    "AnySection": "Section", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
+    "AnySection": "Section", "AnySolid": "Solid", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
     "CableEnd": "str | Stop", "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Material": "Material", "Friction": "Friction",
     "float": "float", "str": "str", "int": "int", "bool": "bool", "Callable": "Callable[..., Any]",
@@ -57,7 +58,7 @@ TYPES = {
 """What may be given for fields that are annotated so; ``inertia`` and ``points`` are fields of their own."""
 
 BY_NAME = {"inertia": "inertia", "points": "points", "library": "path", "data": "path", "body": "rider"}
-PATHS = {"path": "str | os.PathLike[str]", "rider": "Named | tuple[Named, float]"}
+PATHS = {"path": "str | os.PathLike[str]", "rider": "Named | tuple[Named, float] | Numbers"}
 
 
 def given_type(kind: type[Part], keyword: str, optional: bool) -> str:

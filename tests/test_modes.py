@@ -131,3 +131,14 @@ def test_a_scene_without_cables_is_not_told_to_take_fewer_elements():
     assert "; look for a part that is far stiffer or far lighter than the others" in str(notes)
     with pytest.raises(SceneError, match=r"ask for fewer modes$"):
         scene.modes(13)
+
+
+def test_nodes_of_a_modal_body_move_from_the_state_that_they_swing_about():
+    """A beam on a hinge is drawn level and hangs at rest: its end swings to the side."""
+    scene = Scene()
+    scene.modal_body("link", start=(0, 0, 0), end=(1, 0, 0), section=SQUARE, boundary="attached", modes=2,
+                     material=TABLE_1)
+    scene.joint("revolute", "link", (0, 0, 0), axis=(0, 0, 1))
+    rest = scene.equilibrium()
+    np.testing.assert_allclose(rest["link.nodes"][-1], (0, -1, 0), atol=1e-3)
+    np.testing.assert_allclose(np.abs(scene.modes(1, about=rest)["link.nodes"][0, -1]), (1, 0, 0), atol=1e-3)

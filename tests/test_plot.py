@@ -1,21 +1,37 @@
-"""Pictures: what they draw. That they look right was judged by eye, on the bundled scene."""
+"""Pictures: what they draw. That they look right was judged by eye, on bundled scenes and on a spatial one."""
 
+import matplotlib.pyplot as pyplot
 import numpy as np
 import pytest
 from fake_recording import fake_recording
-from funicular import Circle, Material, ResultFileError, Scene, load_scene
+from funicular import Circle, FunicularError, Material, ResultFileError, Scene, load_scene
 from funicular.parts.settings import RunSettings
+from funicular.results.pictures import save_plots
 from funicular.results.run import Run
-from funicular.view.plot import centreline, draw_energy, draw_shape, draw_slide, rider_path, save_plots, view_of
+from funicular.view.plot import shape_figure
+from funicular.view.projections import directions
 from matplotlib.image import imread
+from viewed_scenes import spatial
 
 SETTINGS = RunSettings(duration=1.0)
+SOFT = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)
+
+
+@pytest.fixture(autouse=True)
+def no_window():
+    pyplot.switch_backend("Agg")
+    yield
+    pyplot.close("all")
 
 
 @pytest.fixture
 def run():
     scene = load_scene("paper51")
     return Run.from_recording(fake_recording(scene), scene, SETTINGS, Scene.from_toml)
+
+
+def legend(figure) -> list[str]:
+    return [text.get_text() for each in figure.legends for text in each.get_texts()]
 
 
 def test_files(run, tmp_path):
@@ -31,50 +47,70 @@ def test_unwritable_directory(run, tmp_path):
         save_plots(run, tmp_path / "file")
 
 
-def test_the_centreline_is_an_exact_cubic():
-    s = np.array([0.0, 0.5, 2.0])
-    x, dx = s**3 - s, 3 * s**2 - 1
-    vectors = np.zeros((1, 3, 2, 3))
-    vectors[0, :, 0, 0], vectors[0, :, 1, 0] = x, dx
-    vectors[0, :, 0, 1], vectors[0, :, 1, 1] = s, 1
-    points = centreline(vectors, s)[0]
-    np.testing.assert_allclose(points[:, 0], points[:, 1] ** 3 - points[:, 1], atol=1e-14)
-    assert len(points) == 2 * 24 + 1
-    assert tuple(points[-1]) == (6, 2, 0)
+def test_labels_have_units_and_names(run):
+    shape = run.plot()
+    assert (shape.axes[0].get_xlabel(), shape.axes[0].get_ylabel()) == ("x / m", "y / m  (stretched 5 : 1)")
+    assert shape.axes[0].get_aspect() == 5
+    assert legend(shape) == ["path of A", "pin", "slide trolley"]
+    assert [a.get_ylabel() for a in run.plot("slide").axes] == ["arc-length s / m", "s rate / (m/s)"]
+    assert run.plot("energy").axes[0].get_ylabel() == "change of energy / J"
+    assert run.plot("acceleration").axes[0].get_ylabel() == "y-acceleration / (m/s²)"
+    with pytest.raises(FunicularError, match=r'no picture "forces-wyre" of a run; did you mean "forces-wire"\?'):
+        run.plot("forces-wyre")
 
 
-def test_the_rider_lies_on_the_drawn_path(run):
-    np.testing.assert_array_equal(rider_path(run, "trolley"), run["A.position"])
-
-
-def test_labels_have_units(run):
-    shape = draw_shape(run).axes[0]
-    assert (shape.get_xlabel(), shape.get_ylabel()) == ("x / m", "y / m  (stretched 5 : 1)")
-    assert shape.get_aspect() == 5
-    assert [a.get_ylabel() for a in draw_slide(run).axes] == ["arc-length s / m", "s rate / (m/s)"]
-    assert draw_energy(run).axes[0].get_ylabel() == "change of energy / J"
+def test_the_path_is_that_of_the_body(run):
+    path = next(line for line in run.plot().axes[0].lines if line.get_label() == "path of A")
+    np.testing.assert_array_equal(np.transpose(path.get_data()), run["A.position"][:, :2])
 
 
 def test_a_tall_shape_is_not_stretched(run):
     run["wire.nodal_vectors"][..., 0, 1] *= 30
-    shape = draw_shape(run).axes[0]
+    shape = run.plot().axes[0]
     assert (shape.get_aspect(), shape.get_ylabel()) == (1, "y / m")
 
 
 def test_what_does_not_slide_is_drawn_too():
     scene = Scene()
-    soft = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)
-    scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=1, section=Circle(radius=0.01), material=soft)
+    scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=1, section=Circle(radius=0.01), material=SOFT)
     scene.motion("rope", s=0, displacement=(0, 0, 0))
     scene.rigid_body("ball", mass=1, inertia=(1, 1, 1), position=(0.5, 1, 0))
-    shape = draw_shape(scene.run(0.01)).axes[0]
-    assert [t.get_text() for t in shape.get_legend().get_texts()] == ["body", "moved"]
+    assert legend(scene.run(0.01).plot()) == ["path of ball", "pin"]
+
+
+def test_spatial_scenes_have_four_views():
+    figure = spatial().plot()
+    space, *planes = figure.axes
+    assert (space.get_xlabel(), space.get_ylabel(), space.get_zlabel()) == ("x / m", "y / m", "z / m")
+    assert {axes.get_title(loc="left"): (axes.get_xlabel(), axes.get_ylabel()) for axes in planes} == {
+        "side": ("y / m", "z / m"), "front": ("x / m", "z / m"), "from above": ("x / m", "y / m")}
+    assert legend(figure) == ["spring", "lever arm", "load", "clamp", "pin", "joint", "slide trolley", "ground"]
+
+
+def test_supports_that_move_are_drawn_where_they_go():
+    figure = spatial().run(0.5, output_step=0.05, tol=1e-2, progress=False).plot()
+    assert "moved pin" in legend(figure)
+    front = next(axes for axes in figure.axes if axes.get_title(loc="left") == "front")
+    moved = next(dots for dots in front.collections if dots.get_label() == "moved pin")
+    u = np.linspace(0, 0.5, 11)  # of the ramp's 1 s
+    x = 0.4 * (10 * u**3 - 15 * u**4 + 6 * u**5)
+    np.testing.assert_allclose(moved.get_offsets(), np.stack([x, 0 * x], axis=1), atol=1e-9)
+
+
+def test_every_view_of_a_flat_scene(run):
+    assert len(shape_figure(run.animation(), every_view=True).axes) == 5  # and the colours of times
+
+
+def test_states_of_rest_and_modes():
+    scene = load_scene("paper51")
+    assert len(scene.equilibrium().plot().axes) == 1
+    titles = [axes.get_title() for axes in scene.modes(3).plot().axes]
+    assert [title.partition(":")[0] for title in titles] == ["mode 1", "mode 2", "mode 3"]
 
 
 def hanging(end, gravity):
     scene = Scene(gravity=gravity)
-    soft = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)
-    scene.cable("rope", start=(0, 0, 0), end=end, elements=1, section=Circle(radius=0.01), material=soft, up=(1, 2, 3))
+    scene.cable("rope", start=(0, 0, 0), end=end, elements=1, section=Circle(radius=0.01), material=SOFT, up=(1, 2, 3))
     return scene
 
 
@@ -87,12 +123,11 @@ def hanging(end, gravity):
         ((3, 0, 4), (0, 0, 0), ("(0.6, 0, 0.8)", "y")),
     ],
 )
-def test_view(end, gravity, names):
-    view = view_of(hanging(end, gravity))
-    assert view.names == names
-    np.testing.assert_allclose(
-        [view.across @ view.across, view.up @ view.up, view.across @ view.up], [1, 1, 0], atol=1e-15
-    )
+def test_the_main_view(end, gravity, names):
+    seen = directions(hanging(end, gravity).animation())
+    assert seen.flat and seen.front.names == names
+    np.testing.assert_allclose(seen.matrix.T @ seen.matrix, np.eye(3), atol=1e-15)
+    assert np.linalg.det(seen.matrix) > 0
 
 
 def test_a_scene_without_a_slide(tmp_path):

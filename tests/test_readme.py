@@ -14,6 +14,7 @@ from pathlib import Path
 import funicular
 import pytest
 from funicular.cli import app
+from funicular.parts.solids import Solid
 from funicular.scene_file import loads
 from pages import PAGES, ROOT, page
 from typer.testing import CliRunner
@@ -72,6 +73,12 @@ def middle_of_an_element(space):
     assert space["r"] == pytest.approx([0.25, 0, 0])
 
 
+def pages_and_pictures(space):
+    for name in ("before", "motion", "both", "modes"):
+        assert "<title>" in Path(f"{name}.html").read_text(encoding="utf-8")
+    assert Path("shape.png").stat().st_size > 10_000
+
+
 def own_element(space):
     assert space["run"].status == "completed"
 
@@ -84,6 +91,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "Scenes"): first_scene,
               ("runtime/README.md", "Joints and springs"): trolley,
               ("runtime/README.md", "Events"): events,
+              ("runtime/README.md", "See it"): pages_and_pictures,
               ("runtime/README.md", "Statics, modes and section forces"): rest,
               ("derive/README.md", "Kernels from Python"): middle_of_an_element,
               ("derive/README.md", "Your own element"): own_element,
@@ -134,6 +142,8 @@ def test_parts_within_parts_are_the_same_in_a_file():
     assert len(rows) >= 4
     for in_python, in_file in rows:
         part, table = eval(in_python, {"fu": funicular}), tomllib.loads(f"x = {in_file}")["x"]
+        if isinstance(part, Solid):
+            assert table.pop("kind") == part.kind
         for tag in ("shape", "form", "stop"):
             assert table.pop(tag, None) == getattr(part, tag, None), in_file
         assert type(part).model_validate(table) == part

@@ -12,11 +12,11 @@ from funicular.generated import kernels
 from funicular.model.build import build
 from funicular.parts.section_stiffness import section_stiffness
 from funicular.parts.settings import RunSettings
+from funicular.results.pictures import save_plots
 from funicular.results.run import Run
 from funicular.results.section_balance import Cuts
 from funicular.results.section_components import BEAM, CABLE, components
 from funicular.results.section_forces import constitutive
-from funicular.view.plot import draw_section_forces, save_plots
 from numpy.testing import assert_allclose
 from shared_scenes import cable_scene
 
@@ -150,7 +150,7 @@ def test_what_is_not_there(run):
 def test_pictures_when_asked_for(run, tmp_path):
     assert "forces-wire.png" not in [p.name for p in save_plots(run, tmp_path)]
     assert [p.name for p in save_plots(run, tmp_path, forces=True)][-1] == "forces-wire.png"
-    tension, moment, _ = draw_section_forces(run, "wire").axes
+    tension, moment, _ = run.plot("forces-wire").axes
     assert (tension.get_ylabel(), moment.get_ylabel()) == ("tension / N", "moment / (N m)")
     # eight places on each element and its end, and both sides of the rider
     assert_allclose(tension.lines[0].get_xdata(),

@@ -22,7 +22,6 @@ from funicular.kernels.elements import built_in, gauge, manifest
 from funicular.kernels.libraries import LibraryError, manifest_digest
 from funicular.kernels.libraries import load as load_library
 from funicular.scene_file import load_scene, loads
-from funicular.view.plot import save_plots
 from pages import page
 from shared_scenes import SQUARE, TABLE_1
 from typer.testing import CliRunner
@@ -234,7 +233,7 @@ def test_a_file_of_results_does_not_load_a_library(hostile, tmp_path):
     run.save(tmp_path / "x.nc")
     read = load_run(tmp_path / "x.nc")
     assert len(read.time) == 101 and read["wire.nodal_vectors"].shape[0] == 101
-    for use in (lambda: read.scene, lambda: read.section_forces("wire"), lambda: save_plots(read, tmp_path / "new")):
+    for use in (lambda: read.scene, lambda: read.section_forces("wire"), lambda: read.save_plots(tmp_path / "new")):
         with pytest.raises(SceneError, match="the scene of the run: " + not_allowed(folder)):
             use()
     assert not marker.exists()

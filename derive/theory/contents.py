@@ -13,7 +13,7 @@ LEAD = ("Formulas are printed from the specs and programs that make the kernels,
         "Equation numbers are those of the paper: J.-H. Seo, I.-H. Jung, T.-W. Park, H. Sugiyama, A. A. Shabana, The "
         "Development of a Sliding Joint for Very Flexible Multibody Dynamics, 2005 (in Korean).")
 MAIN = {"element": "beam24", "law": "beam24_continuum", "slide": "slide_beam24_rigid", "body": "rigid",
-        "modal": "modal", "frame": "frame", "spring": "spring", "resistance": "resistance"}
+        "modal": "modal", "frame": "frame", "point_law": "spring", "resistance": "resistance"}
 """What the theory is printed for: the element and the rider of the paper."""
 
 
@@ -42,12 +42,14 @@ def theory() -> Document:
 
 
 CHAPTERS = {"element": "elements/elements", "slide": "couplings/slide", "body": "bodies/rigid", "modal": "bodies/modal",
-            "joint": "couplings/joint_kind", "frame": "couplings/frame", "spring": "couplings/spring",
+            "joint": "couplings/joint_kind", "frame": "couplings/frame", "point_law": "couplings/point_law",
             "resistance": "couplings/resistance"}
 
 
 def chapter_of(family: Family) -> str:
     """Return the chapter about a family."""
+    if family.role == "point_law" and family.name.endswith("spring"):
+        return "couplings/spring"
     if family.role != "law":
         return CHAPTERS[family.role]
     assert family.traits is not None

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -224,7 +225,7 @@ def _by_scope(document: Document) -> Iterator[list[Item]]:
         yield found
 
 
-def _deviation(formula: Formula, tree: Node, value, here: Scope, state) -> float | None:
+def _deviation(formula: Formula, tree: Node, value: Callable[[Node], Any], here: Scope, state: Any) -> float | None:
     if formula.kernel and formula.kernel[0] in programs_of(here.family.name):
         sides = tree.sides if isinstance(tree, Equation) else (tree,)
         kernel, output = formula.kernel

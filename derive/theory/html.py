@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from html import escape
 from pathlib import Path
 
@@ -147,7 +148,7 @@ class _Writer:
         self.document, self.chapter, self.section = document, "", ""
         self._numbered: set[str] = set()
 
-    def items(self):
+    def items(self) -> Iterator[str]:
         """Yield the text of each item."""
         staged = False
         for item in self.document.items:

@@ -140,7 +140,7 @@ class Lift:
                     self.vectors.add(name, symbols)
             yield stage.title, equations
 
-    def _grouped(self, definitions) -> Iterator[tuple[tuple, tuple, Name]]:
+    def _grouped(self, definitions: Sequence[tuple[sp.Symbol, sp.Expr]]) -> Iterator[tuple[tuple, tuple, Name]]:
         """Yield definitions, those of name_x, name_y, name_z together."""
         at, dim = 0, self.vectors.dim
         while at < len(definitions):

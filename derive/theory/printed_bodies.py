@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ..couplings.spring import SPRINGS
 from .lift import Lift, only
 from .markdown import Line
 from .notation.latex import latex
@@ -170,7 +169,7 @@ def joint_motion(scope: Scope) -> list[Line]:
 def spring_extension(scope: Scope) -> list[Line]:
     """Return extension, energy, dissipated power, force and its derivatives of a spring."""
     gap, rate = r"\mathbf{gap}", r"\dot{\mathbf{gap}}"
-    if SPRINGS[scope.family.name].has_length:
+    if "length" in scope.family.point_law.parameters:
         e, de = r"\varepsilon", r"\dot{\varepsilon}"
         lines = [Line(rf"{e} = \lvert {gap} \rvert - L"),
                  Line(rf"{de} = \frac{{{gap} \cdot {rate}}}{{\lvert {gap} \rvert}}")]

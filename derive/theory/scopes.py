@@ -317,11 +317,17 @@ def _no_turn(scope: Scope, state: State) -> dict[str, Any]:
     return {rf"\boldsymbol{{\theta}}_{{{sub}}}": turn for sub in ("1", "2", "1,0", "2,0")}
 
 
-def spring_scope(name: str) -> Scope:
-    """Return the scope of a spring with a damper."""
-    return Scope(families()[name], (Symbol("k", "stiffness", number), Symbol("c", "damping", number),
-                                    Symbol("L", "rest_length", number), Symbol(r"\mathbf{gap}", "gap", column),
-                                    Symbol(r"\dot{\mathbf{gap}}", "gap_rate", column)))
+PARAMETERS = {"stiffness": "k", "damping": "c", "length": "L"}
+"""What parameters of forces between two points are called in formulas; others by their number."""
+
+
+def point_law_scope(name: str) -> Scope:
+    """Return the scope of a force between two points."""
+    family = families()[name]
+    parameters = [Symbol(PARAMETERS.get(parameter, f"p_{{{k}}}"), "parameters", entry(k))
+                  for k, parameter in enumerate(family.point_law.parameters)]
+    return Scope(family, (*parameters, Symbol(r"\mathbf{gap}", "gap", column),
+                          Symbol(r"\dot{\mathbf{gap}}", "gap_rate", column)))
 
 
 def resistance_scope(name: str) -> Scope:
@@ -336,5 +342,5 @@ def resistance_scope(name: str) -> Scope:
 def scope(role: str, name: str) -> Scope:
     """Return the scope of a family, by its role."""
     return {"element": element_scope, "law": law_scope, "slide": slide_scope, "body": body_scope,
-            "modal": modal_scope, "frame": frame_scope, "joint": joint_scope, "spring": spring_scope,
+            "modal": modal_scope, "frame": frame_scope, "joint": joint_scope, "point_law": point_law_scope,
             "resistance": resistance_scope}[role](name)

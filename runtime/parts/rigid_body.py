@@ -12,6 +12,7 @@ from ..rotations import rotate
 from .plane import across, in_plane
 from .quantity import Quantity, vector_of_time
 from .schemas import checked, list_of_lists, list_schema
+from .solids import AnySolid
 from .validation import EXACT, Name, Part, Vector, positive, show, vector, vector3, xyz
 
 Quaternion = tuple[float, float, float, float]
@@ -57,6 +58,9 @@ class RigidBody(Part):
     of its origin in m; orientation: the unit quaternion (w, x, y, z) from body axes to the ground's; centre: of mass, a
     point in body axes, in m: the origin if not given; velocity of the origin in m/s; angular_velocity in body axes, in
     rad/s. All points of the body count from the origin.
+
+    shape: what pictures draw, a `Box`, `Sphere`, `Cylinder` or `MeshShape`; a box of the body's mass and inertia if not
+    given. The motion does not depend on it.
     """
 
     kind: ClassVar[str] = "rigid_body"
@@ -78,6 +82,7 @@ class RigidBody(Part):
     centre: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
     angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
+    shape: AnySolid | None = None
 
     @property
     def axes(self) -> np.ndarray:

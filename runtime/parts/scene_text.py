@@ -23,12 +23,13 @@ from .scene_lines import line_of
 from .section import Section
 from .settings import EquilibriumSettings, RunSettings
 from .signal import Constant, Signal
+from .solids import Solid
 from .support import FREE, Motion, Rotation
 from .validation import Part
 
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings}
 
-TAGS = {Section: "shape", Signal: "form", Stop: "stop"}
+TAGS = {Section: "shape", Signal: "form", Stop: "stop", Solid: "kind"}
 """The word in a table that says which of several parts it is."""
 
 TABLES = ("gravity", *PARTS, *SETTINGS)
@@ -165,9 +166,11 @@ def _check_libraries(tables: dict, directory: str | os.PathLike, allowed: list[s
 
 
 def _placed(table: dict, directory: str | os.PathLike) -> dict:
-    """Return a table with its library or data seen from the working directory, and not from the scene file's."""
-    return table | {name: os.path.join(directory, table[name]) for name in ("library", "data")
-                    if isinstance(table.get(name), str)}
+    """Return a table with its library, data and mesh seen from the working directory, and not from the scene file's."""
+    here = {name: os.path.join(directory, table[name]) for name in ("library", "data", "file")
+            if isinstance(table.get(name), str)}
+    return table | here | {name: _placed(table[name], directory) for name in ("shape",)
+                           if isinstance(table.get(name), dict)}
 
 
 def _part(part: type[Part], table: dict, index: int) -> Part:

@@ -286,7 +286,9 @@ class _TranslatingType(ModelMetaclass):
         """Leave out what pydantic makes when it builds a model: annotations with all their validators."""
 
     def __call__(cls, /, *given: Any, **data: Any) -> Any:  # noqa: N805  it is a metaclass
-        if given:
+        positional = [name for name in cls.positional if name in cls.keywords()]  # type: ignore[attr-defined]
+        data |= dict(zip(positional, given, strict=False))
+        if len(given) > len(positional):
             example = ", ".join(f"{name}=..." for name in list(inspect.signature(cls).parameters)[:max(2, len(given))])
             raise SceneError(cls.__name__, f"takes its values by name, got {len(given)} without one",
                              f"write {cls.__name__}({example})")

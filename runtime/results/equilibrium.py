@@ -8,15 +8,18 @@ from ..parts.cable import Cable
 from ..parts.slide import Slide
 from ..solve.rest_state import CriticalPoint, RestState
 from .section_forces import dataset
+from .viewable import Viewable
 
 if TYPE_CHECKING:
     import xarray
     from numpy.typing import ArrayLike
 
+    from ..view.animation import Animation
+
 __all__ = ["CriticalPoint", "Equilibrium"]
 
 
-class Equilibrium(RestState):
+class Equilibrium(Viewable, RestState):
     """A state of rest of a scene, see `RestState`, and the forces in sections of its cables."""
 
     def section_forces(self, cable: Cable | str, s: ArrayLike | Slide | None = None, *, method: str = "balance",
@@ -26,3 +29,44 @@ class Equilibrium(RestState):
         Where no s is given, both sides of riders are among the places.
         """
         return dataset(self, cable, s, method=method, side=side)
+
+    def animation(self, title: str | None = None) -> Animation:
+        """Return the state as pictures show it; see `Viewable.animation`."""
+        from .animation.clips import of_equilibrium  # for pictures alone
+
+        return of_equilibrium(self, title or "equilibrium")
+
+    @property
+    def load_path(self) -> LoadPath:
+        """Return the states of rest on the way to this one as something to see: ``rest.load_path.view()``."""
+        return LoadPath(self)
+
+    def overview(self) -> list[tuple[str, str]]:
+        """Return what the state is, for a notebook; see `Viewable.overview`."""
+        from .animation.clips import details  # likewise
+
+        return [*details(self).items(), ("iterations", str(self.iterations)),
+                *(("note", message) for message in self.messages)]
+
+
+class LoadPath(Viewable):
+    """The states of rest on the way to one, `RestState.path`, as something to see."""
+
+    def __init__(self, last: Equilibrium):
+        """last: the state that the path ends in."""
+        self.last = last
+
+    def __repr__(self) -> str:
+        """Return the number of states and their loads, in a line."""
+        loads = [state.load_fraction for state in self.last.path]
+        return f"<funicular.LoadPath: {len(loads)} states, {min(loads):.4g} to {max(loads):.4g} of the loads>"
+
+    def animation(self, title: str | None = None) -> Animation:
+        """Return the path as pictures show it; see `Viewable.animation`. Raises FunicularError for a single state."""
+        from .animation.clips import of_path  # for pictures alone
+
+        return of_path(self.last, title or "load path")
+
+    def overview(self) -> list[tuple[str, str]]:
+        """Return what the last state is, for a notebook; see `Viewable.overview`."""
+        return [("states", str(len(self.last.path))), *self.last.overview()]

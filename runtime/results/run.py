@@ -7,6 +7,7 @@ import threading
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
@@ -18,14 +19,17 @@ from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.slide import Slide
 from .quantities import ENERGIES, Variable, labelled
+from .viewable import Viewable
 
 if TYPE_CHECKING:
     # These bring SciPy or xarray along: `import funicular` does without.
     import xarray
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
     from ..model.initial_state import InitialState
     from ..model.model import Model
+    from ..view.animation import Animation
     from .recording import Recording
 
 SAME_TIME = 1e-9
@@ -62,7 +66,7 @@ class EnergyBalance(NamedTuple):
     relative: np.ndarray
 
 
-class Run:
+class Run(Viewable):
     """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names."""
 
     def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict,
@@ -281,6 +285,42 @@ class Run:
         from .section_forces import dataset  # brings SciPy, as above
 
         return dataset(self, cable, s, method=method, side=side)
+
+    def animation(self, title: str | None = None) -> Animation:
+        """Return the motion as pictures show it; see `Viewable.animation`. Raises FunicularError without results."""
+        from .animation.clips import of_run  # brings SciPy, as above
+
+        file = getattr(self.variables, "file", None)
+        return of_run(self, title or ("run" if file is None else Path(file.path).stem))
+
+    def sketch(self) -> Animation:
+        """Return the motion without quantities and curves; see `Viewable.sketch`. Raises FunicularError."""
+        from .animation.clips import of_run  # likewise
+
+        return of_run(self, "run", with_results=False)
+
+    def plot(self, what: str = "shape") -> Figure:
+        """Return a Matplotlib figure: "shape", "acceleration", "slide", "energy", or "forces-wire" of the cable "wire".
+
+        A notebook shows it, `matplotlib.pyplot.show` in a script. Raises FunicularError.
+        """
+        from ..view.files import new_figure  # brings Matplotlib
+        from .pictures import plot
+
+        return plot(self, what, new_figure())
+
+    def save_plots(self, directory: str | os.PathLike, prefix: str = "", forces: bool = False) -> list[Path]:
+        """Write the pictures that `funicular run --plot` writes, as PNG files with this prefix, and return their paths.
+
+        forces: tension and moment along each cable, too. Raises ResultFileError.
+        """
+        from .pictures import save_plots  # likewise
+
+        return save_plots(self, directory, prefix, forces)
+
+    def overview(self) -> list[tuple[str, str]]:
+        """Return how the run went, for a notebook; see `Viewable.overview`."""
+        return self.summary_rows()
 
     def summary_rows(self) -> list[tuple[str, str]]:
         """Return what to tell about the run in short: pairs of a heading and a text."""

@@ -14,7 +14,7 @@ from ..errors import FunicularWarning, SceneError, UnknownResultError, near
 from ..model.build import build
 from ..model.model import BodyModel, Model
 from ..model.redundant_constraints import drop_redundant_rows
-from ..model.states import body_state, spatial
+from ..model.states import body_state, modal_state, spatial
 from ..parts.scene_data import SceneData
 from ..rotations import rotate
 from .condensation import condensed, fastest
@@ -94,7 +94,7 @@ def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
     squares, vectors, error = squares[:n], vectors[:, :n], error[:n]
     dofs = np.array([engine.spread(np.append(x, np.zeros(model.n_band + model.n_border_dof + model.n_extra - len(x))))
                      for x in vectors.T])
-    found = _named(model, np.where(np.abs(squares) <= error, 0.0, squares), dofs, error)
+    found = _named(model, engine.state()["q"], np.where(np.abs(squares) <= error, 0.0, squares), dofs, error)
     found.messages += _without_friction(scene) + _uncertain(found, np.sqrt(max(after, 0.0)), _fewer(model))
     for message in found.messages:
         warnings.warn(message, FunicularWarning, stacklevel=3)
@@ -233,7 +233,8 @@ def _unsymmetric(K: csc_array, M: csc_array, constraints: csc_array, n: int, pen
     return pencil.unit * squares[order], pencil.scale[:, None] * x, pencil.unit * error
 
 
-def _named(model: Model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> Modes:
+def _named(model: Model, q: np.ndarray, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> Modes:
+    """Return the modes of dofs (n, n_dof) about the configuration q, as their shapes."""
     roots = np.sqrt(squares.astype(complex))
     size = np.abs(roots)  # sqrt(square + error) - sqrt(square)
     uncertainty = error / (size + np.sqrt(size**2 + error))
@@ -242,7 +243,7 @@ def _named(model: Model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarra
     for k, mode in enumerate(dofs):
         largest = max([np.abs(mode[list(node.dofs("r"))]).max() for nodes in model.nodes.values() for node in nodes]
                       + [np.abs(mode[b.dof : b.dof + model.dim]).max() for b in model.bodies]
-                      + [np.abs(_nodes(model, body, mode[None])).max() for body in modal])
+                      + [np.abs(_nodes(model, body, q, mode[None])).max() for body in modal])
         dofs[k] = mode / (largest or np.abs(mode).max() or 1.0)
     for cable in model.cables:
         vectors = spatial(dofs[:, cable.coordinates].reshape(len(dofs), *cable.shape))
@@ -253,17 +254,19 @@ def _named(model: Model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarra
         shapes[f"{body.name}.displacement"] = spatial(dofs[:, body.dof : body.dof + model.dim])
         shapes[f"{body.name}.rotation"] = turn if model.dim == 3 else np.pad(turn, ((0, 0), (2, 0)))
     for body in modal:
-        shapes[f"{body.name}.nodes"] = _nodes(model, body, dofs)
+        shapes[f"{body.name}.nodes"] = _nodes(model, body, q, dofs)
     return Modes(np.abs(roots.real), np.abs(roots.imag), shapes, uncertainty)
 
 
-def _nodes(model: Model, body: BodyModel, dofs: np.ndarray) -> np.ndarray:
-    """Return (n, node, 3): what the nodes of a modal body are moved by."""
+def _nodes(model: Model, body: BodyModel, q: np.ndarray, dofs: np.ndarray) -> np.ndarray:
+    """Return (n, node, 3): what the nodes of a modal body are moved by from the configuration q."""
     assert body.shape is not None, "a rigid body has no modes"
     at = body.dof + model.dim
     turn = dofs[:, at : at + 3] if model.dim == 3 else np.pad(dofs[:, at : at + 1], ((0, 0), (2, 0)))
     at += 3 if model.dim == 3 else 1
-    fields, orientation = body.shape.fields, body_state(model, body, model.q[None])["orientation"][0]
+    fields, state = body.shape.fields, body_state(model, body, q[None])
+    orientation, eta = state["orientation"][0], modal_state(model, body, state, q[None])["modal_coordinates"][0]
     strained = np.einsum("tk,kni->tni", dofs[:, at : at + body.modes], fields.modes)
     frame = spatial(dofs[:, None, body.dof : body.dof + model.dim])
-    return frame + rotate(orientation, np.cross(turn[:, None], fields.nodes) + strained)
+    bent = fields.nodes + np.einsum("k,kni->ni", eta, fields.modes)
+    return frame + rotate(orientation, np.cross(turn[:, None], bent) + strained)

@@ -41,7 +41,7 @@ class CriticalPoint:
     state: RestState = field(repr=False)
 
 
-@dataclass
+@dataclass(repr=False)
 class RestState:
     """A state of rest of a scene.
 
@@ -83,6 +83,12 @@ class RestState:
         state.quantities = state._quantities()
         state.path, state.layout = [state], layout(problem.scene)
         return state
+
+    def __repr__(self) -> str:
+        """Return how the state is and how many results it has, in a line."""
+        stable = "stable" if self.stable else f"{self.unstable_directions} unstable directions"
+        return (f"<funicular.Equilibrium: {stable}, under {self.load_fraction:.6g} of the loads, "
+                f"{len(self.quantities)} results>")
 
     @property
     def unstable_directions(self) -> int:

@@ -1,25 +1,17 @@
-"""Pictures of a run, as PNG files. Matplotlib is imported only here, and only when pictures are made."""
+"""Pictures of an animation by Matplotlib, which is imported only when one is made."""
 
 from __future__ import annotations
 
-import os
-from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import ResultFileError, shown_path
-from ..parts.attachment import Attachment
-from ..parts.modal_body import ModalBody
-from ..parts.scene_data import SceneData
-from ..results.quantities import ENERGIES
-from ..results.run import Run
-from ..results.section_forces import even, jumps, of_run, with_sides
-from ..rotations import rotate
+from .animation import Animation, BodyShape, Clip
+from .placed import outline, placed_surface
+from .projections import Directions, Projection, all_points, directions
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
     from matplotlib.typing import RcKeyType
@@ -40,275 +32,263 @@ STYLE: dict[RcKeyType, Any] = {
     "savefig.dpi": 160,
 }
 SNAPSHOTS = 11
-POINTS_PER_ELEMENT = 24
+MOST_NAMED = 8
+"""Bodies and slides that a legend names."""
+MARKERS = {"pin": "^", "clamp": "s", "tie": "P", "joint": "o", "slide": "o", "ground": "X", "point": "."}
+SIZES = {"pin": 60, "clamp": 55, "tie": 40, "joint": 16, "slide": 26, "ground": 45, "point": 12}
+SEGMENTS: dict[str, dict[str, Any]] = {
+    "spring": {"linestyle": (0, (1, 1)), "linewidth": 1.6},
+    "lever": {"linestyle": "-", "linewidth": 1.0},
+    "joint": {"linestyle": (0, (5, 1)), "linewidth": 1.2},
+}
+LOAD = "#b3261e"
+LOW = 0.45
+"""Of its width: the height that a picture can take."""
+PATHS = ((0, (4, 2)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5)), (0, (3, 1, 1, 1, 1, 1)))
+"""Lines of the paths of bodies, in turn."""
+CLIP_COLOURS = ("#1f6f8b", "#c8553d", "#5b8e3e", "#7b5ea7", "#b08900")
+"""Of several clips in one picture, in turn."""
+
+Points = Callable[[np.ndarray], np.ndarray]
+"""Returns points (..., 3) as an axes takes them, (..., 2 or 3)."""
 
 
-class View(NamedTuple):
-    """The plane that is looked at: unit vectors across and up (3,), and their names."""
+def shape_figure(animation: Animation, figure: Figure | None = None, every_view: bool = False) -> Figure:
+    """Return cables and bodies of an animation at a few of its times, coloured by time; modes in a panel each.
 
-    across: np.ndarray
-    up: np.ndarray
-    names: tuple[str, str]
-
-
-def save_plots(run: Run, directory: str | os.PathLike, prefix: str = "", forces: bool = False) -> list[Path]:
-    """Draw what the run holds: shape, acceleration, slide, energy; if asked for, the forces in each cable.
-
-    The files are ``directory/<prefix><picture>.png``; pictures without anything to show are left out.
-    Returns their paths. Raises ResultFileError.
+    A scene in one plane is drawn in that plane; another one, or any with every_view, in perspective and from the front,
+    the side and above. figure: what it is drawn in, a new one if not given.
     """
     from matplotlib import rc_context
+    from matplotlib.figure import Figure
 
-    drawers = {"shape": draw_shape, "acceleration": draw_acceleration, "slide": draw_slide, "energy": draw_energy}
-    if forces:
-        drawers |= {f"forces-{name}": partial(draw_section_forces, cable=name) for name in run.scene.cables}
-    directory, written = Path(directory), []
-    if "\0" in os.fspath(directory):
-        raise ResultFileError(f"{shown_path(directory)}: the pictures cannot be written here: this is no path")
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        for name, draw in drawers.items():
-            with rc_context(STYLE):
-                figure = draw(run)
-                if figure is not None:
-                    written.append(directory / f"{prefix}{name}.png")
-                    figure.savefig(written[-1])
-    except OSError as error:
-        where = shown_path(directory)
-        raise ResultFileError(f"{where}: the pictures cannot be written here: {error.strerror}") from error
-    return written
-
-
-def view_of(scene: SceneData) -> View:
-    """Return the vertical plane of the first cable; y is up without gravity."""
-    gravity = np.array(scene.gravity)
-    up = -gravity / np.linalg.norm(gravity) if gravity.any() else np.array([0.0, 1.0, 0.0])
-    candidates = [cable.point(cable.length) - cable.point(0.0) for cable in scene.cables.values()]
-    candidates += list(np.eye(3))  # for vertical cables and for none
-    level = [c - np.dot(c, up) * up for c in candidates]
-    across = next(v for v, c in zip(level, candidates, strict=True)
-                  if np.linalg.norm(v) > 1e-6 * np.linalg.norm(c))  # not those of rings, whose ends meet
-    across = across / np.linalg.norm(across)
-    return View(across, up, (_axis_name(across), _axis_name(up)))
+    seen = directions(animation)
+    with rc_context(STYLE):
+        figure = figure or Figure()
+        if animation.arrangement == "menu":
+            rows = -(-min(len(animation.clips), 6) // 2)
+            figure.set_size_inches(9, 2.6 * rows + 0.4)
+            _draw_menu(animation, seen, figure)
+        elif seen.flat and not every_view:
+            figure.set_size_inches(8, 3.9)
+            axes = figure.add_subplot()
+            _draw_all(animation, [PlanePanel(axes, seen.front, stretch=_stretch(animation, seen))], figure)
+        else:
+            figure.set_size_inches(10, 7.2)
+            grid = figure.add_gridspec(2, 2)
+            panels: list[Panel] = [SpacePanel(figure.add_subplot(grid[0, 0], projection="3d"), seen)]
+            panels += [PlanePanel(figure.add_subplot(grid[row, column]), projection, title)
+                       for row, column, projection, title in ((0, 1, seen.side, "side"), (1, 0, seen.front, "front"),
+                                                              (1, 1, seen.top, "from above"))]
+            _draw_all(animation, panels, figure)
+    return figure
 
 
-def _axis_name(direction: np.ndarray) -> str:
-    for name, axis in zip("xyz", np.eye(3), strict=True):
-        if np.allclose(direction, axis):
-            return name
-    return "({:.3g}, {:.3g}, {:.3g})".format(*direction)
+def _stretch(animation: Animation, seen: Directions) -> float:
+    """Return the round factor by which the upright scale of a flat scene can be exaggerated, 1 for none."""
+    width, height = np.ptp(seen.front.of(all_points(animation)), axis=0)
+    if not width > 0:
+        return 1.0
+    most = LOW * width / max(1.24 * height, 1e-3 * width)
+    return max((f * 10.0**e for e in range(7) for f in (1, 2, 5) if f * 10**e <= most), default=1.0)
 
 
-def centreline(nodal_vectors: np.ndarray, node_s: np.ndarray) -> np.ndarray:
-    """Return the points (..., points, 3) of the centreline, cubic between nodes.
+class Panel:
+    """Axes on which parts of a clip are drawn at some of its frames."""
 
-    nodal_vectors: (..., nodes, vectors, 3) with r and r_x first; node_s: (nodes,) in m.
-    """
-    r, slope = nodal_vectors[..., 0, :], nodal_vectors[..., 1, :]
-    length = np.diff(node_s)[:, None, None]
-    t = np.linspace(0, 1, POINTS_PER_ELEMENT, endpoint=False)[:, None]
-    points = (
-        (1 + 2 * t) * (1 - t) ** 2 * r[..., :-1, None, :]
-        + t * (1 - t) ** 2 * length * slope[..., :-1, None, :]
-        + t**2 * (3 - 2 * t) * r[..., 1:, None, :]
-        - t**2 * (1 - t) * length * slope[..., 1:, None, :]
-    )
-    inner = points.reshape(*points.shape[:-3], -1, 3)
-    return np.concatenate([inner, r[..., -1:, :]], axis=-2)
+    def __init__(self, axes: Any, points: Points):
+        self.axes, self.points = axes, points
 
+    def line(self, points: np.ndarray, **look: Any) -> None:
+        """Draw a line through points (n, 3)."""
+        self.axes.plot(*self.points(points).T, **look)
 
-def rider_path(run: Run, slide: str) -> np.ndarray:
-    """Return (time, 3): where the rider's point of ``slide`` was, in m."""
-    return attachment_path(run, run.scene.slides[slide].rider)
+    def dots(self, points: np.ndarray, **look: Any) -> None:
+        """Draw points (n, 3)."""
+        self.axes.scatter(*self.points(points).T, **look)
 
+    def arrow(self, start: np.ndarray, end: np.ndarray, label: str | None) -> None:
+        """Draw an arrow from point to point (3,)."""
+        self.line(np.stack([start, end]), color=LOAD, linewidth=1.2, zorder=3, label=label)
 
-def attachment_path(run: Run, attachment: Attachment) -> np.ndarray:
-    """Return (time, 3): where an attachment was, in m."""
-    if attachment.on is None:
-        return np.broadcast_to(attachment.point, (len(run.time), 3))
-    body = run.scene.bodies.get(attachment.on)
-    if isinstance(body, ModalBody):
-        node = np.argmin(np.linalg.norm(body.shape.nodes - attachment.point, axis=1))
-        return run[f"{attachment.on}.nodes"][:, node]
-    if body is not None:
-        return run[f"{attachment.on}.position"] + rotate(run[f"{attachment.on}.orientation"], attachment.point)
-    points = centreline(run[f"{attachment.on}.nodal_vectors"], run.coords[f"{attachment.on}.node"].values)
-    return points[:, round(attachment.arc_length / run.scene.cables[attachment.on].length * (points.shape[1] - 1))]
+    def body(self, body: BodyShape, frame: int, colour: Any) -> None:
+        """Draw the shape of a body."""
+        raise NotImplementedError
+
+    def finish(self) -> None:
+        """Set scales and labels, when all is drawn."""
+        raise NotImplementedError
 
 
-def attached_points(run: Run) -> dict[str, np.ndarray]:
-    """Return (time, points, 3) by body: where slides and joints are attached, of those that are attached at more than
-    one point.
-    """
-    paths_of: dict[str, list] = {}
-    ends = [slide.rider for slide in run.scene.slides.values()]
-    ends += [end for joint in run.scene.joints.values() for end in (joint.a, joint.b)]
-    for end in ends:
-        if end.on in run.scene.bodies:
-            paths_of.setdefault(end.on, []).append(attachment_path(run, end))
-    return {name: np.stack(paths, axis=1) for name, paths in paths_of.items() if len(paths) > 1}
+class PlanePanel(Panel):
+    """A projection on a plane."""
+
+    def __init__(self, axes: Any, projection: Projection, title: str = "", stretch: float = 1.0):
+        """stretch: of the upright scale; bodies are dots then, since their shapes would be stretched, too."""
+        super().__init__(axes, projection.of)
+        self.projection, self.title, self.stretch = projection, title, stretch
+
+    def arrow(self, start: np.ndarray, end: np.ndarray, label: str | None) -> None:
+        """Draw an arrow from point to point (3,), with a head where it is long enough in this view."""
+        super().arrow(start, end, label)
+        self.axes.annotate("", self.points(end), self.points(start), zorder=4,
+                           arrowprops={"arrowstyle": "-|>", "color": LOAD, "shrinkA": 0, "shrinkB": 0})
+
+    def body(self, body: BodyShape, frame: int, colour: Any) -> None:
+        """Draw the outline of a body's shape, or a dot."""
+        if self.stretch > 1:
+            self.dots(body.position[frame : frame + 1], color=colour, marker="h", s=48, edgecolors="0.1",
+                      linewidths=0.7, zorder=4)
+            return
+        corners = outline(self.projection.of(placed_surface(body, frame)[0]))
+        self.axes.fill(*corners.T, facecolor=(*colour[:3], 0.25), edgecolor=colour, linewidth=0.8, zorder=3)
+
+    def finish(self) -> None:
+        """Take equal scales, or an upright one exaggerated by a factor that its label states."""
+        axes, stretch = self.axes, self.stretch
+        axes.margins(0.04, 0.12)
+        axes.set_aspect(stretch, adjustable="datalim")
+        axes.set_xlabel(f"{self.projection.names[0]} / m")
+        axes.set_ylabel(f"{self.projection.names[1]} / m" + (f"  (stretched {stretch:g} : 1)" if stretch > 1 else ""))
+        if self.title:
+            axes.set_title(self.title, fontsize=9, color="0.35", loc="left")
 
 
-def _snapshots(run: Run) -> tuple[np.ndarray, ScalarMappable]:
-    """Return the numbers of the few times that are drawn, and the colours of times."""
+class SpacePanel(Panel):
+    """A view in perspective, upright."""
+
+    def __init__(self, axes: Any, seen: Directions):
+        super().__init__(axes, lambda points: points @ seen.matrix)
+        self.names = seen.names
+
+    def body(self, body: BodyShape, frame: int, colour: Any) -> None:
+        """Draw the surface of a body's shape."""
+        from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+        vertices, triangles = placed_surface(body, frame)
+        self.axes.add_collection3d(Poly3DCollection(self.points(vertices)[triangles], facecolors=(*colour[:3], 0.35),
+                                                    edgecolors="none"))
+
+    def finish(self) -> None:
+        """Take equal scales about the middle of what is drawn."""
+        from matplotlib.ticker import MaxNLocator
+
+        axes = self.axes
+        limits = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
+        span = np.maximum(np.ptp(limits, axis=1), 0.2 * np.ptp(limits, axis=1).max())
+        for middle, size, set_limits in zip(limits.mean(axis=1), span,
+                                            (axes.set_xlim, axes.set_ylim, axes.set_zlim), strict=True):
+            set_limits(middle - size / 2, middle + size / 2)
+        axes.set_box_aspect(span, zoom=1.05)
+        axes.view_init(elev=22, azim=-60)
+        for axis, size in zip((axes.xaxis, axes.yaxis, axes.zaxis), span, strict=True):
+            axis.set_major_locator(MaxNLocator(max(2, round(6 * size / span.max()))))
+            axis.labelpad = 2 + 6 * size / span.max()
+        axes.tick_params(labelsize=8, pad=1)
+        for set_label, name in zip((axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), self.names, strict=True):
+            set_label(f"{name} / m")
+
+
+def shown_frames(clip: Clip) -> np.ndarray:
+    """Return the numbers of the few frames of a clip that a picture shows."""
+    return np.unique(np.linspace(0, len(clip.time) - 1, SNAPSHOTS).round().astype(int))
+
+
+def time_colours(animation: Animation) -> ScalarMappable:
+    """Return the colours of the times of an animation."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    shown = np.unique(np.linspace(0, len(run.time) - 1, SNAPSHOTS).round().astype(int))
-    return shown, ScalarMappable(Normalize(run.time[0], max(run.time[-1], run.time[0] + 1e-9)), "viridis")
+    times = np.concatenate([clip.time for clip in animation.clips])
+    return ScalarMappable(Normalize(times.min(), max(times.max(), times.min() + 1e-9)), "viridis")
 
 
-def draw_shape(run: Run) -> Figure | None:
-    """Return the cables at a few times, coloured by time, with the riders and their paths; None without cables."""
-    from matplotlib.figure import Figure
+def _draw_all(animation: Animation, panels: list[Panel], figure: Figure) -> None:
+    """Draw all clips on all panels, with a legend and the colours of times."""
+    from matplotlib.colors import to_rgba
 
-    scene = run.scene
-    if not scene.cables:
-        return None
-    view = view_of(scene)
-    plane = np.array([view.across, view.up])
-    shown, colour = _snapshots(run)
-    figure = Figure(figsize=(8, 3.6))
-    axes = figure.add_subplot()
-    for name in scene.cables:
-        shapes = centreline(run[f"{name}.nodal_vectors"][shown], run.coords[f"{name}.node"].values) @ plane.T
-        for index, shape in zip(shown, shapes, strict=True):
-            axes.plot(*shape.T, color=colour.to_rgba(run.time[index]), zorder=2)
-    for points in attached_points(run).values():
-        for index in shown:
-            axes.plot(*(points[index] @ plane.T).T, color=colour.to_rgba(run.time[index]), linewidth=2.2, zorder=2)
-    for number, name in enumerate(scene.slides):
-        path = rider_path(run, name) @ plane.T
-        axes.plot(
-            *path.T,
-            color="0.25",
-            linewidth=0.9,
-            linestyle=(0, (4, 2)),
-            zorder=3,
-            label=None if number else "path of the rider",
-        )
-        axes.scatter(
-            path[shown, 0],
-            path[shown, 1],
-            c=colour.to_rgba(run.time[shown]),
-            s=42,
-            edgecolors="0.1",
-            linewidths=0.8,
-            zorder=4,
-            label=None if number else "rider",
-        )
-    riding = {slide.body for slide in scene.slides.values()}
-    for number, name in enumerate(name for name in scene.bodies if name not in riding):
-        path = run[f"{name}.position"] @ plane.T
-        axes.plot(*path.T, color="0.25", linewidth=0.9, linestyle=":", zorder=3)
-        axes.scatter(path[shown, 0], path[shown, 1], c=colour.to_rgba(run.time[shown]), marker="h", s=48,
-                     edgecolors="0.1", linewidths=0.8, zorder=4, label=None if number else "body")
-    for marker, label, supports in (("^", "pin", scene.pins), ("s", "clamp", scene.clamps),
-                                    ("D", "moved", scene.motions)):
-        if supports:
-            at = np.array([scene.cables[support.cable].point(support.s) for support in supports]) @ plane.T
-            axes.scatter(at[:, 0], at[:, 1], marker=marker, s=60, color="0.1", zorder=5, label=label)
-    _set_scales(axes, view)
-    if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
-    figure.colorbar(colour, ax=axes, label="time / s", pad=0.02, fraction=0.04)
-    return figure
+    several, moves = len(animation.clips) > 1, max(len(clip.time) for clip in animation.clips) > 1
+    colour = time_colours(animation)
+    for panel in panels:
+        for number, clip in enumerate(animation.clips):
+            frames = shown_frames(clip)
+            if several:
+                colours: list[Any] = [to_rgba(CLIP_COLOURS[number % len(CLIP_COLOURS)])] * len(frames)
+            else:
+                colours = [tuple(colour.to_rgba(time)) if moves else to_rgba("#1f6f8b") for time in clip.time[frames]]
+            draw_clip(panel, clip, frames, colours, clip.label if several else None)
+        panel.finish()
+    handles, labels = panels[0].axes.get_legend_handles_labels()
+    once = dict(zip(labels, handles, strict=True))
+    if once:
+        figure.legend(once.values(), once.keys(), loc="outside upper center", ncols=min(len(once), 4), fontsize=9)
+    if moves and not several:
+        unit = f" / {animation.time_unit}" if animation.time_unit else ""
+        figure.colorbar(colour, ax=[panel.axes for panel in panels], label=f"{animation.time_label}{unit}", pad=0.02,
+                        fraction=0.04)
 
 
-def _set_scales(axes: Axes, view: View) -> None:
-    """Set equal scales, or exaggerate the upright one by a round factor that its label states."""
-    axes.margins(0.04, 0.12)
-    width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
-    most = 0.42 * width / height  # the height of a picture that the page can take, over its width
-    exaggeration = max((f * 10**e for e in range(-1, 7) for f in (1, 2, 5) if f * 10**e <= most), default=0.1)
-    exaggeration = max(exaggeration, 1)
-    axes.set_aspect(exaggeration, adjustable="datalim")
-    note = f"  (stretched {exaggeration:g} : 1)" if exaggeration > 1 else ""
-    axes.set_xlabel(f"{view.names[0]} / m")
-    axes.set_ylabel(f"{view.names[1]} / m{note}")
+def _draw_menu(animation: Animation, seen: Directions, figure: Figure) -> None:
+    """Draw the clips in panels of their own, each at its first frame, half a period later, and where it is at rest."""
+    from matplotlib.colors import to_rgba
+
+    clips = animation.clips[:6]
+    rows = -(-len(clips) // 2)
+    for number, clip in enumerate(clips, start=1):
+        axes = figure.add_subplot(rows, min(2, len(clips)), number, **({} if seen.flat else {"projection": "3d"}))
+        panel = PlanePanel(axes, seen.front) if seen.flat else SpacePanel(axes, seen)
+        for cable in clip.cables:
+            panel.line(cable.reference, color="0.6", linewidth=0.8, linestyle=(0, (4, 2)))
+        frames = np.array([0, len(clip.time) // 2])
+        draw_clip(panel, clip, frames, [to_rgba("#1f6f8b"), (*to_rgba("#1f6f8b")[:3], 0.3)], None, named=False)
+        panel.finish()
+        axes.set_title(clip.label, fontsize=9)
 
 
-def draw_acceleration(run: Run) -> Figure | None:
-    """Return the bodies' accelerations upwards over time, the paper's Fig. 5; None without a slide or a body."""
-    from matplotlib.figure import Figure
-
-    bodies = list(run.scene.bodies)
-    if not (bodies and run.scene.slides):
-        return None
-    view = view_of(run.scene)
-    marker = "." if len(run.time) <= 200 else ""  # a coarse output should look like one
-    figure = Figure(figsize=(7, 3.4))
-    axes = figure.add_subplot()
-    for body in bodies:
-        axes.plot(run.time, run[f"{body}.acceleration"] @ view.up, marker=marker, markersize=4, label=f"body {body}")
-    axes.set_xlabel("time / s")
-    axes.set_ylabel(f"{view.names[1]}-acceleration / (m/s²)")
-    axes.legend(loc="best")
-    return figure
-
-
-def draw_slide(run: Run) -> Figure | None:
-    """Draw place and speed of the riders along their cables over time; None without a slide."""
-    from matplotlib.figure import Figure
-
-    slides = run.scene.slides
-    if not slides:
-        return None
-    figure = Figure(figsize=(7, 4.6))
-    place, speed = figure.subplots(2, sharex=True)
-    nodes = np.unique(np.concatenate([run.coords[f"{slide.along}.node"].values for slide in slides.values()]))
-    for s in nodes:
-        place.axhline(s, color="0.6", linewidth=0.7, linestyle=":")
-    place.plot([], [], color="0.6", linewidth=0.7, linestyle=":", label="nodes of the cable")
-    for name in slides:
-        place.plot(run.time, run[f"{name}.s"], label=f"slide {name}")
-        speed.plot(run.time, run[f"{name}.s_rate"])
-    place.grid(axis="y", visible=False)
-    place.set_ylabel("arc-length s / m")
-    place.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
-    speed.set_ylabel("s rate / (m/s)")
-    speed.set_xlabel("time / s")
-    return figure
+def draw_clip(panel: Panel, clip: Clip, frames: np.ndarray, colours: list[Any], label: str | None,
+              named: bool = True) -> None:
+    """Draw a clip at some of its frames, each in its colour; label: of all of it; named: bodies in a legend."""
+    for cable in clip.cables:
+        for frame, colour in zip(frames, colours, strict=True):
+            panel.line(cable.position[frame], color=colour, label=label, zorder=2)
+            label = None
+    for number, body in enumerate(clip.bodies):
+        called = body.name if named and number < MOST_NAMED else None
+        if len(frames) > 2:
+            panel.line(body.position, color="0.25", linewidth=0.9, linestyle=PATHS[number % len(PATHS)], zorder=3,
+                       label=called and f"path of {called}")
+        for frame, colour in zip(frames, colours, strict=True):
+            panel.body(body, frame, colour)
+    for name, segment in _named_once(clip.segments):
+        label = name if named else None
+        if segment.kind == "load":  # at all times they would hide what they act on
+            panel.arrow(_at(segment.start, frames[-1]), _at(segment.end, frames[-1]), label)
+            continue
+        for frame, colour in zip(frames, colours, strict=True):
+            panel.line(np.stack([_at(segment.start, frame), _at(segment.end, frame)]), color=colour, zorder=3,
+                       label=label, **SEGMENTS[segment.kind])
+            label = None
+    for name, mark in _named_once(clip.marks):
+        rides = mark.kind in ("slide", "joint", "point", "tie")
+        positions = np.concatenate([_at(mark.position, frame)[None] for frame in frames])
+        if len(mark.position) == 1:
+            positions = mark.position
+        panel.dots(positions, marker=MARKERS[mark.kind], s=SIZES[mark.kind], zorder=5,
+                   c=colours if rides and len(positions) == len(colours) else ["0.1"] * len(positions),
+                   edgecolors="0.1", linewidths=0.7, label=name if named else None)
 
 
-def draw_section_forces(run: Run, cable: str) -> Figure:
-    """Draw tension and size of the moment along a cable, at a few times, coloured by time, on both sides of jumps."""
-    from matplotlib.figure import Figure
-
-    described, (shown, colour) = run.scene.cables[cable], _snapshots(run)
-    fixed = jumps(run.scene, cable)
-    riders = [run[f"{name}.s"][shown] for name, slide in run.scene.slides.items() if slide.along == cable]
-    places = np.concatenate([np.broadcast_to(fixed, (len(shown), len(fixed))), *(s[:, None] for s in riders)], axis=1)
-    s = with_sides(described, even(described), places)
-    forces = of_run(run, cable, s, shown)
-    figure = Figure(figsize=(7, 4.8))
-    tension, moment = figure.subplots(2, sharex=True)
-    for k, time in enumerate(run.time[shown]):
-        tension.plot(s[k], forces["tension"][k], color=colour.to_rgba(time))
-        moment.plot(s[k], np.linalg.norm(forces["moment"][k], axis=-1), color=colour.to_rgba(time))
-    tension.set_ylabel("tension / N")
-    moment.set_ylabel("moment / (N m)")
-    moment.set_xlabel(f"arc-length s of {cable} / m")
-    figure.colorbar(colour, ax=[tension, moment], label="time / s", pad=0.02, fraction=0.04)
-    return figure
+def _at(values: np.ndarray, frame: int) -> np.ndarray:
+    """Return the value at a frame of what may stand still."""
+    return values[frame if len(values) > 1 else 0]
 
 
-def draw_energy(run: Run) -> Figure:
-    """Return the changes of the energies since the start, and how well they cancel."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7, 4.8))
-    changes, error = figure.subplots(2, sharex=True, height_ratios=(2.2, 1))
-    for name in (name for name in ENERGIES if f"energy.{name}" in run):
-        energy = run[f"energy.{name}"]
-        if name in ("kinetic", "elastic", "potential") or energy.any():
-            changes.plot(run.time, energy - energy[0], label=name)
-    changes.axhline(0, color="0.4", linewidth=0.7)
-    changes.set_ylabel("change of energy / J")
-    changes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
-    error.plot(run.time, run.energy_balance().relative, color="0.2")
-    error.axhline(0, color="0.4", linewidth=0.7)
-    error.set_ylabel("sum of changes /\nenergy exchanged")
-    error.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
-    error.set_xlabel("time / s")
-    return figure
+def _named_once(parts: tuple) -> Iterator[tuple[str | None, Any]]:
+    """Yield parts with what a legend calls them: slides by name, others by their kind, each once."""
+    known: set[str] = set()
+    for part in parts:
+        name = f"slide {part.name}" if part.kind == "slide" else "lever arm" if part.kind == "lever" else part.kind
+        if part.kind in ("pin", "clamp") and len(part.position) > 1:
+            name = f"moved {name}"
+        yield (None if name in known or len(known) > MOST_NAMED else name), part
+        known.add(name)

@@ -1,0 +1,93 @@
+"""Shapes that pictures draw for rigid bodies; nothing that moves depends on them.
+
+A further shape is one class and one entry in `SOLIDS`.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import PurePath
+from typing import Annotated, Any, ClassVar
+
+from .schemas import checked, list_schema, tagged
+from .validation import Part, Vector, direction, part_of_table, positive, shown, vector, xyz
+
+Length = Annotated[float, positive("m")]
+MESH_FILES = (".stl", ".glb", ".gltf")
+
+
+def _lengths(value: Any) -> Vector:
+    """Return three positive lengths in m."""
+    x, y, z = vector(value, "m")
+    if not min(x, y, z) > 0:
+        raise ValueError(f"must be three positive lengths, got {shown(value)}")
+    return x, y, z
+
+
+def _mesh_file(value: Any) -> str:
+    """Return the path of a mesh; what is in it is read when it is drawn."""
+    if not isinstance(value, str | os.PathLike):
+        raise ValueError(f"must be a file, got {shown(value)}")
+    if PurePath(value).suffix.lower() not in MESH_FILES:
+        raise ValueError(f"must end in {', '.join(MESH_FILES[:-1])} or {MESH_FILES[-1]}, got {shown(os.fspath(value))}")
+    return os.fspath(value)
+
+
+class Solid(Part):
+    """Base of the shapes of bodies in pictures; ``at`` (m, body axes) is where the middle of the shape is."""
+
+    at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+
+
+class Box(Solid):
+    """A box along the body's axes, ``size`` its three lengths in m, its middle ``at`` a point in body axes."""
+
+    kind: ClassVar[str] = "box"
+    positional: ClassVar[tuple[str, ...]] = ("size",)
+    size: Annotated[Vector, checked(_lengths, list_schema("m"))]
+
+
+class Sphere(Solid):
+    """A sphere, ``radius`` in m, its middle ``at`` a point in body axes."""
+
+    kind: ClassVar[str] = "sphere"
+    positional: ClassVar[tuple[str, ...]] = ("radius",)
+    radius: Length
+
+
+class Cylinder(Solid):
+    """A cylinder, ``radius`` and ``length`` in m, its axis along ``axis`` in body axes, its middle ``at`` a point."""
+
+    kind: ClassVar[str] = "cylinder"
+    positional: ClassVar[tuple[str, ...]] = ("radius", "length", "axis")
+    radius: Length
+    length: Length
+    axis: Annotated[Vector, direction()] = (0.0, 0.0, 1.0)
+
+
+class MeshShape(Solid):
+    """The surface in a ``file``, STL (binary or text) or glTF (.gltf, .glb), its coordinates along the body's axes.
+
+    scale: metres a unit of the file, 0.001 for one in millimetres; ``at``: where the origin of the file is, in body
+    axes, in m. The file is read when a picture is made, which needs trimesh: pip install 'funicular[meshes]'.
+    """
+
+    kind: ClassVar[str] = "mesh"
+    positional: ClassVar[tuple[str, ...]] = ("file",)
+    file: Annotated[str, checked(_mesh_file, {"type": "string"})]
+    scale: Annotated[float, positive()] = 1.0
+
+
+SOLIDS = {solid.kind: solid for solid in (Box, Sphere, Cylinder, MeshShape)}
+
+
+def _solid(value: Any) -> Solid:
+    """Return a shape from itself or from a table such as {kind="sphere", radius=0.1}."""
+    if isinstance(value, Solid):
+        return value
+    if not isinstance(value, dict):
+        raise ValueError(f"must be a shape such as Box(size=(1, 2, 3)), got {shown(value)}")
+    return part_of_table(value, "kind", SOLIDS)
+
+
+AnySolid = Annotated[Solid, checked(_solid, tagged("solid"))]

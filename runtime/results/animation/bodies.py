@@ -1,0 +1,89 @@
+"""Rigid bodies in a picture: their frames over time, and the shape of the user or one of plausible size."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...errors import FunicularError
+from ...parts.rigid_body import RigidBody
+from ...parts.solids import Box, Cylinder, MeshShape, Solid, Sphere
+from ...view.animation import BodyShape
+from ...view.mesh_files import read_mesh
+from ...view.surfaces import BOX
+from .frames import Frames
+
+HEAVIEST, LIGHTEST = 7850.0, 50.0
+"""Density of steel, and of what is mostly hollow, in kg/m³: between them lies that of a plausible shape."""
+AXES = 1e-9
+"""Of the largest moment of inertia: a smaller product of inertia leaves body axes the principal ones."""
+
+
+def body_shape(frames: Frames, name: str, notes: list[str]) -> BodyShape:
+    """Return a rigid body of the scene; what could not be had is said in notes."""
+    body = frames.scene.bodies[name]
+    assert isinstance(body, RigidBody)
+    shape = None
+    if body.shape is not None:
+        try:
+            shape = given_shape(body.shape)
+        except FunicularError as error:
+            notes.append(f'body "{name}" is drawn as a box of its inertia: {error}')
+    quantities = {}
+    for key, label, unit in (("velocity", "speed", "m/s"), ("acceleration", "acceleration", "m/s²")):
+        if frames.has(f"{name}.{key}"):
+            quantities[label] = unit, np.linalg.norm(frames.value(f"{name}.{key}"), axis=-1)
+    return BodyShape(name, frames.value(f"{name}.position"), frames.value(f"{name}.orientation"),
+                     plausible_shape(body) if shape is None else shape, frames.reference(f"{name}.position"),
+                     quantities)
+
+
+def given_shape(solid: Solid) -> dict[str, object]:
+    """Return the shape that the user gave a body, as pictures take it. Raises FunicularError for a mesh file."""
+    offset = list(solid.at)
+    match solid:
+        case Box():
+            return {"kind": "box", "size": list(solid.size), "offset": offset}
+        case Sphere():
+            return {"kind": "sphere", "radius": solid.radius, "offset": offset}
+        case Cylinder():
+            axis = np.array(solid.axis) / np.linalg.norm(solid.axis)
+            return {"kind": "cylinder", "radius": solid.radius, "length": solid.length, "axis": axis.tolist(),
+                    "offset": offset}
+        case MeshShape():
+            vertices, triangles = read_mesh(solid.file)
+            return {"kind": "mesh", "vertices": solid.scale * vertices, "triangles": triangles, "offset": offset}
+    raise FunicularError(f"pictures know no shape of the kind {solid.kind!r}")
+
+
+def plausible_shape(body: RigidBody) -> dict[str, object]:
+    """Return the box of a body's mass and inertia, as pictures take it: about its mass centre, its axes principal."""
+    inertia = np.array(body.inertia)
+    products = inertia - np.diag(np.diag(inertia))
+    if np.abs(products).max() <= AXES * np.abs(inertia).max():
+        return {"kind": "box", "size": plausible_size(body.mass, np.diag(inertia)).tolist(),
+                "offset": list(body.centre)}
+    moments, axes = np.linalg.eigh(inertia)
+    if np.linalg.det(axes) < 0:
+        axes[:, 0] *= -1
+    vertices, triangles = BOX
+    return {"kind": "mesh", "vertices": (vertices * plausible_size(body.mass, moments)) @ axes.T,
+            "triangles": triangles, "offset": list(body.centre)}
+
+
+def plausible_size(mass: float, moments: np.ndarray) -> np.ndarray:
+    """Return the lengths (3,) in m of a box for a mass in kg and principal moments of inertia (3,) in kg m².
+
+    It is the homogeneous box of that inertia; where it would be denser than steel, as of a thin rod or a mass point,
+    its thin sides grow until it is not; where it would be lighter than what is hollow, all of it shrinks.
+    """
+    squares = np.maximum(6.0 / mass * (moments.sum() - 2 * moments), 0.0)
+    size = np.sqrt(squares)
+    least = mass / HEAVIEST  # volume
+    order = np.argsort(size)
+    for thin in (1, 2, 3):  # as many sides as it takes grow to one length
+        others = np.prod(size[order[thin:]])
+        side = (least / others) ** (1 / thin) if others > 0 else np.inf
+        if thin == 3 or side <= size[order[thin]]:
+            size[order[:thin]] = np.maximum(size[order[:thin]], side)
+            break
+    return size * min(1.0, float(np.cbrt(mass / LIGHTEST / np.prod(size))))

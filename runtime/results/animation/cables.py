@@ -1,0 +1,118 @@
+"""Cables in a picture: the centre line at stations, the direction of the section, what may colour it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...errors import FunicularError
+from ...parts.cable import Cable
+from ...parts.modal_body import ModalBody
+from ...parts.section import Circle, Rectangle, Section, Tube
+from ...rotations import rotate
+from ...view.animation import CableShape, Quantity
+from .frames import Frames, along
+
+LEAST, FEWEST, MOST = 120, 2, 16
+"""Stations that a cable has at least if its elements take so many each, and the fewest and most of an element."""
+SLENDERNESS = 200.0
+"""Length over diameter of a line whose section is not known."""
+LINE = 0.1
+"""Of their length: how far the nodes of a modal body may be off a line for them to be drawn as one."""
+
+
+def stations(cable: Cable) -> np.ndarray:
+    """Return the arc-lengths (P,) in m at which a cable is drawn, its nodes among them."""
+    of_each = int(np.clip(np.ceil(LEAST / cable.elements), FEWEST, MOST))
+    return np.linspace(0.0, cable.length, of_each * cable.elements + 1)
+
+
+def cable_shape(frames: Frames, name: str, notes: list[str]) -> CableShape:
+    """Return a cable of the scene; what could not be had is said in notes."""
+    cable, s = frames.scene.cables[name], stations(frames.scene.cables[name])
+    nodal = frames.value(f"{name}.nodal_vectors")
+    return CableShape(name, s, along(cable, s, nodal), section_direction(cable, s, nodal),
+                      section_data(cable.section), along(cable, s, frames.reference(f"{name}.nodal_vectors")),
+                      tuple(_quantities(frames, name, s, notes)))
+
+
+def section_direction(cable: Cable, s: np.ndarray, nodal: np.ndarray) -> np.ndarray | None:
+    """Return the unit vectors (T, P, 3) of the section's height; None of a cable whose sections have no direction.
+
+    Planar cables have one of their own: their height lies in the plane, square to the tangent.
+    """
+    if "r_y" in cable.kind_of_element.nodal_vectors:
+        height = along(cable, s, nodal, slope=1)
+    elif cable.kind_of_element.director:
+        height = np.cross(along(cable, s, nodal, slope=2), along(cable, s, nodal, slope=0))
+    elif cable.dim == 2:
+        height = np.cross((0.0, 0.0, 1.0), along(cable, s, nodal, slope=0))
+    else:
+        return None
+    size = np.linalg.norm(height, axis=-1, keepdims=True)
+    return height / np.where(size > 0, size, 1.0)
+
+
+def section_data(section: Section) -> dict[str, object]:
+    """Return a section as pictures take it; of one known by its constants the circle of its area."""
+    match section:
+        case Rectangle():
+            return {"shape": "rectangle", "height": section.height, "width": section.width}
+        case Circle():
+            return {"shape": "circle", "diameter": 2 * section.radius}
+        case Tube():
+            return {"shape": "tube", "diameter": 2 * section.outer_radius,
+                    "thickness": section.outer_radius - section.inner_radius}
+    return {"shape": "unknown", "size": float(np.sqrt(4 * section.area / np.pi))}
+
+
+def _quantities(frames: Frames, name: str, s: np.ndarray, notes: list[str]) -> list[Quantity]:
+    cable, found = frames.scene.cables[name], []
+    try:
+        forces = frames.section_forces(name, s)
+    except (FunicularError, RuntimeError) as error:  # a factorisation that fails is a RuntimeError
+        forces = {}
+        notes.append(f'tension and strain of "{name}" could not be computed: {error}')
+    if forces:
+        bent = [forces[key] for key in ("curvature", "curvature_y", "curvature_z") if key in forces]
+        found = [Quantity("tension", "tension", "N", forces["tension"]),
+                 Quantity("strain", "axial strain", "1", forces["strain"]),
+                 Quantity("curvature", "curvature", "1/m", np.linalg.norm(bent, axis=0))]
+        if cable.kind_of_element.director:
+            found.append(Quantity("moment", "moment in the section", "N m",
+                                  np.linalg.norm(forces["moment"], axis=-1)))
+    if frames.has(f"{name}.nodal_velocity"):
+        velocity = along(cable, s, frames.value(f"{name}.nodal_velocity"))
+        found.append(Quantity("speed", "speed", "m/s", np.linalg.norm(velocity, axis=-1)))
+    return found
+
+
+def modal_line(frames: Frames, name: str) -> CableShape | None:
+    """Return a modal body as the line through its nodes, deformed; None where its nodes are on no line."""
+    body = frames.scene.bodies[name]
+    assert isinstance(body, ModalBody)
+    order = line_order(body.shape.nodes)
+    if order is None:
+        return None
+    nodes, position = body.shape.nodes[order], frames.value(f"{name}.nodes")[:, order]
+    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(nodes, axis=0), axis=1)))
+    section: dict[str, object] = {"shape": "unknown", "size": s[-1] / SLENDERNESS}
+    height = None
+    if body.section is not None:
+        section = section_data(body.section)
+        up = rotate(frames.value(f"{name}.orientation"), (0.0, 1.0, 0.0))[:, None]
+        height = np.broadcast_to(up, position.shape)
+    return CableShape(name, s, position, height, section, frames.reference(f"{name}.nodes")[order])
+
+
+def line_order(nodes: np.ndarray) -> np.ndarray | None:
+    """Return the order in which nodes (N, 3) follow each other along a line; None where they are on no line."""
+    if len(nodes) < 2:
+        return None
+    centred = nodes - nodes.mean(axis=0)
+    along_line = np.linalg.svd(centred, full_matrices=False)[2][0]
+    reach = centred @ along_line
+    off = np.linalg.norm(centred - np.multiply.outer(reach, along_line), axis=1)
+    if off.max() > LINE * np.ptp(reach):
+        return None
+    order = np.argsort(reach, kind="stable")
+    return order if reach[0] <= reach[-1] else order[::-1]

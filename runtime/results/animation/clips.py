@@ -1,0 +1,196 @@
+"""Animations of runs, scenes, equilibria, load paths and modes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import FunicularError
+from ...parts.modal_body import ModalBody
+from ...parts.scene_data import SceneData
+from ...solve.modes import Modes
+from ...solve.rest_state import RestState
+from ...view.animation import Animation, BodyShape, CableShape, Clip, Curve, EventMark, Mark
+from . import sources
+from .bodies import body_shape
+from .cables import cable_shape, modal_line, stations
+from .curves import curves, events, thinned
+from .frames import Frames, no_forces
+from .marks import marks, segments
+from .recorded import Recorded
+
+FRAMES = 600
+"""Of a run, at most."""
+MOST_POINTS = 2_000_000
+"""Of all cables over all frames: with more, there are fewer frames."""
+PERIOD = 48
+"""Frames of one period of a mode."""
+SWING = 0.08
+"""Of the scene's size: the largest displacement of a mode in its picture."""
+TURN = 0.6
+"""In rad: what a body turns by at most in the picture of a mode, also where it hardly moves otherwise."""
+ROUNDING = 1e-6
+MOST_NODES = 200
+"""Of a modal body whose nodes are on no line: with more, some of them are drawn."""
+
+
+def of_run(run: Recorded, title: str, frames: int = FRAMES, with_results: bool = True) -> Animation:
+    """Return the animation of a run, of at most so many of its output times. Raises FunicularError without any.
+
+    with_results: with quantities along cables and curves, or places alone, which is quicker.
+    """
+    if not len(run.time):
+        raise FunicularError("the run has no output times: there is nothing to see")
+    notes = list(run.report["messages"])
+    points = sum(len(stations(cable)) for cable in run.scene.cables.values())
+    chosen = thinned(len(run.time), max(2, min(frames, MOST_POINTS // max(1, points))))
+    if len(chosen) < len(run.time):
+        notes.append(f"{len(chosen)} of the run's {len(run.time)} output times are drawn")
+    if not with_results:
+        places = replace(sources.of_run(run, chosen), section_forces=no_forces)
+        return _animation(run.scene, title, [_clip(places, title, notes)], notes)
+    notes += [f'tension of "{name}" is that of the elastic law, not in balance with what acts: the run is large'
+              for name, cable in run.scene.cables.items()
+              if not sources.is_balanced(len(chosen), len(stations(cable)))]
+    clip = _clip(sources.of_run(run, chosen), title, notes)
+    clip = replace(clip, curves=tuple(curves(run, notes)), events=tuple(events(run)), details=dict(run.summary_rows()))
+    return _animation(run.scene, title, [clip], notes)
+
+
+def of_scene(scene: SceneData, title: str) -> Animation:
+    """Return the picture of a scene as it is drawn."""
+    notes = [*scene.messages]
+    return _animation(scene, title, [_clip(sources.of_scene(scene), title, notes)], notes)
+
+
+def of_equilibrium(state: RestState, title: str) -> Animation:
+    """Return the picture of a state of rest."""
+    notes = [*state.messages]
+    clip = _clip(sources.of_states([state]), title, notes)
+    return _animation(state.scene, title, [replace(clip, time=np.zeros(1), details=details(state))], notes)
+
+
+def details(state: RestState) -> dict[str, str]:
+    """Return what a state of rest is, in words."""
+    return {"stability": "stable" if state.stable else f"{state.unstable_directions} unstable directions",
+            "load": f"{state.load_fraction:.6g} of the loads", "residual": f"{state.residual:.2g} N"}
+
+
+def of_path(state: RestState, title: str) -> Animation:
+    """Return the animation of the states of rest on the way to one: its time is the load factor, if that only rises."""
+    notes, states = [*state.messages], state.path
+    if len(states) < 2:
+        raise FunicularError("the equilibrium has one state on its path; find it with load_steps or "
+                             'method="arc_length" for a path to see')
+    load = np.array([each.load_fraction for each in states])
+    rises = bool(np.all(np.diff(load) > 0))
+    time = load if rises else np.arange(len(states), dtype=float)
+    frames = sources.of_states(states)
+    clip = _clip(frames, title, notes)
+    shown = [] if rises else [Curve("load_factor", "load factor", "", (), time, load)]
+    shown += [Curve(f"{cable.name}.displacement", f"{cable.name}: largest displacement", "m", (), time,
+                    np.linalg.norm(cable.position - cable.reference, axis=-1).max(axis=1)) for cable in clip.cables]
+    shown += [Curve(f"{cable.name}.tension", f"{cable.name}: largest tension", "N", (), time, q.values.max(axis=1))
+              for cable in clip.cables for q in cable.quantities if q.key == "tension"]
+    shown += [Curve(f"{body.name}.position", f"{body.name}: position", "m", ("x", "y", "z"), time, body.position)
+              for body in clip.bodies]
+    stable = np.array([each.stable for each in states])
+    changes = np.flatnonzero(stable[1:] != stable[:-1]) + 1
+    found = [EventMark(float(time[k]), "stable from here" if stable[k] else "unstable from here") for k in changes]
+    clip = replace(clip, time=time, curves=tuple(shown), events=tuple(found), details=details(state))
+    made = _animation(state.scene, title, [clip], notes)
+    return replace(made, time_label="load factor" if rises else "state on the path", time_unit="")
+
+
+def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], title: str) -> Animation:
+    """Return one clip a mode, about a state by name; the first frame has the largest displacement."""
+    notes = [*modes.messages]
+    swing = SWING * scene_size(sources.of_scene(scene))
+    phase = 2 * np.pi * np.arange(PERIOD) / PERIOD
+    clips = []
+    for k in range(len(modes)):
+        frequency, growth = float(modes.frequency[k]), float(modes.growth_rate[k])
+        what = f"{frequency:.4g} Hz" if frequency > 0 or growth == 0 else f"grows by {growth:.4g} 1/s"
+        turns = [float(np.linalg.norm(modes[f"{name}.rotation"][k])) for name in scene.bodies]
+        largest = min(swing, TURN / max([*turns, 1e-300]))
+        clip = _clip(sources.of_mode(modes, k, scene, about, largest, phase), f"mode {k + 1}: {what}",
+                     [] if k else notes)
+        drawn = _amplitude(largest, largest * max([*turns, 0.0]))
+        clips.append(replace(clip, time=phase / (2 * np.pi * frequency) if frequency > 0 else phase / (2 * np.pi),
+                             segments=tuple(each for each in clip.segments if each.kind != "load"), periodic=True,
+                             details={"frequency": what, "drawn with": drawn}))
+    notes.append(f"modes have no size of their own: they are drawn with a largest displacement of {swing:.3g} m")
+    return replace(_animation(scene, title, clips, notes), arrangement="menu")
+
+
+def _amplitude(moved: float, turned: float) -> str:
+    """Return the largest displacement and turn of a mode in its picture in words, but for what rounding leaves."""
+    words = [f"{moved:.3g} m"] * (moved > ROUNDING * SWING) + [f"a turn of {turned:.3g} rad"] * (turned > ROUNDING)
+    return " and ".join(words) + " at most"
+
+
+def overlaid(animations: Sequence[Animation]) -> Animation:
+    """Return one animation with the clips of several, drawn at once; the first one's title and axes."""
+    first, *others = animations
+    if not others:
+        return first
+    names = [each.title for each in animations]
+    if len(set(names)) < len(names):
+        names = [f"{number}: {name}" for number, name in enumerate(names, start=1)]
+    clips = tuple(replace(clip, label=name) for name, each in zip(names, animations, strict=True)
+                  for clip in each.clips)
+    notes = tuple(f"{name}: {note}" for name, each in zip(names, animations, strict=True) for note in each.notes)
+    return replace(first, title=" and ".join(names), clips=clips, notes=notes,
+                   planar=all(each.planar for each in animations))
+
+
+def _animation(scene: SceneData, title: str, clips: list[Clip], notes: list[str]) -> Animation:
+    gravity = np.array(scene.gravity)
+    x, y, z = -gravity / np.linalg.norm(gravity) if gravity.any() else (0.0, 1.0, 0.0)
+    return Animation(title, tuple(clips), (float(x), float(y), float(z)), _is_planar(clips),
+                     notes=tuple(dict.fromkeys(notes)))
+
+
+def _is_planar(clips: list[Clip]) -> bool:
+    """Return whether all centre lines and bodies stay in a plane z = const., to a thousandth of their size."""
+    points = [cable.position.reshape(-1, 3) for clip in clips for cable in clip.cables]
+    points += [body.position for clip in clips for body in clip.bodies]
+    if not points:
+        return False
+    size = np.ptp(np.concatenate(points), axis=0)
+    return bool(size[2] <= 1e-3 * size.max())
+
+
+def scene_size(frames: Frames) -> float:
+    """Return the diagonal in m of the box about cables and bodies over all frames; 1 m of a single point."""
+    points = [frames.value(f"{name}.nodal_vectors")[:, :, cable.kind_of_element.nodal_vectors.index("r")].reshape(-1, 3)
+              for name, cable in frames.scene.cables.items()]
+    points += [frames.value(f"{name}.position") for name in frames.scene.bodies]
+    points += [frames.value(f"{name}.nodes").reshape(-1, 3) for name, body in frames.scene.bodies.items()
+               if isinstance(body, ModalBody)]
+    return float(np.linalg.norm(np.ptp(np.concatenate(points), axis=0))) or 1.0 if points else 1.0
+
+
+def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
+    """Return what the frames show; what could not be had is said in notes."""
+    size = scene_size(frames)
+    cables: list[CableShape] = [cable_shape(frames, name, notes) for name in frames.scene.cables]
+    bodies: list[BodyShape] = []
+    points: list[Mark] = []
+    for name, body in frames.scene.bodies.items():
+        if not isinstance(body, ModalBody):
+            bodies.append(body_shape(frames, name, notes))
+        elif (line := modal_line(frames, name)) is not None:
+            cables.append(line)
+        else:
+            points += _cloud(frames, name)
+    return Clip(label, frames.time, tuple(cables), tuple(bodies), (*marks(frames, size), *points),
+                tuple(segments(frames, size)))
+
+
+def _cloud(frames: Frames, name: str) -> list[Mark]:
+    """Return the nodes of a modal body that are on no line."""
+    nodes = frames.value(f"{name}.nodes")
+    return [Mark(name, "point", nodes[:, k], f'node {k} of "{name}"') for k in thinned(nodes.shape[1], MOST_NODES)]

@@ -1,0 +1,100 @@
+"""Results over time beside a picture, and what happened, on its line of time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from ...errors import FunicularError
+from ...view.animation import Curve, EventMark
+from ..quantities import ENERGIES, Variable
+from ..section_forces import of_run as forces_of_run
+from .recorded import Recorded
+
+MOST_ROWS, FEWEST_ROWS = 2000, 200
+"""Rows of a curve, at most and, where there are many curves, at least."""
+MOST_NUMBERS = 150_000
+"""Of all curves together, so that a page stays small."""
+UNITS = {"m/s2": "m/s²", "rad/s2": "rad/s²"}
+AT = 1000
+"""Times at which the tension at a slide is computed, at most."""
+
+
+def thinned(count: int, most: int) -> np.ndarray:
+    """Return the numbers of at most ``most`` of so many rows: every k-th and the last."""
+    step = max(1, -(-(count - 1) // max(1, most - 1)))
+    return np.unique(np.append(np.arange(0, count, step), count - 1))
+
+
+def curves(run: Recorded, notes: list[str]) -> Iterator[Curve]:
+    """Yield the results of a run over time: scalars, vectors, the energy balance, the tension at slides."""
+    shown = {name: variable for name, variable in run.variables.items() if _is_curve(variable)}
+    columns = sum(int(np.prod(variable.values.shape[1:])) for variable in shown.values())
+    rows = int(np.clip(MOST_NUMBERS // max(1, columns), FEWEST_ROWS, MOST_ROWS))
+    chosen = thinned(len(run.time), rows)
+    if len(chosen) < len(run.time):
+        notes.append(f"curves have {len(chosen)} of the run's {len(run.time)} output times")
+    time = run.time[chosen]
+    yield from _energies(run, chosen)
+    for name in run.scene.slides:
+        yield from _tension_at(run, name, notes)
+    for name, variable in shown.items():
+        if not name.startswith("energy."):
+            yield Curve(name, _label(name, variable), UNITS.get(variable.units, variable.units),
+                        _columns(run, variable), time, variable.values[chosen])
+
+
+def _is_curve(variable: Variable) -> bool:
+    """Return whether a variable has one number, or a few, at each time."""
+    return variable.dims[0] == "time" and (len(variable.dims) == 1 or variable.dims[1:] in (("xyz",), ("normal",)))
+
+
+def _label(name: str, variable: Variable) -> str:
+    return f"{name.rpartition('.')[0]}: {variable.long_name}"
+
+
+def _columns(run: Recorded, variable: Variable) -> tuple[str, ...]:
+    if len(variable.dims) == 1:
+        return ()
+    along = run.coords.get(variable.dims[1])
+    return (tuple(map(str, along.values)) if along is not None
+            else tuple(str(k + 1) for k in range(variable.values.shape[1])))
+
+
+def _energies(run: Recorded, chosen: np.ndarray) -> Iterator[Curve]:
+    """Yield the energies in one diagram, and how well they balance in another."""
+    known = [name for name in ENERGIES if f"energy.{name}" in run]
+    if not known:
+        return
+    time = run.time[chosen]
+    energies = np.stack([run[f"energy.{name}"][chosen] for name in known], axis=1)
+    yield Curve("energy", "energy", "J", tuple(known), time, energies)
+    balance = run.energy_balance()
+    yield Curve("energy.balance", "energy balance: what is missing", "J", (), time, balance.residual[chosen])
+
+
+def _tension_at(run: Recorded, slide: str, notes: list[str]) -> Iterator[Curve]:
+    """Yield the tension of the cable where a slide is, on both sides of it."""
+    name = run.scene.slides[slide].along
+    chosen = thinned(len(run.time), AT)
+    s = np.clip(run[f"{slide}.s"][chosen], 0.0, run.scene.cables[name].length)[:, None]
+    try:
+        sides = [forces_of_run(run, name, s, chosen, side=side)["tension"][:, 0] for side in ("before", "after")]
+    except (FunicularError, RuntimeError) as error:
+        notes.append(f'the tension of "{name}" at slide "{slide}" could not be computed: {error}')
+        return
+    yield Curve(f"{name}.tension@{slide}", f"{name}: tension at {slide}", "N", ("before", "after"), run.time[chosen],
+                np.stack(sides, axis=1))
+
+
+def events(run: Recorded) -> Iterator[EventMark]:
+    """Yield what has happened, with its name and what it was."""
+    for event in run.report.get("events", []):  # older files have none
+        yield EventMark(float(event["time"]), _in_words(event))
+
+
+def _in_words(event: Mapping) -> str:
+    what = event.get("what")
+    place = f" at s = {event['s']:.4g} m" if isinstance(event.get("s"), float) else ""
+    return f"{event['name']}{f': {what}' if what else ''}{place}"

@@ -1,0 +1,184 @@
+"""Points and straight connections in a picture: supports, ties, joints, slides, springs, lever arms, loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Literal
+
+import numpy as np
+
+from ...parts.attachment import Attachment
+from ...parts.load import DistributedForce, Force, Load, Moment
+from ...parts.locations import ends_of, node_of
+from ...parts.modal_body import ModalBody
+from ...parts.support import Clamp, Motion, Support
+from ...parts.validation import Vector, show
+from ...rotations import product, rotate, turned_by
+from ...view.animation import Mark, Segment
+from .frames import Frames, along, moving, place
+
+ROUNDING = 1e-13
+APART = 1e-6
+"""Of the scene's size: points that are farther apart are drawn as two."""
+ARROWS = 9
+"""Of a distributed force."""
+ARROW = 0.15
+"""Of the scene's size: the length of the arrow of the largest force."""
+
+
+def still(position: np.ndarray) -> np.ndarray:
+    """Return positions (T, 3), or the first of them as (1, 3) where all are the same but for rounding."""
+    moves = np.abs(position - position[:1]).max() > ROUNDING * np.abs(position).max()
+    return position if moves else position[:1]
+
+
+def _node(frames: Frames, cable: str, node: int) -> np.ndarray:
+    part = frames.scene.cables[cable]
+    return frames.value(f"{cable}.nodal_vectors")[:, node, part.kind_of_element.nodal_vectors.index("r")]
+
+
+def marks(frames: Frames, size: float) -> Iterator[Mark]:
+    """Yield the points that mean something; size: of the scene, in m."""
+    scene = frames.scene
+    for support in scene.supports:
+        kind, what = _support(support)
+        yield Mark(support.label, kind, still(_node(frames, *node_of(scene, support))),
+                   f'{what} of "{support.cable}" at s = {show(support.s, "m")}')
+    for name, tie in scene.ties.items():
+        one, _ = ends_of(scene, tie)
+        yield Mark(name, "tie", still(_node(frames, *one)), f'tie of "{tie.cable}" and "{tie.to}"')
+    for name, joint in scene.joints.items():
+        a, b = place(frames, joint.a), place(frames, joint.b)
+        yield Mark(name, "joint", still(b), f"{joint.joint_kind} joint of {_on(joint.a)} and {_on(joint.b)}")
+        if _apart(a, b, size):
+            yield Mark(name, "joint", still(a), f"{joint.joint_kind} joint, its end on {_on(joint.a)}")
+    for name, slide in scene.slides.items():
+        yield Mark(name, "slide", still(slide_place(frames, name)),
+                   f'slide of {_on(slide.rider)} along "{slide.along}"')
+    for part in scene.parts():
+        for end in (value for _, value in part if isinstance(value, Attachment)):
+            if end.on is None:
+                yield Mark(part.given_name or part.kind, "ground", place(frames, end), f"ground end of {part.where}")
+    for name, load in scene.loads.items():
+        if isinstance(load, Moment):
+            yield Mark(name, "point", still(place(frames, _loaded(frames, load))),
+                       f"moment {show(load.value, 'N m')} on {_on(_loaded(frames, load))}")
+
+
+def _support(support: Support) -> tuple[Literal["pin", "clamp"], str]:
+    """Return the kind of the mark of a support, and what it is in words."""
+    if isinstance(support, Motion):
+        return ("pin" if support.rotation is None else "clamp"), "prescribed motion"
+    return ("clamp", "clamp") if isinstance(support, Clamp) else ("pin", "pin")
+
+
+def _on(end: Attachment) -> str:
+    return "the ground" if end.on is None else f'"{end.on}"'
+
+
+def _apart(a: np.ndarray, b: np.ndarray, size: float) -> bool:
+    return bool(np.linalg.norm(a - b, axis=-1).max() > APART * size)
+
+
+def slide_place(frames: Frames, name: str) -> np.ndarray:
+    """Return where a slide is, (T, 3) in m: the point of its cable at s; where s is not known, that of its rider."""
+    slide = frames.scene.slides[name]
+    if not frames.has(f"{name}.s"):
+        return place(frames, slide.rider)
+    return moving(frames.scene.cables[slide.along], frames.value(f"{name}.s"),
+                  frames.value(f"{slide.along}.nodal_vectors"))
+
+
+def segments(frames: Frames, size: float) -> Iterator[Segment]:
+    """Yield springs, lever arms, joints of points that are apart, and loads as arrows; size: of the scene, in m."""
+    scene = frames.scene
+    for name, spring in scene.point_forces.items():
+        yield Segment(name, "spring", place(frames, spring.a), place(frames, spring.b))
+    for name, joint in scene.joints.items():
+        a, b = place(frames, joint.a), place(frames, joint.b)
+        if _apart(a, b, size):
+            yield Segment(name, "joint", a, b)
+    yield from levers(frames, size)
+    yield from _loads(frames, size)
+
+
+def levers(frames: Frames, size: float) -> Iterator[Segment]:
+    """Yield the lever arms of rigid bodies: from the mass centre to each point that something is attached to."""
+    scene = frames.scene
+    riders = [(name, slide.rider) for name, slide in scene.slides.items()]
+    ends = riders + [(part.given_name or part.kind, value) for part in scene.parts() for _, value in part
+                     if isinstance(value, Attachment)]
+    for name, end in ends:
+        body = None if end.on is None else scene.bodies.get(end.on)
+        if body is None or isinstance(body, ModalBody):
+            continue
+        centre = place(frames, Attachment(on=end.on, at=body.centre))
+        point = place(frames, end)
+        if _apart(centre, point, size):
+            yield Segment(f"{end.on}, {name}", "lever", centre, point)
+
+
+def _loads(frames: Frames, size: float) -> Iterator[Segment]:
+    """Yield forces as arrows that end where they act, in proportion to each other among loads of one unit."""
+    found: dict[str, list[tuple[str, np.ndarray, np.ndarray]]] = {"N": [], "N/m": []}
+    for name, load in frames.scene.loads.items():
+        scale = _scale(frames, load)
+        if isinstance(load, Force):
+            end = _loaded(frames, load)
+            value = scale * _components(frames, end, load.value, load.follower)
+            found["N"].append((name, place(frames, end), value))
+        elif isinstance(load, DistributedForce):
+            cable = frames.scene.cables[load.cable]
+            for s in np.linspace(load.start or 0.0, cable.length if load.stop is None else load.stop, ARROWS):
+                end = Attachment(on=load.cable, s=float(s))
+                found["N/m"].append((name, place(frames, end),
+                                     scale * _components(frames, end, load.value, load.follower)))
+    for arrows in found.values():
+        largest = max((np.linalg.norm(value, axis=-1).max() for _, _, value in arrows), default=0.0)
+        for name, at, value in arrows:
+            if largest > 0:
+                yield Segment(name, "load", at - ARROW * size / largest * value, at)
+
+
+def _scale(frames: Frames, load: Load) -> np.ndarray:
+    """Return the factors (T, 1) of a load: states of rest are under a part of those at the start."""
+    time = frames.time if frames.moves else np.zeros(len(frames))
+    return (frames.load * load.scale.value(time))[:, None]
+
+
+def _loaded(frames: Frames, load: Force | Moment) -> Attachment:
+    """Return the place of a load as an attachment."""
+    on = frames.scene.bodies.get(load.on)
+    if on is None:
+        return Attachment(on=load.on, s=load.s or 0.0)
+    given = getattr(load, "at", None)
+    if isinstance(on, ModalBody):
+        return Attachment(on=load.on, at=on.located(given, load.s))
+    return Attachment(on=load.on, at=(0.0, 0.0, 0.0) if given is None else given)
+
+
+def _components(frames: Frames, end: Attachment, value: Vector, follower: bool) -> np.ndarray:
+    """Return the components (T or 1, 3) of a force along the ground's axes, of a follower from its local ones."""
+    if not follower:
+        return np.array([value])
+    assert end.on is not None
+    if (body := frames.scene.bodies.get(end.on)) is not None:
+        orientation = frames.value(f"{end.on}.orientation")
+        if isinstance(body, ModalBody):
+            turns = frames.value(f"{end.on}.modal_coordinates") @ body.attachment_modes(end.point)[2]
+            orientation = product(orientation, turned_by(turns))
+        return rotate(orientation, value)
+    cable, nodal = frames.scene.cables[end.on], frames.value(f"{end.on}.nodal_vectors")
+    s = np.array([end.arc_length])
+    tangent = _unit(along(cable, s, nodal, slope=0)[:, 0])
+    if cable.dim == 2:
+        return value[0] * tangent + value[1] * np.cross((0.0, 0.0, 1.0), tangent)
+    if not cable.kind_of_element.director:
+        return value[0] * tangent
+    director = "xyz".index(cable.kind_of_element.director[-1])
+    width = _unit(np.cross(tangent, along(cable, s, nodal, slope=director)[:, 0]))
+    return value[0] * tangent + value[1] * np.cross(width, tangent) + value[2] * width
+
+
+def _unit(vector: np.ndarray) -> np.ndarray:
+    return vector / np.linalg.norm(vector, axis=-1, keepdims=True)

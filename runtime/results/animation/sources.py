@@ -1,0 +1,156 @@
+"""The frames of a run, of a scene as drawn, of states of rest and of a mode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...model.cables import cable_model
+from ...parts.modal_body import ModalBody
+from ...parts.rigid_body import RigidBody
+from ...parts.scene_data import SceneData
+from ...rotations import product, rotate, turned_by
+from ...solve.modes import Modes
+from ...solve.rest_state import RestState
+from ..section_balance import Cuts
+from ..section_components import components
+from ..section_forces import constitutive, of_equilibrium
+from ..section_forces import of_run as forces_of_run
+from .frames import Frames, SectionForces
+from .recorded import Recorded
+
+MOST_BALANCED = 400_000
+"""Sections, over all instants, up to which forces are those in balance; beyond, those of the elastic law."""
+
+
+def is_balanced(instants: int, sections: int) -> bool:
+    """Return whether so many forces are computed in balance with what acts on the cable."""
+    return instants * sections <= MOST_BALANCED
+
+
+def drawn(scene: SceneData) -> dict[str, np.ndarray]:
+    """Return nodal vectors of cables and places of bodies and slides by name, as the scene is drawn."""
+    found: dict[str, np.ndarray] = {f"{name}.nodal_vectors": cable.nodal_vectors
+                                    for name, cable in scene.cables.items()}
+    for name, body in scene.bodies.items():
+        if isinstance(body, ModalBody):
+            position, orientation = body.frame
+            found |= {f"{name}.modal_coordinates": np.zeros(body.shape.n),
+                      f"{name}.nodes": position + rotate(orientation, body.shape.nodes)}
+        else:
+            position, orientation = np.array(body.position), np.array(body.orientation)
+        found |= {f"{name}.position": position, f"{name}.orientation": orientation}
+    return found | {f"{name}.s": np.array(slide.s) for name, slide in scene.slides.items()}
+
+
+def _frames(scene: SceneData, time: np.ndarray, found: Mapping[str, np.ndarray], load: np.ndarray,
+            forces: SectionForces) -> Frames:
+    """Return the frames with these arrays by name, (T, ...), displacements from the scene as drawn."""
+    return Frames(scene, time, found.__getitem__, found.__contains__, drawn(scene).__getitem__, load, forces)
+
+
+def _law(scene: SceneData, found: Mapping[str, np.ndarray]) -> SectionForces:
+    """Return the section forces that the elastic law has for nodal vectors by name."""
+    def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
+        part = scene.cables[cable]
+        force, moment, axes, strain = constitutive(part, found[f"{cable}.nodal_vectors"],
+                                                   Cuts(cable_model(part, 0), s[None], True))
+        return {"force": force, "moment": moment} | components(part, force, moment, axes, strain)
+
+    return forces
+
+
+def of_scene(scene: SceneData) -> Frames:
+    """Return the one frame of a scene as it is drawn, with its loads at the start."""
+    found = {name: value[None] for name, value in drawn(scene).items()}
+    return _frames(scene, np.zeros(1), found, np.ones(1), _law(scene, found))
+
+
+class _Chosen(Mapping):
+    """Results of a run at some of its times, read when they are asked for."""
+
+    def __init__(self, run: Recorded, numbers: np.ndarray):
+        self.run, self.numbers = run, numbers
+        self._kept: dict[str, np.ndarray] = {}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return a result at these times."""
+        if name not in self._kept:
+            self._kept[name] = self.run[name][self.numbers]
+        return self._kept[name]
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether the run has a result of that name."""
+        return isinstance(name, str) and name in self.run
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the run's results."""
+        return iter(self.run.keys())
+
+    def __len__(self) -> int:
+        """Return the number of the run's results."""
+        return len(self.run.keys())
+
+
+def of_run(run: Recorded, numbers: np.ndarray) -> Frames:
+    """Return the frames of a run at the output times with these numbers."""
+    found = _Chosen(run, numbers)
+    by_law = _law(run.scene, found)
+
+    def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
+        if not is_balanced(len(numbers), len(s)):
+            return by_law(cable, s)
+        return forces_of_run(run, cable, s[None], numbers)
+
+    return replace(_frames(run.scene, run.time[numbers], found, np.ones(len(numbers)), forces), moves=True)
+
+
+def of_states(states: Sequence[RestState]) -> Frames:
+    """Return a frame of each state of rest; the time is its number in the row."""
+    scene, load = states[0].scene, np.array([state.load_fraction for state in states])
+
+    def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
+        found = [of_equilibrium(state, cable, s[None]) for state in states]
+        return {key: np.concatenate([each[key] for each in found]) for key in found[0]}
+
+    found = {name: np.stack([state[name] for state in states]) for name in states[0].keys()}
+    return _frames(scene, np.arange(len(states), dtype=float), found, load, forces)
+
+
+def of_mode(modes: Modes, number: int, scene: SceneData, about: Mapping[str, np.ndarray], amplitude: float,
+            phase: np.ndarray) -> Frames:
+    """Return the frames of a mode at phases (T,) in rad, its largest displacement ``amplitude`` in m.
+
+    about: the state that it swings about, by name. Rigid bodies turn by finite angles in proportion, so that they stay
+    whole; nodes of cables and modal bodies move along straight lines.
+    """
+    share = amplitude * np.cos(phase)
+    found: dict[str, np.ndarray] = {}
+    for name in scene.cables:
+        key = f"{name}.nodal_vectors"
+        found[key] = about[key] + np.multiply.outer(share, modes[key][number])
+    for name, body in scene.bodies.items():
+        found |= {f"{name}.{key}": value
+                  for key, value in _swinging(modes, number, name, body, about, share).items()}
+    return Frames(scene, phase, found.__getitem__, found.__contains__, about.__getitem__, np.zeros(len(phase)))
+
+
+def _swinging(modes: Modes, number: int, name: str, body: RigidBody | ModalBody, about: Mapping[str, np.ndarray],
+              share: np.ndarray) -> dict[str, np.ndarray]:
+    """Return position, orientation, and of a modal body nodes and modal coordinates, at parts (T,) of a mode."""
+    position, orientation = about[f"{name}.position"], about[f"{name}.orientation"]
+    moved, turn = modes[f"{name}.displacement"][number], modes[f"{name}.rotation"][number]
+    turned = product(orientation, turned_by(np.multiply.outer(share, turn)))
+    if isinstance(body, RigidBody):  # the mode is that of the mass centre
+        centre = position + rotate(orientation, body.centre) + np.multiply.outer(share, moved)
+        return {"position": centre - rotate(turned, body.centre), "orientation": turned}
+    fields, position = body.shape, position + np.multiply.outer(share, moved)
+    back = orientation * np.array([1.0, -1.0, -1.0, -1.0])
+    bent = fields.nodes + np.einsum("m,mnd->nd", about[f"{name}.modal_coordinates"], fields.modes)
+    strained = rotate(back, modes[f"{name}.nodes"][number] - moved) - np.cross(turn, bent)
+    eta = np.linalg.lstsq(fields.modes.reshape(fields.n, -1).T, strained.ravel(), rcond=None)[0]
+    coordinates = about[f"{name}.modal_coordinates"] + np.multiply.outer(share, eta)
+    nodes = about[f"{name}.nodes"] + np.multiply.outer(share, modes[f"{name}.nodes"][number])
+    return {"position": position, "orientation": turned, "modal_coordinates": coordinates, "nodes": nodes}

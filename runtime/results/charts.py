@@ -1,0 +1,114 @@
+"""Charts of a run over time and along its cables, by Matplotlib, which is imported only when one is made."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..view.plot import SNAPSHOTS
+from ..view.projections import axis_name
+from .animation.recorded import Recorded
+from .quantities import ENERGIES
+from .section_forces import even, jumps, of_run, with_sides
+
+if TYPE_CHECKING:
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.figure import Figure
+
+DENSE = 200
+"""Output times: fewer are shown as points, too, as a coarse output should look like one."""
+
+
+def upward(run: Recorded) -> tuple[np.ndarray, str]:
+    """Return the unit vector against gravity, y without any, and its name."""
+    gravity = np.array(run.scene.gravity)
+    up = -gravity / np.linalg.norm(gravity) if gravity.any() else np.array([0.0, 1.0, 0.0])
+    return up, axis_name(up)
+
+
+def acceleration(run: Recorded, figure: Figure) -> bool:
+    """Draw the bodies' accelerations upwards over time, the paper's Fig. 5; False without a slide or a body."""
+    bodies = list(run.scene.bodies)
+    if not (bodies and run.scene.slides):
+        return False
+    up, name = upward(run)
+    marker = "." if len(run.time) <= DENSE else ""
+    figure.set_size_inches(7, 3.4)
+    axes = figure.add_subplot()
+    for body in bodies:
+        axes.plot(run.time, run[f"{body}.acceleration"] @ up, marker=marker, markersize=4, label=f"body {body}")
+    axes.set_xlabel("time / s")
+    axes.set_ylabel(f"{name}-acceleration / (m/s²)")
+    axes.legend(loc="best")
+    return True
+
+
+def slide(run: Recorded, figure: Figure) -> bool:
+    """Draw places and speeds of the riders along their cables over time; False without a slide."""
+    slides = run.scene.slides
+    if not slides:
+        return False
+    figure.set_size_inches(7, 4.6)
+    place, speed = figure.subplots(2, sharex=True)
+    nodes = np.unique(np.concatenate([run.coords[f"{slide.along}.node"].values for slide in slides.values()]))
+    for s in nodes:
+        place.axhline(s, color="0.6", linewidth=0.7, linestyle=":")
+    place.plot([], [], color="0.6", linewidth=0.7, linestyle=":", label="nodes of the cable")
+    for name in slides:
+        place.plot(run.time, run[f"{name}.s"], label=f"slide {name}")
+        speed.plot(run.time, run[f"{name}.s_rate"])
+    place.grid(axis="y", visible=False)
+    place.set_ylabel("arc-length s / m")
+    place.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+    speed.set_ylabel("s rate / (m/s)")
+    speed.set_xlabel("time / s")
+    return True
+
+
+def section_forces(run: Recorded, figure: Figure, cable: str) -> bool:
+    """Draw tension and size of the moment along a cable, at a few times, coloured by time; both sides of jumps."""
+    described, (shown, colour) = run.scene.cables[cable], _snapshots(run)
+    fixed = jumps(run.scene, cable)
+    riders = [run[f"{name}.s"][shown] for name, slide in run.scene.slides.items() if slide.along == cable]
+    places = np.concatenate([np.broadcast_to(fixed, (len(shown), len(fixed))), *(s[:, None] for s in riders)], axis=1)
+    s = with_sides(described, even(described), places)
+    forces = of_run(run, cable, s, shown)
+    figure.set_size_inches(7, 4.8)
+    tension, moment = figure.subplots(2, sharex=True)
+    for k, time in enumerate(run.time[shown]):
+        tension.plot(s[k], forces["tension"][k], color=colour.to_rgba(time))
+        moment.plot(s[k], np.linalg.norm(forces["moment"][k], axis=-1), color=colour.to_rgba(time))
+    tension.set_ylabel("tension / N")
+    moment.set_ylabel("moment / (N m)")
+    moment.set_xlabel(f"arc-length s of {cable} / m")
+    figure.colorbar(colour, ax=[tension, moment], label="time / s", pad=0.02, fraction=0.04)
+    return True
+
+
+def _snapshots(run: Recorded) -> tuple[np.ndarray, ScalarMappable]:
+    """Return the numbers of the few times that are drawn, and the colours of times."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    shown = np.unique(np.linspace(0, len(run.time) - 1, SNAPSHOTS).round().astype(int))
+    return shown, ScalarMappable(Normalize(run.time[0], max(run.time[-1], run.time[0] + 1e-9)), "viridis")
+
+
+def energy(run: Recorded, figure: Figure) -> bool:
+    """Draw the changes of the energies since the start, and how well they cancel."""
+    figure.set_size_inches(7, 4.8)
+    changes, error = figure.subplots(2, sharex=True, height_ratios=(2.2, 1))
+    for name in (name for name in ENERGIES if f"energy.{name}" in run):
+        found = run[f"energy.{name}"]
+        if name in ("kinetic", "elastic", "potential") or found.any():
+            changes.plot(run.time, found - found[0], label=name)
+    changes.axhline(0, color="0.4", linewidth=0.7)
+    changes.set_ylabel("change of energy / J")
+    changes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+    error.plot(run.time, run.energy_balance().relative, color="0.2")
+    error.axhline(0, color="0.4", linewidth=0.7)
+    error.set_ylabel("sum of changes /\nenergy exchanged")
+    error.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
+    error.set_xlabel("time / s")
+    return True

@@ -1,0 +1,79 @@
+"""Pictures of a run: what `Run.plot` draws, and the files that `funicular run --plot` writes.
+
+Matplotlib is imported only when a picture is made.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import FunicularError, ResultFileError, near, shown_path
+from ..view.files import unwritable
+from ..view.plot import STYLE, shape_figure
+from . import charts
+from .animation.clips import of_run
+from .animation.recorded import Recorded
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Drawer = Callable[[Recorded, "Figure"], bool]
+
+
+def drawers(run: Recorded, forces: bool) -> dict[str, Drawer]:
+    """Return what draws each picture of a run by its name; forces: those in each cable, too."""
+    found: dict[str, Drawer] = {"shape": shape, "acceleration": charts.acceleration, "slide": charts.slide,
+                                "energy": charts.energy}
+    if forces:
+        found |= {f"forces-{name}": partial(charts.section_forces, cable=name) for name in run.scene.cables}
+    return found
+
+
+def shape(run: Recorded, figure: Figure) -> bool:
+    """Draw cables and bodies at a few times; False without any."""
+    if not (run.scene.cables or run.scene.bodies):
+        return False
+    shape_figure(of_run(run, "run", with_results=False), figure)
+    return True
+
+
+def plot(run: Recorded, what: str, figure: Figure) -> Figure:
+    """Draw one picture of a run, by its name; return the figure. Raises FunicularError."""
+    from matplotlib import rc_context
+
+    known = drawers(run, forces=True)
+    if what not in known:
+        raise FunicularError(f'there is no picture "{what}" of a run; {near(what, known)}')
+    with rc_context(STYLE):
+        if not known[what](run, figure):
+            raise FunicularError(f'the run has nothing that the picture "{what}" shows')
+    return figure
+
+
+def save_plots(run: Recorded, directory: str | os.PathLike, prefix: str = "", forces: bool = False) -> list[Path]:
+    """Draw what the run holds: shape, acceleration, slide, energy; if asked for, the forces in each cable.
+
+    The files are ``directory/<prefix><picture>.png``; pictures without anything to show are left out.
+    Returns their paths. Raises ResultFileError.
+    """
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    directory, written = Path(directory), []
+    if "\0" in os.fspath(directory):
+        raise ResultFileError(f"{shown_path(directory)}: the pictures cannot be written here: this is no path")
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        for name, draw in drawers(run, forces).items():
+            with rc_context(STYLE):
+                figure = Figure()
+                if draw(run, figure):
+                    written.append(directory / f"{prefix}{name}.png")
+                    figure.savefig(written[-1])
+    except OSError as error:
+        raise unwritable(directory, error) from error
+    return written

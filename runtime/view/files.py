@@ -1,0 +1,61 @@
+"""Pictures as files and as parts of pages.
+
+Matplotlib is imported only when a picture is made.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import ResultFileError, shown_path
+from ..notebook import in_notebook
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SMALL = 80
+"""Dots an inch of a picture in a notebook's table."""
+
+
+def unwritable(path: str | os.PathLike, error: OSError | ValueError) -> ResultFileError:
+    """Return what is raised where a picture cannot be written."""
+    reason = getattr(error, "strerror", None) or str(error) or "this is no path"
+    return ResultFileError(f"{shown_path(path)}: the pictures cannot be written here: {reason}")
+
+
+def new_figure() -> Figure:
+    """Return an empty figure that a notebook shows where it is returned, and pyplot.show() in a script."""
+    from matplotlib import pyplot, rc_context
+
+    from .plot import STYLE
+
+    with rc_context(STYLE):
+        figure = pyplot.figure()
+    if in_notebook():
+        pyplot.close(figure)  # which would show it a second time
+    return figure
+
+
+def save_figure(figure: Figure, path: str | os.PathLike) -> Path:
+    """Write a figure to a file of the kind that its name ends in, and return its path. Raises ResultFileError."""
+    from matplotlib import rc_context
+
+    from .plot import STYLE
+
+    try:
+        with rc_context(STYLE):
+            figure.savefig(os.fspath(path))
+    except (OSError, ValueError) as error:
+        raise unwritable(path, error) from error
+    return Path(path)
+
+
+def image_tag(figure: Figure) -> str:
+    """Return a figure as an image within HTML."""
+    written = io.BytesIO()
+    figure.savefig(written, format="png", dpi=SMALL)
+    return f'<img alt="" src="data:image/png;base64,{base64.b64encode(written.getvalue()).decode("ascii")}">'

@@ -1,0 +1,99 @@
+"""Films of an animation: GIF by Pillow, MP4 by the ffmpeg of imageio-ffmpeg.
+
+Matplotlib is imported only when a picture is made.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import FunicularError, shown_path
+from .animation import Animation, Clip
+from .extras import extra
+from .files import unwritable
+from .film import Film, period
+
+RATE = 25
+"""Pictures a second."""
+LONG = 8.0
+"""Seconds that a film takes, where its speed is not given."""
+MOST_PICTURES = 3000
+PERIODS = 3
+"""Of a mode."""
+KINDS = (".gif", ".mp4")
+
+
+def write_video(animation: Animation, path: str | os.PathLike, speed: float | None = None,
+                colour: str | None = None) -> Path:
+    """Write a film of an animation, .gif or .mp4, and return its path; see `Viewable.save_video`.
+
+    The clips of a menu, such as modes, follow one another. Raises ResultFileError; FunicularError.
+    """
+    from matplotlib import rc_context
+
+    from .plot import STYLE
+
+    path = Path(path)
+    if path.suffix.lower() not in KINDS:
+        raise FunicularError(f"{shown_path(path)}: a film ends in {' or '.join(KINDS)}")
+    together = [(clip,) for clip in animation.clips] if animation.arrangement == "menu" else [animation.clips]
+    timings = [film_times(clips, speed) for clips in together]
+    settings: dict[Any, Any] = {**STYLE, "figure.constrained_layout.use": False}
+    write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
+    with rc_context(settings):
+        pictures = chain.from_iterable(Film(animation, clips, colour, pace).pictures(times)
+                                       for clips, (times, pace) in zip(together, timings, strict=True))
+        try:
+            write(path, pictures)
+        except (OSError, ValueError) as error:
+            raise unwritable(path, error) from error
+    return path
+
+
+def film_times(clips: tuple[Clip, ...], speed: float | None) -> tuple[np.ndarray, float]:
+    """Return the times of the motion that the pictures of a film show, and how many times as fast it plays.
+
+    Raises FunicularError for a speed that is not positive, for a film that would be too long, and for a single frame.
+    """
+    first, last = min(clip.time[0] for clip in clips), max(clip.time[-1] for clip in clips)
+    if not last > first:
+        raise FunicularError("there is one frame, which makes no film; take save_png")
+    if clips[0].periodic:
+        last = first + PERIODS * period(clips[0])
+    pace = (last - first) / LONG if speed is None else float(speed)
+    if not (np.isfinite(pace) and pace > 0):
+        raise FunicularError(f"the speed of a film must be positive, got {speed}")
+    pictures = int(np.ceil((last - first) / pace * RATE)) + 1
+    if pictures > MOST_PICTURES:
+        raise FunicularError(f"the film would have {pictures} pictures, at most {MOST_PICTURES} are made; take a "
+                             f"speed of {(last - first) * RATE / MOST_PICTURES:.3g} or more")
+    return np.minimum(first + pace / RATE * np.arange(pictures), last), pace
+
+
+def _write_gif(path: Path, pictures: Iterator[np.ndarray]) -> None:
+    from PIL import Image
+
+    palette = (Image.fromarray(picture).quantize(128, dither=Image.Dither.NONE) for picture in pictures)
+    first = next(palette)
+    first.save(path, save_all=True, append_images=palette, duration=1000 // RATE, loop=0)
+
+
+def _write_mp4(path: Path, pictures: Iterator[np.ndarray]) -> None:
+    """Write an H.264 film, in colours that every player knows. Raises FunicularError without ffmpeg."""
+    ffmpeg = extra("imageio_ffmpeg", "video")
+    first = next(pictures)
+    writer = ffmpeg.write_frames(os.fspath(path), first.shape[1::-1], fps=RATE, codec="libx264", quality=8,
+                                 macro_block_size=2)
+    writer.send(None)
+    try:
+        writer.send(first.tobytes())
+        for picture in pictures:
+            writer.send(picture.tobytes())
+    finally:
+        writer.close()
