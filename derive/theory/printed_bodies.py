@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..codegen.family import PointLawFamily
 from .lift import Lift, only
 from .markdown import Line
 from .notation.latex import latex
@@ -169,6 +170,7 @@ def joint_motion(scope: Scope) -> list[Line]:
 def spring_extension(scope: Scope) -> list[Line]:
     """Return extension, energy, dissipated power, force and its derivatives of a spring."""
     gap, rate = r"\mathbf{gap}", r"\dot{\mathbf{gap}}"
+    assert isinstance(scope.family, PointLawFamily), f"{scope.family.name} is no law of a force between two points"
     if "length" in scope.family.point_law.parameters:
         e, de = r"\varepsilon", r"\dot{\varepsilon}"
         lines = [Line(rf"{e} = \lvert {gap} \rvert - L"),

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..catalogue import families
-from ..codegen.family import Family
+from ..codegen.family import Family, PointLawFamily
 from ..codegen.program import Argument, Program
 from ..verify import numbers as verify_numbers
 from ..verify.samples import states
@@ -324,6 +324,7 @@ PARAMETERS = {"stiffness": "k", "damping": "c", "length": "L"}
 def point_law_scope(name: str) -> Scope:
     """Return the scope of a force between two points."""
     family = families()[name]
+    assert isinstance(family, PointLawFamily), f"{name} is no law of a force between two points"
     parameters = [Symbol(PARAMETERS.get(parameter, f"p_{{{k}}}"), "parameters", entry(k))
                   for k, parameter in enumerate(family.point_law.parameters)]
     return Scope(family, (*parameters, Symbol(r"\mathbf{gap}", "gap", column),
