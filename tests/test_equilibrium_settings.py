@@ -9,6 +9,7 @@ from fake_recording import fake_recording
 from funicular import EquilibriumError, Scene, load_scene
 from funicular.results import recording
 from funicular.results.equilibrium import Equilibrium
+from funicular.results.modes import Modes
 
 
 class State(Equilibrium):
@@ -43,6 +44,7 @@ def solvers(monkeypatch):
     for module in (static, modal, model):
         monkeypatch.setitem(sys.modules, module.__name__, module)
     monkeypatch.setattr(recording, "recorded", lambda recorded, *_: recorded)
+    monkeypatch.setattr(Modes, "of", lambda found, *_: found)
     return calls
 
 
