@@ -69,13 +69,21 @@ class Arrays:
             return names[0]
         if any(name not in self.sizes or self.sizes[name] != self.sizes[names[0]] for name in names):
             return None
-        known = {self.of[name][0] for name in names if name in self.of}
-        if known:
-            order = {name: k for name, (_, k) in ((n, self.of[n]) for n in names if n in self.of)}
-            if len(known) > 1 or len(order) < len(set(names)):
-                return None
-            place = _progression([order[name] for name in names], variable)
-            return place and f"{known.pop()}[{place}]"
+        if any(name in self.of for name in names):
+            return self._entry(names, variable)
+        return self._new_entry(names, variable, new)
+
+    def _entry(self, names: Sequence[str], variable: str) -> str | None:
+        """Return the entry of an array that there is for these names; None where not all are of one array."""
+        found = [self.of.get(name, ("", -1)) for name in names]
+        arrays = {array for array, _ in found}
+        if len(arrays) > 1:
+            return None
+        place = _progression([k for _, k in found], variable)
+        return place and f"{arrays.pop()}[{place}]"
+
+    def _new_entry(self, names: Sequence[str], variable: str, new: dict[tuple[str, ...], str]) -> str | None:
+        """Return the entry of an array to be, which `new` takes; None where another one has some of the names."""
         distinct = next((other for other in new if set(names) <= set(other)), tuple(dict.fromkeys(names)))
         if any(set(other) & set(distinct) for other in new if other != distinct):
             return None

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from .markdown import Block, Line, blocks
-from .notation.evaluate import Value
+from .notation.evaluate import Definitions, Value
 from .notation.jet import plain
 from .notation.latex import latex
 from .notation.parse import FormulaError, parse
@@ -189,29 +189,47 @@ def unused(document: Document) -> list[str]:
 
 
 def _evaluated(document: Document, trees: dict[str, Node] | None) -> tuple[dict[str, float], list[str]]:
+    """Return the deviations as `evaluate` does, and the formulas that `unused` returns."""
     found: dict[str, float] = {}
     unchecked: list[str] = []
     for items in _by_scope(document):
         here = items[0].scope
         if here is None:
             continue
-        definitions = here.definitions()
-        formulas = [f for item in items for f in item.formulas if f.line.kind != "shown"]
-        tree = {f.identifier: trees[f.identifier] if trees else f.tree for f in formulas}
-        for f in formulas:
-            equation = tree[f.identifier]
-            if f.line.kind == "definition" and isinstance(equation, Equation) and isinstance(equation.sides[0], Name):
-                definitions.add(equation, f.line.index)
-        for state in here.states:
-            value = here.evaluation(definitions, state)
-            for f in formulas:
-                deviation = _deviation(f, tree[f.identifier], value, here, state)
-                if deviation is not None:
-                    found[f.identifier] = max(found.get(f.identifier, 0.0), deviation)
-        unchecked += [f.line.latex for f in formulas if f.identifier not in found
-                 and not (isinstance(t := tree[f.identifier], Equation) and isinstance(t.sides[0], Name)
-                          and t.sides[0].key in definitions.used)]
+        formulas = [(f, trees[f.identifier] if trees else f.tree)
+                    for item in items for f in item.formulas if f.line.kind != "shown"]
+        definitions = _definitions(here, formulas)
+        deviations = _deviations(here, definitions, formulas)
+        found |= deviations
+        unchecked += [f.line.latex for f, tree in formulas
+                      if f.identifier not in deviations and not _is_used(tree, definitions)]
     return found, unchecked
+
+
+def _definitions(here: Scope, formulas: list[tuple[Formula, Node]]) -> Definitions:
+    """Return the definitions of a scope, with those that its formulas add."""
+    definitions = here.definitions()
+    for formula, tree in formulas:
+        if formula.line.kind == "definition" and isinstance(tree, Equation) and isinstance(tree.sides[0], Name):
+            definitions.add(tree, formula.line.index)
+    return definitions
+
+
+def _deviations(here: Scope, definitions: Definitions, formulas: list[tuple[Formula, Node]]) -> dict[str, float]:
+    """Return the largest deviation over the states of a scope of each formula that can be compared."""
+    found: dict[str, float] = {}
+    for state in here.states:
+        value = here.evaluation(definitions, state)
+        for formula, tree in formulas:
+            deviation = _deviation(formula, tree, value, here, state)
+            if deviation is not None:
+                found[formula.identifier] = max(found.get(formula.identifier, 0.0), deviation)
+    return found
+
+
+def _is_used(tree: Node, definitions: Definitions) -> bool:
+    """Return whether an evaluation has asked for what a formula defines."""
+    return isinstance(tree, Equation) and isinstance(tree.sides[0], Name) and tree.sides[0].key in definitions.used
 
 
 def _by_scope(document: Document) -> Iterator[list[Item]]:

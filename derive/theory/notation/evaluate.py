@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 from typing import Any
@@ -143,17 +143,9 @@ class Evaluation:
                 below = self(node.below)
                 return _times(1.0 / below, self(node.above))
             case Power():
-                base = self(node.base)
-                return _inverse(base) if isinstance(base, np.ndarray) else base**node.exponent
-            case Transpose():
-                value = self(node.of)
-                return value.T if isinstance(value, np.ndarray) else value
-            case Root():
-                return jet.sqrt(self(node.of))
-            case Size():
-                return _size(self(node.of))
-            case Skew():
-                return skew(self(node.of))
+                return _power(self(node.base), node.exponent)
+            case Transpose() | Root() | Size() | Skew():
+                return _OF_ONE[type(node)](self(node.of))
             case Matrix():
                 return _block([[self(entry) for entry in row] for row in node.rows])
             case _:
@@ -307,6 +299,15 @@ def _block(rows: list[list[Value]]) -> np.ndarray:
     return np.block([[np.atleast_2d(np.array(v, dtype=object)) for v in row] for row in rows])
 
 
+def _power(base: Value, exponent: int) -> Value:
+    """Return a power of a number; of a matrix the inverse, its only power in formulas."""
+    return _inverse(base) if isinstance(base, np.ndarray) else base**exponent
+
+
+def _transpose(value: Value) -> Value:
+    return value.T if isinstance(value, np.ndarray) else value
+
+
 def _inverse(m: np.ndarray) -> np.ndarray:
     """Return the inverse of a matrix of up to three rows by its adjugate."""
     if len(m) == 2:
@@ -317,5 +318,6 @@ def _inverse(m: np.ndarray) -> np.ndarray:
     return adjugate * (1.0 / _dot(adjugate[0], m[:, 0]))
 
 
+_OF_ONE: dict[type[Node], Callable[[Value], Value]] = {Transpose: _transpose, Root: jet.sqrt, Size: _size, Skew: skew}
 _BINARY = {"cdot": _dot, "times": _cross, "otimes": _kron}
 _CALLS = {"sin": jet.sin, "cos": jet.cos, "axial": _axial, "tr": _trace}

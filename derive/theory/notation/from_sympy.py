@@ -52,28 +52,24 @@ def _decimals(value: float) -> str:
 
 
 def _term(term: sp.Expr, names: Names) -> tuple[int, Node]:
-    """Return a product as a sign and factors, those with negative powers below a line."""
+    """Return a product as a sign and factors, those with negative powers below a line.
+
+    A number alone makes no line below everything: its fraction in front reads better.
+    """
     value, rest = term.as_coeff_Mul()
-    sign = -1 if value.is_negative else 1
-    value = abs(value)
     factors = [f for f in sp.Mul.make_args(rest) if f != 1]
-    below = [1 / f for f in factors if f.is_Pow and f.exp.is_Rational and f.exp < 0]
-    above = [f for f in factors if not (f.is_Pow and f.exp.is_Rational and f.exp < 0)]
-    top, bottom = [_factor(f, names) for f in above], [_factor(f, names) for f in below]
-    if value.is_Rational:
-        if value.q != 1:
-            bottom.insert(0, Number(str(value.q)))
-        if value.p != 1:
-            top.insert(0, Number(str(value.p)))
-    else:
-        top.insert(0, number(value))
-    if bottom and value.is_Rational and value.q != 1 and len(bottom) == 1 and top and len(above) > 0:
-        # a plain fraction in front reads better than a long line
-        front = [number(value)]
-        return sign, _product(front + [_factor(f, names) for f in above])
-    if bottom:
-        return sign, Fraction(_product(top), _product(bottom))
-    return sign, _product(top)
+    above = [_factor(f, names) for f in factors if not _divides(f)]
+    below = [_factor(1 / f, names) for f in factors if _divides(f)]
+    sign, front = coefficient(value)
+    if not below:
+        return sign, _product(front + above)
+    numerator, denominator = (coefficient(part)[1] for part in value.as_numer_denom())
+    return sign, Fraction(_product(numerator + above), _product(denominator + below))
+
+
+def _divides(factor: sp.Expr) -> bool:
+    """Return whether a factor is a negative power, of which the inverse goes below the line."""
+    return bool(factor.is_Pow and factor.exp.is_Rational and factor.exp < 0)
 
 
 def _product(factors: list[Node]) -> Node:

@@ -63,10 +63,7 @@ def latex(node: Node) -> str:
         case Size():
             return f"\\lvert {latex(node.of)} \\rvert"
         case Skew():
-            if isinstance(node.of, Name) and node.of.sub and not (node.of.primes or node.of.above):
-                inner = Name(node.of.base, node.of.bold, node.of.accent)
-                return f"\\widetilde{{{quantity(inner)}}}_{{{','.join(map(subscript, node.of.sub))}}}"
-            return f"\\widetilde{{{latex(node.of)}}}"
+            return _skew(node.of)
         case Call():
             return f"\\operatorname{{{node.name}}} {bracket(latex(node.of))}"
         case _:
@@ -143,6 +140,14 @@ def _large(node: Node) -> str:
             at, d = {"V": ("_{V}", "V"), "A": ("_{A}", "A"), "l": ("_{0}^{l}", "x")}[node.over]
             return f"\\int{at} {_factor(node.of)} \\, \\mathrm{{d}} {d}"
     raise TypeError(f"no LaTeX of {node!r}")
+
+
+def _skew(of: Node) -> str:
+    """Return a tilde above; a subscript stays outside of it."""
+    if isinstance(of, Name) and of.sub and not (of.primes or of.above):
+        letter_alone = Name(of.base, of.bold, of.accent)
+        return f"\\widetilde{{{quantity(letter_alone)}}}_{{{','.join(map(subscript, of.sub))}}}"
+    return f"\\widetilde{{{latex(of)}}}"
 
 
 def bracket(text: str) -> str:

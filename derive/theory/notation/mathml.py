@@ -238,7 +238,10 @@ _FROM = {v: f"\\{k}" for k, v in LETTERS.items()} | {"∂": r"\partial"}
 _OPERATORS = ({v: f" \\{k} " for k, v in SIGNS.items()}
               | {TIMES: " ", APPLY: "", MINUS: " - ", "=": " = ", "+": " + ", "<": " < ", "→": r" \to ",
                  "∑": r"\sum", "∫": r"\int", "′": r"\prime ", "∗": r"\ast ", ",": ","})
-_ACCENT = {v: k for k, v in ACCENTS.items()}
+_ARRANGED = {"mfrac": r"\frac{{{0}}}{{{1}}}", "msub": "{0}_{{{1}}}", "msup": "{0}^{{{1}}}",
+             "msubsup": "{0}_{{{1}}}^{{{2}}}", "munderover": "{0}_{{{1}}}^{{{2}}}"}
+"""The LaTeX of elements whose children have one place each, by tag."""
+_ACCENT = {v: k for k, v in ACCENTS.items()} | {"~": "widetilde"}
 
 
 def to_latex(text: str) -> str:
@@ -264,29 +267,25 @@ def _back(element: ElementTree.Element) -> str:
         case "mi":
             return _back_letter(element, text)
         case "mo":
-            if text not in _OPERATORS:
-                raise ValueError(f"no formula of this document has the sign {text}")
-            return _OPERATORS[text]
-        case "mfrac":
-            return f"\\frac{{{_back(parts[0])}}}{{{_back(parts[1])}}}"
+            return _back_operator(text)
         case "msqrt":
             return f"\\sqrt{{{_children(element)}}}"
         case "mspace":
             return r" \, "
         case "mover":
-            sign = parts[1].text or ""
-            return (f"\\widetilde{{{_back(parts[0])}}}" if sign == "~" else
-                    f"\\{_ACCENT[sign]}{{{_back(parts[0])}}}")
+            return f"\\{_ACCENT[parts[1].text or '']}{{{_back(parts[0])}}}"
         case "msub" if element.get("class") == "at":
             inner = "".join(_back(child) for child in list(parts[0])[:-1])
             return f"\\left. {inner} \\right|_{{{_back(parts[1])}}}"
-        case "msub":
-            return f"{_back(parts[0])}_{{{_back(parts[1])}}}"
-        case "msup":
-            return f"{_back(parts[0])}^{{{_back(parts[1])}}}"
-        case "msubsup" | "munderover":
-            return f"{_back(parts[0])}_{{{_back(parts[1])}}}^{{{_back(parts[2])}}}"
+        case tag if tag in _ARRANGED:
+            return _ARRANGED[tag].format(*map(_back, parts))
     raise ValueError(f"no formula of this document has <{element.tag}>")
+
+
+def _back_operator(text: str) -> str:
+    if text not in _OPERATORS:
+        raise ValueError(f"no formula of this document has the sign {text}")
+    return _OPERATORS[text]
 
 
 def _back_letter(element: ElementTree.Element, text: str) -> str:
