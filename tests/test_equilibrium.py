@@ -77,6 +77,19 @@ def test_a_run_from_equilibrium_stays():
     np.testing.assert_allclose(run["trolley.force"][0], state["trolley.force"], atol=1e-5)
 
 
+def test_a_state_is_read_as_a_mapping():
+    """`for name in state` asked for a quantity of the name 0."""
+    scene = Scene()
+    add_cable(scene, elements=2)
+    state = scene.equilibrium()
+    assert list(state) == state.keys()
+    assert len(state) == len(state.keys())
+    assert {"wire.nodal_vectors", "wire.position", "wire@0.force"} <= set(state)
+    assert {name: values.shape for name, values in state.items()} == {name: state[name].shape for name in state.keys()}
+    assert "wire.position" in state and "wire.positon" not in state and 0 not in state
+    assert state._ipython_key_completions_() == state.keys()
+
+
 def test_supports_carry_the_weight():
     scene = Scene()
     cable = add_cable(scene, elements=4)

@@ -73,6 +73,15 @@ def test_a_rider_adds_its_mass_across_and_is_free_along():
     assert modes["A.displacement"][2] == pytest.approx([0, modes["A.displacement"][2, 1], 0], abs=1e-6)
 
 
+def test_modes_are_read_as_a_mapping():
+    """`for name in modes` asked for a shape of the name 0; the length is that of the frequencies."""
+    modes = string(4).modes(3)
+    assert list(modes) == modes.keys() == ["wire.nodal_vectors", "wire.displacement"]
+    assert {name: len(shapes) for name, shapes in modes.items()} == dict.fromkeys(modes, len(modes))
+    assert "wire.displacement" in modes and "wire.position" not in modes and 0 not in modes
+    assert modes._ipython_key_completions_() == modes.keys()
+
+
 def test_about_an_equilibrium():
     """A hanging chain's frequencies are sqrt(g / L) times zeros of J0 over 2."""
     scene = Scene()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 
 from ..errors import FunicularWarning, ResultFileError, UnknownResultError, near
+from ..named_arrays import NamedArrays
 from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps
@@ -66,7 +67,7 @@ class EnergyBalance(NamedTuple):
     relative: np.ndarray
 
 
-class Run(Viewable):
+class Run(Viewable, NamedArrays):
     """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names."""
 
     def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict,
@@ -136,14 +137,6 @@ class Run(Viewable):
     def keys(self) -> list[str]:
         """Return the names of all results; a cable's ``wire.position`` is a part of its ``wire.nodal_vectors``."""
         return list(self.variables)
-
-    def items(self) -> Iterator[tuple[str, np.ndarray]]:
-        """Yield all results with their names, in the order of `keys`."""
-        return ((name, self[name]) for name in self)
-
-    def __iter__(self) -> Iterator[str]:
-        """Yield the names of all results, as `keys` has them."""
-        return iter(self.variables)
 
     def __len__(self) -> int:
         """Return the number of results; the number of times is ``len(run.time)``."""

@@ -15,6 +15,7 @@ from ..model.build import build
 from ..model.model import BodyModel, Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import body_state, modal_state, spatial
+from ..named_arrays import NamedArrays
 from ..parts.scene_data import SceneData
 from ..rotations import rotate
 from .condensation import condensed, fastest
@@ -38,7 +39,7 @@ KNOWN, HIDDEN = 1e-3, 5e-2
 
 
 @dataclass
-class Modes:
+class Modes(NamedArrays):
     """Natural vibrations, by rising frequency; n modes: the lowest ones, none left out.
 
     angular_frequency (n,) in rad/s, 0 where the state is not stable; frequency (n,) in Hz; growth_rate (n,) in 1/s, of
@@ -60,6 +61,10 @@ class Modes:
         """Return the frequencies (n,) in Hz."""
         return self.angular_frequency / (2 * np.pi)
 
+    def keys(self) -> list[str]:
+        """Return the names of all shapes."""
+        return list(self.shapes)
+
     def __getitem__(self, name: str) -> np.ndarray:
         """Return a shape by its name. Raises UnknownResultError naming the near ones."""
         if name not in self.shapes:
@@ -67,6 +72,7 @@ class Modes:
         return self.shapes[name]
 
     def __len__(self) -> int:
+        """Return the number of modes; that of names is ``len(modes.keys())``."""
         return len(self.angular_frequency)
 
 

@@ -15,6 +15,7 @@ from ..model.states import (
     modal_state,
     spatial,
 )
+from ..named_arrays import NamedArrays
 from ..parts.scene_data import SceneData
 from .stability import Stability
 from .static_problem import StaticProblem
@@ -42,7 +43,7 @@ class CriticalPoint:
 
 
 @dataclass(repr=False)
-class RestState:
+class RestState(NamedArrays):
     """A state of rest of a scene.
 
     Quantities by name as in a `Run`, without the time: ``state["wire.nodal_vectors"]`` (node, vector, 3),
@@ -109,6 +110,14 @@ class RestState:
     def keys(self) -> list[str]:
         """Return the names of all quantities."""
         return list(self.quantities)
+
+    def __len__(self) -> int:
+        """Return the number of quantities."""
+        return len(self.quantities)
+
+    def __bool__(self) -> bool:
+        """Return True, whatever the number of quantities."""
+        return True
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Return a quantity by its name. Raises UnknownResultError naming the near ones."""
