@@ -18,9 +18,10 @@ from .errors import (
     near,
 )
 from .parts.modal_body import ModalBody
+from .parts.part import Part
 from .parts.scene_text import dumps, read
 from .parts.settings import EquilibriumSettings, ModeSettings, RunSettings
-from .parts.validation import Part, show, shown
+from .parts.validation import show, shown
 from .results.run import Run
 from .results.viewable import Viewable
 from .scene_methods import SceneMethods

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from typing import Any
 
 from .parts.kinds import KINDS
+from .parts.part import Part, parameters_of
 from .parts.scene_data import SceneData
-from .parts.validation import Part, parameters_of
 
 
 class SceneMethods(SceneData):

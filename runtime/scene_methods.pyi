@@ -15,6 +15,7 @@ from .parts.joint import Joint
 from .parts.load import DistributedForce, Force, Moment
 from .parts.material import Material
 from .parts.modal_body import ModalBody
+from .parts.part import Part
 from .parts.rigid_body import RigidBody
 from .parts.scene_data import SceneData
 from .parts.section import Section
@@ -23,7 +24,6 @@ from .parts.slide import Slide
 from .parts.solids import Solid
 from .parts.spring import Spring
 from .parts.support import Clamp, Motion, Pin, Tie
-from .parts.validation import Part
 
 Numbers: TypeAlias = Sequence[float] | np.ndarray
 Points: TypeAlias = Sequence[Numbers] | np.ndarray

@@ -7,12 +7,12 @@ from typing import Any
 
 from .parts.end_stops import STOPS
 from .parts.kinds import PARTS
+from .parts.part import Part
 from .parts.scene_text import SETTINGS
 from .parts.schemas import TABLE_OF
 from .parts.section import SHAPES
 from .parts.signal import FORMS
 from .parts.solids import SOLIDS
-from .parts.validation import Part
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 """The newest one that editors of TOML know."""

@@ -12,11 +12,11 @@ from funicular.parts.end_stops import Stop
 from funicular.parts.friction import Friction
 from funicular.parts.kinds import KINDS
 from funicular.parts.material import Material
+from funicular.parts.part import Part
 from funicular.parts.scene_data import SceneData
 from funicular.parts.section import Section
 from funicular.parts.signal import Signal
 from funicular.parts.solids import Solid
-from funicular.parts.validation import Part
 from funicular.scene_methods import signature
 
 FILE = Path(__file__).parents[1] / "runtime" / "scene_methods.pyi"

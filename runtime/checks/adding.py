@@ -10,11 +10,11 @@ from ..parts.cable import Cable
 from ..parts.event import Event
 from ..parts.joint import Joint
 from ..parts.load import Load
+from ..parts.part import Part
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.support import Support, Tie
-from ..parts.validation import Part
 from .event_placement import placed_event
 from .joint_placement import placed_joint
 from .placement import placed_between, placed_load, placed_point_force, placed_support, placed_tie

@@ -14,10 +14,11 @@ from ..parts.cable import EXACT, Cable
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.locations import Node, joined, node_of, point_of, support_of
 from ..parts.modal_body import ModalBody
+from ..parts.part import Part
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
-from ..parts.validation import Part, show
+from ..parts.validation import show
 
 P = TypeVar("P", bound=Part)
 

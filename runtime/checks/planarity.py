@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from ..errors import SceneError
 from ..kernels.elements import built_in
+from ..parts.part import Part
 from ..parts.scene_data import SceneData
-from ..parts.validation import Part, show
+from ..parts.validation import show
 
 
 def check_plane(scene: SceneData, part: Part | None = None) -> None:

@@ -11,9 +11,10 @@ from scipy.interpolate import CubicSpline
 from ..errors import SceneError, near
 from ..parts.cable import Cable
 from ..parts.modal_body import ModalBody
+from ..parts.part import Part
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
-from ..parts.validation import EXACT, Part, show, shown
+from ..parts.validation import EXACT, show, shown
 from .bodies import configuration_of, velocity_of
 from .model import BodyModel, CableModel, Model
 

@@ -7,8 +7,9 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from .part import Part
 from .schemas import attachment_schema, checked
-from .validation import Part, Vector, finite, number, show, shown, vector3, xyz
+from .validation import Vector, finite, number, show, shown, vector3, xyz
 
 
 class Attachment(Part):

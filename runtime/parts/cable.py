@@ -15,9 +15,10 @@ from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.libraries import of_library, resolved
 from . import cable_laws, curves
 from .material import Material
+from .part import Part
 from .schemas import ONLY_PYTHON, GivenAs, checked, list_of_lists
 from .section import AnySection, Circle, Tube
-from .validation import EXACT, Count, Name, Part, Vector, one_of, positive, show, shown, xyz
+from .validation import EXACT, Count, Name, Vector, one_of, positive, show, shown, xyz
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone

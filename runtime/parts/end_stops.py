@@ -7,8 +7,9 @@ from typing import Annotated, Any, ClassVar
 from pydantic import model_validator
 
 from ..errors import near
+from .part import Part, part_of_table
 from .schemas import checked, tagged
-from .validation import Part, not_negative, part_of_table, positive, shown, within
+from .validation import not_negative, positive, shown, within
 
 WORDS = ("error", "leave")
 """The run ends with an `EndOfCableError`; the rider leaves the cable and flies on."""

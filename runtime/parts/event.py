@@ -7,8 +7,9 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
+from .part import Part
 from .schemas import ONLY_PYTHON, checked
-from .validation import Name, Part, finite, one_of, shown
+from .validation import Name, finite, one_of, shown
 
 
 def _function(value: Any) -> Callable | None:

@@ -6,7 +6,8 @@ from typing import Annotated
 
 from pydantic import model_validator
 
-from .validation import Part, not_negative, one_of, positive, show
+from .part import Part
+from .validation import not_negative, one_of, positive, show
 
 
 class Friction(Part):

@@ -9,10 +9,11 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from .attachment import AnyAttachment
+from .part import Part
 from .plane import across, in_plane
 from .quantity import Quantity, of_time, vector_of_time
 from .signal import AnySignal, Integral, Signal
-from .validation import Name, Part, Vector, direction, one_of, positive
+from .validation import Name, Vector, direction, one_of, positive
 
 POINTS, LINES = ("spherical", "revolute", "universal", "weld"), ("prismatic", "cylindrical")
 """The kinds that keep two points together, and those that keep a point on a line."""

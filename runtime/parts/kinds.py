@@ -5,11 +5,11 @@ from .event import Event
 from .joint import Joint
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
+from .part import Part
 from .rigid_body import RigidBody
 from .slide import Slide
 from .spring import Spring
 from .support import Clamp, Motion, Pin, Tie
-from .validation import Part
 
 KINDS: tuple[type[Part], ...] = (Cable, Pin, Clamp, Motion, Tie, RigidBody, ModalBody, Joint, Slide, Force,
                                  DistributedForce, Moment, Spring, Event)

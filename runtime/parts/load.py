@@ -7,9 +7,10 @@ from typing import Annotated, ClassVar
 
 from pydantic import model_validator
 
+from .part import Part
 from .plane import across, in_plane
 from .signal import AnySignal, Constant
-from .validation import Flag, Name, Part, Reference, Vector, finite, show, xyz
+from .validation import Flag, Name, Reference, Vector, finite, show, xyz
 
 Place = Annotated[float, finite("m")]
 ONE = Constant(constant=1.0)

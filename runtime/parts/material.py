@@ -8,7 +8,8 @@ from typing import Annotated, cast
 import numpy as np
 from pydantic import model_validator
 
-from .validation import Part, above, not_negative, positive
+from .part import Part
+from .validation import above, not_negative, positive
 
 INCOMPRESSIBLE = 0.5
 """The largest Poisson ratio: no change of volume."""

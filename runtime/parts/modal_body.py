@@ -14,12 +14,13 @@ from ..errors import SceneError
 from ..rotations import rotate
 from .cable import Cable
 from .material import Material
+from .part import Part
 from .plane import across, in_plane
 from .quantity import Quantity
 from .rigid_body import Quaternion, RigidBody, unit_quaternion
 from .schemas import checked, list_schema
 from .section import AnySection
-from .validation import EXACT, Count, Flag, Name, Part, Vector, not_negative, one_of, show, shown, xyz
+from .validation import EXACT, Count, Flag, Name, Vector, not_negative, one_of, show, shown, xyz
 
 if TYPE_CHECKING:
     from .body_shape import Shape

@@ -7,8 +7,9 @@ from typing import ClassVar, Self
 from pydantic import model_validator
 
 from .attachment import AnyAttachment
+from .part import Part
 from .quantity import Quantity, of_time, vector_of_time
-from .validation import Name, Part
+from .validation import Name
 
 
 class PointForce(Part):

@@ -9,11 +9,12 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from ..rotations import rotate
+from .part import Part
 from .plane import across, in_plane
 from .quantity import Quantity, vector_of_time
 from .schemas import checked, list_of_lists, list_schema
 from .solids import AnySolid
-from .validation import EXACT, Name, Part, Vector, positive, show, vector, vector3, xyz
+from .validation import EXACT, Name, Vector, positive, show, vector, vector3, xyz
 
 Quaternion = tuple[float, float, float, float]
 

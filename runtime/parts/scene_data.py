@@ -13,11 +13,12 @@ from .joint import Joint
 from .kinds import KINDS
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
+from .part import Part
 from .point_force import PointForce
 from .rigid_body import RigidBody
 from .slide import Slide
 from .support import Clamp, Motion, Pin, Support, Tie
-from .validation import Part, vector
+from .validation import vector
 
 RESERVED = ("energy", "time")
 """Names that results have of themselves."""

@@ -18,6 +18,7 @@ from .attachment import Attachment
 from .end_stops import Stop
 from .event import Event
 from .kinds import PARTS
+from .part import Part
 from .scene_data import SceneData
 from .scene_lines import line_of
 from .section import Section
@@ -25,7 +26,6 @@ from .settings import EquilibriumSettings, RunSettings
 from .signal import Constant, Signal
 from .solids import Solid
 from .support import FREE, Motion, Rotation
-from .validation import Part
 
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings}
 

@@ -12,8 +12,9 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from ..errors import SceneError
+from .part import Part, part_of_table
 from .schemas import checked, list_schema, tagged
-from .validation import Part, part_of_table, positive, show, shown, vector
+from .validation import positive, show, shown, vector
 
 Length = Annotated[float, positive("m")]
 THINNEST = 1e-12

@@ -8,7 +8,8 @@ from typing import Annotated, Any, ClassVar
 from pydantic import BeforeValidator, Field, model_validator
 
 from ..integrators import AUTO, INTEGRATORS, stable_at
-from .validation import Count, Flag, Part, one_of, positive, within
+from .part import Part
+from .validation import Count, Flag, one_of, positive, within
 
 SMALLEST_STEP = 1e-12
 """Of the duration, as in engine/run/steps.c."""

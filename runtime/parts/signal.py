@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Protocol
 import numpy as np
 from pydantic import Field, model_validator
 
+from .part import Part, part_of_table
 from .schemas import checked, tagged
-from .validation import Part, finite, list_of, one_of, part_of_table, positive, show, shown
+from .validation import finite, list_of, one_of, positive, show, shown
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone

@@ -10,11 +10,12 @@ from pydantic import Field, model_validator
 from .attachment import Attachment
 from .end_stops import CableEnd, Stop
 from .friction import Friction
+from .part import Part
 from .plane import across
 from .quantity import Quantity, of_time, vector_of_time
 from .schemas import GivenAs, attachment_schema
 from .signal import AnySignal, Integral, Signal
-from .validation import Name, Part, Reference, Vector, direction, finite, one_of, xyz
+from .validation import Name, Reference, Vector, direction, finite, one_of, xyz
 
 
 class Slide(Part):

@@ -9,8 +9,9 @@ import os
 from pathlib import PurePath
 from typing import Annotated, Any, ClassVar
 
+from .part import Part, part_of_table
 from .schemas import checked, list_schema, tagged
-from .validation import Part, Vector, direction, part_of_table, positive, shown, vector, xyz
+from .validation import Vector, direction, positive, shown, vector, xyz
 
 Length = Annotated[float, positive("m")]
 MESH_FILES = (".stl", ".glb", ".gltf")

@@ -8,11 +8,12 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
+from .part import Part
 from .plane import in_plane
 from .quantity import Quantity, vector_of_time
 from .schemas import checked, some
 from .signal import Constant, Signal, signal
-from .validation import Name, Part, Reference, Vector, finite, one_of, shown, vector
+from .validation import Name, Reference, Vector, finite, one_of, shown, vector
 
 
 def _called(cable: Any) -> str:

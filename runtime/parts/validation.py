@@ -1,7 +1,7 @@
-"""Checked quantities and the base of the models that a scene is described with.
+"""Checks of the values that parts are made with.
 
 A quantity is ``Annotated[float, positive("m")]``; its checks raise ``ValueError(cause)`` or
-``ValueError(cause, remedy)``, and `Part` turns the first of them into a `SceneError` that names its place.
+``ValueError(cause, remedy)``, and `Part` (part.py) turns the first of them into a `SceneError` that names its place.
 
 Numbers are bounded (`LIMITS`), so that no power or product that the equations take of them leaves the range of double
 precision: the sixth power of a radius, for instance, is a moment of its section.
@@ -9,18 +9,16 @@ precision: the sixth power of a radius, for instance, is a moment of its section
 
 from __future__ import annotations
 
-import inspect
 import math
 import reprlib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
+from pydantic import BeforeValidator, PlainValidator
 
-from ..errors import SceneError, check_renamed, near
-from .quantity import Quantity
+from ..errors import near
 from .schemas import checked, list_schema, number_schema
 
 LIMITS = {"m": (1e-12, 1e9), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
@@ -238,191 +236,3 @@ Name = Annotated[str, checked(_name, {"type": "string", "maxLength": LONGEST_NAM
 Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", value))]
 """The name of a part of the scene, given as that or as the part itself."""
 Vector = tuple[float, float, float]
-
-
-if TYPE_CHECKING:
-    from pydantic._internal._model_construction import ModelMetaclass
-    from pydantic.fields import FieldInfo
-    from pydantic_core import ErrorDetails
-else:
-    ModelMetaclass = type(BaseModel)  # pydantic exports its metaclass in no other way
-
-
-def parameters_of(kind: type[Part]) -> list[inspect.Parameter]:
-    """Return what a part is made with, as parameters: the positional ones of its kind first, then what is required.
-
-    A name comes last. None stands for what has no fixed default.
-    """
-    keywords = kind.keywords()
-    others = [name for name in keywords if name not in kind.positional]
-    others.sort(key=lambda name: (not kind.model_fields[keywords[name]].is_required(), name == "name"))
-    order = [*kind.positional, *others]
-    return [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_default(kind.model_fields[keywords[name]]))
-            for name in order if name in keywords]
-
-
-def _default(field: FieldInfo) -> Any:
-    """Return the default of a field as a signature shows it."""
-    if field.is_required():
-        return inspect.Parameter.empty
-    default = None if field.default_factory is not None else field.default
-    return default.as_given() if isinstance(default, Part) else default
-
-
-class _TranslatingType(ModelMetaclass):
-    """Makes a constructor call raise `SceneError`.
-
-    In the metaclass and not in ``__init__``, so that a model inside another one still reports to pydantic,
-    which knows the path to it.
-    """
-
-    @property
-    def __signature__(cls) -> inspect.Signature:  # noqa: N805  it is a metaclass
-        """What the part is made with, for `help`, notebooks and editors: pydantic would show ``**data``."""
-        return inspect.Signature(parameters_of(cls))  # type: ignore[arg-type]  # its one user is Part
-
-    @__signature__.setter
-    def __signature__(cls, made: Any) -> None:  # noqa: N805
-        """Leave out what pydantic makes when it builds a model: annotations with all their validators."""
-
-    def __call__(cls, /, *given: Any, **data: Any) -> Any:  # noqa: N805  it is a metaclass
-        positional = [name for name in cls.positional if name in cls.keywords()]  # type: ignore[attr-defined]
-        data |= dict(zip(positional, given, strict=False))
-        if len(given) > len(positional):
-            example = ", ".join(f"{name}=..." for name in list(inspect.signature(cls).parameters)[:max(2, len(given))])
-            raise SceneError(cls.__name__, f"takes its values by name, got {len(given)} without one",
-                             f"write {cls.__name__}({example})")
-        place, known = cls.title(data), cls.keywords()  # type: ignore[attr-defined]  # of its one user, Part
-        found = [SceneError(place, *_unknown(name, known), entry=name) for name in data if name not in known]
-        try:
-            made = super().__call__(**{name: value for name, value in data.items() if name in known})
-        except ValidationError as error:
-            found += [_of_complaint(place, each) for each in error.errors(include_url=False)
-                      if each["type"] != "default_factory_not_called"]
-        if found:
-            found[0].errors = tuple(found)
-            raise found[0] from None
-        return made
-
-
-class Part(BaseModel, metaclass=_TranslatingType):
-    """Base of what a scene is described with: frozen, and strict about names."""
-
-    model_config = ConfigDict(frozen=True, defer_build=True)  # built when first used: the import stays quick
-
-    kind: ClassVar[str] = ""
-    """What messages call it; the class name when empty."""
-
-    group: ClassVar[str] = ""
-    """The attribute of a scene that holds such parts."""
-
-    positional: ClassVar[tuple[str, ...]] = ("name",)
-    """Keywords that the scene's method for such parts takes without their names, too."""
-
-    quantities: ClassVar[dict[str, Quantity]] = {}
-    """What results tell of such parts, beside the nodal vectors of cables and the modes of bodies."""
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        """Refuse the change of a part, which the scene would not check."""
-        if name in type(self).model_fields or name in self.keywords():
-            example = f'scene.replace("{self.given_name}", {name}=...)' if self.given_name else f"{name}=..."
-            raise SceneError(self.where, f"{name} cannot be changed once the part is made",
-                             f"make another part, or another scene: {example}")
-        super().__setattr__(name, value)
-
-    def as_given(self) -> Any:
-        """Return what a user may write for it in short: by default the part itself."""
-        return self
-
-    def __getattr__(self, name: str) -> Any:
-        """Refuse an attribute that there is not; of an older version's, say what it is called now."""
-        check_renamed(f"{type(self).__name__!r} object", name, [*type(self).model_fields, *dir(type(self))])
-        return super().__getattr__(name)  # type: ignore[misc]  # which pydantic hides from type checkers
-
-    @classmethod
-    def title(cls, data: dict) -> str:
-        """Return how messages name the part made of ``data``."""
-        kind = cls.kind or cls.__name__
-        return f'{kind} "{data["name"]}"' if isinstance(data.get("name"), str) else kind
-
-    @classmethod
-    def keywords(cls) -> dict[str, str]:
-        """Return what a part is made with: the keywords, and the names of the fields that hold them."""
-        return {field.alias or name: name for name, field in cls.model_fields.items()}
-
-    @classmethod
-    def is_named(cls) -> bool:
-        """Return whether such parts have names, by which a scene and its results know them."""
-        return "name" in cls.model_fields
-
-    def entries(self) -> dict[str, Any]:
-        """Return what it could be made with, by keyword: all that is set, defaults too."""
-        given = {keyword: getattr(self, field) for keyword, field in self.keywords().items()}
-        return {keyword: value for keyword, value in given.items() if value is not None}
-
-    @property
-    def given_name(self) -> str | None:
-        """Return its name, None where it has none, or none yet."""
-        return getattr(self, "name", None)
-
-    @property
-    def where(self) -> str:
-        """Return how messages name this part."""
-        return self.title(dict(self))
-
-    def off_plane(self) -> Iterator[str]:
-        """Yield its quantities that leave the plane z = 0, in words: by default those of the parts in it."""
-        for name, value in self:
-            if isinstance(value, Part):
-                yield from (f"{name} {quantity}" for quantity in value.off_plane())
-
-    @model_validator(mode="before")
-    @classmethod
-    def _knows_all_names(cls, data: Any) -> Any:
-        if isinstance(data, dict):
-            known = cls.keywords()
-            for key in data:
-                if key not in known:
-                    raise ValueError(*_unknown(key, known))
-        return data
-
-
-def _unknown(name: str, known: Iterable[str]) -> tuple[str, str]:
-    """Return cause and remedy for a name that is not known."""
-    return f'"{name}" is not known here', near(name, known)
-
-
-def _of_complaint(place: str, complaint: ErrorDetails) -> SceneError:
-    path = ".".join(map(str, complaint["loc"]))
-    match complaint["type"]:
-        case "value_error":
-            cause, *remedy = complaint["ctx"]["error"].args
-        case "missing":
-            cause, remedy = "is missing", []
-        case "model_type":
-            name = complaint["ctx"]["class_name"]
-            cause, remedy = f"must be a {name} or a table of its values, got {shown(complaint['input'])}", []
-        case _:
-            message = complaint["msg"]
-            cause, remedy = f"{message[:1].lower() + message[1:]}, got {shown(complaint['input'])}", []
-    entry = str(complaint["loc"][0]) if complaint["loc"] else None
-    return SceneError(place, f"{path} {cause}".strip(), remedy[0] if remedy else None, entry)
-
-
-P = TypeVar("P", bound="Part")
-
-
-def part_of_table(table: dict, tag: str, kinds: Mapping[str, type[P]]) -> P:
-    """Return what a table such as {shape="circle", radius=0.01} describes; its entry `tag` names one of the kinds.
-
-    Raises ValueError where that entry is missing, no name, or unknown.
-    """
-    data = dict(table)
-    kind = data.pop(tag, None)
-    if kind is None:
-        raise ValueError(f"has no {tag}", "known: " + ", ".join(kinds))
-    if not isinstance(kind, str):
-        raise ValueError(f"has the {tag} {shown(kind)}, not a name", "known: " + ", ".join(kinds))
-    if kind not in kinds:
-        raise ValueError(f'has the unknown {tag} "{kind}"', near(kind, kinds))
-    return kinds[kind].model_validate(data)
