@@ -8,23 +8,14 @@ state that a checkpoint holds in full at all of them. Runs that end by themselve
 from __future__ import annotations
 
 import errno
-import hashlib
-import json
 import os
 import shutil
 import time
 from collections.abc import Callable, Mapping
-from copy import copy
 from pathlib import Path
 
-import numpy
-import scipy
-from funicular.generated import kernels
-
-from .. import engine
 from ..engine import Engine
 from ..errors import ResultFileError
-from ..kernels.libraries import load
 from ..model.model import Model
 from ..operating_system import BYTES
 from ..parts.scene_data import SceneData
@@ -39,6 +30,7 @@ from .netcdf import File
 from .opening import opened
 from .quantities import Variable, labelled
 from .recording import Recording, Rows, named
+from .resume_facts import facts_of, start_of
 from .run import ReadScene, Run
 
 ROWS_INTERVAL = 0.5
@@ -68,7 +60,7 @@ class Stream:
         self._taken = 0
         self._resumed: list[float] = []
         self._added = self._checked = time.monotonic()
-        self._facts = _facts(scene, settings)
+        self._facts = facts_of(scene, settings)
         try:
             if not resume:
                 self._new = self._claim(self._part)
@@ -119,7 +111,7 @@ class Stream:
         self._model, self._engine, self._pace, self._events = model, engine, pace, events
         self._row_notes = row_notes
         self._begin = time.monotonic()
-        self._facts |= {"start": _start_of(model), "integrator": engine.integrator}
+        self._facts |= {"start": start_of(model), "integrator": engine.integrator}
         if self._kept is None:
             self._make(labelled(self._rows()))
             self._clear()
@@ -334,33 +326,3 @@ class Stream:
 def _part_of(path: Path) -> Path:
     """Return what becomes the file when it is whole; the same for all runs, so that a killed one's is written over."""
     return path.with_name(f".{path.name}.part")
-
-
-def _facts(scene: SceneData, settings: RunSettings) -> dict:
-    """Return what must be the same for a run to go on."""
-    alone = copy(scene)
-    alone.run_settings = {}
-    said = {name: value for name, value in settings.model_dump().items() if name != "save"}
-    return {"scene": _digest(dumps(alone).encode()), "settings": json.loads(json.dumps(said, default=str)),
-            "programs": _programs(scene)}
-
-
-def _digest(*parts: bytes) -> str:
-    digest = hashlib.sha256()
-    for part in parts:
-        digest.update(part)
-    return digest.hexdigest()
-
-
-def _programs(scene: SceneData) -> str:
-    """Return the digest of the machine code that computes the run."""
-    files = [engine.__file__, kernels.__file__]
-    versions = f"{numpy.__version__} {scipy.__version__}"
-    return _digest(versions.encode(), *(Path(file).read_bytes() for file in files),
-                   *(load(library).digest.encode() for library in scene.libraries))
-
-
-def _start_of(model: Model) -> str:
-    """Return the digest of the state that a run starts from."""
-    places = [(slide.s, slide.element, slide.director.tolist()) for slide in model.slides]
-    return _digest(model.q.tobytes(), model.v.tobytes(), repr(places).encode())
