@@ -13,7 +13,7 @@ from ..errors import near
 from ..kernels.element_line import ElementLine
 from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.libraries import of_library, resolved
-from . import cable_laws, curves
+from . import cable_drawing, cable_laws, curves
 from .material import Material
 from .part import Part
 from .schemas import ONLY_PYTHON, GivenAs, checked, list_of_lists
@@ -22,9 +22,6 @@ from .validation import EXACT, Count, Name, Vector, one_of, positive, show, show
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
-
-FOLLOWS = 0.5
-"""An element's slope along the curve that it stands for must be this part of the curve's everywhere."""
 
 
 def _library(value: Any) -> str | None:
@@ -143,38 +140,14 @@ class Cable(Part):
         if self.start is not None and self.end is not None and self.start == self.end:
             raise ValueError(
                 f"start and end must be different points, got {show(self.start)} and {show(self.end, 'm')}")
-        self._refuse_what_leaves_the_plane()
-        self._refuse_a_lost_up()
-        self._refuse_coarse_elements()
+        if self.dim == 2:
+            names = ("start", "end") if self.points is None else map("point {}".format, range(1, len(self.points) + 1))
+            cable_drawing.check_plane(self.element, dict(zip(names, self._drawn_through, strict=True)), self.velocity,
+                                      self.angular_velocity, self.up)
+        else:
+            cable_drawing.check_height(self._shape, self.up, self._is_round)
+        cable_drawing.check_elements(self._shape, self.elements)
         return self
-
-    def _refuse_what_leaves_the_plane(self) -> None:
-        if self.dim == 3:
-            return
-        for number, point in enumerate(self._drawn_through):
-            if point[2] != 0:
-                where = f"point {number + 1}" if self.points else ("start", "end")[number]
-                raise ValueError(f"{self.element} is planar, but {where} leaves the plane z = 0: {show(point, 'm')}",
-                                 "draw it with z = 0, or take " + cable_laws.others(3))
-        if self.velocity[2] != 0 or any(self.angular_velocity[:2]):
-            raise ValueError(f"{self.element} is planar, but it starts with velocity {show(self.velocity, 'm/s')} and "
-                             f"angular_velocity {show(self.angular_velocity, 'rad/s')}",
-                             "let it move in the plane z = 0 and turn about z, or take " + cable_laws.others(3))
-        if self.up[2] != 0:
-            raise ValueError(f"{self.element} is planar, but up leaves the plane z = 0: {show(self.up)}",
-                             "leave it out: the height lies in the plane")
-
-    def _refuse_a_lost_up(self) -> None:
-        if self.dim == 3 and not self._has_up and not (self._is_round and any(self.up)):
-            raise ValueError(
-                f"up must not be zero or parallel to the axis {show(self._shape.tangent(0.0))}, got {show(self.up)}",
-                "give the direction of the section's height")
-
-    @property
-    def _has_up(self) -> bool:
-        """Return whether up gives a direction across the axis at the start."""
-        tilt = np.linalg.norm(np.cross(self._shape.tangent(0.0), self.up))
-        return bool(tilt > 1e-6 * np.linalg.norm(self.up))
 
     @property
     def _is_round(self) -> bool:
@@ -184,28 +157,10 @@ class Cable(Part):
     @property
     def height_direction(self) -> Vector:
         """Return ``up``; where that lies along the axis of a round section, the ground's axis most nearly across it."""
-        if self._has_up:
+        if cable_drawing.has_height(self._shape, self.up):
             return self.up
         least = int(np.argmin(np.abs(self._shape.tangent(0.0))))
         return float(least == 0), float(least == 1), float(least == 2)
-
-    def _refuse_coarse_elements(self) -> None:
-        """Raise ValueError where elements are too coarse to be drawn: the slope of one loses the direction of the
-        curve.
-        """
-        if self._shape.straight:
-            return
-        xi, length = np.linspace(0, 1, 17)[:, None, None], self.drawn_length / self.elements
-        nodes = length * np.arange(self.elements + 1)
-        r, t = self._shape.point(nodes), self._shape.tangent(nodes)
-        slope = (6 * xi * (1 - xi) * np.diff(r, axis=0) / length
-                 + (1 - 4 * xi + 3 * xi**2) * t[:-1] + (3 * xi**2 - 2 * xi) * t[1:])
-        onward = np.sum(slope * self._shape.tangent(nodes[:-1] + length * xi[..., 0]), axis=-1).min(axis=0)
-        worst = int(np.argmin(onward))
-        if onward[worst] < FOLLOWS:
-            raise ValueError(f"element {worst + 1} of {self.elements} cannot follow the curve from "
-                             f"{show(r[worst])} to {show(r[worst + 1], 'm')}: it bends too much there",
-                             "take more elements")
 
     @model_validator(mode="after")
     def _law_suits(self) -> Cable:
