@@ -10,6 +10,7 @@ from funicular.results.animation.cables import line_order
 from funicular.results.animation.clips import overlaid
 from funicular.results.animation.curves import thinned
 from funicular.rotations import product, rotate, turned_by
+from funicular.view.page import is_exaggerable
 from numpy.testing import assert_allclose
 from shared_scenes import SQUARE, TABLE_1, cable_scene
 from viewed_scenes import spatial
@@ -386,3 +387,37 @@ def test_short_forms():
     for each in (scene, rest, modes):
         shown = each._repr_html_()
         assert shown.startswith("<table>") and 'src="data:image/png;base64,' in shown and len(shown) < 200_000
+
+
+def test_what_slides_stays_on_its_cable_when_displacements_are_enlarged():
+    """Points that meet, meet where they are drawn: a rider on its cable, and what hangs on the rider on it."""
+    clip = fu.load_scene("zip_line").run(1.0, progress=False).animation("a run").clips[0]
+
+    def drawn(position, reference):
+        return reference + 7 * (position - reference)
+
+    rope, wheels, swivel = clip.cables[0], part(clip.marks, "wheels"), part(clip.marks, "swivel")
+    slide = drawn(wheels.position, wheels.reference)
+    for k, shape in enumerate(drawn(rope.position, rope.reference)):
+        lengths = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(shape, axis=0), axis=1))])
+        where = np.interp(np.interp(slide[k, 0], shape[:, 0], lengths), lengths, shape[:, 1])
+        assert slide[k, 1] == pytest.approx(where, abs=0.02 * np.abs(rope.position - rope.reference).max())
+    scene, bodies = fu.load_scene("zip_line"), {body.name: body for body in clip.bodies}
+    for end, mark in ((scene.slides["wheels"].rider, wheels), (scene.joints["swivel"].a, swivel),
+                      (scene.joints["swivel"].b, swivel)):
+        body = bodies[end.on]
+        point = drawn(body.position, body.reference) + rotate(body.orientation, end.point)
+        assert_allclose(point, drawn(mark.position, mark.reference), atol=1e-6)
+    lever = clip.segments[0]
+    assert_allclose(drawn(lever.end, lever.reference[:, 1]) - drawn(lever.start, lever.reference[:, 0]),
+                    lever.end - lever.start, atol=1e-12)
+
+
+def test_a_cable_that_rides_has_no_reference_that_goes_along():
+    """It would have to be bent anew at each instant: its slide has none, so that the page draws true displacements."""
+    scene = fu.load_scene("paper52_ancf")
+    clip = scene.run(0.05, progress=False).animation("a run").clips[0]
+    assert part(clip.marks, "trolley").reference is None
+    assert not is_exaggerable(clip)
+    rest = scene.animation("as drawn").clips[0]
+    assert is_exaggerable(rest)

@@ -20,6 +20,7 @@ from .curves import curves, events, thinned
 from .frames import Frames, no_forces
 from .marks import marks, segments
 from .recorded import Recorded
+from .references import references
 
 FRAMES = 600
 """Of a run, at most."""
@@ -175,19 +176,19 @@ def scene_size(frames: Frames) -> float:
 
 def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
     """Return what the frames show; what could not be had is said in notes."""
-    size = scene_size(frames)
+    size, refs = scene_size(frames), references(frames)
     cables: list[CableShape] = [cable_shape(frames, name, notes) for name in frames.scene.cables]
     bodies: list[BodyShape] = []
     points: list[Mark] = []
     for name, body in frames.scene.bodies.items():
         if not isinstance(body, ModalBody):
-            bodies.append(body_shape(frames, name, notes))
+            bodies.append(body_shape(frames, refs, name, notes))
         elif (line := modal_line(frames, name)) is not None:
             cables.append(line)
         else:
             points += _cloud(frames, name)
-    return Clip(label, frames.time, tuple(cables), tuple(bodies), (*marks(frames, size), *points),
-                tuple(segments(frames, size)))
+    return Clip(label, frames.time, tuple(cables), tuple(bodies), (*marks(frames, refs, size), *points),
+                tuple(segments(frames, refs, size)))
 
 
 def _cloud(frames: Frames, name: str) -> list[Mark]:
