@@ -10,11 +10,16 @@ import funicular.guides
 import matplotlib
 import pytest
 from funicular.derive.elements import ELEMENTS
+from funicular.guides.site.build import ORDER
 
 FOLDER = Path(funicular.guides.__file__).parent
 GUIDES = sorted(path for path in FOLDER.glob("*.py") if path.stem != "__init__")
 QUICK = ("first_scene", "modes")
 """Those that the default run executes; the site's test executes all."""
+
+
+def test_all_have_a_place_in_the_gallery():
+    assert sorted(ORDER) == [guide.stem for guide in GUIDES]
 
 
 @pytest.mark.parametrize("guide", GUIDES, ids=lambda guide: guide.stem)

@@ -53,6 +53,16 @@ Each is a script that runs; its pictures and numbers are what it printed when th
 """
 
 
+ORDER = ("first_scene", "choose_an_element", "cable_car", "crane", "zip_line", "cable_robot", "slackline",
+         "slack_and_taut", "modes", "results", "long_runs", "your_own_element", "verify_and_benchmark", "c_kernels")
+"""Of the guides in the site: from the first steps over examples to what few need."""
+
+
+def place_in_order(filename: str | Path) -> int:
+    """Return the place of a guide's file in the gallery."""
+    return ORDER.index(Path(filename).stem)
+
+
 def _copy_pictures(page: Path, work: Path) -> None:
     """Copy the pictures that a page shows to where the site's page looks for them."""
     for path in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8")):
