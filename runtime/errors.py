@@ -129,7 +129,7 @@ def near(name: str, known: Iterable[str]) -> str:
         return f'it is called "{new}" now{INTEGRALS.get(new[-7:], "")}'
     if matches := get_close_matches(str(name), known, n=1):
         return f'did you mean "{matches[0]}"?'
-    return "known: " + ", ".join(known) if known else "there is none yet"
+    return "known: " + ", ".join(known) if known else "the scene has none yet"
 
 
 def new_name(name: str) -> str:

@@ -57,7 +57,8 @@ class Scene(Viewable, SceneMethods):
 
     ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``point_forces``,
     ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` lists what was adjusted;
-    ``run_settings`` and ``equilibrium_settings`` hold the settings that a scene file gives.
+    ``run_settings`` and ``equilibrium_settings`` hold the settings that a scene file gives; ``title`` is what pictures
+    are called: the name of the scene's file without the ending, or what you set.
     """
 
     def add(self, part: P) -> P:
@@ -87,6 +88,7 @@ class Scene(Viewable, SceneMethods):
         """
         old = self._part(part)
         scene = type(self)(gravity=self.gravity)
+        scene.title = self.title
         scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
         for each in self.parts():
             if each is old:
@@ -263,7 +265,7 @@ class Scene(Viewable, SceneMethods):
         """Return the scene as it is drawn, before it runs, as pictures show it; see `Viewable.animation`."""
         from .results.animation.clips import of_scene  # brings SciPy
 
-        return of_scene(self, title or "scene")
+        return of_scene(self, title or self.title or "scene")
 
     def overview(self) -> list[tuple[str, str]]:
         """Return what is in the scene, for a notebook; see `Viewable.overview`."""

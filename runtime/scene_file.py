@@ -33,14 +33,18 @@ def load_scene(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] =
             raise SceneError(
                 shown_path(path),
                 "there is no such scene file, nor a bundled scene of that name",
-                near(file.stem, bundled),
+                f'the bundled scene is "{file.stem}"' if file.stem in bundled else near(file.stem, bundled),
             )
         file = bundled[os.fspath(path)]
+    if file.suffix == ".nc":
+        raise SceneError(str(file), "holds the results of a run, not a scene", "take fu.load_run, or funicular view")
     try:
         text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(str(file), f"cannot be read as text: {error}") from None
-    return loads(text, str(file), file.parent, libraries)
+    scene = loads(text, str(file), file.parent, libraries)
+    scene.title = file.stem
+    return scene
 
 
 def load_run(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] = (), salvage: bool = False) -> Run:

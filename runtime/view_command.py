@@ -67,7 +67,7 @@ def seen(file: str, wanted: Wanted, libraries: Iterable[str | os.PathLike]) -> V
 def view(files: Sequence[str], wanted: Wanted, outputs: Outputs, open_it: bool,
          libraries: Iterable[str | os.PathLike]) -> list[Path]:
     """Write what is asked for, the page FILE.html if nothing is, and return the paths. Raises FunicularError."""
-    shown = overlaid([seen(file, wanted, libraries).animation(Path(file).stem) for file in files])
+    shown = overlaid([seen(file, wanted, libraries).animation() for file in files])
     written = [write_video(shown, film, outputs.speed, outputs.colour) for film in outputs.films]
     if outputs.png:
         written.append(save_figure(shape_figure(shown, every_view=True), outputs.png))

@@ -10,6 +10,7 @@ from funicular.results.animation.cables import line_order
 from funicular.results.animation.clips import overlaid
 from funicular.results.animation.curves import thinned
 from funicular.rotations import product, rotate, turned_by
+from funicular.view.page import is_exaggerable
 from numpy.testing import assert_allclose
 from shared_scenes import SQUARE, TABLE_1, cable_scene
 from viewed_scenes import spatial
@@ -380,9 +381,64 @@ def test_short_forms():
     assert repr(fu.Scene()) == "<funicular.Scene: empty>"
     small = fu.load_scene("paper51")
     rest, modes = small.equilibrium(), small.modes(2)
-    assert repr(rest) == "<funicular.Equilibrium: stable, under 1 of the loads, 8 results>"
+    assert repr(rest) == "<funicular.Equilibrium: stable, under all loads, 8 results>"
     assert repr(modes) == "<funicular.Modes: 2, 0 to 0 Hz, 4 shapes>"
-    assert repr(small.equilibrium(load_steps=2).load_path) == "<funicular.LoadPath: 2 states, 0.5 to 1 of the loads>"
+    assert repr(small.equilibrium(load_steps=2).load_path) == "<funicular.LoadPath: 2 states, 0.5 to 1 times the loads>"
     for each in (scene, rest, modes):
         shown = each._repr_html_()
         assert shown.startswith("<table>") and 'src="data:image/png;base64,' in shown and len(shown) < 200_000
+
+
+def test_what_slides_stays_on_its_cable_when_displacements_are_enlarged():
+    """Points that meet, meet where they are drawn: a rider on its cable, and what hangs on the rider on it."""
+    clip = fu.load_scene("zip_line").run(1.0, progress=False).animation("a run").clips[0]
+
+    def drawn(position, reference):
+        return reference + 7 * (position - reference)
+
+    rope, wheels, swivel = clip.cables[0], part(clip.marks, "wheels"), part(clip.marks, "swivel")
+    slide = drawn(wheels.position, wheels.reference)
+    for k, shape in enumerate(drawn(rope.position, rope.reference)):
+        lengths = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(shape, axis=0), axis=1))])
+        where = np.interp(np.interp(slide[k, 0], shape[:, 0], lengths), lengths, shape[:, 1])
+        assert slide[k, 1] == pytest.approx(where, abs=0.02 * np.abs(rope.position - rope.reference).max())
+    scene, bodies = fu.load_scene("zip_line"), {body.name: body for body in clip.bodies}
+    for end, mark in ((scene.slides["wheels"].rider, wheels), (scene.joints["swivel"].a, swivel),
+                      (scene.joints["swivel"].b, swivel)):
+        body = bodies[end.on]
+        point = drawn(body.position, body.reference) + rotate(body.orientation, end.point)
+        assert_allclose(point, drawn(mark.position, mark.reference), atol=1e-6)
+    lever = clip.segments[0]
+    assert_allclose(drawn(lever.end, lever.reference[:, 1]) - drawn(lever.start, lever.reference[:, 0]),
+                    lever.end - lever.start, atol=1e-12)
+
+
+def test_a_cable_that_rides_has_no_reference_that_goes_along():
+    """It would have to be bent anew at each instant: its slide has none, so that the page draws true displacements."""
+    scene = fu.load_scene("paper52_ancf")
+    clip = scene.run(0.05, progress=False).animation("a run").clips[0]
+    assert part(clip.marks, "trolley").reference is None
+    assert not is_exaggerable(clip)
+    rest = scene.animation("as drawn").clips[0]
+    assert is_exaggerable(rest)
+
+
+def test_pictures_are_called_by_the_file_of_their_scene(tmp_path):
+    path = tmp_path / "small.toml"
+    path.write_text(fu.load_scene("paper51").to_toml(), encoding="utf-8")
+    scene = fu.load_scene(path)
+    rest = scene.equilibrium(load_steps=2)
+    shown = (scene, scene.replace("wire", elements=4), rest, rest.load_path, scene.modes(1), scene.modes(1, about=rest))
+    assert [each.animation().title for each in shown] == [
+        "small", "small", "small, at rest", "small, load path", "small, modes as drawn", "small, modes about rest"]
+    scene.title = ""
+    assert scene.animation().title == "scene"
+    assert rest.animation("mine").title == "mine"
+
+
+def test_modes_as_drawn_say_that_weight_does_not_act_yet():
+    """The cabin of a cable car is a pendulum about its equilibrium alone."""
+    scene = fu.load_scene("cable_car")
+    note = "what swings by its weight has 0 Hz"
+    assert any(note in each for each in scene.modes(1).animation().notes)
+    assert not any(note in each for each in scene.modes(1, about=scene.equilibrium()).animation().notes)

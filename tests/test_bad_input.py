@@ -222,7 +222,7 @@ def test_slide_without_cable_or_body():
         scene().slide("A", along="wirr", s=0.25, name="t")
     with refused('slide "t": body: there is no cable or body "B"; known: wire, A'):
         scene().slide("B", along="wire", s=0.25, name="t")
-    with refused('slide "t": there is no cable "wire"; there is none yet'):
+    with refused('slide "t": there is no cable "wire"; the scene has none yet'):
         made = Scene()
         made.rigid_body("A", **BODY)
         made.slide("A", along="wire", s=0.25, name="t")

@@ -83,8 +83,8 @@ assert abs(power[steady].mean() / lift.mean() - 1) < 0.1
 # Sizing
 # ------
 #
-# Tension of the rope along its length while the car crosses the lower span. The largest one decides on the rope, the
-# smallest one on how steep it gets beside the wheels.
+# The largest tension along the rope over the whole run decides on the rope. Bending over the wheels and the shoe
+# adds to its stress.
 
 forces = run.section_forces("track", s=np.linspace(1, 200, 60))
 worst = forces.tension.max(dim="time")

@@ -46,7 +46,7 @@ def strip(element: str, elements: int, **law) -> fu.Scene:
 # At rest
 # -------
 #
-# The end sags by more than half the length. Against 64 elements of ``beam12p`` with the structural law:
+# The end sags by 0.47 m, nearly the length. Against 64 elements of ``beam12p`` with the structural law:
 
 exact = strip("beam12p", 64, law="structural").equilibrium()["strip.position"][-1]
 kinds = {"cable8p": {}, "beam12p": {"law": "structural"}, "beam12p, continuum": {"law": "continuum"},
@@ -64,13 +64,13 @@ assert errors[-1] < 1e-3
 
 # %%
 # Cables converge fast to a number that is off by what shear does, here 3e-4: a strip fifty times as long as it is high
-# hardly shears. The continuum locks: it needs many elements for what others do with four.
+# hardly shears. The continuum locks: 32 of its elements are off by more than 4 of the structural beam.
 #
 # In motion
 # ---------
 #
 # The same for half a second of falling, with the CPU time that it takes. Torsion and section vibrations that the scene
-# does not need make a beam stiff, and dear.
+# does not need make a beam stiff and costly.
 
 
 def fall(kind: str, n: int, **law) -> tuple[np.ndarray, float]:
@@ -97,5 +97,5 @@ cost_axes.legend(frameon=False, fontsize="small")
 # - In a plane, model in the plane: ``cable8p`` is ``cable12`` without the third direction, and faster.
 # - No torsion and no shear wanted: take a cable. A rope's wires slip: give its area and second moment.
 # - Torsion, or bending that differs across: ``beam24`` with ``law="structural"``.
-# - Accelerations of a rider on nodes, or of the contact wire: ``cable18``, whose curvature does not jump.
+# - Accelerations of a rider that passes nodes, or of a contact wire: ``cable18``, whose curvature does not jump.
 # - Double the elements once. If the result moves by more than you can bear, double again.

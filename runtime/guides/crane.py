@@ -78,9 +78,9 @@ power.set(xlabel="time in s", ylabel="kW", title="power of the drive")
 # The girder
 # ----------
 #
-# It sags under its own weight and the trolley. The bending moment at mid-span follows from the forces that are in
-# balance with the part of the girder beside it. It is a little larger than for a load at rest: a swinging load pulls
-# harder.
+# It sags under its own weight, the trolley and the load. The bending moment at mid-span follows from the
+# forces that are in balance with the part of the girder beside it. It is a little larger than for a load at rest: a
+# swinging load pulls harder.
 
 run = runs["1.5 s"]
 sag = run["trolley.position"][:, 1].min()

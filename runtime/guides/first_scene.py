@@ -43,7 +43,8 @@ print(run.summary())
 # Look
 # ----
 #
-# Results are NumPy arrays by name, time first. The cable sags under the body, which oscillates about the middle.
+# Results are NumPy arrays by name, time first. The body slides along, past the middle, and
+# swings up and down with the cable, which gives way under it.
 
 import matplotlib.pyplot as plt
 

@@ -64,7 +64,8 @@ moment.set(xlabel="s in m", ylabel="N m", title="bending moment")
 # ``run.dataset`` is everything with units and dimensions: select by name and time, average, interpolate.
 
 dataset = run.dataset
-print(dataset["trolley.force"].sel(time=slice(0.2, 0.8), xyz="y").mean().values)
+mean = float(dataset["trolley.force"].sel(time=slice(0.2, 0.8), xyz="y").mean())
+print(f"mean force on the body from 0.2 to 0.8 s, upwards: {mean:.2f} N")
 print(dataset["wire.nodal_vectors"].dims, dataset["wire.nodal_vectors"].attrs["units"])
 
 # %%

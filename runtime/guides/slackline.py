@@ -12,7 +12,7 @@ and up and down, and what do the anchors feel when the person jumps off?
 #
 # A webbing of 25 mm by 2.5 mm, pretensioned to 2 kN, in space: ``cable12`` bends and stretches and has no torsion. A
 # cable's bending stiffness is the same in all directions here, and too small to matter. The pretension is in
-# ``rest_length``, which is shorter than the distance of the anchors by F / (E A).
+# ``rest_length``, which is shorter than the distance of the anchors by the strain F / (E A).
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -34,8 +34,8 @@ scene.pin(line, s=rest_length)
 # A person in the middle
 # ----------------------
 #
-# Seventy-five kilograms, 1 m above the line, tied to it by a joint that leaves every turn free would fall over. To ask
-# for the line's own motion, the person's mass sits on the line.
+# A body of 75 kg whose mass centre is 1 m above the line would fall over, if a joint left every turn free. The line's
+# own motion is what is asked for here: the mass centre is on the line.
 
 person = scene.rigid_body("person", mass=75, inertia=(1, 1, 1), position=(SPAN / 2, 1, 0))
 scene.joint("spherical", person, (line, rest_length / 2), name="feet")

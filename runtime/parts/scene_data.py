@@ -29,7 +29,7 @@ class SceneData:
 
     ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
     else a list. ``messages`` lists what was adjusted; ``run_settings`` and ``equilibrium_settings`` hold the settings
-    that a scene file gives.
+    that a scene file gives; ``title`` is what pictures are called, the name of its file without the ending.
     """
 
     cables: dict[str, Cable]
@@ -53,6 +53,7 @@ class SceneData:
         for kind in KINDS:
             setattr(self, kind.group, {} if kind.is_named() else [])
         self.messages: list[str] = []
+        self.title = ""
         self.run_settings: dict[str, Any] = {}
         self.equilibrium_settings: dict[str, Any] = {}
 

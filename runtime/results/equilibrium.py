@@ -8,7 +8,7 @@ from ..parts.cable import Cable
 from ..parts.slide import Slide
 from ..solve.rest_state import CriticalPoint, RestState
 from .section_forces import dataset
-from .viewable import Viewable
+from .viewable import Viewable, titled
 
 if TYPE_CHECKING:
     import xarray
@@ -34,7 +34,7 @@ class Equilibrium(Viewable, RestState):
         """Return the state as pictures show it; see `Viewable.animation`."""
         from .animation.clips import of_equilibrium  # for pictures alone
 
-        return of_equilibrium(self, title or "equilibrium")
+        return of_equilibrium(self, title or titled(self.scene, "at rest") or "equilibrium")
 
     @property
     def load_path(self) -> LoadPath:
@@ -59,13 +59,13 @@ class LoadPath(Viewable):
     def __repr__(self) -> str:
         """Return the number of states and their loads, in a line."""
         loads = [state.load_fraction for state in self.last.path]
-        return f"<funicular.LoadPath: {len(loads)} states, {min(loads):.4g} to {max(loads):.4g} of the loads>"
+        return f"<funicular.LoadPath: {len(loads)} states, {min(loads):.4g} to {max(loads):.4g} times the loads>"
 
     def animation(self, title: str | None = None) -> Animation:
         """Return the path as pictures show it; see `Viewable.animation`. Raises FunicularError for a single state."""
         from .animation.clips import of_path  # for pictures alone
 
-        return of_path(self.last, title or "load path")
+        return of_path(self.last, title or titled(self.last.scene, "load path") or "load path")
 
     def overview(self) -> list[tuple[str, str]]:
         """Return what the last state is, for a notebook; see `Viewable.overview`."""

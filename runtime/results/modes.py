@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,12 +10,15 @@ import numpy as np
 from ..parts.scene_data import SceneData
 from ..solve import modes as solved
 from ..solve.rest_state import RestState
-from .viewable import Viewable
+from .viewable import Viewable, titled
 
 if TYPE_CHECKING:
     from ..view.animation import Animation
 
 __all__ = ["Modes"]
+
+AS_DRAWN = ("these are modes of the scene as drawn, where joints and slides bear nothing: what swings by its weight "
+            "has 0 Hz; take --equilibrium, or about=scene.equilibrium()")
 
 
 @dataclass(repr=False)
@@ -47,7 +50,10 @@ class Modes(Viewable, solved.Modes):
 
         assert self.scene is not None, "modes are made by Scene.modes"
         about = drawn(self.scene) if self.about is None else self.about.quantities
-        return of_modes(self, self.scene, about, title or "modes")
+        state = "as drawn" if self.about is None else "about rest"
+        made = of_modes(self, self.scene, about, title or titled(self.scene, f"modes {state}") or f"modes {state}")
+        bearing = self.scene.joints or self.scene.slides
+        return replace(made, notes=(*made.notes, AS_DRAWN)) if self.about is None and bearing else made
 
     def overview(self) -> list[tuple[str, str]]:
         """Return the frequencies for a notebook; see `Viewable.overview`."""

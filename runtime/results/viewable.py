@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..notebook import in_notebook
+from ..parts.scene_data import SceneData
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -120,3 +121,8 @@ class Viewable:
             return image_tag(shape_figure(self.sketch()))
         except FunicularError as error:  # a table without a picture is better than none
             return f"<p>{escape(str(error))}</p>"
+
+
+def titled(scene: SceneData, state: str) -> str:
+    """Return what a picture of a state of a scene is called; nothing of a scene without a title."""
+    return f"{scene.title}, {state}" if scene.title else ""

@@ -21,6 +21,11 @@ from .stability import Stability
 from .static_problem import StaticProblem
 
 
+def in_loads(fraction: float) -> str:
+    """Return how much of the loads is on, in words."""
+    return "all loads" if fraction == 1 else f"{fraction:.6g} times the loads"
+
+
 def layout(scene: SceneData) -> dict[str, list]:
     """Return what must be the same in two scenes for a state of one to be a state of the other."""
     return {"cables": [(c.name, c.element, c.elements, c.length) for c in scene.cables.values()],
@@ -88,7 +93,7 @@ class RestState(NamedArrays):
     def __repr__(self) -> str:
         """Return how the state is and how many results it has, in a line."""
         stable = "stable" if self.stable else f"{self.unstable_directions} unstable directions"
-        return (f"<funicular.Equilibrium: {stable}, under {self.load_fraction:.6g} of the loads, "
+        return (f"<funicular.Equilibrium: {stable}, under {in_loads(self.load_fraction)}, "
                 f"{len(self.quantities)} results>")
 
     @property

@@ -251,7 +251,8 @@ def is_exaggerable(clip: Clip) -> bool:
 
     What slides leaves its cable if its way along it is enlarged, too: it needs a reference that goes along.
     """
-    sliding = (mark for mark in clip.marks if mark.kind == "slide" and np.ptp(mark.position, axis=0).any())
+    sliding = (mark for mark in clip.marks if mark.kind == "slide"
+               and (len(clip.time) == 1 or np.ptp(mark.position, axis=0).any()))
     return clip.periodic or all(mark.reference is not None and mark.reference.ndim == 2 for mark in sliding)
 
 

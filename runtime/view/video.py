@@ -63,7 +63,7 @@ def film_times(clips: tuple[Clip, ...], speed: float | None) -> tuple[np.ndarray
     """
     first, last = min(clip.time[0] for clip in clips), max(clip.time[-1] for clip in clips)
     if not last > first:
-        raise FunicularError("there is one frame, which makes no film; take save_png")
+        raise FunicularError("there is one frame, which makes no film; take save_png, or --png")
     if clips[0].periodic:
         last = first + PERIODS * period(clips[0])
     pace = (last - first) / LONG if speed is None else float(speed)

@@ -23,7 +23,7 @@ PAGES = {"runtime/README.md": "reference.md", "derive/README.md": "derivation.md
 
 
 def build(out: Path, work: Path) -> int:
-    """Build the site; returns 0, or 1 where Sphinx warned of anything. work: an empty directory."""
+    """Build the site and return 0, or 1 if the theory is wrong or Sphinx warned. work: an empty directory."""
     for file in SITE.glob("*.md"):
         shutil.copy(file, work)
     shutil.copy(SITE / "conf.py", work)
@@ -38,6 +38,10 @@ def build(out: Path, work: Path) -> int:
     (work / "command_line.md").write_text(command_line(), encoding="utf-8")
     (work / "extra").mkdir()
     (work / "extra" / "funicular.schema.json").write_text(json.dumps(scene_schema(), indent=1), encoding="utf-8")
+    theory = [sys.executable, "-m", "funicular", "theory", "-o", str(work / "extra" / "theory")]
+    if subprocess.run(theory, check=False).returncode:
+        return 1
+    (work / "theory.md").write_text(theory_page(work / "extra"), encoding="utf-8")
     command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", str(work), str(out)]
     return subprocess.run(command, check=False).returncode
 
@@ -47,6 +51,16 @@ GALLERY_HEADER = """Guides
 
 Each is a script that runs; its pictures and numbers are what it printed when this site was built.
 """
+
+
+ORDER = ("first_scene", "choose_an_element", "cable_car", "crane", "zip_line", "cable_robot", "slackline",
+         "slack_and_taut", "modes", "results", "long_runs", "your_own_element", "verify_and_benchmark", "c_kernels")
+"""Of the guides in the site: from the first steps over examples to what few need."""
+
+
+def place_in_order(filename: str | Path) -> int:
+    """Return the place of a guide's file in the gallery."""
+    return ORDER.index(Path(filename).stem)
 
 
 def _copy_pictures(page: Path, work: Path) -> None:
@@ -86,6 +100,26 @@ def command_line() -> str:
     command = [sys.executable, "-m", "typer", "funicular.cli", "utils", "docs", "--name", "funicular"]
     text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     return re.sub(r"^# `funicular`", "# Command line", text, flags=re.MULTILINE)
+
+
+THEORY = """# Theory
+
+All equations in the order of the paper, with its equation numbers, and a page for each element: what it is for, its
+limits, its measured errors and its formulas. They are made from the same specs as the C kernels, and each formula was
+compared with the compiled kernel when this site was built. Formulas are MathML: a browser shows them without a script.
+
+"""
+
+
+def theory_page(extra: Path) -> str:
+    """Return the page that links to the documents in extra/theory, the whole theory first."""
+    lines = []
+    for html in sorted((extra / "theory").glob("*.html"), key=lambda path: (path.stem != "theory", path.stem)):
+        name = html.relative_to(extra).as_posix()
+        title = "The theory, from eq 1 to 38" if html.stem == "theory" else f"The element {html.stem}"
+        tex = html.with_suffix(".tex").relative_to(extra).as_posix()
+        lines.append(f'- <a href="{name}">{title}</a> (<a href="{tex}">LaTeX</a>)')
+    return THEORY + "\n".join(lines) + "\n"
 
 
 SCENE_FILES = """# Scene files

@@ -4,6 +4,7 @@ import logging
 import warnings
 
 import funicular
+from funicular.guides.site.build import place_in_order
 from sphinx.application import Sphinx
 
 project = "funicular"
@@ -30,6 +31,7 @@ suppress_warnings = ["config.cache"]
 sphinx_gallery_conf = {
     "examples_dirs": "guides_source",
     "gallery_dirs": "guides",
+    "within_subsection_order": place_in_order,
     "filename_pattern": r"\.py",
     "abort_on_example_error": True,
     "download_all_examples": False,

@@ -10,7 +10,7 @@ from ...parts.solids import Box, Cylinder, MeshShape, Solid, Sphere
 from ...view.animation import BodyShape
 from ...view.mesh_files import read_mesh
 from ...view.surfaces import BOX
-from .frames import Frames
+from .frames import Frames, one_or_all
 
 HEAVIEST, LIGHTEST = 7850.0, 50.0
 """Density of steel, and of what is mostly hollow, in kg/m³: between them lies that of a plausible shape."""
@@ -18,8 +18,8 @@ AXES = 1e-9
 """Of the largest moment of inertia: a smaller product of inertia leaves body axes the principal ones."""
 
 
-def body_shape(frames: Frames, name: str, notes: list[str]) -> BodyShape:
-    """Return a rigid body of the scene; what could not be had is said in notes."""
+def body_shape(frames: Frames, refs: Frames, name: str, notes: list[str]) -> BodyShape:
+    """Return a rigid body of the scene; what could not be had is said in notes. refs: see `references`."""
     body = frames.scene.bodies[name]
     assert isinstance(body, RigidBody)
     shape = None
@@ -33,7 +33,7 @@ def body_shape(frames: Frames, name: str, notes: list[str]) -> BodyShape:
         if frames.has(f"{name}.{key}"):
             quantities[label] = unit, np.linalg.norm(frames.value(f"{name}.{key}"), axis=-1)
     return BodyShape(name, frames.value(f"{name}.position"), frames.value(f"{name}.orientation"),
-                     plausible_shape(body) if shape is None else shape, frames.reference(f"{name}.position"),
+                     plausible_shape(body) if shape is None else shape, one_or_all(refs.value(f"{name}.position")),
                      quantities)
 
 

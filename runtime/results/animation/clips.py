@@ -11,7 +11,7 @@ from ...errors import FunicularError
 from ...parts.modal_body import ModalBody
 from ...parts.scene_data import SceneData
 from ...solve.modes import Modes
-from ...solve.rest_state import RestState
+from ...solve.rest_state import RestState, in_loads
 from ...view.animation import Animation, BodyShape, CableShape, Clip, Curve, EventMark, Mark
 from . import sources
 from .bodies import body_shape
@@ -20,6 +20,7 @@ from .curves import curves, events, thinned
 from .frames import Frames, no_forces
 from .marks import marks, segments
 from .recorded import Recorded
+from .references import references
 
 FRAMES = 600
 """Of a run, at most."""
@@ -75,7 +76,7 @@ def of_equilibrium(state: RestState, title: str) -> Animation:
 def details(state: RestState) -> dict[str, str]:
     """Return what a state of rest is, in words."""
     return {"stability": "stable" if state.stable else f"{state.unstable_directions} unstable directions",
-            "load": f"{state.load_fraction:.6g} of the loads", "residual": f"{state.residual:.2g} N"}
+            "load": in_loads(state.load_fraction), "residual": f"{state.residual:.2g} N"}
 
 
 def of_path(state: RestState, title: str) -> Animation:
@@ -121,7 +122,8 @@ def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], ti
         clips.append(replace(clip, time=phase / (2 * np.pi * frequency) if frequency > 0 else phase / (2 * np.pi),
                              segments=tuple(each for each in clip.segments if each.kind != "load"), periodic=True,
                              details={"frequency": what, "drawn with": drawn}))
-    notes.append(f"modes have no size of their own: they are drawn with a largest displacement of {swing:.3g} m")
+    notes.append(f"modes have no size of their own: they are drawn with displacements of at most {swing:.3g} m "
+                 f"and turns of at most {TURN:g} rad")
     return replace(_animation(scene, title, clips, notes), arrangement="menu")
 
 
@@ -175,19 +177,19 @@ def scene_size(frames: Frames) -> float:
 
 def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
     """Return what the frames show; what could not be had is said in notes."""
-    size = scene_size(frames)
+    size, refs = scene_size(frames), references(frames)
     cables: list[CableShape] = [cable_shape(frames, name, notes) for name in frames.scene.cables]
     bodies: list[BodyShape] = []
     points: list[Mark] = []
     for name, body in frames.scene.bodies.items():
         if not isinstance(body, ModalBody):
-            bodies.append(body_shape(frames, name, notes))
+            bodies.append(body_shape(frames, refs, name, notes))
         elif (line := modal_line(frames, name)) is not None:
             cables.append(line)
         else:
             points += _cloud(frames, name)
-    return Clip(label, frames.time, tuple(cables), tuple(bodies), (*marks(frames, size), *points),
-                tuple(segments(frames, size)))
+    return Clip(label, frames.time, tuple(cables), tuple(bodies), (*marks(frames, refs, size), *points),
+                tuple(segments(frames, refs, size)))
 
 
 def _cloud(frames: Frames, name: str) -> list[Mark]:

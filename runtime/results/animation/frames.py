@@ -76,9 +76,12 @@ def along(cable: Cable, s: np.ndarray, nodal_vectors: np.ndarray, slope: int | N
 
 
 def moving(cable: Cable, s: np.ndarray, nodal_vectors: np.ndarray) -> np.ndarray:
-    """Return the points (T, 3) of a cable at one arc-length s (T,) of each instant; nodal_vectors: (T, nodes, ...)."""
+    """Return the points (T, 3) of a cable at one arc-length s (T,) of each instant.
+
+    nodal_vectors: (T, nodes, ...), or (1, nodes, ...) of a cable that stands still.
+    """
     element, N = weights(cable, s)
-    instants = np.arange(len(nodal_vectors))
+    instants = np.arange(len(s)) if len(nodal_vectors) > 1 else np.zeros(len(s), dtype=int)
     pairs = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=1)
     return np.einsum("tk,tkd->td", N, pairs)
 
@@ -98,3 +101,8 @@ def place(frames: Frames, attachment: Attachment) -> np.ndarray:
         turn = frames.value(f"{attachment.on}.modal_coordinates") @ body.shape.rotations[:, node]
         return frames.value(f"{attachment.on}.nodes")[:, node] + rotate(orientation, arm + np.cross(turn, arm))
     return frames.value(f"{attachment.on}.position") + rotate(orientation, attachment.point)
+
+
+def one_or_all(position: np.ndarray) -> np.ndarray:
+    """Return places (T, 3) as they are, and (1, 3) of what stands still as (3,)."""
+    return position[0] if len(position) == 1 else position

@@ -15,7 +15,8 @@ from ...parts.support import Clamp, Motion, Support
 from ...parts.validation import Vector, show
 from ...rotations import product, rotate, turned_by
 from ...view.animation import Mark, Segment
-from .frames import Frames, along, moving, place
+from .frames import Frames, along, moving, one_or_all, place
+from .references import slide_reference
 
 ROUNDING = 1e-13
 APART = 1e-6
@@ -37,32 +38,37 @@ def _node(frames: Frames, cable: str, node: int) -> np.ndarray:
     return frames.value(f"{cable}.nodal_vectors")[:, node, part.kind_of_element.nodal_vectors.index("r")]
 
 
-def marks(frames: Frames, size: float) -> Iterator[Mark]:
-    """Yield the points that mean something; size: of the scene, in m."""
+def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
+    """Yield the points that mean something; refs: see `references`; size: of the scene, in m."""
     scene = frames.scene
     for support in scene.supports:
         kind, what = _support(support)
-        yield Mark(support.label, kind, still(_node(frames, *node_of(scene, support))),
-                   f'{what} of "{support.cable}" at s = {show(support.s, "m")}')
+        node = node_of(scene, support)
+        yield Mark(support.label, kind, still(_node(frames, *node)),
+                   f'{what} of "{support.cable}" at s = {show(support.s, "m")}', _node(refs, *node)[0])
     for name, tie in scene.ties.items():
         one, _ = ends_of(scene, tie)
-        yield Mark(name, "tie", still(_node(frames, *one)), f'tie of "{tie.cable}" and "{tie.to}"')
+        yield Mark(name, "tie", still(_node(frames, *one)), f'tie of "{tie.cable}" and "{tie.to}"',
+                   _node(refs, *one)[0])
     for name, joint in scene.joints.items():
         a, b = place(frames, joint.a), place(frames, joint.b)
-        yield Mark(name, "joint", still(b), f"{joint.joint_kind} joint of {_on(joint.a)} and {_on(joint.b)}")
+        yield Mark(name, "joint", still(b), f"{joint.joint_kind} joint of {_on(joint.a)} and {_on(joint.b)}",
+                   one_or_all(place(refs, joint.b)))
         if _apart(a, b, size):
-            yield Mark(name, "joint", still(a), f"{joint.joint_kind} joint, its end on {_on(joint.a)}")
+            yield Mark(name, "joint", still(a), f"{joint.joint_kind} joint, its end on {_on(joint.a)}",
+                       one_or_all(place(refs, joint.a)))
     for name, slide in scene.slides.items():
         yield Mark(name, "slide", still(slide_place(frames, name)),
-                   f'slide of {_on(slide.rider)} along "{slide.along}"')
+                   f'slide of {_on(slide.rider)} along "{slide.along}"', slide_reference(frames, name))
     for part in scene.parts():
         for end in (value for _, value in part if isinstance(value, Attachment)):
             if end.on is None:
                 yield Mark(part.given_name or part.kind, "ground", place(frames, end), f"ground end of {part.where}")
     for name, load in scene.loads.items():
         if isinstance(load, Moment):
-            yield Mark(name, "point", still(place(frames, _loaded(frames, load))),
-                       f"moment {show(load.value, 'N m')} on {_on(_loaded(frames, load))}")
+            end = _loaded(frames, load)
+            yield Mark(name, "point", still(place(frames, end)), f"moment {show(load.value, 'N m')} on {_on(end)}",
+                       one_or_all(place(refs, end)))
 
 
 def _support(support: Support) -> tuple[Literal["pin", "clamp"], str]:
@@ -89,20 +95,33 @@ def slide_place(frames: Frames, name: str) -> np.ndarray:
                   frames.value(f"{slide.along}.nodal_vectors"))
 
 
-def segments(frames: Frames, size: float) -> Iterator[Segment]:
-    """Yield springs, lever arms, joints of points that are apart, and loads as arrows; size: of the scene, in m."""
+def segments(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
+    """Yield springs, lever arms, joints of points that are apart, and loads as arrows.
+
+    refs: see `references`; size: of the scene, in m.
+    """
     scene = frames.scene
     for name, spring in scene.point_forces.items():
-        yield Segment(name, "spring", place(frames, spring.a), place(frames, spring.b))
+        yield _between(frames, refs, name, "spring", spring.a, spring.b)
     for name, joint in scene.joints.items():
-        a, b = place(frames, joint.a), place(frames, joint.b)
-        if _apart(a, b, size):
-            yield Segment(name, "joint", a, b)
-    yield from levers(frames, size)
-    yield from _loads(frames, size)
+        if _apart(place(frames, joint.a), place(frames, joint.b), size):
+            yield _between(frames, refs, name, "joint", joint.a, joint.b)
+    yield from levers(frames, refs, size)
+    yield from _loads(frames, refs, size)
 
 
-def levers(frames: Frames, size: float) -> Iterator[Segment]:
+def _between(frames: Frames, refs: Frames, name: str, kind: Literal["spring", "lever", "joint"], a: Attachment,
+             b: Attachment) -> Segment:
+    """Return the straight connection of two ends."""
+    return Segment(name, kind, place(frames, a), place(frames, b), _both(place(refs, a), place(refs, b)))
+
+
+def _both(start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Return the reference (2, 3) or (T, 2, 3) of a segment from those of its ends, (1 or T, 3)."""
+    return one_or_all(np.stack(np.broadcast_arrays(start, end), axis=1))
+
+
+def levers(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
     """Yield the lever arms of rigid bodies: from the mass centre to each point that something is attached to."""
     scene = frames.scene
     riders = [(name, slide.rider) for name, slide in scene.slides.items()]
@@ -112,32 +131,30 @@ def levers(frames: Frames, size: float) -> Iterator[Segment]:
         body = None if end.on is None else scene.bodies.get(end.on)
         if body is None or isinstance(body, ModalBody):
             continue
-        centre = place(frames, Attachment(on=end.on, at=body.centre))
-        point = place(frames, end)
-        if _apart(centre, point, size):
-            yield Segment(f"{end.on}, {name}", "lever", centre, point)
+        centre = Attachment(on=end.on, at=body.centre)
+        if _apart(place(frames, centre), place(frames, end), size):
+            yield _between(frames, refs, f"{end.on}, {name}", "lever", centre, end)
 
 
-def _loads(frames: Frames, size: float) -> Iterator[Segment]:
+def _loads(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
     """Yield forces as arrows that end where they act, in proportion to each other among loads of one unit."""
-    found: dict[str, list[tuple[str, np.ndarray, np.ndarray]]] = {"N": [], "N/m": []}
+    found: dict[str, list[tuple[str, Attachment, np.ndarray]]] = {"N": [], "N/m": []}
     for name, load in frames.scene.loads.items():
         scale = _scale(frames, load)
         if isinstance(load, Force):
             end = _loaded(frames, load)
-            value = scale * _components(frames, end, load.value, load.follower)
-            found["N"].append((name, place(frames, end), value))
+            found["N"].append((name, end, scale * _components(frames, end, load.value, load.follower)))
         elif isinstance(load, DistributedForce):
             cable = frames.scene.cables[load.cable]
             for s in np.linspace(load.start or 0.0, cable.length if load.stop is None else load.stop, ARROWS):
                 end = Attachment(on=load.cable, s=float(s))
-                found["N/m"].append((name, place(frames, end),
-                                     scale * _components(frames, end, load.value, load.follower)))
+                found["N/m"].append((name, end, scale * _components(frames, end, load.value, load.follower)))
     for arrows in found.values():
         largest = max((np.linalg.norm(value, axis=-1).max() for _, _, value in arrows), default=0.0)
-        for name, at, value in arrows:
+        for name, end, value in arrows:
             if largest > 0:
-                yield Segment(name, "load", at - ARROW * size / largest * value, at)
+                at, of, arrow = place(frames, end), place(refs, end), ARROW * size / largest * value
+                yield Segment(name, "load", at - arrow, at, _both(of - arrow, of))
 
 
 def _scale(frames: Frames, load: Load) -> np.ndarray:

@@ -1,0 +1,80 @@
+"""What exaggerated displacements are measured from: the scene as drawn, and for what slides a place that goes along."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...parts.attachment import Attachment
+from ...parts.rigid_body import RigidBody
+from ...parts.scene_data import SceneData
+from ...rotations import rotate
+from .frames import Frames, moving
+
+
+def references(frames: Frames) -> Frames:
+    """Return the frames that displacements of these frames are measured from, places of one instant or of all T.
+
+    Cables stand still in them. A slide goes along the cable that stands still, and the bodies that ride on it go with
+    it and turn as they do: enlarged displacements then leave a rider on its cable.
+    """
+    carried = _carried(frames)
+
+    def value(name: str) -> np.ndarray:
+        part, _, key = name.rpartition(".")
+        if part in frames.scene.slides:
+            return frames.value(name)
+        if part in carried and key in ("position", "orientation"):
+            return carried[part] if key == "position" else frames.value(name)
+        return frames.reference(name)[None]
+
+    return replace(frames, value=value)
+
+
+def slide_reference(frames: Frames, name: str) -> np.ndarray | None:
+    """Return the point (T, 3) of the undisplaced cable where a slide is; None where its rider cannot go along."""
+    slide = frames.scene.slides[name]
+    if not frames.has(f"{name}.s"):
+        return None
+    s = frames.value(f"{name}.s")
+    if slide.rider.on not in _riders(frames.scene) and (s != slide.s).any():
+        return None
+    return moving(frames.scene.cables[slide.along], s, frames.reference(f"{slide.along}.nodal_vectors")[None])
+
+
+def _riders(scene: SceneData) -> set[str]:
+    """Return the rigid bodies that joints lead from to nothing but rigid bodies: they can go along with a slide."""
+    bodies = {name for name, body in scene.bodies.items() if isinstance(body, RigidBody)}
+    found = set(bodies)
+    joints = [{joint.a.on, joint.b.on} for joint in scene.joints.values()]
+    while True:
+        tied = {name for pair in joints if not pair <= found for name in pair & found if name is not None}
+        if not tied:
+            return found
+        found -= tied
+
+
+def _carried(frames: Frames) -> dict[str, np.ndarray]:
+    """Return the places (T, 3) in m that displacements of riding bodies are measured from, by name.
+
+    A body on several slides takes the mean of the places that these ask for; bodies joined to it follow.
+    """
+    asked: dict[str, list[np.ndarray]] = {}
+    for name, slide in frames.scene.slides.items():
+        point = slide_reference(frames, name)
+        if point is not None and slide.rider.on in _riders(frames.scene):
+            asked.setdefault(slide.rider.on, []).append(point - _arm(frames, slide.rider))
+    found = {name: np.mean(points, axis=0) for name, points in asked.items()}
+    joints = frames.scene.joints.values()
+    while following := [joint for joint in joints if (joint.a.on in found) != (joint.b.on in found)]:
+        for joint in following:
+            one, other = (joint.a, joint.b) if joint.a.on in found else (joint.b, joint.a)
+            if one.on is not None and other.on is not None and other.on not in found:
+                found[other.on] = found[one.on] + _arm(frames, one) - _arm(frames, other)
+    return found
+
+
+def _arm(frames: Frames, end: Attachment) -> np.ndarray:
+    """Return the vectors (T, 3) in m from a body's origin to a point of it, as it is turned."""
+    return rotate(frames.value(f"{end.on}.orientation"), end.point)
