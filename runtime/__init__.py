@@ -89,6 +89,11 @@ LAZY = {"Equilibrium": "results.equilibrium", "InitialState": "model.initial_sta
 """What brings SciPy along, which takes as long as all the rest: imported when it is asked for."""
 
 
+def __dir__() -> list[str]:
+    """Return the names of the interface, which editors and IPython complete."""
+    return sorted({*__all__, *LAZY, "__all__", "__doc__", "__file__", "__name__", "__path__", "__version__"})
+
+
 def __getattr__(name: str) -> Any:
     if name in LAZY:
         from importlib import import_module

@@ -96,3 +96,9 @@ def test_names_of_results():
     run = scene.run(1e-4)
     with refused(fu.UnknownResultError, 'the run has no result "join_1.force"; it is called "tie_1.force" now'):
         _ = run["join_1.force"]
+
+
+def test_the_package_completes_its_interface_alone():
+    lazy = {"Equilibrium", "InitialState", "Modes"}
+    assert {name for name in dir(fu) if not name.startswith("__")} == {*fu.__all__, *lazy} - {"__version__"}
+    assert all(hasattr(fu, name) for name in dir(fu))

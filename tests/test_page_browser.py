@@ -141,6 +141,19 @@ def test_what_slides_is_not_exaggerated(opened):
     assert page.page.locator(".badge").is_hidden()
 
 
+def test_space_plays_after_a_click_and_presses_what_the_keyboard_chose(opened):
+    page = opened("twisted")
+    button = page.page.get_by_label("Along z (4)")
+    button.click()
+    page.page.keyboard.press("Space")
+    assert page("f.playing")
+    page("f.pause()")
+    page.page.get_by_label("Along y (3)").focus()
+    page.page.keyboard.press("Space")
+    assert not page("f.playing")
+    assert page.page.get_by_label("Along y (3)").get_attribute("aria-pressed") == "true"
+
+
 def test_pointing_says_name_place_and_value(opened):
     page, clip = opened("twisted"), animations.twisted().clips[0]
     page("f.goToFrame(40)")

@@ -16,6 +16,9 @@ export const KEYS = [
 
 /** Listen for keys; `actions` has a function for each name used here. */
 export function listen(document, actions) {
+  // What was clicked loses the focus at once: the space bar plays, and does not press it again.
+  const release = ({ detail, target }) => detail > 0 && target.closest?.("button, summary")?.blur();
+  document.addEventListener("click", release, true);
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { target } = event;
