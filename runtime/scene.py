@@ -85,6 +85,11 @@ class Scene(Viewable, SceneMethods):
 
         part: its name, or the part itself; changes: by the keywords that such a part is made with, such as
         ``scene.replace("trolley", friction=fu.Friction(coefficient=0.1))``. Raises SceneError.
+
+        >>> import funicular as fu
+        >>> scene = fu.load_scene("paper51")
+        >>> scene.replace("A", mass=2.0).bodies["A"].mass, scene.bodies["A"].mass
+        (2.0, 1.0)
         """
         old = self._part(part)
         scene = type(self)(gravity=self.gravity)

@@ -16,7 +16,12 @@ loads = Scene.from_toml
 
 
 def bundled_scenes() -> dict[str, Path]:
-    """Return the scenes that come with the package, by name."""
+    """Return the scenes that come with the package, by name.
+
+    >>> import funicular as fu
+    >>> "cable_car" in fu.bundled_scenes()
+    True
+    """
     return {path.stem: path for path in sorted(SCENES.glob("*.toml"))}
 
 

@@ -53,7 +53,13 @@ class Material(Part):
         return self
 
     def poisson(self) -> float:
-        """Return the Poisson ratio ν, whichever constant was given."""
+        """Return the Poisson ratio ν, whichever constant was given.
+
+        >>> import funicular as fu
+        >>> steel = fu.Material(youngs_modulus=2.1e11, shear_modulus=8.4e10, density=7850)
+        >>> round(steel.poisson(), 9)
+        0.25
+        """
         if self.shear_modulus is None or self.poisson_ratio is not None:
             return cast(float, self.poisson_ratio)  # one of the two is given
         return self.youngs_modulus / (2 * self.shear_modulus) - 1
@@ -64,7 +70,7 @@ class Material(Part):
         return self.poisson() >= INCOMPRESSIBLE - (ROUNDED if self.poisson_ratio is None else 0.0)
 
     def lame(self) -> tuple[float, float]:
-        """Return the lamé's constants (λ, μ) in Pa; λ is infinite where the volume cannot change."""
+        """Return Lamé's constants (λ, μ) in Pa; λ is infinite where the volume cannot change."""
         E, nu = self.youngs_modulus, self.poisson()
         if self.is_incompressible:
             return inf, E / (2 * (1 + nu))

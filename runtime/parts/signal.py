@@ -175,7 +175,12 @@ class TableSignal(Signal):
 
 
 class Ramp(Signal):
-    """From ``before`` to ``after`` between ``start`` and ``end`` (s), without a jump of the second derivative."""
+    """From ``before`` to ``after`` between ``start`` and ``end`` (s), without a jump of the second derivative.
+
+    >>> import funicular as fu
+    >>> fu.Ramp(start=1.0, end=3.0, after=10.0).value([0.0, 2.0, 4.0]).tolist()
+    [0.0, 5.0, 10.0]
+    """
 
     form: ClassVar[str] = "ramp"
     start: Time

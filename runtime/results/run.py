@@ -176,6 +176,15 @@ class Run(Viewable, NamedArrays):
         """Return the state at an output time (s), for ``scene.run(initial=...)`` of this scene or one like it.
 
         Raises UnknownResultError where no row has that time: states are not interpolated.
+
+        >>> import funicular as fu
+        >>> scene = fu.load_scene("paper51")
+        >>> run = scene.run(duration=0.02, output_step=0.01, tol=1e-3)
+        >>> run.at(0.01)["A.position"].shape
+        (3,)
+        >>> later = scene.run(duration=0.01, tol=1e-3, initial=run.at(0.01))
+        >>> bool(later["A.position"][0, 0] == run["A.position"][1, 0])
+        True
         """
         from ..model.initial_state import BODY, MODAL, SLIDE, InitialState  # brings SciPy, which results do without
 
