@@ -95,3 +95,16 @@ def test_sections_need_nodal_vectors():
 def test_other_programs_words_are_answered(keyword, remedy):
     with pytest.raises(fu.SceneError, match=rf'run: "{keyword}" is not known here; did you mean "{remedy}"\?'):
         pendulum().run(duration=0.1, **{keyword: 1.0})
+
+
+def test_cables_that_are_tied_move_together():
+    scene = pendulum()
+    scene.cable("rest", start=(1, 0, 0), end=(2, 0, 0), elements=4, element="cable8p", **WIRE)
+    scene.tie("wire", s=1.0, to="rest", at=0.0)
+    s = np.linspace(0, 1, 5)
+    stretched = np.stack([1.01 * s, 0 * s, 0 * s], axis=1)
+    with pytest.raises(fu.SceneError, match="where a support or tie keeps it"):
+        scene.run(duration=1e-3, initial={"wire.position": stretched})
+    moved = {"wire.position": stretched, "rest.position": stretched + np.array([1.01, 0, 0])}
+    run = scene.run(duration=1e-3, tol=1e-4, output_step=1e-3, initial=moved)
+    np.testing.assert_allclose(run["rest.position"][0], moved["rest.position"], atol=1e-12)

@@ -10,7 +10,7 @@ from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
 from .constants import constants
 from .model import CableModel
-from .unknowns import Reduction
+from .unknowns import Reduction, as_supports_leave
 
 
 def cable_model(cable: Cable, first: int) -> CableModel:
@@ -37,13 +37,7 @@ def cable_gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.nd
 def cable_rates(scene: SceneData, reduction: Reduction) -> np.ndarray:
     """Return the rates of the cables' nodal vectors at the start, but for what supports hold."""
     asked = np.concatenate([*(cable.nodal_rates[..., : scene.dim].ravel() for cable in scene.cables.values()), []])
-    unknown = reduction.unknown_of_dof
-    unknowns, free, tied = np.zeros(reduction.combinations.shape[1]), unknown >= 0, unknown < -1
-    unknowns[unknown[free]] = asked[free]
-    given = np.zeros(len(asked))
-    given[free] = unknowns[unknown[free]]
-    given[tied] = (reduction.combinations @ unknowns)[-2 - unknown[tied]]
-    return given
+    return as_supports_leave(asked, reduction.unknown_of_dof, reduction.combinations)
 
 
 def cable_weights(cable: Cable) -> np.ndarray:

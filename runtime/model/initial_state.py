@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -11,14 +11,16 @@ from scipy.interpolate import CubicSpline
 from ..errors import SceneError, near
 from ..parts.cable import Cable
 from ..parts.modal_body import ModalBody
-from ..parts.part import Part
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
 from ..parts.validation import EXACT, show, shown
 from .bodies import configuration_of, velocity_of
 from .model import BodyModel, CableModel, Model
+from .unknowns import as_supports_leave
 
-CABLE = ("nodal_vectors", "nodal_velocity", "position", "velocity")
+CABLE = ("nodal_vectors", "nodal_velocity")
+POINTS = ("position", "velocity")
+"""Of a cable's nodes alone: what may be given in place of its nodal vectors and their rates."""
 BODY = ("position", "orientation", "velocity", "angular_velocity")
 MODAL = (*BODY, "modal_coordinates", "modal_velocities")
 SLIDE = ("s",)
@@ -72,8 +74,7 @@ class InitialState(Mapping[str, np.ndarray]):
 
     def check_fits(self, scene: SceneData) -> None:
         """Raise SceneError for a name that is of nothing in the scene."""
-        known = [f"{part.name}.{quantity}" for parts, quantities in _groups(scene) for part in parts
-                 for quantity in quantities]
+        known = [*names_of(scene), *(f"{cable}.{quantity}" for cable in scene.cables for quantity in POINTS)]
         for name in self:
             if name not in known:
                 raise SceneError("initial", f'"{name}" is no part of a state of this scene', near(name, known))
@@ -92,7 +93,7 @@ class InitialState(Mapping[str, np.ndarray]):
                 slide.place_at(float(_of_shape(s, (), f"{slide.name}.s")), model.cables[slide.cable])
 
     def _place_cable(self, model: Model, cable: CableModel, drawn: Cable) -> None:
-        for whole, points, into in (("nodal_vectors", "position", model.q), ("nodal_velocity", "velocity", model.v)):
+        for whole, points, into in zip(CABLE, POINTS, (model.q, model.v), strict=True):
             name = f"{cable.name}.{whole}"
             if name in self:
                 vectors = _of_shape(self[name], (*cable.shape[:2], 3), name)
@@ -118,12 +119,12 @@ class InitialState(Mapping[str, np.ndarray]):
         model.v[body.dof : body.dof + len(v)] = v
 
 
-def _groups(scene: SceneData) -> Iterator[tuple[Iterable[Part], tuple[str, ...]]]:
-    """Yield parts with the names of what a state says of them."""
-    yield scene.cables.values(), CABLE
-    for body in scene.bodies.values():
-        yield [body], MODAL if isinstance(body, ModalBody) else BODY
-    yield scene.slides.values(), SLIDE
+def names_of(scene: SceneData) -> Iterator[str]:
+    """Yield the names of all arrays of a scene's states, as results have them."""
+    yield from (f"{cable}.{quantity}" for cable in scene.cables for quantity in CABLE)
+    for name, body in scene.bodies.items():
+        yield from (f"{name}.{quantity}" for quantity in (MODAL if isinstance(body, ModalBody) else BODY))
+    yield from (f"{slide}.{quantity}" for slide in scene.slides for quantity in SLIDE)
 
 
 def _frame(body: BodyModel, drawn: RigidBody | ModalBody, given: dict[str, np.ndarray],
@@ -174,13 +175,8 @@ def _check_supports(model: Model, change: np.ndarray, does: str, unit: str) -> N
     if not model.cables:
         return
     cables = slice(0, model.cables[-1].coordinates.stop)
-    change, place = change[cables], model.unknown_of_dof[cables]
-    unknowns = np.zeros(model.combinations.shape[1])
-    free = place >= 0
-    unknowns[place[free]] = change[free]
-    expected = np.where(free, change, 0.0)
-    tied = place < -1
-    expected[tied] = (model.combinations @ unknowns)[-2 - place[tied]]
+    change = change[cables]
+    expected = as_supports_leave(change, model.unknown_of_dof[cables], model.combinations)
     wrong = np.abs(change - expected) * model.weight[cables]
     if np.any(wrong > EXACT * max(cable.length * cable.n_elements for cable in model.cables)):
         dof = int(np.argmax(wrong))

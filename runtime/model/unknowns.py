@@ -59,6 +59,20 @@ class Reduction:
     prescribed: list[tuple[int, Prescribed]]
 
 
+def as_supports_leave(asked: np.ndarray, unknown_of_dof: np.ndarray, combinations: csr_array) -> np.ndarray:
+    """Return changes of dofs (n,) as far as supports and ties leave them: what is fixed does not change.
+
+    asked: the changes wanted (n,), of which those of the unknowns are taken; the last of dofs that share one.
+    unknown_of_dof, combinations: as in `Reduction`.
+    """
+    unknowns, free, tied = np.zeros(combinations.shape[1]), unknown_of_dof >= 0, unknown_of_dof < -1
+    unknowns[unknown_of_dof[free]] = asked[free]
+    given = np.zeros(len(asked))
+    given[free] = unknowns[unknown_of_dof[free]]
+    given[tied] = (combinations @ unknowns)[-2 - unknown_of_dof[tied]]
+    return given
+
+
 @dataclass
 class Node:
     """A cable's node: its dofs by nodal vector and the vectors as drawn, in the dimension of the element."""

@@ -186,17 +186,13 @@ class Run(Viewable, NamedArrays):
         >>> bool(later["A.position"][0, 0] == run["A.position"][1, 0])
         True
         """
-        from ..model.initial_state import BODY, MODAL, SLIDE, InitialState  # brings SciPy, which results do without
+        from ..model.initial_state import InitialState, names_of  # brings SciPy, which results do without
 
         row = int(np.argmin(np.abs(self.time - time))) if len(self.time) else -1
         if row < 0 or abs(self.time[row] - time) > SAME_TIME * self.time[-1]:
             there = f"the nearest is {self.time[row]:.9g} s" if row >= 0 else "there is none"
             raise UnknownResultError(f"the run has no row at t = {time:.9g} s; {there}")
-        scene = self.scene
-        names = [f"{cable}.{name}" for cable in scene.cables for name in ("nodal_vectors", "nodal_velocity")]
-        names += [f"{body}.{name}" for body in scene.bodies for name in (*MODAL, *BODY)]
-        names += [f"{slide}.{name}" for slide in scene.slides for name in SLIDE]
-        return InitialState({name: self[name][row] for name in names if name in self}, float(self.time[row]))
+        return InitialState({name: self[name][row] for name in names_of(self.scene)}, float(self.time[row]))
 
     def __repr__(self) -> str:
         """Return the status, times and number of results."""
