@@ -34,7 +34,7 @@ class Attachment(Part):
         assert self.at is not None, f"{self!r} is not complete"
         return self.at
 
-    def data(self) -> Any:
+    def as_given(self) -> Any:
         """Return it as a scene file has it: [x, y, z], "A", ["A", [x, y, z]] or ["wire", s]."""
         place = self.s if self.s is not None else self.at
         return place if self.on is None else self.on if place is None else [self.on, place]
@@ -66,4 +66,4 @@ def _attachment(value: Any) -> Attachment:
 
 
 AnyAttachment = Annotated[Attachment, checked(_attachment, attachment_schema('["A", [x, y, z]] or [x, y, z]'))]
-"""An attachment, or what `Attachment.data` gives, with a part of the scene for its name where that is at hand."""
+"""An attachment, or what `Attachment.as_given` gives, with a part of the scene for its name where that is at hand."""

@@ -9,7 +9,7 @@ from pydantic import model_validator
 from ..errors import near
 from .part import Part, part_of_table
 from .schemas import checked, tagged
-from .validation import not_negative, positive, shown, within
+from .validation import not_negative, positive, within
 
 WORDS = ("error", "leave")
 """The run ends with an `EndOfCableError`; the rider leaves the cable and flies on."""
@@ -59,10 +59,8 @@ def _end(value: Any) -> str | Stop:
         if value not in WORDS:
             raise ValueError(f'"{value}" is not known', near(value, WORDS))
         return value
-    if not isinstance(value, dict):
-        raise ValueError(f"must be a word or a stop such as HardStop(restitution=0.5), got {shown(value)}",
+    return part_of_table(value, "a word or a stop such as HardStop(restitution=0.5)", "stop", STOPS,
                          "words: " + ", ".join(WORDS))
-    return part_of_table(value, "stop", STOPS)
 
 
 CableEnd = Annotated[Any, checked(_end, {"anyOf": [{"enum": list(WORDS)}, tagged("stop")]})]

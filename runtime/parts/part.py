@@ -105,7 +105,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
         super().__setattr__(name, value)
 
     def as_given(self) -> Any:
-        """Return what a user may write for it in short: by default the part itself."""
+        """Return what a user may write for it in short, in a scene file too: by default the part itself."""
         return self
 
     def __getattr__(self, name: str) -> Any:
@@ -183,11 +183,14 @@ def _of_complaint(place: str, complaint: ErrorDetails) -> SceneError:
     return SceneError(place, f"{path} {cause}".strip(), remedy[0] if remedy else None, entry)
 
 
-def part_of_table(table: dict, tag: str, kinds: Mapping[str, type[P]]) -> P:
+def part_of_table(table: Any, what: str, tag: str, kinds: Mapping[str, type[P]], *remedy: str) -> P:
     """Return what a table such as {shape="circle", radius=0.01} describes; its entry `tag` names one of the kinds.
 
-    Raises ValueError where that entry is missing, no name, or unknown.
+    what, remedy: what a value that is no table must be, and what to do then. Raises ValueError for such a value, and
+    where that entry is missing, no name, or unknown.
     """
+    if not isinstance(table, dict):
+        raise ValueError(f"must be {what}, got {shown(table)}", *remedy)
     data = dict(table)
     kind = data.pop(tag, None)
     if kind is None:

@@ -14,7 +14,6 @@ from typing import Any, Protocol, TypeVar
 
 from ..errors import SceneError, SceneFileError, near
 from ..kernels.libraries import check_allowed, resolved
-from .attachment import Attachment
 from .end_stops import Stop
 from .event import Event
 from .kinds import PARTS
@@ -23,9 +22,8 @@ from .scene_data import SceneData
 from .scene_lines import line_of
 from .section import Section
 from .settings import EquilibriumSettings, RunSettings
-from .signal import Constant, Signal
+from .signal import Signal
 from .solids import Solid
-from .support import FREE, Motion, Rotation
 
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings}
 
@@ -214,18 +212,9 @@ def dumps(scene: SceneData) -> str:
 def _data(value: Any) -> Any:
     """Return a value as plain data: of a part all that is set, defaults too, which a later version may change."""
     match value:
-        case Constant():
-            return value.constant
-        case Attachment():
-            return value.data()
-        case Rotation():
-            return [value.axis, _data(value.angle)]
-        case Motion():
-            given = {"cable": value.cable, "s": value.s}
-            if value.displacement is not None:
-                given["displacement"] = [FREE if each is None else _data(each) for each in value.displacement]
-            return given | ({} if value.rotation is None else {"rotation": _data(value.rotation)})
         case Part():
+            if (short := value.as_given()) is not value:
+                return _data(short)
             tag = {name: getattr(value, name) for base, name in TAGS.items() if isinstance(value, base)}
             return tag | {keyword: _data(each) for keyword, each in value.entries().items()}
         case list() | tuple():

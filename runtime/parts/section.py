@@ -14,7 +14,7 @@ from pydantic import Field, model_validator
 from ..errors import SceneError
 from .part import Part, part_of_table
 from .schemas import checked, list_schema, tagged
-from .validation import positive, show, shown, vector
+from .validation import positive, show, vector
 
 Length = Annotated[float, positive("m")]
 THINNEST = 1e-12
@@ -221,11 +221,8 @@ SHAPES = {section.shape: section for section in (Rectangle, Circle, Tube, Genera
 
 def _section(value: Any) -> Section:
     """Return a section from itself or from a table such as {shape="circle", radius=0.01}."""
-    if isinstance(value, Section):
-        return value
-    if not isinstance(value, dict):
-        raise ValueError(f"must be a section such as Rectangle(height=0.05, width=0.05), got {shown(value)}")
-    return part_of_table(value, "shape", SHAPES)
+    return value if isinstance(value, Section) else part_of_table(
+        value, "a section such as Rectangle(height=0.05, width=0.05)", "shape", SHAPES)
 
 
 AnySection = Annotated[Section, checked(_section, tagged("section"))]

@@ -18,7 +18,7 @@ from pydantic import Field, model_validator
 
 from .part import Part, part_of_table
 from .schemas import checked, tagged
-from .validation import finite, list_of, one_of, positive, show, shown
+from .validation import finite, list_of, one_of, positive, show
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
@@ -316,9 +316,7 @@ def signal(value: Any) -> Signal:
         return value
     if isinstance(value, Real) and not isinstance(value, bool):
         return Constant.model_validate({"constant": value})
-    if not isinstance(value, dict):
-        raise ValueError(f"must be a number or a signal such as Ramp(start=0, end=1), got {shown(value)}")
-    return part_of_table(value, "form", FORMS)
+    return part_of_table(value, "a number or a signal such as Ramp(start=0, end=1)", "form", FORMS)
 
 
 AnySignal = Annotated[Signal, checked(signal, {"anyOf": [{"type": "number"}, tagged("signal")]})]

@@ -84,11 +84,8 @@ SOLIDS = {solid.kind: solid for solid in (Box, Sphere, Cylinder, MeshShape)}
 
 def _solid(value: Any) -> Solid:
     """Return a shape from itself or from a table such as {kind="sphere", radius=0.1}."""
-    if isinstance(value, Solid):
-        return value
-    if not isinstance(value, dict):
-        raise ValueError(f"must be a shape such as Box(size=(1, 2, 3)), got {shown(value)}")
-    return part_of_table(value, "kind", SOLIDS)
+    return value if isinstance(value, Solid) else part_of_table(
+        value, "a shape such as Box(size=(1, 2, 3))", "kind", SOLIDS)
 
 
 AnySolid = Annotated[Solid, checked(_solid, tagged("solid"))]

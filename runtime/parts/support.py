@@ -72,6 +72,10 @@ class Rotation(Part):
     axis: Vector
     angle: Signal
 
+    def as_given(self) -> list:
+        """Return it as a scene file has it: [axis, angle]."""
+        return [self.axis, self.angle]
+
 
 FREE = "free"
 """A direction that a motion leaves free, in scenes."""
@@ -153,6 +157,13 @@ class Motion(Support):
         if self.displacement is None and self.rotation is None:
             raise ValueError("has neither displacement nor rotation", "give one of them, or both")
         return self
+
+    def entries(self) -> dict[str, Any]:
+        """Return what it could be made with; "free" for the directions that it leaves free."""
+        entries = super().entries()
+        if self.displacement is not None:
+            entries["displacement"] = [FREE if each is None else each for each in self.displacement]
+        return entries
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""

@@ -7,9 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
-from ...model.model import Model
-from ...parts.scene_data import SceneData
 from ..quantities import Variable
+from ..section_forces import Results
 
 
 class Balance(Protocol):
@@ -24,7 +23,7 @@ class Balance(Protocol):
         """Return what is missing (time,) over the energy that was exchanged."""
 
 
-class Recorded(Protocol):
+class Recorded(Results, Protocol):
     """What pictures take of a run."""
 
     report: dict
@@ -37,26 +36,11 @@ class Recorded(Protocol):
     def coords(self) -> Mapping[str, Variable]:
         """Return the coordinates of the results by name."""
 
-    @property
-    def scene(self) -> SceneData:
-        """Return the scene that was run."""
-
-    @property
-    def model(self) -> Model:
-        """Return the model of the scene."""
-
-    @property
-    def time(self) -> np.ndarray:
-        """Return the times (time,) in s."""
-
     def keys(self) -> list[str]:
         """Return the names of all results."""
 
     def __contains__(self, name: str) -> bool:
         """Return whether there is a result of that name."""
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        """Return the result of a name, time first."""
 
     def energy_balance(self) -> Balance:
         """Return how well the energies balance."""
