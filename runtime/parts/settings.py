@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from typing import Annotated, Any, ClassVar
 
@@ -13,6 +14,9 @@ from .validation import Count, Flag, one_of, positive, within
 
 SMALLEST_STEP = 1e-12
 """Of the duration, as in engine/run/steps.c."""
+
+ROUNDED = 1e-9
+"""Of a number of steps: what it is above a whole number is rounding."""
 
 Duration = Annotated[float, positive("s")]
 
@@ -67,6 +71,13 @@ class RunSettings(Part):
             raise ValueError(f"step must not be below {SMALLEST_STEP:g} of the duration {self.duration:g} s, got "
                              f"{self.step:g} s")
         return self
+
+    @property
+    def step_taken(self) -> float | None:
+        """Return the fixed step in s, divided so that steps end on output times; None where tol chooses the steps."""
+        if self.step is None:
+            return None
+        return self.output_step / math.ceil(self.output_step / self.step * (1 - ROUNDED))
 
 
 class EquilibriumSettings(Part):

@@ -117,7 +117,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     for message in warned:
         warnings.warn(message, FunicularWarning, stacklevel=4)
     messages += warned
-    row_notes = RowNotes(scene, model, min(settings.step or 0.0, settings.output_step))
+    row_notes = RowNotes(scene, model, settings.step_taken or 0.0)
     if status is None:
         if stream is not None:
             stream.start(model, engine, pace, watcher.happened, row_notes)
@@ -172,10 +172,8 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
 
 def _divided_step(settings: RunSettings) -> list[str]:
     """Say where a fixed step is made smaller, so that steps end on output times."""
-    if settings.step is None:
-        return []
-    step = settings.output_step / np.ceil(settings.output_step / settings.step * (1 - 1e-9))
-    if step >= settings.step * (1 - 1e-6):
+    step = settings.step_taken
+    if settings.step is None or step is None or step >= settings.step * (1 - 1e-6):
         return []
     return [f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times"]
 

@@ -24,9 +24,9 @@ COARSE = 0.05
 
 def unresolved(scene: SceneData, settings: RunSettings) -> list[str]:
     """Return a message for each signal that a fixed step is too long for; none where tol chooses the steps."""
-    if settings.step is None:
+    step = settings.step_taken
+    if step is None:
         return []
-    step = settings.output_step / np.ceil(settings.output_step / settings.step * (1 - 1e-9))
     found = []
     for where, signal in signals(scene):
         rate = frequency(signal)
