@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -107,20 +106,19 @@ class Viewable:
 
     def _repr_html_(self) -> str:
         """Return a table and a picture, for notebooks; `view` gives the interactive page."""
-        rows = "".join(f'<tr><th style="text-align: left">{escape(heading)}</th>'
-                       f'<td style="text-align: left; white-space: pre-line">{escape(text)}</td></tr>'
-                       for heading, text in self.overview())
-        return f"<table>{rows}</table>{self._picture()}"
+        from ..view.files import table_tag
+
+        return table_tag(self.overview()) + self._picture()
 
     def _picture(self) -> str:
         from ..errors import FunicularError
-        from ..view.files import image_tag
+        from ..view.files import image_tag, text_tag
         from ..view.plot import shape_figure
 
         try:
             return image_tag(shape_figure(self.sketch()))
         except FunicularError as error:  # a table without a picture is better than none
-            return f"<p>{escape(str(error))}</p>"
+            return text_tag(str(error))
 
 
 def titled(scene: SceneData, state: str) -> str:

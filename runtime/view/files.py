@@ -8,6 +8,8 @@ from __future__ import annotations
 import base64
 import io
 import os
+from collections.abc import Iterable
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -59,3 +61,16 @@ def image_tag(figure: Figure) -> str:
     written = io.BytesIO()
     figure.savefig(written, format="png", dpi=SMALL)
     return f'<img alt="" src="data:image/png;base64,{base64.b64encode(written.getvalue()).decode("ascii")}">'
+
+
+def table_tag(rows: Iterable[tuple[str, str]]) -> str:
+    """Return headings and texts as a table within HTML."""
+    lines = "".join(f'<tr><th style="text-align: left">{escape(heading)}</th>'
+                    f'<td style="text-align: left; white-space: pre-line">{escape(text)}</td></tr>'
+                    for heading, text in rows)
+    return f"<table>{lines}</table>"
+
+
+def text_tag(text: str) -> str:
+    """Return a text as a paragraph within HTML."""
+    return f"<p>{escape(text)}</p>"
