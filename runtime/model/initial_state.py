@@ -130,12 +130,12 @@ def names_of(scene: SceneData) -> Iterator[str]:
 def _frame(body: BodyModel, drawn: RigidBody | ModalBody, given: dict[str, np.ndarray],
            dim: int) -> tuple[np.ndarray, np.ndarray]:
     """Return configuration and rates of a body that starts elsewhere than drawn."""
-    position, orientation = drawn.frame if isinstance(drawn, ModalBody) else (drawn.position, drawn.orientation)
-    at = {"position": position, "orientation": orientation, "velocity": drawn.velocity,
-          "angular_velocity": drawn.angular_velocity}
-    given = {name: _of_shape(values, np.shape(at[name]), f"{body.name}.{name}") for name, values in given.items()}
+    position, orientation = drawn.frame
+    at = {"position": position, "orientation": orientation, "velocity": np.array(drawn.velocity),
+          "angular_velocity": np.array(drawn.angular_velocity)}
+    given = {name: _of_shape(values, at[name].shape, f"{body.name}.{name}") for name, values in given.items()}
     moved = RigidBody(name=body.name, mass=body.mass, inertia=np.eye(3).tolist(), centre=body.centre.tolist(),
-                      **{name: np.asarray(values).tolist() for name, values in (at | given).items()})
+                      **{name: values.tolist() for name, values in (at | given).items()})
     if dim == 2:
         for what in moved.off_plane():
             raise SceneError("initial", f"{body.name}: {what}, but the scene lies in the plane z = 0")

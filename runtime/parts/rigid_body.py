@@ -86,6 +86,11 @@ class RigidBody(Part):
     shape: AnySolid | None = None
 
     @property
+    def frame(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return where its origin starts, (3,) in m, and its attitude, (4,) unit quaternion."""
+        return np.array(self.position), np.array(self.orientation)
+
+    @property
     def axes(self) -> np.ndarray:
         """Return (3, 3): its axes at the start, as columns."""
         return rotate(self.orientation, np.eye(3)).T

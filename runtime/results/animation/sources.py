@@ -35,13 +35,11 @@ def drawn(scene: SceneData) -> dict[str, np.ndarray]:
     found: dict[str, np.ndarray] = {f"{name}.nodal_vectors": cable.nodal_vectors
                                     for name, cable in scene.cables.items()}
     for name, body in scene.bodies.items():
+        position, orientation = body.frame
+        found |= {f"{name}.position": position, f"{name}.orientation": orientation}
         if isinstance(body, ModalBody):
-            position, orientation = body.frame
             found |= {f"{name}.modal_coordinates": np.zeros(body.shape.n),
                       f"{name}.nodes": position + rotate(orientation, body.shape.nodes)}
-        else:
-            position, orientation = np.array(body.position), np.array(body.orientation)
-        found |= {f"{name}.position": position, f"{name}.orientation": orientation}
     return found | {f"{name}.s": np.array(slide.s) for name, slide in scene.slides.items()}
 
 
