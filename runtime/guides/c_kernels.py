@@ -22,14 +22,14 @@ from pathlib import Path
 import numpy as np
 
 
-def told(option: str) -> list[str]:
+def printed(option: str) -> list[str]:
     """Return the lines that the module prints."""
     return subprocess.run([sys.executable, "-m", "funicular.generated", option], check=True, capture_output=True,
                           text=True).stdout.splitlines()
 
 
-include, = told("--include")
-sources = {Path(path).stem: path for path in told("--sources")}
+include, = printed("--include")
+sources = {Path(path).stem: path for path in printed("--sources")}
 print(len(sources), "files, such as", *sorted(sources)[:4])
 
 # %%

@@ -3,7 +3,7 @@ Slack and taut cables: equilibrium and section forces
 =====================================================
 
 A rope between two towers, once longer than the span and once shorter. Its shape at rest, the tension that the anchors
-must bear, and how both follow from one number, the rope's length. The results are held against the catenary.
+must bear, and how both follow from one number, the rope's length. The results are compared with the catenary.
 """
 
 # %%

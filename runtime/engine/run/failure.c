@@ -31,7 +31,7 @@ int fu_fail_at(fu_run *run, int cause, int unknown)
     return 1;
 }
 
-/* Does the same where eq 38 has no solution: by friction that jams, or by its matrix. */
+/* Does the same where eq 38 has no solution: by friction that is self-locking, or by its matrix. */
 int fu_fail_eq38(fu_run *run)
 {
     const int self_locking = run->accelerator.self_locking;
