@@ -63,7 +63,7 @@ def placed_support(scene: SceneData, support: Support) -> Support:
 
 
 def placed_tie(scene: SceneData, tie: Tie) -> Tie:
-    """Return the tie, sure to be of two nodes at one place that are not joined yet, of which at most one is supported."""
+    """Return the tie, sure to be of two nodes at one place that are not joined yet, at most one of them supported."""
     one = node_at(scene, tie.cable, tie.where, tie.s)
     other = node_at(scene, tie.to, tie.where, tie.at, "at")
     if other in joined(scene, one):

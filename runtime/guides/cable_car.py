@@ -10,7 +10,7 @@ and back. How do the passengers swing, what does the drive need, and what do rop
 # The scene
 # ---------
 #
-# It comes with the package: a locked-coil rope of 40 mm over 200 m, pinned at both towers and on the shoe, a
+# It comes with the package: a locked-coil rope of 40 mm over 200 m, pinned at both towers and on the support, a
 # carriage on two slides, a cabin of 1.5 t on a hinge 4 m below. The speed of the haulage is a table.
 
 import matplotlib.pyplot as plt
