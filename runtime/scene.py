@@ -92,14 +92,18 @@ class Scene(Viewable, SceneMethods):
         (2.0, 1.0)
         """
         old = self._part(part)
+        return self.with_parts(type(old)(**old.entries() | changes) if each is old else each for each in self.parts())
+
+    def with_parts(self, parts: Iterable[Part]) -> Self:
+        """Return a scene of these parts, checked as any scene is, with the gravity, settings and title of this one.
+
+        parts: in an order in which they can be added, as `parts` yields them. Raises SceneError.
+        """
         scene = type(self)(gravity=self.gravity)
         scene.title = self.title
         scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
-        for each in self.parts():
-            if each is old:
-                scene.add(type(old)(**old.entries() | changes))
-            else:
-                scene.add(each)
+        for part in parts:
+            scene.add(part)
         return scene
 
     def _part(self, part: Part | str) -> Part:

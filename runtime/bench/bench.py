@@ -78,14 +78,8 @@ class Mesh:
 
     def scene(self, scene: Scene) -> Scene:
         """Return the scene on this mesh. Raises SceneError, also where a support then stands on no node."""
-        made = Scene(scene.gravity)
-        for part in scene.parts():
-            if isinstance(part, Cable):
-                given = {keyword: getattr(part, name) for keyword, name in part.keywords().items()}
-                part = Cable(**{keyword: value for keyword, value in given.items() if value is not None}
-                             | {"elements": self.elements(part)})
-            made.add(part)
-        made.equilibrium_settings = scene.equilibrium_settings
+        made = scene.with_parts(Cable(**part.entries() | {"elements": self.elements(part)})
+                                if isinstance(part, Cable) else part for part in scene.parts())
         made.run_settings = {name: value for name, value in scene.run_settings.items() if name not in GRID_SETS}
         return made
 
