@@ -95,6 +95,9 @@ def run(
         float | None, typer.Option(help="of genalpha and energy, instead of the scene's: 1 keeps all vibrations")
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="go on with a run that was killed or interrupted")] = False,
+    estimate: Annotated[
+        bool, typer.Option("--estimate", help="tell the errors of steps and mesh, by two more runs")
+    ] = False,
     library: Libraries = None,
 ) -> None:
     """Simulate a scene and write its results, as the run goes.
@@ -115,7 +118,7 @@ def run(
         stopped = None
         try:
             result = described.run(duration, tol=tol, step=step, integrator=integrator, spectral_radius=spectral_radius,
-                                   save=path, resume=resume)
+                                   save=path, resume=resume, estimate=estimate or None)
         except (EndOfCableError, ConvergenceError) as error:
             result, stopped = error.run, error
         _report(result, path, pictures, forces)

@@ -159,6 +159,7 @@ class Scene(Viewable, SceneMethods):
         save: str | os.PathLike | None = None,
         resume: bool = False,
         progress: bool | Callable[[float], None] | None = None,
+        estimate: bool | None = None,
         **unknown: Never,
     ) -> Run:
         """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
@@ -169,7 +170,8 @@ class Scene(Viewable, SceneMethods):
         written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
         killed or interrupted; results are read from the file when they are asked for. resume: go on from there, to the
         same numbers. progress: a bar (True), none (False), a bar if a terminal watches (None), or a function of the
-        time reached.
+        time reached. estimate: whether two more runs, one of smaller steps and one of elements half as long, tell how
+        far the run is off, in ``run.report["errors"]``.
 
         While it goes on the BLAS of NumPy and SciPy has one thread, in the whole process: what other threads of it
         compute meanwhile with large matrices takes longer.
@@ -180,7 +182,7 @@ class Scene(Viewable, SceneMethods):
         _refuse_unknown("run", unknown, (*RunSettings.keywords(), "resume", "progress"))
         state = None if initial is None or isinstance(initial, str) else _state(self, initial)
         given = {"duration": duration, "tol": tol, "step": step, "output_step": output_step, "integrator": integrator,
-                 "spectral_radius": spectral_radius, "threads": threads, "save": save,
+                 "spectral_radius": spectral_radius, "threads": threads, "save": save, "estimate": estimate,
                  "initial": initial if state is None else "state" if isinstance(initial, Mapping) else "equilibrium"}
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
         if settings.initial == "state" and state is None:
@@ -207,6 +209,7 @@ class Scene(Viewable, SceneMethods):
 
         saving = nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume,
                                                                     self.from_toml)
+        given = state
         with saving as stream, one_blas_thread, enough_memory():
             if settings.initial == "equilibrium" and state is None:
                 state = self.equilibrium()
@@ -216,8 +219,30 @@ class Scene(Viewable, SceneMethods):
             with progress_bar(settings.duration, progress) as on_progress:
                 simulation = simulate(self, settings, on_progress, initial=state, stream=stream)
             recording = recorded(simulation, self, settings)
-            return (stream.finish(recording) if stream
-                    else Run.from_recording(recording, self, settings, self.from_toml))
+            run = (stream.finish(recording) if stream
+                   else Run.from_recording(recording, self, settings, self.from_toml))
+            if settings.estimate:
+                self._estimate(run, settings, given)
+                if stream:
+                    stream.add_to_report(run.report)
+            return run
+
+    def _estimate(self, run: Run, settings: RunSettings, state: Start | None) -> None:
+        """Add the errors of a run, of its steps and of its mesh, to its report; state: what it was given to start."""
+        from .results.error_estimate import error_estimate  # brings SciPy
+
+        def again(parts: Iterable[Part], changes: dict[str, Any]) -> Run:
+            other = self.with_parts(parts)
+            kept = {name: getattr(settings, name) for name in settings.model_fields_set - {"estimate", "save"}}
+            other.run_settings = {}
+            return other.run(**kept | changes | ({} if state is None else {"initial": state}), progress=False)
+
+        if run.status != "completed":
+            run.report["messages"].append(f"the run's errors are not estimated: it is {run.status}")
+            return
+        found = error_estimate(self, run, settings, state is not None, again)
+        run.report["errors"] = found.as_report()
+        run.report["messages"] += found.messages
 
     def equilibrium(
         self,

@@ -173,6 +173,7 @@ def test_settings_and_defaults_reach_the_engine(engine):
         "initial": "drawn",
         "save": None,
         "threads": 1,
+        "estimate": False,
     }
 
 

@@ -25,7 +25,8 @@ def rider(**changes):
     scene.pin("wire", s=wire.length)
     scene.rigid_body("A", mass=0.2, inertia=(1e-4, 1e-4, 2e-4), position=(0.3, 0, 0), velocity=(0.5, 0, 0),
                      centre=(0, -0.01, 0))
-    scene.slide("A", along="wire", s=0.3 * wire.length, name="trolley", frame="tangent", friction=Friction(coefficient=0.05))
+    scene.slide("A", along="wire", s=0.3 * wire.length, name="trolley", frame="tangent",
+                friction=Friction(coefficient=0.05))
     return scene
 
 

@@ -23,8 +23,8 @@ from ..parts.cable import Cable
 from ..parts.settings import RunSettings
 from ..parts.validation import MOST
 from ..results.run import Run
+from ..results.trajectories import check_output, default_outputs, distance, relative, trajectory
 from ..scene import Scene
-from .outputs import check_output, default_outputs, distance, largest_change, trajectory, unit
 
 TOLS = (1e-2, 1e-3, 1e-4, 1e-5)
 MESHES = ("x1", "x2")
@@ -86,7 +86,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Grid:
-    """What is tried; outputs as `bench_outputs.check_output` takes them, duration and output_step in s."""
+    """What is tried; outputs as `trajectories.check_output` takes them, duration and output_step in s."""
 
     integrators: tuple[str, ...]
     meshes: tuple[Mesh, ...]
@@ -178,15 +178,6 @@ class Bench:
     def is_resolved(self, row: Row) -> bool:
         """Return whether the reference is ten times as exact as the row's time error needs."""
         return row.failed is None and self.references[row.mesh].agreement <= 0.1 * row.time_error
-
-
-def relative(scene: Scene, found: dict[str, np.ndarray], exact: dict[str, np.ndarray]) -> float:
-    """Return the largest of the outputs' errors, over the largest motion that an output of the same unit makes."""
-    largest: dict[str, float] = {}
-    for name, motion in exact.items():
-        largest[unit(scene, name)] = max(largest.get(unit(scene, name), 0.0), largest_change(motion))
-    errors = {name: distance(found[name], exact[name]) for name in exact}
-    return max((error / largest[unit(scene, name)] for name, error in errors.items() if error > 0), default=0.0)
 
 
 def bench(scene: Scene, grid: Grid, tell: Callable[[str], None] = lambda text: None) -> Bench:

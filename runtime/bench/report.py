@@ -13,9 +13,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..errors import ResultFileError
+from ..results.trajectories import unit
 from ..view.plot import STYLE
 from .bench import COUNTS, Bench, Row
-from .outputs import unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -46,7 +46,8 @@ class RunSettings(Part):
     vibrations, energy's of the cables, counted as dissipated with what their algorithmic stresses hold at the time;
     initial: "drawn", "equilibrium" (static, under the loads at t = 0), or "state", one that `Scene.run` is given; save:
     the file to write, or None; threads over the elements of cables, for some thousand of them or more, at most as many
-    as there are processors.
+    as there are processors; estimate: whether two more runs tell the error of the run, of its steps and of its mesh
+    apart, in ``report["errors"]``, see `ErrorEstimate`.
     """
 
     kind: ClassVar[str] = "run"
@@ -60,6 +61,7 @@ class RunSettings(Part):
     initial: Annotated[str, one_of(("drawn", "equilibrium", "state"))] = "drawn"
     save: Annotated[str | None, BeforeValidator(_text_of_path)] = None
     threads: Count = 1
+    estimate: Flag = False
 
     @model_validator(mode="after")
     def _steps_fit(self) -> RunSettings:

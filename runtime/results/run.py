@@ -347,6 +347,9 @@ class Run(Viewable, NamedArrays):
                 f"{np.abs(balance.relative).max():.2g} of the energy exchanged",
             )
         )
+        if errors := report.get("errors"):
+            rows.append(("estimated error", f"{_share(errors['both'])} of the largest motion: "
+                         f"{_share(errors['time'])} of the steps, {_share(errors['mesh'])} of the mesh"))
         residuals = [np.max(self[key]) for key in self.keys() if key.endswith(".residual")]
         if residuals:
             rows.append(("joint residual", f"{max(residuals):.2g} m at most"))
@@ -366,6 +369,13 @@ def _dearest(costs: dict[str, float]) -> str:
 
 
 _MOST_COSTS = 6
+
+
+def _share(error: float) -> str:
+    """Return an error over the largest motion in words."""
+    return "unknown" if np.isnan(error) else f"{error:.1e}"
+
+
 _COUNTS = {
     "steps": "taken",
     "rejected_steps": "rejected",

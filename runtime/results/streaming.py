@@ -179,6 +179,11 @@ class Stream:
             raise self._lost()
         return opened(file, self._read_scene, self._scene.libraries, check=False)  # it is what was just written
 
+    def add_to_report(self, report: dict) -> None:
+        """Write the report of a finished run, to which something was added."""
+        if self._opened is not None:
+            self._report(report, self._file.rows)
+
     def _unfinished(self) -> dict:
         return {"status": "unfinished", "message": "the run goes on, or was killed", "resumed_at_s": self._resumed,
                 "messages": self._scene.messages, "settings": self._settings.model_dump()}

@@ -31,8 +31,8 @@ from statistics import median
 import exudyn_models as peer
 import numpy as np
 from funicular import FunicularError, FunicularWarning, Scene
-from funicular.bench.outputs import distance, largest_change
 from funicular.integrators import INTEGRATORS
+from funicular.results.trajectories import distance, largest_change
 from pendulum import pendulum
 from sliding import sliding_mass
 from table import parser, show

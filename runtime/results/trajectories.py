@@ -1,4 +1,4 @@
-"""What `funicular bench` compares: outputs of a run by name, as trajectories that do not depend on the mesh."""
+"""Outputs of a run by name, as trajectories that do not depend on the mesh, and how far two runs are apart in them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from ..checks.placement import node_of
 from ..errors import SceneError, near
 from ..kernels.libraries import kernels_of
 from ..parts.scene_data import SceneData
-from ..results.quantities import QUANTITIES
-from ..results.run import Run
+from .quantities import QUANTITIES
+from .run import Run
 
 ENERGIES = ("energy.kinetic", "energy.elastic", "energy.potential")
 PLACES = ("tip", "middle")
@@ -90,3 +90,12 @@ def distance(found: np.ndarray, exact: np.ndarray) -> float:
 def largest_change(exact: np.ndarray) -> float:
     """Return what errors are relative to: the largest distance of a trajectory (time, components) from its start."""
     return distance(exact, exact[:1])
+
+
+def relative(scene: SceneData, found: dict[str, np.ndarray], exact: dict[str, np.ndarray]) -> float:
+    """Return the largest of the outputs' errors, over the largest motion that an output of the same unit makes."""
+    largest: dict[str, float] = {}
+    for name, motion in exact.items():
+        largest[unit(scene, name)] = max(largest.get(unit(scene, name), 0.0), largest_change(motion))
+    errors = {name: distance(found[name], exact[name]) for name in exact}
+    return max((error / largest[unit(scene, name)] for name, error in errors.items() if error > 0), default=0.0)
