@@ -13,6 +13,7 @@ from ..errors import near
 from ..kernels.element_line import ElementLine
 from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.libraries import of_library, resolved
+from ..rotations import cross
 from . import cable_drawing, cable_laws, curves
 from .material import Material
 from .part import Part
@@ -270,7 +271,7 @@ class Cable(Part):
         places, which = np.unique(np.append(s.ravel() * self.stretch, [0.0, self.drawn_length]), return_inverse=True)
         if self.dim == 2:
             i, k = self._shape.tangent(places), np.array([0.0, 0.0, 1.0])
-            axes = np.stack([i, np.cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
+            axes = np.stack([i, cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
         else:
             axes = curves.transported(self._drawn_through, self.height_direction, tuple(places.tolist()))
         return axes[which[: s.size]].reshape(*s.shape, 3, 3)
@@ -292,7 +293,7 @@ class Cable(Part):
         """Return (nodes, vectors, 3): rates of `nodal_vectors` at the start, of a rigid motion."""
         vectors, place = self.nodal_vectors, self.kind_of_element.nodal_vectors.index("r")
         vectors[:, place] -= vectors[0, place]
-        rates = np.cross(self.angular_velocity, vectors)
+        rates = cross(self.angular_velocity, vectors)
         rates[:, place] += self.velocity
         return rates
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..rotations import cross
 from . import cable_laws
 from .curves import Line, Spline
 from .validation import Vector, show
@@ -35,7 +36,7 @@ def check_plane(element: str, through: dict[str, Sequence[float]], velocity: Vec
 
 def has_height(shape: Line | Spline, up: Vector) -> bool:
     """Return whether up gives a direction across the axis at the start."""
-    tilt = np.linalg.norm(np.cross(shape.tangent(0.0), up))
+    tilt = np.linalg.norm(cross(shape.tangent(0.0), up))
     return bool(tilt > 1e-6 * np.linalg.norm(up))
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..rotations import cross
 from .validation import show, shown, vector
 
 if TYPE_CHECKING:
@@ -336,7 +337,7 @@ def transported(points: tuple[tuple[float, ...], ...], up: tuple[float, ...], pl
     i = tangent[::FRAMES]
     j = j - np.sum(i * j, axis=1, keepdims=True) * i
     j = j / np.linalg.norm(j, axis=1, keepdims=True)
-    return np.stack([i, j, np.cross(i, j)], axis=1)
+    return np.stack([i, j, cross(i, j)], axis=1)
 
 
 def _reflected(height: np.ndarray, tangent: np.ndarray, step: np.ndarray, onward: np.ndarray) -> np.ndarray:
