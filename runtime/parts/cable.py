@@ -291,7 +291,10 @@ class Cable(Part):
     @property
     def nodal_rates(self) -> np.ndarray:
         """Return (nodes, vectors, 3): rates of `nodal_vectors` at the start, of a rigid motion."""
-        vectors, place = self.nodal_vectors, self.kind_of_element.nodal_vectors.index("r")
+        names = self.kind_of_element.nodal_vectors
+        if not any((*self.velocity, *self.angular_velocity)):
+            return np.zeros((self.elements + 1, len(names), 3))
+        vectors, place = self.nodal_vectors, names.index("r")
         vectors[:, place] -= vectors[0, place]
         rates = cross(self.angular_velocity, vectors)
         rates[:, place] += self.velocity
