@@ -211,7 +211,8 @@ class Supports:
             columns += [int(unknown_of_dof[of]) for of in row.free]
             values += list(row.free.values())
             count += 1
-        combinations = csr_array((values, (rows, columns)), shape=(count, max(n, 1)))
+        shape = count, max(n, 1)
+        combinations = csr_array((values, (rows, columns)), shape=shape) if count else csr_array(shape)
         prescribed = [(dof, part) for dof, row in self.rows.items() for part in row.prescribed]
         return Reduction(unknown_of_dof.astype(int), combinations, n, numbering, prescribed)
 

@@ -58,7 +58,7 @@ cdef class Report(Statics):
                            "output": s.time_output}}
 
     def costs(self):
-        """(couplings,): what each takes of a step, in seconds, timed by itself in less than 1 ms; see run/part_timing.c."""
+        """(couplings,): what each takes of a step, in seconds, timed by itself in about 0.1 ms; see run/part_timing.c."""
         cdef double[::1] seconds = np.zeros(self.model.n_couplings + 1)
         fu_part_timing(&self.run, &seconds[0])
         return np.asarray(seconds)[:self.model.n_couplings]
