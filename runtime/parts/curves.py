@@ -316,6 +316,13 @@ def shape_through(points: tuple[tuple[float, ...], ...]) -> Line | Spline:
 
 
 @lru_cache(maxsize=128)
+def has_height(points: tuple[tuple[float, ...], ...], up: tuple[float, ...]) -> bool:
+    """Return whether ``up`` gives a direction across the shape through points at its start."""
+    tilt = np.linalg.norm(cross(shape_through(points).tangent(0.0), up))
+    return bool(tilt > 1e-6 * np.linalg.norm(up))
+
+
+@lru_cache(maxsize=128)
 def transported(points: tuple[tuple[float, ...], ...], up: tuple[float, ...], places: tuple[float, ...]) -> np.ndarray:
     """Return the axes of the section along a shape, turned about its tangent nowhere.
 

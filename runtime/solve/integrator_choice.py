@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -45,7 +47,7 @@ def cheapest(demands: Demands) -> tuple[Integrator, str]:
     """Return the cheapest of the integrators that say what they cost, and what each says; the last one of equals."""
     said = [(one, *cost) for one in INTEGRATORS.values() if (cost := one.cost(demands)) is not None]
     chosen = min(reversed(said), key=lambda of_one: of_one[1])[0]
-    return chosen(), ", ".join(why for _, _, why in said)
+    return _made(chosen), ", ".join(why for _, _, why in said)
 
 
 def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
@@ -132,12 +134,13 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
         return 0.0, 0.0
     matrix = engine.dense_matrix if n <= DENSE else engine.matrix
     mass = matrix(1.0, 0.0, 0.0)[:n, :n]
-    by_mass = np.linalg.inv(mass).__matmul__ if n <= DENSE else splu(mass.tocsc(), permc_spec="NATURAL").solve
+    by_mass = np.linalg.inv(mass).dot if n <= DENSE else splu(mass.tocsc(), permc_spec="NATURAL").solve
     stiffness = _without_forces(matrix(0.0, 0.0, 1.0), n, model)
     decay = 0.0
     if model.is_damped:
-        decay = _largest(_without_forces(matrix(0.0, 1.0, 1.0), n, model) - stiffness, by_mass)
-    return np.sqrt(_largest(stiffness, by_mass)), decay
+        damping = _without_forces(matrix(0.0, 1.0, 1.0), n, model) - stiffness
+        decay = _largest(damping, mass, by_mass)
+    return math.sqrt(_largest(stiffness, mass, by_mass)), decay
 
 
 def _without_forces(full: Any, n: int, model: Model) -> Any:
@@ -147,20 +150,25 @@ def _without_forces(full: Any, n: int, model: Model) -> Any:
     return own - full[:n][:, between] @ full[between][:, :n] if between else own
 
 
-def _largest(matrix: Any, by_mass: Callable[[np.ndarray], np.ndarray]) -> float:
+def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]) -> float:
     """Return about the largest eigenvalue of the symmetric part by the mass, in size, by power iteration: some per cent
     low.
 
-    by_mass: returns the mass^-1 times (n,).
+    matrix, mass: (n, n), arrays or sparse; by_mass: returns the mass^-1 times (n,).
     """
     symmetric = (matrix + matrix.T) / 2
     x = np.random.default_rng(0).normal(size=matrix.shape[0])
-    value = 0.0
-    for _ in range(ITERATIONS):
-        pushed = symmetric @ x
-        moved = by_mass(pushed)
-        value = np.sqrt(moved @ pushed)  # the size of `moved` by the mass, over that of x, which is 1
-        if value == 0.0:
+    for _ in range(ITERATIONS - 1):
+        x = by_mass(symmetric.dot(x))
+        size = math.sqrt(x.dot(x))
+        if size == 0.0:
             return 0.0
-        x = moved / value
-    return float(value)
+        x /= size
+    pushed = symmetric.dot(x)
+    return math.sqrt(by_mass(pushed).dot(pushed) / x.dot(mass.dot(x)))
+
+
+@cache
+def _made(kind: type[Integrator]) -> Integrator:
+    """Return the integrator of a kind without parameters: its coefficients are the same in every run."""
+    return kind()
