@@ -21,6 +21,7 @@ from funicular.generated import kernels
 from funicular.kernels.elements import built_in, gauge, manifest
 from funicular.kernels.libraries import LibraryError, manifest_digest
 from funicular.kernels.libraries import load as load_library
+from funicular.results.run import SceneText
 from funicular.scene_file import load_scene, loads
 from pages import page
 from shared_scenes import SQUARE, TABLE_1
@@ -229,7 +230,7 @@ def test_all_libraries_of_a_file_are_looked_at_first(hostile, tmp_path):
 def test_a_file_of_results_does_not_load_a_library(hostile, tmp_path):
     folder, marker = hostile
     run = loads(naming("x").replace('library = "x"\n', ""), "x").run()
-    run._scene_text = run._scene_text._replace(toml=naming(folder))
+    run._scene_text = SceneText(naming(folder), run._scene_text.read, run.libraries)
     run.save(tmp_path / "x.nc")
     read = load_run(tmp_path / "x.nc")
     assert len(read.time) == 101 and read["wire.nodal_vectors"].shape[0] == 101

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..errors import SceneError
@@ -40,15 +42,18 @@ def _node(scene: SceneData, end: Attachment) -> Node | None:
     return end.on, node
 
 
-def check_other_joints(scene: SceneData, joint: Joint, near: float) -> None:
+def check_other_joints(scene: SceneData, joint: Joint, near: Callable[[], float]) -> None:
     """Raise SceneError where two joints between the same bodies conflict: one is a weld, or both fix or drive the same.
 
-    near: points nearer than this, in m, are the same.
+    near: returns how near points are, in m, that are the same; it is asked for where joints share their bodies.
     """
+    joined = {joint.a.on, joint.b.on}
     for other in scene.joints.values():
+        if {other.a.on, other.b.on} != joined:
+            continue
         for a, b in ((other.a, other.b), (other.b, other.a)):
             if move_as_one(scene, joint.a, a) and move_as_one(scene, joint.b, b):
-                if what := _clash(scene, joint, other, (a, b), near):
+                if what := _clash(scene, joint, other, (a, b), near()):
                     raise SceneError(joint.where, what, "leave one of them out")
                 break
 

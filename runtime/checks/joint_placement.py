@@ -13,6 +13,7 @@ from ..parts.joint import DRIVEN, LINES, POINTS, UNITS, Joint
 from ..parts.locations import point_of
 from ..parts.scene_data import SceneData
 from ..parts.validation import show
+from ..rotations import cross
 from .conflicts import called, check_other_joints, check_supports, move_as_one
 from .frames import cable_frame, has_section
 from .placement import placed_between
@@ -31,11 +32,10 @@ def placed_joint(scene: SceneData, joint: Joint) -> Joint:
         raise SceneError(joint.where, f"joins {called(joint.a)} to itself", "give it two ends")
     joint = joint.model_copy(update=_completed(scene, joint))
     _check_frames(scene, joint)
-    check_other_joints(scene, joint, EXACT * scene_size(scene, joint))
+    check_other_joints(scene, joint, lambda: EXACT * scene_size(scene, joint))
     check_joint(scene, joint)
-    gap, where = _gap(scene, joint)
-    if gap > EXACT * scene_size(scene, joint):
-        message = f"{joint.where}: {where}; they are brought together"
+    if _is_beyond(scene, joint, gap := _gap(scene, joint), EXACT):
+        message = f"{joint.where}: {_apart(scene, joint, gap)}; they are brought together"
         scene.messages.append(message)
         warnings.warn(message, FunicularWarning, stacklevel=4)
     return joint
@@ -46,11 +46,9 @@ def check_joint(scene: SceneData, joint: Joint) -> None:
     follow it.
     """
     check_supports(scene, joint)
-    gap, where = _gap(scene, joint)
-    most = MOVABLE * scene_size(scene, joint)
-    if gap > most:
-        raise SceneError(joint.where, where, "let them start as the joint needs them; only a gap of less than "
-                         f"{most:.3g} m is closed")
+    if _is_beyond(scene, joint, gap := _gap(scene, joint), MOVABLE):
+        raise SceneError(joint.where, _apart(scene, joint, gap), "let them start as the joint needs them; only a gap "
+                         f"of less than {MOVABLE * scene_size(scene, joint):.3g} m is closed")
 
 
 def check_drive(scene: SceneData, joint: Joint) -> None:
@@ -87,23 +85,45 @@ def _completed(scene: SceneData, joint: Joint) -> dict:
 def scene_size(scene: SceneData, joint: Joint) -> float:
     """Return the largest extent in m of what is in the scene."""
     points = [point_of(scene, joint.a), point_of(scene, joint.b)]
-    points += [body.point((0.0, 0.0, 0.0)) for body in scene.bodies.values()]
-    return max(float(np.linalg.norm(np.ptp(points, axis=0))), *(cable.length for cable in scene.cables.values()), 0.0)
+    points += [body.frame[0] for body in scene.bodies.values()]
+    return max(_extent(points), *(cable.length for cable in scene.cables.values()), 0.0)
 
 
-def _gap(scene: SceneData, joint: Joint) -> tuple[float, str]:
-    """Return how far in m the ends are from where the joint holds them, and a sentence on it."""
-    a, b = point_of(scene, joint.a), point_of(scene, joint.b)
-    apart, at = b - a, f"a at {show(a)} and b at {show(b, 'm')}"
-    if joint.joint_kind in POINTS:
-        gap = float(np.linalg.norm(apart))
-        return gap, f"its ends are {gap:.6g} m apart at the start, {at}"
+def _is_beyond(scene: SceneData, joint: Joint, gap: float, part: float) -> bool:
+    """Return whether a gap in m is larger than this part of the scene's size.
+
+    What the joint joins is a part of the scene: mostly it is large enough to tell, and all else is not looked at.
+    """
+    joined = [point_of(scene, joint.a), point_of(scene, joint.b)]
+    joined += [scene.bodies[end.on].frame[0] for end in (joint.a, joint.b) if end.on in scene.bodies]
+    return gap > part * _extent(joined) and gap > part * scene_size(scene, joint)
+
+
+def _extent(points: list[np.ndarray]) -> float:
+    """Return the length in m of the diagonal of points, along the axes."""
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def _gap(scene: SceneData, joint: Joint) -> float:
+    """Return how far in m the ends are from where the joint holds them."""
+    apart = point_of(scene, joint.b) - point_of(scene, joint.a)
     if joint.joint_kind in LINES:
-        gap = float(np.linalg.norm(np.cross(joint.axes[:, 2], apart)))
-        return gap, f"its ends are {gap:.6g} m apart across the axis at the start, {at}"
+        return float(np.linalg.norm(cross(joint.axes[:, 2], apart)))
     distance = float(np.linalg.norm(apart))
-    length = distance if joint.length is None else joint.length
-    return abs(distance - length), f"its ends are {distance:.6g} m apart at the start, and not {length:.6g} m, {at}"
+    if joint.joint_kind in POINTS:
+        return distance
+    return 0.0 if joint.length is None else abs(distance - joint.length)
+
+
+def _apart(scene: SceneData, joint: Joint, gap: float) -> str:
+    """Return a sentence on a gap."""
+    a, b = point_of(scene, joint.a), point_of(scene, joint.b)
+    at = f"a at {show(a)} and b at {show(b, 'm')}"
+    if joint.joint_kind in POINTS:
+        return f"its ends are {gap:.6g} m apart at the start, {at}"
+    if joint.joint_kind in LINES:
+        return f"its ends are {gap:.6g} m apart across the axis at the start, {at}"
+    return f"its ends are {np.linalg.norm(b - a):.6g} m apart at the start, and not {joint.length:.6g} m, {at}"
 
 
 def _check_frames(scene: SceneData, joint: Joint) -> None:
@@ -131,7 +151,7 @@ def _tangent_is_enough(joint: Joint, end: str, tangent: np.ndarray) -> bool:
     if joint.is_driven or joint.joint_kind in ("weld", "prismatic"):
         return False
     axis = joint.axes[:, 0 if joint.joint_kind == "universal" and end == "b" else 2]
-    return float(np.linalg.norm(np.cross(axis, tangent))) <= 1e-6
+    return float(np.linalg.norm(cross(axis, tangent))) <= 1e-6
 
 
 def _needs(joint: Joint) -> str:
@@ -147,6 +167,6 @@ def elements_with_sections() -> str:
 
 def check_up(up: tuple[float, ...], tangent: np.ndarray, what: str, where: str) -> None:
     """Raise SceneError where the direction ``up`` lies along the tangent of ``what``: it completes no frame there."""
-    if np.linalg.norm(np.cross(tangent, up)) <= UPRIGHT * np.linalg.norm(up):
+    if np.linalg.norm(cross(tangent, up)) <= UPRIGHT * np.linalg.norm(up):
         raise SceneError(where, f"up {show(up)} is along the tangent of {what}, {show(tangent)}: the frame is lost",
                          "give a direction across it")

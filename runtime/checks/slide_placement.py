@@ -45,9 +45,9 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
 
 def check_on_cable(scene: SceneData, slide: Slide) -> None:
     """Raise SceneError where a rider is not on its cable any more, since others moved it."""
-    gap, where = _gap(scene, slide)
+    gap = _gap(scene, slide)
     if gap > (EXACT if slide.body_s is None else MOVABLE) * scene.cables[slide.along].length:
-        raise SceneError(slide.where, where,
+        raise SceneError(slide.where, _away(scene, slide, gap),
                          f"{_carrier(slide)} is on more than one slide: it cannot be moved for each")
 
 
@@ -110,19 +110,23 @@ def _check_drive(slide: Slide, cable: Cable) -> None:
                          f"{show(slide.s, 'm')}", "let both start at one place")
 
 
-def _gap(scene: SceneData, slide: Slide) -> tuple[float, str]:
-    """Return the distance in m from the rider's point to its place on the cable, and a sentence on it."""
-    point = point_of(scene, slide.rider)
-    gap = float(np.linalg.norm(point - scene.cables[slide.along].point(slide.s)))
-    rider = f'the point of {_carrier(slide)} at {show(point, "m")}'
-    return gap, f'{rider} is {gap:.6g} m away from cable "{slide.along}" at s = {slide.s:.9g} m'
+def _gap(scene: SceneData, slide: Slide) -> float:
+    """Return the distance in m from the rider's point to its place on the cable."""
+    return float(np.linalg.norm(point_of(scene, slide.rider) - scene.cables[slide.along].point(slide.s)))
+
+
+def _away(scene: SceneData, slide: Slide, gap: float) -> str:
+    """Return a sentence on that distance."""
+    rider = f'the point of {_carrier(slide)} at {show(point_of(scene, slide.rider), "m")}'
+    return f'{rider} is {gap:.6g} m away from cable "{slide.along}" at s = {slide.s:.9g} m'
 
 
 def _seat(scene: SceneData, slide: Slide, cable: Cable) -> None:
     """Bring the rider's point onto the cable by a small move, refuse a large one."""
-    gap, where = _gap(scene, slide)
+    gap = _gap(scene, slide)
     if gap <= EXACT * cable.length:
         return
+    where = _away(scene, slide, gap)
     start = point_of(scene, slide.rider)
     body, onto = scene.bodies.get(slide.body or ""), cable.point(slide.s) - start
     body = body if isinstance(body, RigidBody) else None

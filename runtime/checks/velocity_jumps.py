@@ -22,7 +22,7 @@ def velocity_jumps(scene: SceneData, duration: float) -> list[str]:
     found = []
     for motion in scene.motions:
         for what, signal, own, unit in _rates(scene, motion):
-            rates = np.array([float(signal.value(t, 1)) for t in np.linspace(0, duration, SAMPLES)])
+            rates = signal.value(np.linspace(0, duration, SAMPLES), 1)
             given, least = rates[0], SMALL * max(np.abs(rates).max(), abs(own))
             if abs(given - own) > least:
                 found.append(

@@ -7,7 +7,7 @@ import numpy as np
 from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
-from ..rotations import rotate
+from ..rotations import cross, rotate
 from .model import BodyModel, ShapeModel
 
 BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
@@ -60,7 +60,7 @@ def velocity_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
     if isinstance(body, ModalBody):
         modes = np.zeros(body.shape.n)
     else:
-        velocity = velocity + rotate(body.orientation, np.cross(turning, body.centre))
+        velocity = velocity + rotate(body.orientation, cross(turning, body.centre))
     return np.concatenate([velocity[:dim], turning[2 if dim == 2 else 0 :], modes])
 
 

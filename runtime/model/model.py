@@ -182,6 +182,12 @@ class Model:
         return [*self.loads, *self.slides, *self.joints, *self.point_forces]
 
     @property
+    def is_damped(self) -> bool:
+        """Return whether any force on what is at rest depends on velocities."""
+        return (any(cable.tau or cable.mass_damping for cable in self.cables) or any(body.modes for body in self.bodies)
+                or any(coupling.is_damped for coupling in self.couplings))
+
+    @property
     def n_q(self) -> int:
         """Return the length of the configuration."""
         return len(self.q)

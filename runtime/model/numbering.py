@@ -23,30 +23,56 @@ class Numbering:
     n_band: int
     width: int
     chains: np.ndarray
-    operations: float
 
 
-def numbered(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int], *, reorder: bool) -> Numbering:
-    """Return the numbering of the unknowns as drawn or, to reorder them, the one that takes the fewest operations.
+@dataclass
+class Touches:
+    """Which elements have a share of which unknowns: entry by entry an element and an unknown; and how many elements
+    there are.
+    """
+
+    element: np.ndarray
+    unknown: np.ndarray
+    n_elements: int
+
+
+def as_drawn(elements: np.ndarray, unknown_of_dof: np.ndarray) -> Numbering:
+    """Return the numbering of unknowns in the order of the dofs that they are.
+
+    elements (n, 2): first dof and number of dofs of each; unknown_of_dof: the number of an unknown or -1.
+    """
+    dofs, element = _dofs(elements), np.repeat(np.arange(len(elements)), elements[:, 1])
+    unknown = unknown_of_dof[dofs]
+    free, n = unknown >= 0, int(unknown_of_dof.max(initial=-1)) + 1
+    return _numbering(Touches(element[free], unknown[free], len(elements)), np.arange(n), n)
+
+
+def cheapest(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> Numbering:
+    """Return the numbering of the unknowns, as drawn or in another order, that takes the fewest operations.
 
     elements (n, 2): first dof and number of dofs of each; made_of (k, 2): a dof, an unknown of it; shape: the numbers
     of dofs and of unknowns.
     """
     touches = _touches(elements, made_of, shape)
-    drawn = _counted(touches, np.arange(shape[1]), shape[1])
-    if not reorder:
-        return drawn
-    others = (_counted(touches, *_near(touches)), _counted(touches, *_strung(touches)))
-    return min(drawn, *others, key=lambda one: one.operations)
+    entry = touches.tocoo()
+    entries = Touches(entry.row, entry.col, len(elements))
+    orders = ((np.arange(shape[1]), shape[1]), _near(touches), _strung(touches))
+    return min((_numbering(entries, *order) for order in orders), key=lambda one: _operations(one, entries))
+
+
+def _dofs(elements: np.ndarray) -> np.ndarray:
+    """Return the dofs of each element, one element after the other."""
+    counts = elements[:, 1]
+    return np.repeat(elements[:, 0] - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
 
 
 def _touches(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> csr_array:
     """Return (elements, unknowns): 1 where an element has a share of an unknown; made_of (k, 2): a dof, an unknown of
     it.
     """
-    counts = elements[:, 1]
-    dofs = np.repeat(elements[:, 0] - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
-    has = csr_array((np.ones(len(dofs)), dofs, np.append(0, np.cumsum(counts))), shape=(len(elements), shape[0]))
+    dofs = _dofs(elements)
+    has = csr_array((np.ones(len(dofs)), dofs, np.append(0, np.cumsum(elements[:, 1]))),
+                    shape=(len(elements), shape[0]))
     touches = has @ coo_array((np.ones(len(made_of)), (made_of[:, 0], made_of[:, 1])), shape=shape).tocsr()
     touches.data[:] = 1.0
     return touches
@@ -97,23 +123,35 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
     return np.argsort(np.lexsort((np.arange(n), first, last, border))), n - int(border.sum())
 
 
-def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
-    """Return a numbering's band, and the operations of its factorisation and solves (engine/linear/bordered.c)."""
-    entry = touches.tocoo()
-    element, at = entry.row, number[entry.col]
+def _extents(touches: Touches, number: np.ndarray, n_band: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first and the last row of the band that each element touches; n_band and -1 of none."""
+    at = number[touches.unknown]
     inside = at < n_band
-    low, high = np.full(touches.shape[0], n_band), np.full(touches.shape[0], -1)
-    np.minimum.at(low, element[inside], at[inside])
-    np.maximum.at(high, element[inside], at[inside])
+    low, high = np.full(touches.n_elements, n_band), np.full(touches.n_elements, -1)
+    np.minimum.at(low, touches.element[inside], at[inside])
+    np.maximum.at(high, touches.element[inside], at[inside])
+    return low, high
+
+
+def _numbering(touches: Touches, number: np.ndarray, n_band: int) -> Numbering:
+    """Return a numbering with its band."""
+    low, high = _extents(touches, number, n_band)
     banded = high >= 0
     ties = np.zeros(n_band + 1, dtype=int)  # elements that tie a row to the one before
     np.add.at(ties, low[banded] + 1, 1)
     np.add.at(ties, high[banded] + 1, -1)
     chains = np.append(np.flatnonzero(np.cumsum(ties[:-1]) == 0), n_band)
-    width = int(np.max(high[banded] - low[banded], initial=0))
+    return Numbering(number, n_band, int(np.max(high[banded] - low[banded], initial=0)), chains)
+
+
+def _operations(numbering: Numbering, touches: Touches) -> float:
+    """Return the operations of a factorisation and of its solves (engine/linear/bordered.c)."""
+    n_band, width, chains = numbering.n_band, numbering.width, numbering.chains
+    low, high = _extents(touches, numbering.number, n_band)
+    at = numbering.number[touches.unknown]
+    outside = (at >= n_band) & (high >= 0)[touches.element]
     of = np.searchsorted(chains, low, "right") - 1
-    outside = ~inside & banded[element]
-    columns = np.unique(np.stack([at[outside], of[element[outside]]]), axis=1)  # of the border, by chain
-    coupled, m = float(np.diff(chains)[columns[1]].sum()), len(number) - n_band
+    columns = np.unique(np.stack([at[outside], of[touches.element[outside]]]), axis=1)  # of the border, by chain
+    coupled, m = float(np.diff(chains)[columns[1]].sum()), len(numbering.number) - n_band
     factor = n_band * width**2 / 2 + 2 * width * coupled + m**3 / 3
-    return Numbering(number, n_band, width, chains, factor + SOLVES * (2 * width * n_band + coupled + m**2))
+    return factor + SOLVES * (2 * width * n_band + coupled + m**2)

@@ -33,16 +33,17 @@ def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
     riders = [(slide.rider.body, slide.rider.cable) for slide in model.slides]
     if not model.joints and len(set(riders)) == len(riders):
         return []  # slides of different bodies never do: each acts on its own body, whose mass is not zero
-    if not engine.prepare():
-        return []  # start says why
+    rows = _in_loops(model)
+    if not rows or not engine.prepare():  # start says why
+        return []
     S, owner = _compliance(engine), _owners(model)
     if S is None:
         return []  # here, too
     spare = _spare(model)
-    if locked := [owner[k] for k, own in enumerate(np.diag(S)) if own == 0 and k not in spare]:
+    if locked := [owner[k] for k in rows if S[k, k] == 0 and k not in spare]:
         raise SceneError("scene", f"is over-constrained: {_listed(locked)} between points that supports fix already",
                          "leave that out, or the supports")
-    follows = _following(S)
+    follows = {rows[row]: [rows[k] for k in others] for row, others in _following(S[np.ix_(rows, rows)]).items()}
     if not follows:
         return []
     dropped = [_left_out(model, row, others, owner) for row, others in follows.items()]
@@ -52,6 +53,42 @@ def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
     _check_that_they_follow(model, engine, dropped,
                             _listed([owner[k] for row in follows for k in (*follows[row], row)]))
     return [_message(model.joints[k], follows, owner) for k in dict.fromkeys(k for k, _ in dropped)]
+
+
+def _in_loops(model: Model) -> list[int]:
+    """Return the multipliers that may be redundant, in increasing order: those of joints and slides in loops.
+
+    A body with one link is moved by that link as its equations ask, whatever else there is: these follow from no
+    others, nor do others follow from them. Such bodies are taken away with their links, one after the other, until each
+    that is left has two or more. A cable has supports, which may fix it: what it has links with stays.
+    """
+    bodies_of, rows_of = _links(model)
+    links_of: dict[int, set[str]] = {}
+    for link, bodies in bodies_of.items():
+        for body in bodies:
+            links_of.setdefault(body, set()).add(link)
+    ends = [body for body, links in links_of.items() if len(links) == 1]
+    while ends:
+        for link in tuple(links_of[ends.pop()]):
+            del rows_of[link]
+            for body in bodies_of[link]:
+                links_of[body].discard(link)
+                if len(links_of[body]) == 1:
+                    ends.append(body)
+    return sorted(row for rows in rows_of.values() for row in rows)
+
+
+def _links(model: Model) -> tuple[dict[str, set[int]], dict[str, list[int]]]:
+    """Return the bodies, and the multipliers, of each joint and slide by its name; a slide has those of the joint that
+    keeps its rider's axes, too.
+    """
+    bodies: dict[str, set[int]] = {}
+    rows: dict[str, list[int]] = {}
+    for link, ends in [*((slide, [slide.rider]) for slide in model.slides),
+                       *((joint, joint.attachments) for joint in model.joints)]:
+        bodies.setdefault(link.name, set()).update(end.body for end in ends if end.body >= 0)
+        rows.setdefault(link.name, []).extend(range(link.multiplier, link.multiplier + link.n_multipliers))
+    return bodies, rows
 
 
 def _message(joint: JointModel, follows: dict[int, list[int]], owner: list[str]) -> str:

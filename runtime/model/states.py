@@ -10,7 +10,7 @@ from ..parts.locations import ends_of, joined, node_of
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
-from ..rotations import rotate
+from ..rotations import cross, rotate
 from .attachments import AttachmentModel
 from .joints import JointModel
 from .loads import PointForceModel
@@ -34,7 +34,7 @@ def force_and_moment(nodes: Iterable[Node], reaction: np.ndarray, q: np.ndarray)
         force += spatial(reaction[:, node.dofs("r")])
         for name in {"r_x", "r_y", "r_z"} & set(node.names):
             at = node.dofs(name)
-            moment += np.cross(spatial(q[:, at]), spatial(reaction[:, at]))
+            moment += cross(spatial(q[:, at]), spatial(reaction[:, at]))
     return {"force": force, "moment": moment}
 
 
@@ -78,13 +78,13 @@ def body_rates(model: Model, body: BodyModel, orientation: np.ndarray, v: np.nda
     at = slice(body.dof, body.dof + model.dim)
     turn = slice(at.stop, at.stop + (3 if model.dim == 3 else 1))
     velocity, omega = spatial(v[:, at]), _turning(v[:, turn])
-    swing = np.cross(omega, body.centre)
+    swing = cross(omega, body.centre)
     found = {"velocity": velocity - rotate(orientation, swing) if body.centre.any() else velocity,
              "angular_velocity": omega}
     if a is not None:
         acceleration, alpha = spatial(a[:, at]), _turning(a[:, turn])
         if body.centre.any():
-            acceleration = acceleration - rotate(orientation, np.cross(alpha, body.centre) + np.cross(omega, swing))
+            acceleration = acceleration - rotate(orientation, cross(alpha, body.centre) + cross(omega, swing))
         found |= {"acceleration": acceleration, "angular_acceleration": alpha}
     return found
 

@@ -18,7 +18,7 @@ from scipy.sparse import csr_array
 from ..errors import SceneError
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal
-from .numbering import Numbering, numbered
+from .numbering import Numbering, as_drawn, cheapest
 
 PARALLEL = 1e-9
 """Tangents whose cross product is smaller than this are parallel."""
@@ -69,7 +69,8 @@ def as_supports_leave(asked: np.ndarray, unknown_of_dof: np.ndarray, combination
     unknowns[unknown_of_dof[free]] = asked[free]
     given = np.zeros(len(asked))
     given[free] = unknowns[unknown_of_dof[free]]
-    given[tied] = (combinations @ unknowns)[-2 - unknown_of_dof[tied]]
+    if tied.any():
+        given[tied] = (combinations @ unknowns)[-2 - unknown_of_dof[tied]]
     return given
 
 
@@ -191,31 +192,38 @@ class Supports:
         """
         unknown = np.ones(n_dof, dtype=bool)
         unknown[list(self.rows)] = False
-        drawn = np.cumsum(unknown) - 1
+        drawn = np.where(unknown, np.cumsum(unknown) - 1, -1)
         n = int(unknown.sum())
         combined = {dof: row for dof, row in self.rows.items() if row.free}
         if any(row.prescribed for row in combined.values()):
             raise SceneError("scene", "a tie joins a node that moves as prescribed to one that is partly free",
                              "prescribe displacement and rotation there, or tie with rotation = \"free\"")
-        made_of = [(dof, drawn[of]) for dof, row in combined.items() for of in row.free]
-        numbering = numbered(elements, np.concatenate([np.stack([np.flatnonzero(unknown), np.arange(n)], axis=1),
-                                                       np.array(made_of, dtype=int).reshape(-1, 2)]), (n_dof, n),
-                             reorder=bool(combined))
-        number = numbering.number[drawn.clip(0)] if n else drawn
-        unknown_of_dof = np.where(unknown, number, -1)
+        numbering = self._numbering(drawn, combined, elements)
+        number = numbering.number
+        unknown_of_dof = np.where(unknown, number[drawn], -1) if n else drawn
         rows, columns, values, count = [], [], [], 0
         for dof, row in sorted(combined.items()):
             if list(row.free.values()) == [1.0]:
-                unknown_of_dof[dof] = number[next(iter(row.free))]
+                unknown_of_dof[dof] = unknown_of_dof[next(iter(row.free))]
                 continue
             unknown_of_dof[dof] = -2 - count
             rows += [count] * len(row.free)
-            columns += [int(number[of]) for of in row.free]
+            columns += [int(unknown_of_dof[of]) for of in row.free]
             values += list(row.free.values())
             count += 1
-        combinations = csr_array((values, (rows, columns)), shape=(count, max(n, 1)))
+        shape = count, max(n, 1)
+        combinations = csr_array((values, (rows, columns)), shape=shape) if count else csr_array(shape)
         prescribed = [(dof, part) for dof, row in self.rows.items() for part in row.prescribed]
         return Reduction(unknown_of_dof.astype(int), combinations, n, numbering, prescribed)
+
+    def _numbering(self, drawn: np.ndarray, combined: dict[int, Row], elements: np.ndarray) -> Numbering:
+        """Return the numbering of unknowns that are numbered `drawn`, which combined dofs are made of besides."""
+        if not combined:
+            return as_drawn(elements, drawn)
+        free = np.flatnonzero(drawn >= 0)
+        made_of = [(dof, drawn[of]) for dof, row in combined.items() for of in row.free]
+        return cheapest(elements, np.concatenate([np.stack([free, drawn[free]], axis=1), made_of]),
+                        (len(drawn), len(free)))
 
 
 def _shared(master: Node, slave: Node) -> dict[str, list[dict[int, float]]]:

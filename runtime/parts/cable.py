@@ -13,6 +13,7 @@ from ..errors import near
 from ..kernels.element_line import ElementLine
 from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.libraries import of_library, resolved
+from ..rotations import cross
 from . import cable_drawing, cable_laws, curves
 from .material import Material
 from .part import Part
@@ -145,7 +146,7 @@ class Cable(Part):
             cable_drawing.check_plane(self.element, dict(zip(names, self._drawn_through, strict=True)), self.velocity,
                                       self.angular_velocity, self.up)
         else:
-            cable_drawing.check_height(self._shape, self.up, self._is_round)
+            cable_drawing.check_height(self._drawn_through, self.up, self._is_round)
         cable_drawing.check_elements(self._shape, self.elements)
         return self
 
@@ -157,7 +158,7 @@ class Cable(Part):
     @property
     def height_direction(self) -> Vector:
         """Return ``up``; where that lies along the axis of a round section, the ground's axis most nearly across it."""
-        if cable_drawing.has_height(self._shape, self.up):
+        if curves.has_height(self._drawn_through, self.up):
             return self.up
         least = int(np.argmin(np.abs(self._shape.tangent(0.0))))
         return float(least == 0), float(least == 1), float(least == 2)
@@ -267,13 +268,18 @@ class Cable(Part):
     def axes_at(self, s: ArrayLike) -> np.ndarray:
         """Return (..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
         s = np.asarray(s, dtype=float)
+        if self._shape.straight:  # they are the same everywhere
+            axes = self._axes_along(np.array([0.0, self.drawn_length]))[0]
+            return np.tile(axes, (*s.shape, 1, 1))
         places, which = np.unique(np.append(s.ravel() * self.stretch, [0.0, self.drawn_length]), return_inverse=True)
+        return self._axes_along(places)[which[: s.size]].reshape(*s.shape, 3, 3)
+
+    def _axes_along(self, places: np.ndarray) -> np.ndarray:
+        """Return (places, 3, 3): `axes_at` increasing arc-lengths as drawn, the first of them 0."""
         if self.dim == 2:
             i, k = self._shape.tangent(places), np.array([0.0, 0.0, 1.0])
-            axes = np.stack([i, np.cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
-        else:
-            axes = curves.transported(self._drawn_through, self.height_direction, tuple(places.tolist()))
-        return axes[which[: s.size]].reshape(*s.shape, 3, 3)
+            return np.stack([i, cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
+        return curves.transported(self._drawn_through, self.height_direction, tuple(places.tolist()))
 
     @property
     def axes(self) -> np.ndarray:
@@ -290,9 +296,12 @@ class Cable(Part):
     @property
     def nodal_rates(self) -> np.ndarray:
         """Return (nodes, vectors, 3): rates of `nodal_vectors` at the start, of a rigid motion."""
-        vectors, place = self.nodal_vectors, self.kind_of_element.nodal_vectors.index("r")
+        names = self.kind_of_element.nodal_vectors
+        if not any((*self.velocity, *self.angular_velocity)):
+            return np.zeros((self.elements + 1, len(names), 3))
+        vectors, place = self.nodal_vectors, names.index("r")
         vectors[:, place] -= vectors[0, place]
-        rates = np.cross(self.angular_velocity, vectors)
+        rates = cross(self.angular_velocity, vectors)
         rates[:, place] += self.velocity
         return rates
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from . import cable_laws
-from .curves import Line, Spline
+from .curves import Line, Spline, has_height, shape_through
 from .validation import Vector, show
 
 FOLLOWS = 0.5
@@ -33,16 +33,14 @@ def check_plane(element: str, through: dict[str, Sequence[float]], velocity: Vec
                          "leave it out: the height lies in the plane")
 
 
-def has_height(shape: Line | Spline, up: Vector) -> bool:
-    """Return whether up gives a direction across the axis at the start."""
-    tilt = np.linalg.norm(np.cross(shape.tangent(0.0), up))
-    return bool(tilt > 1e-6 * np.linalg.norm(up))
+def check_height(points: tuple[tuple[float, ...], ...], up: Vector, is_round: bool) -> None:
+    """Raise ValueError(cause, remedy) where up gives no direction of the height; a round section needs none.
 
-
-def check_height(shape: Line | Spline, up: Vector, is_round: bool) -> None:
-    """Raise ValueError(cause, remedy) where up gives no direction of the height; a round section needs none."""
-    if not has_height(shape, up) and not (is_round and any(up)):
-        raise ValueError(f"up must not be zero or parallel to the axis {show(shape.tangent(0.0))}, got {show(up)}",
+    points: that the cable is drawn through.
+    """
+    if not has_height(points, up) and not (is_round and any(up)):
+        tangent = shape_through(points).tangent(0.0)
+        raise ValueError(f"up must not be zero or parallel to the axis {show(tangent)}, got {show(up)}",
                          "give the direction of the section's height")
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..rotations import cross
 from .validation import show, shown, vector
 
 if TYPE_CHECKING:
@@ -315,6 +316,13 @@ def shape_through(points: tuple[tuple[float, ...], ...]) -> Line | Spline:
 
 
 @lru_cache(maxsize=128)
+def has_height(points: tuple[tuple[float, ...], ...], up: tuple[float, ...]) -> bool:
+    """Return whether ``up`` gives a direction across the shape through points at its start."""
+    tilt = np.linalg.norm(cross(shape_through(points).tangent(0.0), up))
+    return bool(tilt > 1e-6 * np.linalg.norm(up))
+
+
+@lru_cache(maxsize=128)
 def transported(points: tuple[tuple[float, ...], ...], up: tuple[float, ...], places: tuple[float, ...]) -> np.ndarray:
     """Return the axes of the section along a shape, turned about its tangent nowhere.
 
@@ -336,7 +344,7 @@ def transported(points: tuple[tuple[float, ...], ...], up: tuple[float, ...], pl
     i = tangent[::FRAMES]
     j = j - np.sum(i * j, axis=1, keepdims=True) * i
     j = j / np.linalg.norm(j, axis=1, keepdims=True)
-    return np.stack([i, j, np.cross(i, j)], axis=1)
+    return np.stack([i, j, cross(i, j)], axis=1)
 
 
 def _reflected(height: np.ndarray, tangent: np.ndarray, step: np.ndarray, onward: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
-from ..errors import SceneError, check_renamed, near
+from ..errors import RENAMED, SceneError, check_renamed, near
 from .quantity import Quantity
 from .validation import shown
 
@@ -110,7 +110,8 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
     def __getattr__(self, name: str) -> Any:
         """Refuse an attribute that there is not; of an older version's, say what it is called now."""
-        check_renamed(f"{type(self).__name__!r} object", name, [*type(self).model_fields, *dir(type(self))])
+        if name in RENAMED:
+            check_renamed(f"{type(self).__name__!r} object", name, [*type(self).model_fields, *dir(type(self))])
         return super().__getattr__(name)  # type: ignore[misc]  # which pydantic hides from type checkers
 
     @classmethod

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
+from copy import copy
+from typing import Any, Self
 
 from ..errors import SceneError, check_renamed
 from .attachment import Attachment
@@ -108,6 +109,14 @@ class SceneData:
         groups = ["events"] if group == "events" else [each for each in _groups() if each != "events"]
         named = (getattr(self, each) for each in groups)
         return next((parts[name] for parts in named if isinstance(parts, dict) and name in parts), None)
+
+    def copied(self) -> Self:
+        """Return a scene of the same parts, to which parts can be added while this one stays as it is."""
+        made = copy(self)
+        for name, value in vars(self).items():
+            if isinstance(value, dict | list):
+                setattr(made, name, value.copy())
+        return made
 
     def check_name(self, part: Part) -> None:
         """Raise SceneError where the name of a part is taken."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,9 +81,13 @@ def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
 
 def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) -> Recording:
     """Return the engine's rows by name, and the report on the run."""
+    begin = time.perf_counter()
     model, engine, watcher, status = simulation.model, simulation.engine, simulation.watcher, simulation.status
     statistics = engine.statistics
-    seconds = {"set_up": simulation.set_up_s, "total": simulation.total_s}
+    costs, rows = _costs(model, engine), named(model, scene, engine)
+    results = time.perf_counter() - begin
+    seconds = {"set_up": simulation.set_up_s, "start": simulation.start_s, "results": simulation.notes_s + results,
+               "total": simulation.total_s + results}
     report = {
         "status": status,
         "integrator": engine.integrator,
@@ -96,11 +101,11 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
         "events": watcher.happened,
         **statistics,
         "time_s": seconds | statistics["time_s"] | {"solve_cpu": simulation.solve_cpu_s},
-        "us_per_step": _costs(model, engine),
+        "us_per_step": costs,
         "modes": {body.name: body.modes_in_words for body in scene.bodies.values() if isinstance(body, ModalBody)},
     }
     return Recording(
-        **vars(named(model, scene, engine)),
+        **vars(rows),
         status="no_convergence" if status in ("singular", "unstable") else status,
         message=_message(simulation, scene, settings),
         report=report,

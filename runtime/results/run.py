@@ -47,12 +47,26 @@ class ReadScene(Protocol):
         """Return the scene; origin: what error messages call the text. Raises SceneError."""
 
 
-class SceneText(NamedTuple):
-    """A scene as text, what reads it, and directories of elements that it may load then."""
+class SceneText:
+    """A scene as text, what reads it, and directories of elements that it may load then.
 
-    toml: str
-    read: ReadScene
-    libraries: Iterable[str | os.PathLike] = ()
+    Most runs are never asked for the text: of a scene it is written when it is read first.
+    """
+
+    def __init__(self, scene: SceneData | str, read: ReadScene, libraries: Iterable[str | os.PathLike] = ()):
+        """scene: its text, or the scene itself, which must not change any more."""
+        self._scene, self.read, self.libraries = scene, read, libraries
+
+    @property
+    def toml(self) -> str:
+        """Return the text of a scene file."""
+        if not isinstance(self._scene, str):
+            self._scene = dumps(self._scene)
+        return self._scene
+
+    def __getstate__(self) -> dict:
+        """Return what is pickled: the text, since a scene may have functions."""
+        return vars(self) | {"_scene": self.toml}
 
 
 class EnergyBalance(NamedTuple):
@@ -90,7 +104,7 @@ class Run(Viewable, NamedArrays):
             "messages": [*scene.messages, *recording.report.get("messages", [])],
             "settings": settings.model_dump(),
         }
-        return cls(variables, coords, report, SceneText(dumps(scene), read_scene, scene.libraries))
+        return cls(variables, coords, report, SceneText(scene.copied(), read_scene, scene.libraries))
 
     @property
     def time(self) -> np.ndarray:

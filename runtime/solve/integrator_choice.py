@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,10 +18,12 @@ from ..model.model import Model
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..parts.slide import Slide
-from .condensation import condensed
 
 ITERATIONS = 20
 """Of the power iteration."""
+
+DENSE = 120
+"""Unknowns up to which matrices are arrays: sparse ones take longer to make than their zeros to multiply."""
 
 
 def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
@@ -42,7 +47,7 @@ def cheapest(demands: Demands) -> tuple[Integrator, str]:
     """Return the cheapest of the integrators that say what they cost, and what each says; the last one of equals."""
     said = [(one, *cost) for one in INTEGRATORS.values() if (cost := one.cost(demands)) is not None]
     chosen = min(reversed(said), key=lambda of_one: of_one[1])[0]
-    return chosen(), ", ".join(why for _, _, why in said)
+    return _made(chosen), ", ".join(why for _, _, why in said)
 
 
 def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
@@ -127,23 +132,43 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     n = model.n_band + model.n_border_dof
     if n == 0:
         return 0.0, 0.0
-    mass = engine.matrix(1.0, 0.0, 0.0)[:n, :n]
-    stiffness = condensed(engine.matrix(0.0, 0.0, 1.0), model)[0][:n, :n]
-    damping = condensed(engine.matrix(0.0, 1.0, 1.0), model)[0][:n, :n] - stiffness
-    return np.sqrt(_largest(stiffness, mass)), _largest(damping, mass)
+    matrix = engine.dense_matrix if n <= DENSE else engine.matrix
+    mass = matrix(1.0, 0.0, 0.0)[:n, :n]
+    by_mass = np.linalg.inv(mass).dot if n <= DENSE else splu(mass.tocsc(), permc_spec="NATURAL").solve
+    stiffness = _without_forces(matrix(0.0, 0.0, 1.0), n, model)
+    decay = 0.0
+    if model.is_damped:
+        damping = _without_forces(matrix(0.0, 1.0, 1.0), n, model) - stiffness
+        decay = _largest(damping, mass, by_mass)
+    return math.sqrt(_largest(stiffness, mass, by_mass)), decay
 
 
-def _largest(matrix: Any, mass: Any) -> float:
+def _without_forces(full: Any, n: int, model: Model) -> Any:
+    """Return a matrix over the first n unknowns, forces between points eliminated: their rows are F - law(q)."""
+    between = [n + k for coupling in model.couplings if coupling.follows_law for k in coupling.force_unknowns]
+    own = full[:n, :n]
+    return own - full[:n][:, between] @ full[between][:, :n] if between else own
+
+
+def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]) -> float:
     """Return about the largest eigenvalue of the symmetric part by the mass, in size, by power iteration: some per cent
     low.
+
+    matrix, mass: (n, n), arrays or sparse; by_mass: returns the mass^-1 times (n,).
     """
-    symmetric, factors = (matrix + matrix.T) / 2, splu(mass.tocsc())
-    x = np.random.default_rng(0).normal(size=mass.shape[0])
-    value = 0.0
-    for _ in range(ITERATIONS):
-        moved = factors.solve(symmetric @ x)
-        size = np.sqrt(moved @ (mass @ moved))
+    symmetric = (matrix + matrix.T) / 2
+    x = np.random.default_rng(0).normal(size=matrix.shape[0])
+    for _ in range(ITERATIONS - 1):
+        x = by_mass(symmetric.dot(x))
+        size = math.sqrt(x.dot(x))
         if size == 0.0:
             return 0.0
-        value, x = size / np.sqrt(x @ (mass @ x)), moved / size
-    return float(value)
+        x /= size
+    pushed = symmetric.dot(x)
+    return math.sqrt(by_mass(pushed).dot(pushed) / x.dot(mass.dot(x)))
+
+
+@cache
+def _made(kind: type[Integrator]) -> Integrator:
+    """Return the integrator of a kind without parameters: its coefficients are the same in every run."""
+    return kind()

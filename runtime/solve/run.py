@@ -73,7 +73,9 @@ class Sink(Protocol):
 class Simulation:
     """What is left at the end of a run: the engine with its last rows, how it ended, why it was integrated so.
 
-    set_up_s, total_s: wall time; solve_cpu_s: CPU seconds of the integration alone, whatever else the machine does.
+    Wall time: set_up_s until the engine starts, start_s from there to its first step, notes_s of the notes on results
+    after its last one, total_s of all that; solve_cpu_s: CPU seconds of the integration alone, whatever else the
+    machine does.
     """
 
     model: Model
@@ -83,6 +85,8 @@ class Simulation:
     messages: list[str]
     reason: str
     set_up_s: float
+    start_s: float
+    notes_s: float
     total_s: float
     solve_cpu_s: float
 
@@ -118,22 +122,25 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         warnings.warn(message, FunicularWarning, stacklevel=4)
     messages += warned
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0)
+    started = time.perf_counter() - begin - set_up
     if status is None:
         if stream is not None:
             stream.start(model, engine, pace, watcher.happened, row_notes)
         long_run = LongRun(model, engine, settings, watcher, on_progress)
         status = engine.advance(long_run, pace.every, stream)
         messages += long_run.notes()
-    cpu, total = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
+    cpu, ended = time.process_time() - cpu, time.perf_counter()
     row_notes.see(engine.rows())
     if status == "completed":
         for note in [*notes(engine, settings), *trapped(scene, engine), *row_notes.notes()]:
             messages.append(note)
             warnings.warn(note, FunicularWarning, stacklevel=4)
+    noted = time.perf_counter() - ended
+    total = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
     for message in messages:
         LOG.info("run: %s", message)
-    return Simulation(model, engine, watcher, status, messages, reason, set_up, total, cpu)
+    return Simulation(model, engine, watcher, status, messages, reason, set_up, started, noted, total, cpu)
 
 
 @dataclass

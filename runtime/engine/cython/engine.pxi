@@ -212,7 +212,7 @@ cdef extern from "engine.h" nogil:
         double exchanged, in_motion, grown, lost, rounding
     ctypedef struct fu_statistics:
         long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations
-        double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output
+        double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output, time_step, time_error
     ctypedef struct fu_record:
         int n, first, pause
     fu_array fu_record_array(const fu_model *model, const fu_record *record, int k)

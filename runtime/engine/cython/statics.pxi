@@ -6,13 +6,11 @@ cdef class Statics(Translation):
     cdef object spreads
     cdef dict weight  # gravity's forces as the model has them
 
-    cdef _matrix(self):
-        """The unfactored Newton matrix, (unknowns, unknowns) sparse."""
-        from scipy.sparse import coo_array
-
+    cdef _entries(self):
+        """Rows, columns and values of the entries of the unfactored Newton matrix that are not zero, each once."""
         cdef fu_system *system = &self.run.newton
         cdef int n = system.n, width = system.width, m = system.m
-        band = np.asarray(<double[:n * (3 * width + 1)]>system.K).reshape(n, 3 * width + 1).copy() if n else np.zeros((0, 1))
+        band = np.asarray(<double[:n * (3 * width + 1)]>system.K).reshape(n, 3 * width + 1) if n else np.zeros((0, 1))
         columns, diagonals = np.nonzero(band)
         entries = [(columns + diagonals - 2 * width, columns, band[columns, diagonals])]
         if m:
@@ -26,8 +24,15 @@ cdef class Statics(Translation):
             entries.append((rows, n + at, right[at, rows]))
             rows, at = np.nonzero(below)
             entries.append((n + rows, at, below[rows, at]))
-        row, column, value = (np.concatenate(part) for part in zip(*entries))
-        return coo_array((value, (row, column)), shape=(n + m, n + m)).tocsc()
+        return [np.concatenate(part) for part in zip(*entries)]
+
+    cdef _matrix(self):
+        """The unfactored Newton matrix, (unknowns, unknowns) sparse."""
+        from scipy.sparse import coo_array
+
+        cdef int total = self.run.newton.n + self.run.newton.m
+        row, column, value = self._entries()
+        return coo_array((value, (row, column)), shape=(total, total)).tocsc()
 
     def linearise(self, double h, change):
         """Residual and Newton matrix of a step h after moving its prediction by `change`; for tests.
@@ -152,13 +157,30 @@ cdef class Statics(Translation):
 
     def matrix(self, double inertia, double rate, double stiffness):
         """inertia M + stiffness (K + rate D) at the static state, (n, n) sparse; constraints where stiffness is not 0."""
+        self._weigh(inertia, rate, stiffness)
+        between = self._between_cables() if stiffness else None
+        return self._matrix() if between is None else self._matrix() + stiffness * between
+
+    def dense_matrix(self, double inertia, double rate, double stiffness):
+        """The same as an array (n, n), which is quicker where there are few unknowns."""
+        cdef int total = self.run.newton.n + self.run.newton.m
+        self._weigh(inertia, rate, stiffness)
+        full = np.zeros((total, total))
+        row, column, value = self._entries()
+        full[row, column] = value
+        between = self._between_cables() if stiffness else None
+        return full if between is None else full + stiffness * between.toarray()
+
+    cdef _weigh(self, double inertia, double rate, double stiffness):
         cdef fu_weights weights
         weights.inertia, weights.rate, weights.stiffness = inertia, rate, stiffness
         fu_matrix_of_weights(&self.run, weights)
-        return self._matrix() + stiffness * self._between_cables() if stiffness and self._of("joint") else self._matrix()
 
     def _between_cables(self):
-        """(n, n) sparse: what joints between two cables add to the stiffness and Newton in time does without."""
+        """(n, n) sparse: what joints between two cables add to the stiffness and Newton in time does without; else None."""
+        joints = [k for k in self._of("joint") if fu_between_cables(<fu_joint *>self.couplings[<int>k])]
+        if not joints:
+            return None
         from scipy.sparse import coo_array, csr_array
 
         cdef int[::1] at = np.zeros(2 * FU_ATTACHMENT_COORDINATES, dtype=np.intc)
@@ -167,10 +189,8 @@ cdef class Statics(Translation):
         cdef int k, i, n, first, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
         whole = n_dof + self.model.n_extra
         stiffness = csr_array((whole, whole))
-        for k in self._of("joint"):
+        for k in joints:
             joint = <fu_joint *>self.couplings[k]
-            if not fu_between_cables(joint):
-                continue
             first = fu_attachment_coordinates(&self.model, &joint.attachments[0], &self.run.next, &at[0])
             n = fu_joint_tangent(&self.model, joint, &self.run.next, &at[0], &J[0], &K[0])
             block = np.array(K[:n * n]).reshape(n, n)
@@ -182,7 +202,7 @@ cdef class Statics(Translation):
             rows, columns = np.repeat(places, n), np.tile(places, n)
             stiffness = stiffness + coo_array((block.ravel(), (rows, columns)), shape=(whole, whole)).tocsr()
         if not stiffness.nnz:
-            return csr_array((total, total))
+            return None
         if self.spreads is None:
             unit = [self.spread(x) for x in np.eye(total)[:total - self.model.n_extra]]
             dofs = np.array(unit).reshape(-1, n_dof).T

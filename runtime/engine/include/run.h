@@ -14,7 +14,10 @@
 
 typedef struct {
     long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations;
-    double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output;
+    double h_min, h_max, error_sum;
+    /* s, each without what the others count: of output; of steps, where residuals, matrices and solutions are counted by
+     * themselves; of estimates of the error */
+    double time_factor, time_solve, time_residual, time_output, time_step, time_error;
 } fu_statistics;
 
 enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, FU_SINGULAR = 4, FU_EVENT = 5,

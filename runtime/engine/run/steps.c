@@ -74,18 +74,42 @@ static int choose_size(fu_run *run, trial *t, double remaining)
     return 1;
 }
 
+/* Returns the clock less the seconds that are counted already: what this grows by has not been. */
+static double uncounted(const fu_run *run)
+{
+    const fu_statistics *s = &run->statistics;
+    return fu_clock() - (s->time_factor + s->time_solve + s->time_residual + s->time_output + s->time_step + s->time_error);
+}
+
+/* Makes a step; returns 0 where that was possible. */
+static int make(fu_run *run, double h)
+{
+    const double begin = uncounted(run);
+    const int failed = run->integrator->step(run, h);
+    run->statistics.time_step += uncounted(run) - begin;
+    return failed;
+}
+
+/* Returns the estimate of the step's error, m. */
+static double error_of(fu_run *run, double h)
+{
+    const double begin = uncounted(run), error = run->integrator->error(run, h);
+    run->statistics.time_error += uncounted(run) - begin;
+    return error;
+}
+
 /* Makes the step and estimates its error; returns 0 where it is rejected, and a shorter one is wanted. */
 static int attempt(fu_run *run, trial *t)
 {
     const double allowed = fu_allow(run, t->h);
     run->failure.cause = FU_NO_FAILURE;
     run->usual = t->want;
-    if (run->integrator->step(run, t->h)) {
+    if (make(run, t->h)) {
         if (!run->failure.cause) fu_fail(run, FU_ITERATION, run->next.v, -1);
         t->want = fu_retry_step(run, t->h);
         return 0;
     }
-    t->error = run->integrator->error(run, t->h);
+    t->error = error_of(run, t->h);
     t->ratio = t->error / allowed;
     t->changes = fu_count_changes(run);
     if (is_adaptive(run) && !t->changes && !(t->ratio <= ACCEPTED)) {
@@ -124,7 +148,7 @@ static int end_on_event(fu_run *run, trial *t)
 /* Returns whether a step that was cut at a jump is accurate: its error without the jump was not known before. */
 static int is_accurate_without_jump(fu_run *run, trial *t)
 {
-    const double ratio = run->integrator->error(run, t->h) / fu_allow(run, t->h);
+    const double ratio = error_of(run, t->h) / fu_allow(run, t->h);
     if (ratio <= ACCEPTED) return 1;
     t->want = fu_shrink_step(run, t->h, ratio);
     return 0;
