@@ -118,6 +118,11 @@ def calls(function: Callable[[], object]) -> int:
     return sum(entry.callcount for entry in profile.getstats())
 
 
+def calls_of(scene: Scene) -> int:
+    """Return how many calls it takes to set up a run of a scene."""
+    return calls(lambda: set_up(lambda: scene))
+
+
 def run(make: Callable[[], Scene]) -> tuple[Run, float]:
     """Return a run of the scene, and the ms that its results took after the last step."""
     made = make().run(RUN, output_step=OUTPUT, tol=1e-4, progress=False)
@@ -151,7 +156,7 @@ def main() -> None:
         least = {part: 1e3 * min(one[part] for one in taken[name]) for part in ("scene", *SET_UP)}
         results, part = (min(each) for each in zip(*left[name], strict=True)) if left[name] else ("", "")
         rows.append({"name": name, **least, "set-up": sum(least[each] for each in SET_UP), "results": results,
-                     "unaccounted": part, "calls": calls(lambda made=make(): set_up(lambda: made))})
+                     "unaccounted": part, "calls": calls_of(make())})
     show(rows, options.out)
 
 
