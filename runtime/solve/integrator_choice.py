@@ -132,7 +132,7 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     n = model.n_band + model.n_border_dof
     if n == 0:
         return 0.0, 0.0
-    matrix = engine.dense_matrix if n <= DENSE else engine.matrix
+    matrix: Callable[[float, float, float], Any] = engine.dense_matrix if n <= DENSE else engine.matrix
     mass = matrix(1.0, 0.0, 0.0)[:n, :n]
     by_mass = np.linalg.inv(mass).dot if n <= DENSE else splu(mass.tocsc(), permc_spec="NATURAL").solve
     stiffness = _without_forces(matrix(0.0, 0.0, 1.0), n, model)

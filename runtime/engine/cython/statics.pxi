@@ -163,11 +163,19 @@ cdef class Statics(Translation):
 
     def dense_matrix(self, double inertia, double rate, double stiffness):
         """The same as an array (n, n), which is quicker where there are few unknowns."""
-        cdef int total = self.run.newton.n + self.run.newton.m
+        cdef fu_system *system = &self.run.newton
+        cdef int i, k, n = system.n, width = system.width, m = system.m
         self._weigh(inertia, rate, stiffness)
-        full = np.zeros((total, total))
-        row, column, value = self._entries()
-        full[row, column] = value
+        full = np.zeros((n + m, n + m))
+        cdef double[:, :] entry = full
+        for k in range(n):
+            for i in range(max(0, k - width), min(n, k + width + 1)):
+                entry[i, k] = system.K[k * (3 * width + 1) + i - k + 2 * width]
+        for k in range(m):
+            for i in range(n):
+                entry[i, n + k], entry[n + k, i] = system.B[k * n + i], system.C[k * n + i]
+            for i in range(m):
+                entry[n + i, n + k] = system.D[k * m + i]
         between = self._between_cables() if stiffness else None
         return full if between is None else full + stiffness * between.toarray()
 
