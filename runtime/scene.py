@@ -91,15 +91,20 @@ class Scene(Viewable, SceneMethods):
         >>> scene.replace("A", mass=2.0).bodies["A"].mass, scene.bodies["A"].mass
         (2.0, 1.0)
         """
-        old = self._part(part)
-        scene = type(self)(gravity=self.gravity)
+        return self.changed([(self._part(part), changes)])
+
+    def changed(self, changes: Iterable[tuple[Part, Mapping[str, Any]]], gravity: Any = None) -> Self:
+        """Return a scene like this one with other values of several of its parts at once, checked as any scene is.
+
+        changes: parts of this scene, each once, with values by keyword; gravity: in m/s², None to keep this one's.
+        Raises SceneError.
+        """
+        scene = type(self)(gravity=self.gravity if gravity is None else gravity)
         scene.title = self.title
         scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
+        values = {id(part): each for part, each in changes}
         for each in self.parts():
-            if each is old:
-                scene.add(type(old)(**old.entries() | changes))
-            else:
-                scene.add(each)
+            scene.add(type(each)(**each.entries() | values[id(each)]) if id(each) in values else each)
         return scene
 
     def _part(self, part: Part | str) -> Part:
