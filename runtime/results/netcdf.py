@@ -115,11 +115,11 @@ class File:
     def damaged_rows(self, rows: int | None = None) -> np.ndarray:
         """Return the numbers of the rows, of all or of so many, whose checksum is not theirs. Raises OSError."""
         damaged = [np.zeros(0, int)]
-        for start, block in self._blocks(self.rows if rows is None else rows):
+        for start, block in self.blocks(self.rows if rows is None else rows):
             damaged.append(start + np.flatnonzero(block[ROW_CHECKSUM] != _checksums(block)))
         return np.concatenate(damaged)
 
-    def _blocks(self, rows: int) -> Iterator[tuple[int, np.ndarray]]:
+    def blocks(self, rows: int) -> Iterator[tuple[int, np.ndarray]]:
         if not rows:
             return
         block = np.empty(min(rows, max(1, _BLOCK // max(1, self.row_bytes))), self._row)
@@ -132,7 +132,7 @@ class File:
 
     def _kept_blocks(self) -> Iterator[np.ndarray]:
         """Yield blocks of rows that are not left out."""
-        for start, block in self._blocks(self.rows):
+        for start, block in self.blocks(self.rows):
             gone = self.left_out[(self.left_out >= start) & (self.left_out < start + len(block))] - start
             yield np.delete(block, gone) if len(gone) else block
 
