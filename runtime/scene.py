@@ -104,7 +104,7 @@ class Scene(Viewable, SceneMethods):
         scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
         values = {id(part): each for part, each in changes}
         for each in self.parts():
-            scene.add(type(each)(**each.entries() | values[id(each)]) if id(each) in values else each)
+            scene.add(type(each)(**{**each.entries(), **values[id(each)]}) if id(each) in values else each)
         return scene
 
     def _part(self, part: Part | str) -> Part:

@@ -1,9 +1,10 @@
 """Files of results: netCDF, the classic format with 64-bit offsets, written row by row.
 
-A row holds all variables at one time (of a sweep: at one point), and last its checksum. Rows are added behind those that count, then their number
-in the header is raised, so that the file is whole at every instant. The header has a checksum, too, which leaves out
-what changes while the file grows: the number of rows and the report, whose lines have their own. All are ordinary
-variables and attributes for other readers. Format: NetCDF Classic Format Specification, Unidata.
+A row holds all variables at one time (of a sweep: at one point), and last its checksum. Rows are added behind those
+that count, then their number in the header is raised, so that the file is whole at every instant. The header has a
+checksum, too, which leaves out what changes while the file grows: the number of rows and the report, whose lines have
+their own. All are ordinary variables and attributes for other readers. Format: NetCDF Classic Format Specification,
+Unidata.
 """
 
 from __future__ import annotations
@@ -120,6 +121,7 @@ class File:
         return np.concatenate(damaged)
 
     def blocks(self, rows: int) -> Iterator[tuple[int, np.ndarray]]:
+        """Yield the first rows, as many as are asked for, in blocks, each with the number of its first row."""
         if not rows:
             return
         block = np.empty(min(rows, max(1, _BLOCK // max(1, self.row_bytes))), self._row)

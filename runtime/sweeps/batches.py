@@ -15,7 +15,7 @@ from .subject import Subject
 
 BATCH_SECONDS = 0.5
 """What a batch should take: a task of Dask's costs some ms of the scheduler, the worker and this process together."""
-MOST_BYTES = 1 << 24
+MOST_BYTES = 1 << 22
 """Of the rows of a batch."""
 LEAST_BATCHES = 4
 """That each worker should get of a sweep, so that all end at about the same time."""

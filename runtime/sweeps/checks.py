@@ -64,7 +64,7 @@ def own_times(subject: SceneSubject, points: Points) -> int | None:
     if len(duration) == 1 and (output is None or len(output) == 1) and not stops:
         return None
     if output is None:  # a part of the duration, as `RunSettings` has it
-        return int(round(settings.duration / settings.output_step)) + 2
+        return round(settings.duration / settings.output_step) + 2
     if points.is_grid or 1 in (len(duration), len(output)):
         return int(np.ceil(duration.max() / output.min())) + 2
     return int(np.ceil((duration / output).max())) + 2

@@ -30,7 +30,7 @@ class _OfPoints(BackendArray):
         """shape: of the points, in place of the file's rows; absent: the numbers of the points that are left out."""
         entry = file.entries[name]
         named = os.path.exists(file.path)  # else the file has no name any more, and lives as long as it is open
-        self._source = file.path if named else open(os.dup(file.descriptor), "rb")  # noqa: SIM115  closed with the array
+        self._source = file.path if named else open(os.dup(file.descriptor), "rb")
         self._name, self._of_points, self._absent = name, shape, absent
         self._row, self._first = file.row_dtype, file.first_row_at
         self._is_text = entry.dtype.kind == "S"
@@ -103,10 +103,10 @@ def dataset_of(file: File, facts: dict[str, Any], finished: np.ndarray) -> xarra
 def load_sweep(path: str | os.PathLike, salvage: bool = False) -> xarray.Dataset:
     """Open the results of a sweep, also of one that goes on or was killed, as an xarray.Dataset.
 
-    Its dimensions are the parameters of a grid, or ``point`` with the parameters along it. Arrays are read from the file
-    when they are asked for. ``status`` is "failed" for a point that ``message`` tells why, and "not run" for one that
-    the sweep has not come to; both are NaN. All rows are checked. salvage: take points whose rows are damaged for not
-    run, with a `FunicularWarning`, where the file would be refused otherwise. Raises ResultFileError.
+    Its dimensions are the parameters of a grid, or ``point`` with the parameters along it. Arrays are read from the
+    file when they are asked for. ``status`` is "failed" for a point that ``message`` tells why, and "not run" for
+    one that the sweep has not come to; both are NaN. All rows are checked. salvage: take points whose rows are
+    damaged for not run, with a `FunicularWarning`, where the file would be refused otherwise. Raises ResultFileError.
     """
     file = open_file(path)
     facts = facts_in(file)

@@ -132,7 +132,7 @@ class Layout:
         for name in kept.variables:
             if name not in self.variables:
                 return f'{SWEEP}: the point has "{name}", which the first points had not'
-        if self.times is not None and not np.array_equal(self.times, kept.time):
+        if self.times is not None and (kept.time is None or not np.array_equal(self.times, kept.time)):
             return f"{SWEEP}: the point has other output times than the first ones; give all the same"
         return None
 

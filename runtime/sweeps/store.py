@@ -70,8 +70,8 @@ class Store:
                 gap = int(np.argmin(self.finished[at:]))
                 self._file.count_rows(len(self.finished) if self.finished[at + gap] else at + gap)
         except OSError as error:
-            raise ResultFileError(f"{self._file.path}: the results could not be written: {error.strerror}; make room, and "
-                                  "repeat the sweep: what is written is not computed again") from error
+            raise ResultFileError(f"{self._file.path}: the results could not be written: {error.strerror}; make room, "
+                                  "and repeat the sweep: what is written is not computed again") from error
 
     def failed(self) -> np.ndarray:
         """Return the numbers of the points that were recorded as failed."""
@@ -126,7 +126,8 @@ def new_store(path: str | os.PathLike | None, layout: Layout, facts: Mapping[str
     """
     number = int(facts["number"])
     if layout.row_bytes > MOST_ROW:
-        raise ResultFileError(f"{SWEEP}: a point has {layout.row_bytes:.3g} bytes, more than a file can have; keep less")
+        raise ResultFileError(f"{SWEEP}: a point has {layout.row_bytes:.3g} bytes, more than a file can have; "
+                              "keep less")
     descriptor = None
     if path is None:
         handle, part = tempfile.mkstemp(prefix="funicular-", suffix=".nc")
@@ -145,7 +146,7 @@ def new_store(path: str | os.PathLike | None, layout: Layout, facts: Mapping[str
         os.unlink(part)
         raise ResultFileError(f"{resolved}: {number} points of {layout.row_bytes} bytes do not fit in the {free:.3g} "
                               "bytes that are free; keep less, or save elsewhere")
-    attributes = {FORMAT: SWEEP_FORMAT, "scene": scene}
+    attributes: dict[str, str | int] = {FORMAT: SWEEP_FORMAT, "scene": scene}
     try:
         file = create(part, layout.coords, layout.for_file(), attributes, json.dumps(facts), 0, descriptor, POINT)
         file.reserve(number)

@@ -127,11 +127,8 @@ class FunctionSubject:
 
     def compute(self, points: Sequence[Mapping[str, Any]]) -> list[Outcome]:
         """Return the outcomes of points, each a value by keyword."""
-        outcomes: list[Outcome | None] = []
-        scenes = []
-        for point in points:
-            outcome = self._called(point, scenes)
-            outcomes.append(outcome)
+        scenes: list[Scene] = []
+        outcomes = [self._called(point, scenes) for point in points]
         ran = iter(run_points(scenes, self.keep))
         return [next(ran) if outcome is None else outcome for outcome in outcomes]
 

@@ -69,7 +69,8 @@ class Plan:
         points, kept = points_of(parameters, method, samples, seed), Keep.of(keep)
         made = subject_of(subject, [*points.columns], kept, settings)
         units: dict[str, str] = {}
-        times, libraries = None, ()
+        times: int | None = None
+        libraries: tuple[str, ...] = ()
         if isinstance(made, SceneSubject):
             if not record_invalid:
                 check_points(made, points)

@@ -11,6 +11,7 @@ import importlib
 import logging
 import os
 import queue
+import signal
 import subprocess
 import sys
 import tempfile
@@ -119,10 +120,8 @@ def local_cluster(number: int) -> Iterator[str]:
                 _await_workers(cluster, running, number, log)
                 yield cluster.scheduler_address
             finally:
-                running.terminate()
-                with suppress(subprocess.TimeoutExpired):
-                    running.wait(10.0)
-                running.kill()
+                with suppress(ProcessLookupError):
+                    os.killpg(running.pid, signal.SIGKILL)  # the workers, too: they have nothing left to do
                 running.wait()
 
 
@@ -133,8 +132,8 @@ def _await_workers(cluster: Any, running: subprocess.Popen, number: int, log: An
         if running.poll() is not None or time.monotonic() - begin > PATIENCE:
             log.seek(0)
             said = log.read().strip().splitlines()[-1:] or ["nothing"]
-            raise FunicularError(f"sweep: worker processes did not start; the last they said was: {said[0]}; compute in "
-                                 "this process alone (workers=0, --serial)")
+            raise FunicularError(f"sweep: worker processes did not start; the last they said was: {said[0]}; "
+                                 "compute in this process alone (workers=0, --serial)")
         time.sleep(0.02)
 
 
@@ -232,7 +231,8 @@ class DaskWorkers:
         if not isinstance(error, self._distributed.scheduler.KilledWorker):
             if isinstance(error, FunicularError | self._distributed.CancelledError):
                 raise error
-            raise FunicularError(f"sweep: a worker could not compute a batch: {type(error).__name__}: {error}") from error
+            cause = f"{type(error).__name__}: {error}"
+            raise FunicularError(f"sweep: a worker could not compute a batch: {cause}") from error
         if len(batch.numbers) > 1:
             halves = np.array_split(np.arange(len(batch.numbers)), 2)
             batches.give_back([Batch(batch.numbers[k], {name: column[k] for name, column in batch.values.items()})
