@@ -19,6 +19,8 @@ from .store import FORMAT, facts_in, whole_rows
 
 KINDS = {"int": int, "float": float, "bool": bool, "str": str}
 """Of the values of parameters."""
+BLOCK = 1 << 24
+"""Bytes of rows that are read at once."""
 NOT_RUN = "not run"
 """The status of a point that a sweep has not come to."""
 
@@ -47,12 +49,24 @@ class _OfPoints(BackendArray):
         many = [np.atleast_1d(axis) for axis in axes]
         dims = len(self._of_points)
         numbers = np.ravel_multi_index(np.ix_(*many[:dims]), self._of_points).ravel()
-        count = int(np.prod(self._of_points))
-        field = np.memmap(self._source, self._row, "r", self._first, (count,))[self._name]
-        found = _texts(field[numbers]) if self._is_text else field[np.ix_(numbers, *many[dims:])].astype(float)
+        found = np.empty((len(numbers), *map(len, many[dims:])), self.dtype)
+        step = max(1, BLOCK // self._row.itemsize)
+        for at in range(0, len(numbers), step):
+            some = slice(at, at + step)
+            found[some] = self._rows(numbers[some], many[dims:])
         gone = np.isin(numbers, self._absent)
         found[gone] = (NOT_RUN if self._name == STATUS else "") if self._is_text else np.nan
         return found.reshape([axis.size for axis in axes if axis.ndim])
+
+    def _rows(self, numbers: np.ndarray, others: list[np.ndarray]) -> np.ndarray:
+        """Return the values of points of these numbers, at places along the other dimensions.
+
+        Only the part of the file is mapped where they are: pages that were read count as memory until then.
+        """
+        first, last = int(numbers.min()), int(numbers.max())
+        rows = np.memmap(self._source, self._row, "r", self._first + first * self._row.itemsize, (last - first + 1,))
+        field = rows[self._name]
+        return _texts(field[numbers - first]) if self._is_text else field[np.ix_(numbers - first, *others)]
 
 
 def _texts(characters: np.ndarray) -> np.ndarray:
