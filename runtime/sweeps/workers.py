@@ -33,7 +33,7 @@ PATIENCE = 60.0
 IN_FLIGHT = 3
 """Batches a worker that are handed out at once: one to compute, and others so that it need not wait."""
 POLL = 1.0
-"""Seconds between two looks whether the scheduler is there."""
+"""Seconds between two looks whether the scheduler is there, and how many workers it has."""
 MISSING = ("sweep: needs Dask to compute on more than one core, and the package {name} is missing; pip install "
            "'funicular[sweep]', or compute in this process alone (workers=0, --serial)")
 
@@ -143,12 +143,15 @@ class DaskWorkers:
     def __init__(self, address: str):
         self._address, self._distributed = address, dask_module("distributed")
         self._client: Any = None
+        self._threads, self._counted_at = 1, -POLL
         self._ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
 
     @property
     def number(self) -> int:
-        """Return how many threads the workers have together."""
-        return max(1, sum(self._client.nthreads().values()))
+        """Return how many threads the workers have together; asked for now and then, since they come and go."""
+        if time.monotonic() - self._counted_at > POLL:
+            self._threads, self._counted_at = max(1, sum(self._client.nthreads().values())), time.monotonic()
+        return self._threads
 
     def connect(self) -> None:
         """Connect to the scheduler, and wait for its workers. Raises FunicularError where that takes too long."""
@@ -185,11 +188,16 @@ class DaskWorkers:
                 self._hand_out(task, batches, pending)
                 if not pending:
                     return
-                for future in self._finished():
-                    done = self._result(future, pending[future], batches, lost)
-                    batch = pending.pop(future)
-                    if done is not None:
-                        came.append((batch, done))
+                ended = self._finished()
+                results = self._results(ended)
+                for future in ended:
+                    if future.status != "error" and future not in results:  # computed anew: its worker died with it
+                        future.add_done_callback(self._ended.put)
+                        continue
+                    batch = pending[future]
+                    came += ([(batch, results[future])] if future in results
+                             else self._dead(future, batch, batches, lost))
+                    del pending[future]
             except (OSError, TimeoutError, RuntimeError, self._distributed.comm.CommClosedError,
                     self._distributed.CancelledError) as error:
                 LOG.warning("sweep: lost the scheduler, and connect anew: %s", error or type(error).__name__)
@@ -221,21 +229,30 @@ class DaskWorkers:
             return found
         raise self._distributed.CancelledError("it is gone")
 
-    def _result(self, future: Any, batch: Batch, batches: Batches, lost: Callable[[Batch, str], Done]) -> Done | None:
-        """Return what a batch came to, None where it is divided because its workers died. Raises FunicularError where a
-        worker could not do it at all, and as `_finished` does.
+    def _results(self, futures: list[Any]) -> dict[Any, Done]:
+        """Return the results of those that have one, all fetched at once."""
+        whole = [future for future in futures if future.status == "finished"]
+        try:
+            return dict(zip(whole, self._client.gather(whole), strict=True))
+        except self._distributed.scheduler.KilledWorker:  # some were lost with their worker, and killed others
+            return {future: future.result() for future in whole if future.status == "finished"}
+
+    def _dead(self, future: Any, batch: Batch, batches: Batches,
+              lost: Callable[[Batch, str], Done]) -> list[tuple[Batch, Done]]:
+        """Divide a batch whose workers died, or return what its only point came to.
+
+        Raises FunicularError where a worker could not do it at all, and CancelledError where the scheduler is lost.
         """
-        if future.status == "finished":
-            return future.result()
         error = future.exception()
         if not isinstance(error, self._distributed.scheduler.KilledWorker):
             if isinstance(error, FunicularError | self._distributed.CancelledError):
                 raise error
             cause = f"{type(error).__name__}: {error}"
             raise FunicularError(f"sweep: a worker could not compute a batch: {cause}") from error
-        if len(batch.numbers) > 1:
-            halves = np.array_split(np.arange(len(batch.numbers)), 2)
-            batches.give_back([Batch(batch.numbers[k], {name: column[k] for name, column in batch.values.items()})
-                               for k in halves])
-            return None
-        return lost(batch, "the worker process died while it computed this point, each time that it was tried")
+        if len(batch.numbers) == 1:
+            message = "the worker process died while it computed this point, each time that it was tried"
+            return [(batch, lost(batch, message))]
+        halves = np.array_split(np.arange(len(batch.numbers)), 2)
+        batches.give_back([Batch(batch.numbers[k], {name: column[k] for name, column in batch.values.items()})
+                           for k in halves])
+        return []
