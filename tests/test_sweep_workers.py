@@ -26,7 +26,8 @@ HERE = Path(__file__).parent
 @pytest.fixture(scope="module")
 def cluster():
     """A scheduler with two workers that are threads of this process, which start at once."""
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None) as found:
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=False,
+                                  dashboard_address="127.0.0.1:0", scheduler_kwargs={"dashboard": False}) as found:
         yield found.scheduler_address
 
 
@@ -81,6 +82,17 @@ def free_port() -> int:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         return free.getsockname()[1]
+
+
+@pytest.mark.slow
+def test_a_local_cluster_is_not_on_the_network():
+    """Workers run any code that reaches them."""
+    import psutil
+
+    with module.local_cluster(1):
+        for process in (psutil.Process(), *psutil.Process().children(recursive=True)):
+            for connection in process.net_connections():
+                assert connection.status != "LISTEN" or connection.laddr.ip == "127.0.0.1"
 
 
 @pytest.mark.slow
@@ -174,7 +186,8 @@ class Cluster:
                "start_new_session": True}
         python = [sys.executable, "-m", "dask"]
         self.processes = [
-            subprocess.Popen([*python, "scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--no-dashboard"],
+            subprocess.Popen([*python, "scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--no-dashboard",
+                              "--dashboard-address", "127.0.0.1:0"],
                              **own),
             subprocess.Popen([*python, "worker", self.address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard",
                               "--local-directory", str(self.folder)], **own)]

@@ -109,10 +109,11 @@ def local_cluster(number: int) -> Iterator[str]:
     distributed = dask_module("distributed")
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     with tempfile.TemporaryDirectory(prefix="funicular-", ignore_cleanup_errors=True) as folder:
-        cluster = distributed.LocalCluster(n_workers=0, processes=True, dashboard_address=None,
-                                           silence_logs=logging.CRITICAL)
+        cluster = distributed.LocalCluster(n_workers=0, processes=True, dashboard_address="127.0.0.1:0",
+                                           scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL)
         command = [sys.executable, "-m", "dask", "worker", cluster.scheduler_address, "--nworkers", str(number),
-                   "--nthreads", "1", "--no-dashboard", "--local-directory", folder, "--death-timeout", "60"]
+                   "--nthreads", "1", "--no-dashboard", "--local-directory", folder, "--death-timeout", "60",
+                   "--host", "127.0.0.1", "--dashboard-address", "127.0.0.1:0"]  # not on the network: they run any code
         with cluster, open(os.path.join(folder, "log"), "w+") as log:
             running = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                        start_new_session=True)  # Ctrl-C is for this process alone
