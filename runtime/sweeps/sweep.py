@@ -210,7 +210,7 @@ def _begun(plan: Plan, save: str | os.PathLike | None,
         numbers = np.array([*sampled], int)
         if len(numbers):
             store.put(numbers, layout.pack(store.dtype, plan.points.at(numbers), [*sampled.values()]))
-        yield store, layout, np.setdiff1d(missing, numbers), sampled
+        yield store, layout, np.delete(missing, np.searchsorted(missing, numbers)), sampled
     finally:
         store.close()
 

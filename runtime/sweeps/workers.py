@@ -173,7 +173,7 @@ class DaskWorkers:
                              "workers, and repeat the sweep: points that are written are not computed again")
 
     def close(self) -> None:
-        """Leave the scheduler."""
+        """Leave the scheduler, if it is still there."""
         if self._client is not None:
             with suppress(OSError, TimeoutError, RuntimeError):
                 self._client.close(timeout=2.0)

@@ -84,12 +84,17 @@ def main() -> None:
         rows = [measured(cluster, given.workers, batch, given.tasks, given.points, Path(folder) / f"{batch}.nc")
                 for batch in BATCHES]
         row_bytes = File(Path(folder) / "1.nc").row_bytes
+        begin = time.process_time()
+        size = os.path.getsize(Path(folder) / "300.nc")
+        fu.load_sweep(Path(folder) / "300.nc")
+        opening = time.process_time() - begin
         scenes = [of_scene(cluster, batch, given.scenes, Path(folder) / f"scene{batch}.nc") for batch in (1, 5, 15)]
     print("\nPoints that take no time:")
     show(rows, given.out)
     cpu = np.array([row["CPU ms a task, here"] for row in rows])
     a, b = np.polynomial.polynomial.polyfit([row["batch"] for row in rows], cpu, 1, w=1 / cpu)
-    print(f"\nscheduler and writer: {a:.2f} ms a task and {1e3 * b:.0f} µs a point; {row_bytes} bytes a point")
+    print(f"\nscheduler and writer: {a:.2f} ms a task and {1e3 * b:.0f} µs a point; {row_bytes} bytes a point; "
+          f"opening with all checksums: {1e-9 * size / opening:.2g} GB a CPU second")
     print("\nFirst scene, tol 1e-3:")
     show(scenes)
     print(f"\n{MILLION:,} points, extrapolated: file {MILLION * row_bytes / 1e9:.2f} GB; cores that one scheduler and "
