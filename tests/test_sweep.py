@@ -109,6 +109,25 @@ def test_points_that_an_event_stops_have_their_own_times():
     assert "event" in found.status.values
 
 
+def test_cables_of_different_lengths_have_their_own_places_of_nodes():
+    given = {"wire.end.x": [1.5, 1.8], "wire@1.5.s": [1.5, 1.8]}
+    found = fu.sweep(scene(), given, method="list", keep=["wire.position"], **ALONE)
+    np.testing.assert_array_equal(found["wire.node.of_point"], [[0, 0.75, 1.5], [0, 0.9, 1.8]])
+    assert found["wire.node.of_point"].attrs["units"] == "m" and "wire.node" not in found.coords
+    one = fu.sweep(scene(), given, method="list", keep=["A.position"], **ALONE)
+    assert "wire.node.of_point" not in one
+
+
+def test_a_point_with_other_places_than_the_sample_is_recorded(monkeypatch, tmp_path):
+    """The sample is the two first ones here, of the same length."""
+    monkeypatch.setattr(module, "sample", lambda subject, points, missing: {
+        k: subject.compute([points.point(k)])[0] for k in missing[:2]})
+    given = {"wire.end.x": [1.5, 1.5, 1.8], "wire@1.5.s": [1.5, 1.5, 1.8]}
+    found = fu.sweep(scene(), given, method="list", keep=["wire.position"], save=tmp_path / "x.nc", **ALONE)
+    assert list(found.status.values) == ["completed", "completed", "failed"]
+    assert 'the point has another "wire.node" than the first points' in str(found.message.values[2])
+
+
 def test_functions_of_a_run_are_kept():
     keep = {"lowest": lambda run: run["A.position"][:, 1].min(), "end": "A.position.x"}
     found = fu.sweep(scene(), {"A.mass": [1.0, 2.0]}, keep=keep, **ALONE)

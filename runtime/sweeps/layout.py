@@ -21,6 +21,8 @@ from .points import FAILED, Outcome
 POINT, ROW = "point", "row"
 """Dimensions: of the points; of output times where each point has its own."""
 STATUS, MESSAGE, SECONDS = "status", "message", "seconds"
+OF_POINT = ".of_point"
+"""Behind the name of a coordinate that each point has as a variable."""
 STATUS_BYTES, MESSAGE_BYTES = 16, 240
 WORD = 8
 """Rows are checked in words of so many bytes."""
@@ -40,23 +42,23 @@ class Slot(NamedTuple):
 class Layout:
     """What a row holds. parameters, variables: by name; coords: those of the variables' dimensions.
 
-    times: the output times (time,) in s that all points share, or None;
-    most_times: the largest number of output times of a point.
+    times: the output times (time,) in s that all points share, or None.
     """
 
     parameters: Mapping[str, Slot]
     variables: Mapping[str, Slot]
     coords: Mapping[str, Variable]
     times: np.ndarray | None
-    most_times: int
 
     @classmethod
-    def of(cls, points: Points, units: Mapping[str, str], kept: Kept, own_times: int | None) -> Layout:
-        """Return the layout of a sweep from what is kept of one of its points.
+    def of(cls, points: Points, units: Mapping[str, str], sampled: Sequence[Kept], own_times: int | None) -> Layout:
+        """Return the layout of a sweep from what is kept of some of its points.
 
         units: of the parameters; own_times: the largest number of output times where points have their own, else None.
-        Raises SceneError where names meet.
+        A coordinate that differs among the points, such as the arc-length of a cable's nodes where its length is swept,
+        becomes a variable of each. Raises SceneError where names meet.
         """
+        kept = _with_own_coords(sampled[0], _differing(sampled))
         parameters = {name: _parameter(values, units.get(name, "")) for name, values in points.columns.items()}
         _check_names(parameters, kept, own_times)
         variables = {name: Slot(_dims(each.dims, own_times), _shape(each, own_times), each.units, each.long_name)
@@ -67,7 +69,7 @@ class Layout:
         coords = dict(kept.coords)
         if shared is not None:
             coords[TIME] = Variable((TIME,), shared, "s", "time")
-        return cls(parameters, variables, coords, shared, own_times or (0 if shared is None else len(shared)))
+        return cls(parameters, variables, coords, shared)
 
     @property
     def row_bytes(self) -> int:
@@ -89,10 +91,10 @@ class Layout:
             rows[name] = _characters(column, dtype[name].shape) if column.dtype.kind == "U" else column
         for k, outcome in enumerate(outcomes):
             status, message = outcome.status, outcome.message
-            complaint = None if outcome.kept is None else self._complaint(outcome.kept)
+            kept = None if outcome.kept is None else _with_own_coords(outcome.kept, self._own_coords)
+            complaint = None if kept is None else self._complaint(kept)
             if complaint is not None:
-                status, message = FAILED, complaint
-            kept = outcome.kept if complaint is None else None
+                status, message, kept = FAILED, complaint, None
             for name, each in self.variables.items():
                 rows[name][k] = np.nan if kept is None else self._fitted(name, each, kept)
             rows[STATUS][k], rows[MESSAGE][k] = _text(status, STATUS_BYTES), _text(message, MESSAGE_BYTES)
@@ -112,8 +114,12 @@ class Layout:
         times = coords[TIME].values if TIME in coords else None
         own = (STATUS, MESSAGE, SECONDS, ROW_CHECKSUM, *parameters)
         variables = {name: slot for name, slot in slots.items() if name not in own}
-        most = len(times) if times is not None else variables[TIME].shape[0] if TIME in variables else 0
-        return cls({name: slots[name] for name in parameters}, variables, coords, times, most)
+        return cls({name: slots[name] for name in parameters}, variables, coords, times)
+
+    @property
+    def _own_coords(self) -> list[str]:
+        """Return the dimensions whose coordinates each point has as a variable."""
+        return [name.removesuffix(OF_POINT) for name in self.variables if name.endswith(OF_POINT)]
 
     def _complaint(self, kept: Kept) -> str | None:
         """Return why a point does not fit in a row, None where it does."""
@@ -124,6 +130,9 @@ class Layout:
                 return f'{SWEEP}: the point has no "{name}", which the first points had'
             shape, room = kept.variables[name].values.shape, each.shape
             over_rows = each.dims[:1] == (ROW,)
+            if kept.variables[name].dims != tuple(TIME if dim == ROW else dim for dim in each.dims):
+                return (f'{SWEEP}: "{name}" is over {", ".join(kept.variables[name].dims) or "nothing"} here, and over '
+                        f'{", ".join(each.dims) or "nothing"} at the first points')
             if shape[over_rows:] != room[over_rows:] or len(shape) != len(room):
                 return (f'{SWEEP}: "{name}" has the shape {shape} here, and {room} at the first points; keep what has '
                         "one shape, or sweep in parts")
@@ -132,6 +141,10 @@ class Layout:
         for name in kept.variables:
             if name not in self.variables:
                 return f'{SWEEP}: the point has "{name}", which the first points had not'
+        for name, coordinate in self.coords.items():
+            here = kept.coords.get(name)
+            if name != TIME and (here is None or not np.array_equal(coordinate.values, here.values)):
+                return f'{SWEEP}: the point has another "{name}" than the first points; sweep in parts'
         if self.times is not None and (kept.time is None or not np.array_equal(self.times, kept.time)):
             return f"{SWEEP}: the point has other output times than the first ones; give all the same"
         return None
@@ -145,6 +158,23 @@ class Layout:
         values = np.full(each.shape, np.nan)
         values[: len(found)] = found
         return values
+
+
+def _differing(sampled: Sequence[Kept]) -> list[str]:
+    """Return the dimensions whose coordinates are numbers, as many at all points, but not the same."""
+    first = sampled[0].coords
+    return [name for name, variable in first.items() if variable.values.dtype.kind == "f" and any(
+        name in each.coords and each.coords[name].values.shape == variable.values.shape
+        and not np.array_equal(each.coords[name].values, variable.values) for each in sampled)]
+
+
+def _with_own_coords(kept: Kept, names: Sequence[str]) -> Kept:
+    """Return what is kept of a point with coordinates of these dimensions as variables."""
+    if not names:
+        return kept
+    own = {f"{name}{OF_POINT}": kept.coords[name] for name in names if name in kept.coords}
+    others = {name: each for name, each in kept.coords.items() if name not in names}
+    return Kept({**kept.variables, **own}, others, kept.time)
 
 
 def _parameter(values: np.ndarray, unit: str) -> Slot:

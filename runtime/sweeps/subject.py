@@ -157,10 +157,9 @@ class FunctionSubject:
         """Return a scene that the function made with the settings of the sweep; its own ones stay as they are."""
         if not self.keep.wanted:
             self.keep.check(scene)
-        if not self.settings:
-            return scene
         made = copy(scene)
-        made.run_settings = scene.run_settings | dict(self.settings)
+        made.run_settings = {name: value for name, value in scene.run_settings.items() if name != "save"}
+        made.run_settings |= dict(self.settings)
         return made
 
 

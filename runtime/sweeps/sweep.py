@@ -104,7 +104,7 @@ class Plan:
         own = self.most_times
         if own is None and any(not np.array_equal(each, times[0]) for each in times):
             own = max(map(len, times))
-        return Layout.of(self.points, self.units, kept[0], own if times else None)
+        return Layout.of(self.points, self.units, kept, own if times else None)
 
 
 OPTIONS = ("keep", "method", "samples", "seed", "save", "workers", "cluster", "batch", "progress", "record_invalid",

@@ -1,8 +1,9 @@
 """The workers of a sweep: this process, or processes of a Dask cluster, which may die, and whose scheduler may, too.
 
-Dask gives the batch of a worker that died to another one. A batch whose workers die again and again is divided, until
-the point that does it is known, and recorded as failed. Where the scheduler is lost, this process connects anew, and
-hands out again what had not come back.
+Dask gives the batch of a worker that died to another one. A batch whose workers die again and again is divided, down to
+single points. Dask blames all that a worker had when it died; so such points are computed last, one alone at a time,
+and those whose workers die even then are recorded as failed. Where the scheduler is lost, this process connects anew,
+and hands out again what had not come back.
 """
 
 from __future__ import annotations
@@ -145,6 +146,8 @@ class DaskWorkers:
         self._address, self._distributed = address, dask_module("distributed")
         self._client: Any = None
         self._threads, self._counted_at = 1, -POLL
+        self._suspects: list[Batch] = []
+        self._alone = False
         self._ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
 
     @property
@@ -209,21 +212,34 @@ class DaskWorkers:
             yield from came
 
     def _hand_out(self, task: Callable[[Batch], Done], batches: Batches, pending: dict[Any, Batch]) -> None:
-        """Hand out batches until all workers have enough."""
+        """Hand out batches until all workers have enough; when all are done, a suspect alone."""
         room = IN_FLIGHT * self.number
         while len(pending) < room and (batch := batches.take()) is not None:
-            future = self._client.submit(task, batch, pure=False)
-            pending[future] = batch
-            future.add_done_callback(self._ended.put)
+            self._submit(task, batch, pending)
+        self._alone = not pending and bool(self._suspects)
+        if self._alone:
+            self._submit(task, self._suspects.pop(), pending)
+
+    def _submit(self, task: Callable[[Batch], Done], batch: Batch, pending: dict[Any, Batch]) -> None:
+        future = self._client.submit(task, batch, pure=False)
+        pending[future] = batch
+        future.add_done_callback(self._ended.put)
 
     def _finished(self) -> list[Any]:
         """Return the futures that have come to an end, once there is one. Raises CancelledError where the scheduler is
         lost.
         """
+        seen = time.monotonic()
         while self._client.status == "running":
             try:
                 found = [self._ended.get(timeout=POLL)]
             except queue.Empty:
+                if self._client.nthreads():
+                    seen = time.monotonic()
+                elif time.monotonic() - seen > PATIENCE:
+                    raise FunicularError(f"sweep: the scheduler at {self._address} has no workers any more; start "
+                                         "some, and repeat the sweep: points that are written are not computed again"
+                                         ) from None
                 continue
             while not self._ended.empty():
                 found.append(self._ended.get())
@@ -240,7 +256,7 @@ class DaskWorkers:
 
     def _dead(self, future: Any, batch: Batch, batches: Batches,
               lost: Callable[[Batch, str], Done]) -> list[tuple[Batch, Done]]:
-        """Divide a batch whose workers died, or return what its only point came to.
+        """Divide a batch whose workers died, put its only point aside, or return what that came to alone.
 
         Raises FunicularError where a worker could not do it at all, and CancelledError where the scheduler is lost.
         """
@@ -250,6 +266,9 @@ class DaskWorkers:
                 raise error
             cause = f"{type(error).__name__}: {error}"
             raise FunicularError(f"sweep: a worker could not compute a batch: {cause}") from error
+        if len(batch.numbers) == 1 and not self._alone:
+            self._suspects.append(batch)
+            return []
         if len(batch.numbers) == 1:
             message = "the worker process died while it computed this point, each time that it was tried"
             return [(batch, lost(batch, message))]
