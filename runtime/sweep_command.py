@@ -114,13 +114,13 @@ def run_sweep(scene: str, texts: list[str], keep: list[str], output: Path, optio
     begin = time.monotonic()
     dataset = sweep(described, parameters, **given, save=output, cluster=options.cluster, batch=options.batch,
                     retry_failed=options.retry_failed, on_cost=_tell)
-    status = dataset["status"].values.ravel()
+    message, status = dataset["message"], dataset["status"].values.ravel()
     failed = np.flatnonzero(status == "failed")
     print(f"{dataset.attrs['finished']} of {len(status)} points, {len(failed)} failed, in "
           f"{in_words(time.monotonic() - begin)}: {output}")
     if len(failed):
-        print(f"note: the first that failed, number {failed[0]}: {dataset['message'].values.ravel()[failed[0]]}",
-              file=sys.stderr)
+        why = str(message[np.unravel_index(failed[0], message.shape)].values)
+        print(f"note: the first that failed, number {failed[0]}: {why}", file=sys.stderr)
     if len(failed) == len(status):
         raise FunicularError(f"{SWEEP}: all {len(failed)} points failed")
     return dataset.attrs["finished"] == len(status)

@@ -19,6 +19,8 @@ from .store import FORMAT, facts_in, whole_rows
 
 KINDS = {"int": int, "float": float, "bool": bool, "str": str}
 """Of the values of parameters."""
+LONG_TEXT = 64
+"""Characters: texts that may have more, most of which are empty, are Python's and not of a fixed length."""
 BLOCK = 1 << 24
 """Bytes of rows that are read at once."""
 NOT_RUN = "not run"
@@ -37,7 +39,8 @@ class _OfPoints(BackendArray):
         self._row, self._first = file.row_dtype, file.first_row_at
         self._is_text = entry.dtype.kind == "S"
         self.shape = shape if self._is_text else (*shape, *entry.shape)
-        self.dtype = np.dtype(f"U{entry.shape[0]}") if self._is_text else np.dtype(float)
+        text = np.dtype(object if entry.shape[0] > LONG_TEXT else f"U{entry.shape[0]}") if self._is_text else None
+        self.dtype = text or np.dtype(float)
 
     def __getitem__(self, key: Any) -> Any:
         """Return what an index of xarray's asks for."""
@@ -72,7 +75,7 @@ class _OfPoints(BackendArray):
 def _texts(characters: np.ndarray) -> np.ndarray:
     """Return characters (n, size) as texts (n,)."""
     joined = np.ascontiguousarray(characters).view(f"S{characters.shape[-1]}")[:, 0]
-    return np.char.decode(joined, "utf-8").astype(f"U{characters.shape[-1]}")
+    return np.char.decode(joined, "utf-8")
 
 
 def dataset_of(file: File, facts: dict[str, Any], finished: np.ndarray) -> xarray.Dataset:
