@@ -65,6 +65,23 @@ def test_no_scheduler_is_said(monkeypatch):
             fu.sweep(square, {"x": [1], "y": [*range(30)]}, cluster=address, progress=False)
 
 
+def test_a_cluster_that_lost_its_workers_is_said(monkeypatch):
+    monkeypatch.setattr(module, "PATIENCE", 1.0)
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, scheduler_kwargs={
+            "dashboard": False}, dashboard_address="127.0.0.1:0") as own:
+        with pytest.raises(fu.FunicularError, match="has no workers any more; start some"):
+            fu.sweep(square, {"x": [1], "y": [*range(100)]}, cluster=own.scheduler_address, batch=1,
+                     progress=lambda done, failed: own.scale(0))
+
+
+def test_the_cost_counts_the_workers_of_the_cluster(cluster):
+    told = []
+    fu.sweep(square, {"x": [1], "y": [*range(30)]}, cluster=cluster, progress=False, on_cost=told.append)
+    assert told[0].workers == 2
+    fu.sweep(square, {"x": [1], "y": [*range(30)]}, progress=False, on_cost=told.append)
+    assert told[1].workers == 1  # some ms of work, which no worker is started for
+
+
 def test_batches_are_as_long_as_points_are_short():
     points = points_of({"x": [*range(100_000)]})
     for seconds, length in ((0.01, 50), (10.0, 1), (1e-6, 10_485)):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -55,6 +56,7 @@ class Task:
         return Done(rows, sum(outcome.seconds for outcome in outcomes), self.layout.failures(rows))
 
 
+@cache
 def versions() -> str:
     """Return the versions of what computes a point, in words."""
     from importlib.metadata import version  # for sweeps alone

@@ -90,7 +90,7 @@ def text_of(function: Callable[..., Any]) -> str:
     """Return the text of a function, by which another one is told from it; what it calls is not looked at."""
     try:
         return inspect.getsource(function)
-    except (OSError, TypeError):  # of one made on the fly, what it does; of an object, what it is
+    except (OSError, TypeError, SyntaxError):  # of one made on the fly, what it does; of an object, what it is
         code = getattr(function, "__code__", None)
         return f"{code.co_code!r} {code.co_names}" if code else type(function).__qualname__
 

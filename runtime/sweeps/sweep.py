@@ -9,7 +9,7 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
@@ -31,7 +31,7 @@ from .parameters import SWEEP, Points, points_of
 from .points import FAILED, Outcome
 from .store import Store, new_store, stored
 from .subject import SceneSubject, Subject, subject_of
-from .workers import MISSING, workers_of
+from .workers import MISSING, Workers, workers_of
 
 if TYPE_CHECKING:
     import xarray
@@ -143,13 +143,17 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
     plan = Plan.of(subject, parameters, keep, method, samples, seed, settings, record_invalid)
     with _begun(plan, save, retry_failed) as (store, layout, missing, sampled):
         cost = _cost(plan, layout, len(missing), sampled, workers)
-        LOG.info("sweep: %s", cost)
-        if on_cost is not None:
-            on_cost(cost)
+        tell = on_cost or (lambda cost: None)
         alone = cluster is None and workers is None and cost.points * cost.point_seconds[1] < NOT_WORTH_WORKERS
         try:
             if len(missing):
-                _compute(plan, store, layout, missing, cost, 0 if alone else workers, cluster, batch, progress)
+                with workers_of(0 if alone else workers, cluster) as computing:
+                    cost = replace(cost, workers=computing.number)
+                    LOG.info("sweep: %s", cost)
+                    tell(cost)
+                    _compute(plan, store, layout, missing, cost, computing, batch, progress)
+            else:
+                tell(cost)
         except KeyboardInterrupt:
             goes_on = "" if save is None else f" are in {os.fspath(save)}, and the same sweep goes on with the others"
             warnings.warn(f"sweep: interrupted; {int(store.finished.sum())} of {plan.points.number} points{goes_on}",
@@ -220,8 +224,8 @@ def _cost(plan: Plan, layout: Layout, left: int, sampled: dict[int, Outcome], wo
                      layout.row_bytes)
 
 
-def _compute(plan: Plan, store: Store, layout: Layout, missing: np.ndarray, cost: SweepCost, workers: int | None,
-             cluster: str | None, batch: int | None, progress: bool | OnPoints | None) -> None:
+def _compute(plan: Plan, store: Store, layout: Layout, missing: np.ndarray, cost: SweepCost, computing: Workers,
+             batch: int | None, progress: bool | OnPoints | None) -> None:
     """Compute the points that are left, and write them as they come."""
     task = Task(plan.subject, layout, store.dtype, versions())
     total, failed = plan.points.number, 0
@@ -231,7 +235,7 @@ def _compute(plan: Plan, store: Store, layout: Layout, missing: np.ndarray, cost
         return Done(layout.pack(store.dtype, dead.values, [outcome] * len(dead.numbers)), 0.0, len(dead.numbers))
 
     begin = time.monotonic()
-    with workers_of(workers, cluster) as computing, point_bar(total, total - len(missing), progress) as show:
+    with point_bar(total, total - len(missing), progress) as show:
         batches = Batches(plan.points, missing, layout.row_bytes, computing.number, cost.point_seconds[1], batch)
         done = total - len(missing)
         for each, came in computing.compute(task, batches, lost):
