@@ -85,8 +85,10 @@ __all__ = [
 ]
 
 
-LAZY = {"Equilibrium": "results.equilibrium", "InitialState": "model.initial_state", "Modes": "solve.modes"}
-"""What brings SciPy along, which takes as long as all the rest: imported when it is asked for."""
+LAZY = {"Equilibrium": "results.equilibrium", "InitialState": "model.initial_state", "Modes": "solve.modes",
+        "LogUniform": "sweeps.distributions", "Uniform": "sweeps.distributions", "load_sweep": "sweeps.dataset",
+        "sweep": "sweeps.sweep", "sweep_cost": "sweeps.sweep"}
+"""What brings SciPy or xarray along, which take as long as all the rest: imported when it is asked for."""
 
 
 def __dir__() -> list[str]:

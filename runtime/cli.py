@@ -184,6 +184,54 @@ def view(
 
 
 @app.command()
+def sweep(
+    scene: SceneName,
+    values: Annotated[list[str], typer.Option("--set", metavar="PATH=VALUES", help="a parameter such as "
+                      "wire.material.youngs_modulus, A.velocity.x or run.tol, and its values: 1,2,3 or "
+                      "first:last:number, with :log for equal ratios; to draw samples low:high or low:high:log; "
+                      "repeatable")],
+    keep: Annotated[str, typer.Option(help="results with commas between, such as A.position,trolley.force.y")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="netCDF file to write (default: SCENE-sweep.nc, here)")
+    ] = None,
+    method: Annotated[str, typer.Option(help="grid: all combinations; list: the first values of all, the second ones, "
+                                        "...; random, latin: samples")] = "grid",
+    samples: Annotated[int | None, typer.Option(help="how many are drawn")] = None,
+    seed: Annotated[int, typer.Option(help="of the generator that draws them")] = 0,
+    workers: Annotated[int | None, typer.Option(help="processes (default: one for each processor)")] = None,
+    serial: Annotated[bool, typer.Option("--serial", help="compute in this process alone, without Dask")] = False,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="of a Dask scheduler, such as "
+                                                "tcp://127.0.0.1:8786, whose workers are taken")] = None,
+    batch: Annotated[int | None, typer.Option(help="points that a worker gets at once (default: by what they cost)")
+                     ] = None,
+    estimate: Annotated[bool, typer.Option("--estimate", help="only tell what it would cost, from a sample")] = False,
+    record_invalid: Annotated[bool, typer.Option("--record-invalid", help="record scenes that cannot be simulated as "
+                                                 "failed, and do not refuse the sweep")] = False,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="compute points anew that failed before")
+                            ] = False,
+    duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
+    tol: Annotated[float | None, typer.Option(help="error aimed at, instead of the scene's")] = None,
+    output_step: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
+    integrator: Annotated[str | None, typer.Option(help="instead of the scene's")] = None,
+    library: Libraries = None,
+) -> None:
+    """Run a scene at many values of its parameters, into one file.
+
+    The same command goes on with a sweep that was stopped. Exit code: 1 for an error, 130 after Ctrl-C.
+    """
+    from .sweep_command import SweepOptions, run_sweep
+
+    given = {"duration": duration, "tol": tol, "output_step": output_step, "integrator": integrator}
+    options = SweepOptions(method, samples, seed, 0 if serial else workers, cluster, batch, record_invalid,
+                           retry_failed, {name: value for name, value in given.items() if value is not None})
+    with _reported_without_traceback():
+        whole = run_sweep(scene, values, _listed(keep) or [], output or Path(f"{Path(scene).stem}-sweep.nc"), options,
+                          library or [], estimate)
+    if not whole:
+        raise typer.Exit(EXIT_INTERRUPTED)
+
+
+@app.command()
 def bench(
     scene: SceneName,
     integrators: Annotated[str | None, typer.Option(help="names with commas between (default: all)")] = None,

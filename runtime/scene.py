@@ -91,15 +91,25 @@ class Scene(Viewable, SceneMethods):
         >>> scene.replace("A", mass=2.0).bodies["A"].mass, scene.bodies["A"].mass
         (2.0, 1.0)
         """
-        old = self._part(part)
-        return self.with_parts(type(old)(**old.entries() | changes) if each is old else each for each in self.parts())
+        return self.changed([(self._part(part), changes)])
 
-    def with_parts(self, parts: Iterable[Part]) -> Self:
-        """Return a scene of these parts, checked as any scene is, with the gravity, settings and title of this one.
+    def changed(self, changes: Iterable[tuple[Part, Mapping[str, Any]]], gravity: Any = None) -> Self:
+        """Return a scene like this one with other values of several of its parts at once, checked as any scene is.
 
-        parts: in an order in which they can be added, as `parts` yields them. Raises SceneError.
+        changes: parts of this scene, each once, with values by keyword; gravity: in m/s², None to keep this one's.
+        Raises SceneError.
         """
-        scene = type(self)(gravity=self.gravity)
+        values = {id(part): each for part, each in changes}
+        return self.with_parts((type(each)(**{**each.entries(), **values[id(each)]}) if id(each) in values else each
+                                for each in self.parts()), gravity)
+
+    def with_parts(self, parts: Iterable[Part], gravity: Any = None) -> Self:
+        """Return a scene of these parts, checked as any scene is, with the settings and the title of this one.
+
+        parts: in an order in which they can be added, as `parts` yields them; gravity: in m/s², None to keep this
+        one's. Raises SceneError.
+        """
+        scene = type(self)(gravity=self.gravity if gravity is None else gravity)
         scene.title = self.title
         scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
         for part in parts:

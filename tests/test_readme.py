@@ -22,7 +22,7 @@ from typer.testing import CliRunner
 README, DERIVE, RUNTIME, BENCHMARKS, _ = pages = [page(path) for path in PAGES]
 OUTSIDE = "python3 -m venv", "funicular derive", "funicular verify", "funicular derive --check", "funicular theory"
 """Commands that .ci/run starts; `funicular derive --spec` is in tests/test_user_elements.py."""
-SHORT = {"bench": ["--duration", "0.02", "--repetitions", "1"]}
+SHORT = {"bench": ["--duration", "0.02", "--repetitions", "1"], "sweep": ["--duration", "0.02", "--serial"]}
 """What a command gets here so that it is quick."""
 QUICK = ("first_scene", "order", "paper52", "planar", "crossing", "taut_rope", "choice", "linear_cost")
 """Benchmarks that take less than 20 s; the cases and hard cases are asserted by tests of their own."""
@@ -73,6 +73,14 @@ def middle_of_an_element(space):
     assert space["r"] == pytest.approx([0.25, 0, 0])
 
 
+def sweeps(space):
+    found, run = space["found"], space["run"]
+    assert found["A.position"].dims == ("A.mass", "trolley.friction.coefficient", "time", "xyz")
+    assert found.attrs["finished"] == 6 and (found.status == "completed").all()
+    assert (found["A.position"].sel({"A.mass": 2.0, "trolley.friction.coefficient": 0.1}) == run["A.position"]).all()
+    assert space["lowest"].sizes == {"point": 8}
+
+
 def pages_and_pictures(space):
     for name in ("before", "motion", "both", "modes"):
         assert "<title>" in Path(f"{name}.html").read_text(encoding="utf-8")
@@ -91,6 +99,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "Scenes"): first_scene,
               ("runtime/README.md", "Joints and springs"): trolley,
               ("runtime/README.md", "Events"): events,
+              ("runtime/README.md", "Sweeps"): sweeps,
               ("runtime/README.md", "See it"): pages_and_pictures,
               ("runtime/README.md", "Statics, modes and section forces"): rest,
               ("derive/README.md", "Kernels from Python"): middle_of_an_element,

@@ -202,23 +202,23 @@ def dumps(scene: SceneData) -> str:
             if part.kind == kind and isinstance(part, Event) and part.function is not None:
                 lines += ["", f"# {part.where} watches a function, which a file cannot describe"]
             elif part.kind == kind:
-                lines += ["", f"[[{kind}]]", *_lines(_data(part))]
+                lines += ["", f"[[{kind}]]", *_lines(plain_data(part))]
     for name in SETTINGS:
         if settings := getattr(scene, f"{name}_settings"):
             lines += ["", f"[{name}]", *_lines(settings)]
     return "\n".join(lines) + "\n"
 
 
-def _data(value: Any) -> Any:
+def plain_data(value: Any) -> Any:
     """Return a value as plain data: of a part all that is set, defaults too, which a later version may change."""
     match value:
         case Part():
             if (short := value.as_given()) is not value:
-                return _data(short)
+                return plain_data(short)
             tag = {name: getattr(value, name) for base, name in TAGS.items() if isinstance(value, base)}
-            return tag | {keyword: _data(each) for keyword, each in value.entries().items()}
+            return tag | {keyword: plain_data(each) for keyword, each in value.entries().items()}
         case list() | tuple():
-            return [_data(each) for each in value]
+            return [plain_data(each) for each in value]
     return value
 
 

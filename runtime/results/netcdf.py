@@ -1,9 +1,10 @@
 """Files of results: netCDF, the classic format with 64-bit offsets, written row by row.
 
-A row holds all variables at one time, and last its checksum. Rows are added behind those that count, then their number
-in the header is raised, so that the file is whole at every instant. The header has a checksum, too, which leaves out
-what changes while the file grows: the number of rows and the report, whose lines have their own. All are ordinary
-variables and attributes for other readers. Format: NetCDF Classic Format Specification, Unidata.
+A row holds all variables at one time (of a sweep: at one point), and last its checksum. Rows are added behind those
+that count, then their number in the header is raised, so that the file is whole at every instant. The header has a
+checksum, too, which leaves out what changes while the file grows: the number of rows and the report, whose lines have
+their own. All are ordinary variables and attributes for other readers. Format: NetCDF Classic Format Specification,
+Unidata.
 """
 
 from __future__ import annotations
@@ -86,6 +87,16 @@ class File:
         """Return the size of a row."""
         return self._row.itemsize
 
+    @property
+    def row_dtype(self) -> np.dtype:
+        """Return the type of a row as it stands in the file, its checksum with it."""
+        return self._row
+
+    @property
+    def first_row_at(self) -> int:
+        """Return where the rows begin, in bytes."""
+        return self._first
+
     def read(self, name: str) -> np.ndarray:
         """Return all values of a variable, in this machine's order of bytes, texts as str; without rows that are left
         out.
@@ -105,16 +116,12 @@ class File:
     def damaged_rows(self, rows: int | None = None) -> np.ndarray:
         """Return the numbers of the rows, of all or of so many, whose checksum is not theirs. Raises OSError."""
         damaged = [np.zeros(0, int)]
-        for start, block in self._blocks(self.rows if rows is None else rows):
-            damaged.append(start + np.flatnonzero(block[ROW_CHECKSUM] != self._checksums(block)))
+        for start, block in self.blocks(self.rows if rows is None else rows):
+            damaged.append(start + np.flatnonzero(block[ROW_CHECKSUM] != _checksums(block)))
         return np.concatenate(damaged)
 
-    def _checksums(self, rows: np.ndarray) -> np.ndarray:
-        """Return (rows,): of whole rows as they are in the file."""
-        words = rows.view("<u8").reshape(len(rows), self.row_bytes // 8)
-        return row_checksums(words[:, :-1])
-
-    def _blocks(self, rows: int) -> Iterator[tuple[int, np.ndarray]]:
+    def blocks(self, rows: int) -> Iterator[tuple[int, np.ndarray]]:
+        """Yield the first rows, as many as are asked for, in blocks, each with the number of its first row."""
         if not rows:
             return
         block = np.empty(min(rows, max(1, _BLOCK // max(1, self.row_bytes))), self._row)
@@ -127,7 +134,7 @@ class File:
 
     def _kept_blocks(self) -> Iterator[np.ndarray]:
         """Yield blocks of rows that are not left out."""
-        for start, block in self._blocks(self.rows):
+        for start, block in self.blocks(self.rows):
             gone = self.left_out[(self.left_out >= start) & (self.left_out < start + len(block))] - start
             yield np.delete(block, gone) if len(gone) else block
 
@@ -154,9 +161,21 @@ class File:
         rows = np.empty(count, self._row)
         for name, array in values.items():
             rows[name] = array
-        rows[ROW_CHECKSUM] = self._checksums(rows)
+        self.put_rows(first, sealed(rows))
+        self.count_rows(first + count)
+
+    def put_rows(self, first: int, rows: np.ndarray) -> None:
+        """Put sealed rows (n,) of `row_dtype` at row `first`, in any order; the number of rows stays."""
         self._put(rows.view("u1"), self._first + first * self.row_bytes)
-        self._set_rows(first + count)
+
+    def count_rows(self, rows: int) -> None:
+        """Let the first `rows` rows count, which other readers see."""
+        self._put(struct.pack(">i", rows), COUNT_AT)
+        self.rows = rows
+
+    def reserve(self, rows: int) -> None:
+        """Make the file as long as so many rows need; those not written read as zeros, which are no sealed rows."""
+        os.ftruncate(self.descriptor, self._first + rows * self.row_bytes)
 
     def copy_rows(self, source: File) -> None:
         """Add all rows of a file with the same variables, but for those that it leaves out."""
@@ -166,7 +185,7 @@ class File:
     def truncate(self, rows: int) -> None:
         """Drop the rows of number `rows` and above."""
         self._check_follows(rows)
-        self._set_rows(rows)
+        self.count_rows(rows)
 
     def add_report(self, text: str) -> bool:
         """Put a new text, of a JSON object, into the attribute `report`; False where it does not fit.
@@ -187,10 +206,6 @@ class File:
     def _check_follows(self, first: int) -> None:
         if not 0 <= first <= self.rows:
             raise ValueError(f"{self.path}: has {self.rows} rows, {first} cannot be the next")
-
-    def _set_rows(self, rows: int) -> None:
-        self._put(struct.pack(">i", rows), COUNT_AT)
-        self.rows = rows
 
     def _put(self, data: Any, at: int) -> None:
         left = memoryview(data)
@@ -229,15 +244,16 @@ class Stored(Mapping[str, Variable]):
 
 
 def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable],
-           attributes: Mapping[str, str | int], report: str, spare: int = 0, descriptor: int | None = None) -> File:
+           attributes: Mapping[str, str | int], report: str, spare: int = 0, descriptor: int | None = None,
+           along: str = "time") -> File:
     """Return a new file, without rows yet; of the variables over time only shapes count.
 
     attributes: but for the report, a JSON object, which can grow by `spare` bytes; descriptor: of a
-    file of that path which is open already, and becomes this one.
+    file of that path which is open already, and becomes this one; along: the dimension of the rows.
     """
-    checksum = Variable(("time",), np.zeros(0), "1", "checksum of the row")
+    checksum = Variable((along,), np.zeros(0), "1", "checksum of the row")
     header = header_of({**coords, **variables, ROW_CHECKSUM: checksum},
-                     {**attributes, HEADER_CHECKSUM: NOT_YET, "report": report_line(report) + b" " * spare})
+                       {**attributes, HEADER_CHECKSUM: NOT_YET, "report": report_line(report) + b" " * spare}, along)
     places = parsed(header)[2]
     at, size = places[HEADER_CHECKSUM]
     header = header[:at] + header_checksum(header, places).encode() + header[at + size :]
@@ -246,6 +262,18 @@ def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: M
     with open(descriptor, "wb", closefd=False) as file:
         file.write(header)
     return File(path, descriptor=descriptor)
+
+
+def sealed(rows: np.ndarray) -> np.ndarray:
+    """Return rows (n,) as they stand in a file, with their checksums filled in, in place."""
+    rows[ROW_CHECKSUM] = _checksums(rows)
+    return rows
+
+
+def _checksums(rows: np.ndarray) -> np.ndarray:
+    """Return (rows,): of whole rows as they are in the file."""
+    words = rows.view("<u8").reshape(len(rows), rows.dtype.itemsize // 8)
+    return row_checksums(words[:, :-1])
 
 
 def _texts(characters: np.ndarray) -> np.ndarray:

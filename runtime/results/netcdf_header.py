@@ -48,23 +48,24 @@ def header_checksum(head: bytes, places: Mapping[str, tuple[int, int]]) -> str:
     return f"{text_checksum(head[at:], checksum):08x}"
 
 
-def header_of(variables: dict[str, Variable], attributes: dict) -> bytes:
-    """Return the header, and behind it the variables that are not over time."""
-    sizes, entries, fixed = {"time": 0}, {}, {}
+def header_of(variables: dict[str, Variable], attributes: dict, along: str = "time") -> bytes:
+    """Return the header, and behind it the variables that are not in rows; along: the dimension of the rows."""
+    sizes, entries, fixed = {along: 0}, {}, {}
     for name, variable in variables.items():
         values, dims = variable.values, variable.dims
         labels = {"units": variable.units, "long_name": variable.long_name}
-        if values.dtype.kind == "U":  # characters along one more dimension, as xarray writes them, too
-            texts = np.char.encode(values, "utf-8")
+        if values.dtype.kind == "U" or (values.dtype.kind == "S" and values.dtype.itemsize > 1):
+            # characters along one more dimension, as xarray writes them, too
+            texts = values if values.dtype.kind == "S" else np.char.encode(values, "utf-8")
             values = texts.view("S1").reshape(*texts.shape, texts.itemsize)
             dims = (*dims, f"string{texts.itemsize}")
             labels["_Encoding"] = "utf-8"
-        sizes |= {dim: size for dim, size in zip(dims, values.shape, strict=True) if dim != "time"}
+        sizes |= {dim: size for dim, size in zip(dims, values.shape, strict=True) if dim != along}
         entries[name] = (dims, labels, _CHAR if values.dtype.kind == "S" else _DOUBLE)
-        if dims[:1] != ("time",):
+        if dims[:1] != (along,):
             fixed[name] = _padded(values.astype(_TYPES[entries[name][2]]).tobytes())
     number = {dim: k for k, dim in enumerate(sizes)}
-    size = {name: np.dtype(_TYPES[kind]).itemsize * int(np.prod([sizes[d] for d in dims if d != "time"], dtype=int))
+    size = {name: np.dtype(_TYPES[kind]).itemsize * int(np.prod([sizes[d] for d in dims if d != along], dtype=int))
             for name, (dims, _, kind) in entries.items()}
 
     def head(begins: dict[str, int]) -> bytes:

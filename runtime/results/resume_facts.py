@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterable
 from copy import copy
 from pathlib import Path
 
@@ -25,7 +26,7 @@ def facts_of(scene: SceneData, settings: RunSettings) -> dict:
     alone.run_settings = {}
     said = {name: value for name, value in settings.model_dump().items() if name not in ("save", "estimate")}
     return {"scene": _digest(dumps(alone).encode()), "settings": json.loads(json.dumps(said, default=str)),
-            "programs": _programs(scene)}
+            "programs": programs_of(scene.libraries)}
 
 
 def _digest(*parts: bytes) -> str:
@@ -36,12 +37,12 @@ def _digest(*parts: bytes) -> str:
     return digest.hexdigest()
 
 
-def _programs(scene: SceneData) -> str:
-    """Return the digest of the machine code that computes the run."""
+def programs_of(libraries: Iterable[str]) -> str:
+    """Return the digest of the machine code that computes a run; libraries: directories of its elements."""
     files = [engine.__file__, kernels.__file__]
     versions = f"{numpy.__version__} {scipy.__version__}"
     return _digest(versions.encode(), *(Path(file).read_bytes() for file in files),
-                   *(load(library).digest.encode() for library in scene.libraries))
+                   *(load(library).digest.encode() for library in libraries))
 
 
 def start_of(model: Model) -> str:

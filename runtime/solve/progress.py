@@ -34,7 +34,7 @@ def progress_bar(duration: float, progress: bool | OnProgress | None) -> Iterato
     """Yields the meter to call with each time reached (s); ``progress`` as in `Scene.run`."""
     if callable(progress):
         yield Meter(progress)
-    elif progress is True or (progress is None and _is_watched()):
+    elif progress is True or (progress is None and is_watched()):
         from rich.console import Console  # for runs that a person watches
         from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -47,6 +47,6 @@ def progress_bar(duration: float, progress: bool | OnProgress | None) -> Iterato
         yield Meter()
 
 
-def _is_watched() -> bool:
+def is_watched() -> bool:
     """Return whether a terminal watches, or a notebook, which shows a bar by ipywidgets alone."""
     return sys.stderr.isatty() or (in_notebook() and importlib.util.find_spec("ipywidgets") is not None)

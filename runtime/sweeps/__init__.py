@@ -1,0 +1,1 @@
+"""Sweeps: a scene, or a function that makes scenes, over many values of its parameters."""

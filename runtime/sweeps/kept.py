@@ -1,0 +1,143 @@
+"""What is kept of each point of a sweep: results of its run by name, numbers that functions make of it, or a dict."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from ..errors import SceneError, UnknownResultError, near
+from ..parts.scene_data import SceneData
+from ..parts.validation import shown
+from ..results.quantities import ENERGIES, QUANTITIES, Variable
+from ..results.run import Run
+from .parameters import SWEEP
+from .paths import COMPONENTS, label_of
+
+TIME = "time"
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What is kept of one point: variables, the coordinates of their dimensions, and its output times (time,) in s.
+
+    time: None where nothing is over time.
+    """
+
+    variables: dict[str, Variable]
+    coords: dict[str, Variable] = field(default_factory=dict)
+    time: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Keep:
+    """Names of results, or functions of the run, by the names that the sweep's dataset gives them."""
+
+    wanted: Mapping[str, str | Callable[[Run], Any]]
+
+    @classmethod
+    def of(cls, given: Any) -> Keep:
+        """Return what a user has said: names in a list, or a dict from new names to names or functions.
+
+        Raises SceneError.
+        """
+        if isinstance(given, str):
+            given = [given]
+        if isinstance(given, Mapping):
+            wanted = dict(given)
+        else:
+            try:
+                wanted = {name: name for name in given or ()}
+            except TypeError:
+                raise SceneError(SWEEP, f"keep must be a list of names of results, got {shown(given)}") from None
+        for name, what in wanted.items():
+            if not isinstance(name, str) or not name or not (isinstance(what, str) or callable(what)):
+                raise SceneError(SWEEP, f"keep takes names of results and functions of a run, got {shown(what)}")
+        return cls(wanted)
+
+    @property
+    def digest(self) -> str:
+        """Return the digest of the names, and of what functions do."""
+        texts = [f"{name} {what if isinstance(what, str) else text_of(what)}" for name, what in self.wanted.items()]
+        return hashlib.sha256("\n".join(texts).encode()).hexdigest()
+
+    def check(self, scene: SceneData) -> None:
+        """Raise SceneError where there are no names, or one that runs of this scene have no result of."""
+        if not self.wanted:
+            raise SceneError(SWEEP, "names no results to keep", 'give keep=["A.position", ...]; known: '
+                             + ", ".join(known_results(scene)))
+        known = known_results(scene)
+        for what in self.wanted.values():
+            if isinstance(what, str) and what not in known and what.rpartition(".")[0] not in known:
+                raise SceneError(SWEEP, f'runs of this scene have no result "{what}"', near(what, known))
+
+    def take(self, run: Run) -> Kept:
+        """Return what is kept of a run. Raises UnknownResultError, SceneError and what functions raise."""
+        variables = {}
+        for name, what in self.wanted.items():
+            variables[name] = _result(run, what) if isinstance(what, str) else as_variable(name, what(run))
+        dims = {dim for variable in variables.values() for dim in variable.dims}
+        coords = {dim: run.coords[dim] for dim in run.coords if dim in dims and dim != TIME}
+        return Kept(variables, coords, run.time if TIME in dims else None)
+
+
+def text_of(function: Callable[..., Any]) -> str:
+    """Return the text of a function, by which another one is told from it; what it calls is not looked at."""
+    try:
+        return inspect.getsource(function)
+    except (OSError, TypeError, SyntaxError):  # of one made on the fly, what it does; of an object, what it is
+        code = getattr(function, "__code__", None)
+        return f"{code.co_code!r} {code.co_names}" if code else type(function).__qualname__
+
+
+def known_results(scene: SceneData) -> list[str]:
+    """Return the names of the results that runs of a scene can have, components of vectors apart."""
+    found = [f"{name}.{what}" for name in scene.cables for what in ("position", "nodal_vectors", "nodal_velocity")]
+    for part in scene.parts():
+        found += [f"{label_of(part)}.{quantity}" for quantity in QUANTITIES.get(part.group, {})]
+    for name, body in scene.bodies.items():
+        if body.kind == "modal_body":
+            found += [f"{name}.{what}" for what in ("modal_coordinates", "modal_velocities", "nodes")]
+    return found + [f"energy.{kind}" for kind in ENERGIES]
+
+
+def _result(run: Run, name: str) -> Variable:
+    """Return a result of a run by its name, or one component of it. Raises UnknownResultError."""
+    if name in run.variables:
+        return run.variables[name]
+    whole, _, component = name.rpartition(".")
+    if component in COMPONENTS and whole in run:
+        variable = _result(run, whole)
+        if variable.dims[-1] == "xyz":
+            return Variable(variable.dims[:-1], variable.values[..., COMPONENTS[component]], variable.units,
+                            f"{variable.long_name}, {component}")
+        raise UnknownResultError(f'the result "{whole}" has no components, but {", ".join(variable.dims)}')
+    values = run[name]  # or says which names are near
+    return Variable((TIME, f"{whole}.node", "xyz"), values, "m", "positions of the nodes")
+
+
+def as_variable(name: str, value: Any) -> Variable:
+    """Return a number or an array (any shape), with dimensions named by their place. Raises SceneError."""
+    values = np.asarray(value)
+    if values.dtype.kind not in "fiub" or not (isinstance(value, Real | np.ndarray | np.generic | list | tuple)):
+        raise SceneError(SWEEP, f'what is kept as "{name}" must be a number or an array of numbers, got '
+                         + shown(value))
+    return Variable(tuple(f"{name}.{k}" for k in range(values.ndim)), values.astype(float), "", "")
+
+
+def of_dict(data: Mapping[str, Any], keep: Keep) -> Kept:
+    """Return what is kept of numbers and arrays by name: all, or those that are named. Raises SceneError."""
+    names: Iterable[Any] = [what for what in keep.wanted.values() if isinstance(what, str)] or data
+    variables = {}
+    for name in names:
+        if name not in data:
+            raise SceneError(SWEEP, f'the function returned no "{name}"', near(name, data))
+        if not isinstance(name, str) or not name:
+            raise SceneError(SWEEP, f"a name that the function returned must be a text, got {shown(name)}")
+        variables[name] = as_variable(name, data[name])
+    return Kept(variables)

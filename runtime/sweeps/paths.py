@@ -1,0 +1,166 @@
+"""Paths into a scene, such as ``wire.material.youngs_modulus`` or ``run.tol``: what a scene with other values there is.
+
+A path begins with the name of a part (of a pin, clamp or motion its name in results, ``wire@0``), or with ``gravity``,
+``run`` or ``equilibrium``; then come entries as a scene file names them. ``x``, ``y``, ``z`` are components of vectors,
+and numbers, from 0, are entries of lists.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from ..errors import SceneError, near
+from ..parts.part import Part
+from ..parts.scene_data import SceneData
+from ..parts.scene_text import SETTINGS, plain_data
+from ..parts.validation import show, shown
+from ..scene import Scene
+from .parameters import SWEEP
+
+COMPONENTS = {"x": 0, "y": 1, "z": 2}
+GRAVITY = "gravity"
+
+
+@dataclass(frozen=True)
+class Path:
+    """A path, split: what it begins with, the entries behind it, and the number of the part in the scene's order.
+
+    part: None of gravity and settings.
+    """
+
+    text: str
+    head: str
+    entries: tuple[str, ...]
+    part: int | None
+
+
+def label_of(part: Part) -> str | None:
+    """Return what a path calls a part: its name, or the name of a support in results."""
+    return part.given_name or getattr(part, "label", None)
+
+
+def path_of(scene: SceneData, text: str) -> Path:
+    """Return the path that a text is in this scene. Raises SceneError where it leads nowhere."""
+    heads: dict[str, int | None] = {GRAVITY: None, **dict.fromkeys(SETTINGS)}
+    labels = {label: k for k, part in enumerate(scene.parts()) if (label := label_of(part)) is not None}
+    head = max((name for name in (*heads, *labels) if text == name or text.startswith(f"{name}.")), key=len, default="")
+    if not head:
+        known = [*labels, *heads]
+        first = text.partition(".")[0]
+        raise SceneError(f'{SWEEP} of "{text}"', f'there is no part "{first}", nor a table of settings of that name',
+                         f"{near(first, known)} (there are {', '.join(known)})")
+    if head in heads and head in labels:
+        raise SceneError(f'{SWEEP} of "{text}"', f'"{head}" is a part of the scene and a table of a scene file',
+                         "name the part otherwise")
+    path = Path(text, head, tuple(text[len(head) + 1:].split(".")) if len(text) > len(head) else (), labels.get(head))
+    _check_entry(scene, path)
+    return path
+
+
+def _check_entry(scene: SceneData, path: Path) -> None:
+    """Refuse a path whose first entry is none of its part. Raises SceneError."""
+    if path.head == GRAVITY:
+        known: Iterable[str] = COMPONENTS
+    elif path.part is None:
+        known = [name for name in SETTINGS[path.head].keywords() if name != "save"]
+    else:
+        known = [name for name in _parts(scene)[path.part].keywords() if name != "name"]
+    if not path.entries:
+        example = f"{path.head}.{next(iter(known))}"
+        raise SceneError(f'{SWEEP} of "{path.text}"', "names no entry", f'write such as "{example}" (known: '
+                         + ", ".join(known) + ")")
+    if path.entries[0] not in known:
+        raise SceneError(f'{SWEEP} of "{path.text}"', f'{path.head} has no "{path.entries[0]}"',
+                         f"{near(path.entries[0], known)} (known: {', '.join(known)})")
+
+
+def _parts(scene: SceneData) -> list[Part]:
+    return list(scene.parts())
+
+
+S = TypeVar("S", bound=Scene)
+
+
+def changed(scene: S, values: Mapping[Path, Any]) -> S:
+    """Return a scene like this one with these values, all changed at once. Raises SceneError."""
+    parts = _parts(scene)
+    of_parts: dict[int, dict[str, Any]] = {}
+    settings: dict[str, dict[str, Any]] = {name: {} for name in SETTINGS}
+    gravity = list(scene.gravity)
+    for path, value in values.items():
+        if path.part is not None:
+            entries = of_parts.setdefault(path.part, {})
+            _put(path, entries, parts[path.part].entries(), value)
+        elif path.head == GRAVITY:
+            gravity[COMPONENTS[path.entries[0]]] = value
+            _check_end(path, 1)
+        else:
+            settings[path.head][path.entries[0]] = value
+            _check_end(path, 1)
+    made = scene.changed([(parts[k], entries) for k, entries in of_parts.items()], gravity)
+    for name, table in settings.items():
+        if table:
+            setattr(made, f"{name}_settings", getattr(scene, f"{name}_settings") | table)
+    return made
+
+
+def _put(path: Path, entries: dict[str, Any], old: Mapping[str, Any], value: Any) -> None:
+    """Put a value into the changes of a part, by keyword; entries: those before it; old: what the part has."""
+    first = path.entries[0]
+    before = entries[first] if first in entries else plain_data(old.get(first))
+    entries[first] = _with(path, before, 1, value)
+
+
+def _with(path: Path, data: Any, at: int, value: Any) -> Any:
+    """Return plain data with the value at the entries of a path from number `at` on."""
+    if at == len(path.entries):
+        return value
+    entry = path.entries[at]
+    match data:
+        case None:  # such as the friction of a slide without one: a table with this entry alone
+            return {entry: _with(path, None, at + 1, value)}
+        case dict():
+            return data | {entry: _with(path, data.get(entry), at + 1, value)}
+        case list() | tuple():
+            index = COMPONENTS.get(entry, int(entry) if entry.isdecimal() else len(data))
+            if index >= len(data):
+                raise SceneError(f'{SWEEP} of "{path.text}"', f"{shown(data)} has no entry \"{entry}\"",
+                                 f"write x, y, z, or a number below {len(data)}")
+            return [_with(path, each, at + 1, value) if k == index else each for k, each in enumerate(data)]
+    _check_end(path, at, data)
+    return None
+
+
+def _check_end(path: Path, at: int, data: Any = None) -> None:
+    """Refuse entries of a number or a name. Raises SceneError."""
+    if len(path.entries) > at:
+        what = ".".join([path.head, *path.entries[:at]])
+        is_now = "" if data is None else f", {show(data) if isinstance(data, float) else shown(data)},"
+        raise SceneError(f'{SWEEP} of "{path.text}"', f'{what}{is_now} has no entries', f'write "{what}"')
+
+
+def unit_of(scene: SceneData, path: Path) -> str:
+    """Return the unit of what a path leads to in a scene that has a value there; empty where it has none."""
+    if path.head == GRAVITY:
+        return "m/s²"
+    kind, entries = SETTINGS.get(path.head), list(path.entries)
+    if path.part is not None:
+        part = _parts(scene)[path.part]
+        while len(entries) > 1 and isinstance(part.entries().get(entries[0]), Part):
+            part = part.entries()[entries.pop(0)]
+        kind = type(part)
+    assert kind is not None, "gravity, settings and parts are all there is"
+    return _unit(kind.model_json_schema(mode="validation").get("properties", {}).get(entries[0], {}))
+
+
+def _unit(schema: Any) -> str:
+    """Return the unit that the schema of an entry tells, also of one that may be left out."""
+    if isinstance(schema, list):
+        return next((unit for each in schema if (unit := _unit(each))), "")
+    if not isinstance(schema, dict):
+        return ""
+    found = re.fullmatch(r"in ((?:N )?\S+)", schema.get("description", ""))
+    return found[1] if found else _unit(schema.get("anyOf"))

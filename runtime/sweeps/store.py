@@ -1,0 +1,199 @@
+"""The file of a sweep: netCDF with a row for each point, written while the sweep goes on.
+
+Each row stands at the place of its point and has a checksum, so that a row which was not written, or not wholly, is
+known, and a sweep that was killed goes on with those. Other readers see the rows up to the first that is missing: the
+number of rows in the header is raised once all before it are whole.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import ResultFileError
+from ..operating_system import BYTES
+from ..results.files import check_writable
+from ..results.locks import NoLocks, Taken, claimed, lock
+from ..results.netcdf import MOST_ROW, File, create
+from ..results.netcdf_header import last_report
+from .layout import POINT, STATUS, Layout
+from .parameters import SWEEP
+from .points import FAILED
+
+SWEEP_FORMAT = 1
+"""Raised when a reader of older files could misread new ones."""
+FORMAT = "funicular_sweep"
+DIFFERENCES = {"subject": "another scene or function, or other settings", "points": "other parameters or values",
+               "keep": "other results to keep", "programs": "another version of funicular, NumPy or SciPy"}
+"""What the facts of a sweep are that must be the same for it to go on, in words."""
+
+
+class Store:
+    """The file of a sweep that is open to be written, by this process alone."""
+
+    def __init__(self, file: File, facts: Mapping[str, Any], finished: np.ndarray):
+        """finished: (points,), whether the row of each point is whole."""
+        self._file, self.facts, self.finished = file, facts, finished
+
+    @property
+    def dtype(self) -> np.dtype:
+        """Return the type of a row."""
+        return self._file.row_dtype
+
+    @property
+    def file(self) -> File:
+        """Return the open file."""
+        return self._file
+
+    @property
+    def missing(self) -> np.ndarray:
+        """Return the numbers of the points that have no row yet."""
+        return np.flatnonzero(~self.finished)
+
+    def put(self, numbers: np.ndarray, rows: np.ndarray) -> None:
+        """Write the sealed rows (n,) of points, whose numbers rise. Raises ResultFileError."""
+        starts = np.flatnonzero(np.diff(numbers, prepend=-2) != 1)
+        try:
+            for begin, end in zip(starts, [*starts[1:], len(numbers)], strict=True):
+                self._file.put_rows(int(numbers[begin]), rows[begin:end])
+            self.finished[numbers] = True
+            at = self._file.rows
+            if at < len(self.finished) and self.finished[at]:
+                gap = int(np.argmin(self.finished[at:]))
+                self._file.count_rows(len(self.finished) if self.finished[at + gap] else at + gap)
+        except OSError as error:
+            raise ResultFileError(f"{self._file.path}: the results could not be written: {error.strerror}; make room, "
+                                  "and repeat the sweep: what is written is not computed again") from error
+
+    def failed(self) -> np.ndarray:
+        """Return the numbers of the points that were recorded as failed."""
+        found = [np.zeros(0, int)]
+        for start, block in self._file.blocks(len(self.finished)):
+            status = np.ascontiguousarray(block[STATUS]).view(f"S{block[STATUS].shape[1]}")[:, 0]
+            found.append(start + np.flatnonzero((status == FAILED.encode()) & self.finished[start:start + len(block)]))
+        return np.concatenate(found)
+
+    def close(self) -> None:
+        """Let others have the file."""
+        self._file.close()
+
+
+def stored(path: str | os.PathLike, facts: Mapping[str, Any]) -> Store | None:
+    """Return the file of a sweep that goes on, None where there is none yet; facts: of the sweep that shall go on.
+
+    Raises ResultFileError where the file is something else, or of another sweep.
+    """
+    resolved = check_writable(path)
+    try:
+        descriptor = os.open(resolved, os.O_RDWR | BYTES)
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise ResultFileError(f"{resolved}: cannot be read: {error.strerror}") from None
+    try:
+        lock(descriptor)
+    except Taken:
+        os.close(descriptor)
+        raise _being_written(resolved) from None
+    try:
+        file = File(resolved, descriptor=descriptor)
+    except (OSError, ValueError) as error:
+        raise ResultFileError(f"{resolved}: there is a file that is no sweep of funicular, or a damaged one: {error}; "
+                              "delete it, or give another name") from None
+    old = facts_in(file)
+    for name, what in DIFFERENCES.items():
+        if old[name] != facts[name]:
+            raise ResultFileError(f"{resolved}: holds a sweep of {what}; delete it, or give another name")
+    try:
+        finished = whole_rows(file, int(old["number"]))
+    except OSError as error:
+        raise ResultFileError(f"{resolved}: cannot be read: {error}; delete it, or give another name") from None
+    return Store(file, old, finished)
+
+
+def new_store(path: str | os.PathLike | None, layout: Layout, facts: Mapping[str, Any], scene: str) -> Store:
+    """Return the file of a new sweep, without rows; path: None for one without a name, which ends with the process.
+
+    scene: the text of the scene, empty of a function. Raises ResultFileError.
+    """
+    number = int(facts["number"])
+    if layout.row_bytes > MOST_ROW:
+        raise ResultFileError(f"{SWEEP}: a point has {layout.row_bytes:.3g} bytes, more than a file can have; "
+                              "keep less")
+    descriptor = None
+    if path is None:
+        handle, part = tempfile.mkstemp(prefix="funicular-", suffix=".nc")
+        descriptor, resolved = handle, Path(part)
+    else:
+        resolved = check_writable(path)
+        part = os.fspath(resolved.with_name(f".{resolved.name}.part"))
+        descriptor = _claim(Path(part), resolved)
+        if resolved.exists():  # of another sweep, which made it just now
+            os.close(descriptor)
+            os.unlink(part)
+            raise _being_written(resolved)
+    free = shutil.disk_usage(resolved.parent).free
+    if layout.row_bytes * number > free:
+        os.close(descriptor)
+        os.unlink(part)
+        raise ResultFileError(f"{resolved}: {number} points of {layout.row_bytes} bytes do not fit in the {free:.3g} "
+                              "bytes that are free; keep less, or save elsewhere")
+    attributes: dict[str, str | int] = {FORMAT: SWEEP_FORMAT, "scene": scene}
+    try:
+        file = create(part, layout.coords, layout.for_file(), attributes, json.dumps(facts), 0, descriptor, POINT)
+        file.reserve(number)
+        if path is None:
+            os.unlink(part)
+        else:
+            file.rename(resolved)
+    except OSError as error:
+        raise ResultFileError(f"{resolved}: the results cannot be written here: {error.strerror}") from error
+    return Store(file, facts, np.zeros(number, bool))
+
+
+def _claim(part: Path, path: Path) -> int:
+    """Return a descriptor of the part file, which becomes the file when it is whole. Raises ResultFileError."""
+    try:
+        return claimed(part)
+    except Taken:
+        raise _being_written(path) from None
+    except NoLocks:
+        raise ResultFileError(f"{path}: another sweep may be writing it: there is {part.name}, and this file system "
+                              f"has no locks; delete {part.name} if there is none") from None
+    except OSError as error:
+        cause = f"{part.name} beside it is a link" if error.errno == errno.ELOOP else error.strerror
+        raise ResultFileError(f"{path}: the results cannot be written here: {cause}") from None
+
+
+def _being_written(path: Path) -> ResultFileError:
+    return ResultFileError(f"{path}: another sweep is writing it; wait for its end, or give another name")
+
+
+def facts_in(file: File) -> dict[str, Any]:
+    """Return the facts of the sweep in a file. Raises ResultFileError where it is no sweep's, or damaged."""
+    if FORMAT not in file.attributes:
+        raise ResultFileError(f"{file.path}: is not the file of a sweep; delete it, or give another name")
+    if int(np.asarray(file.attributes[FORMAT]).item()) > SWEEP_FORMAT:
+        raise ResultFileError(f"{file.path}: was written by a newer funicular; update this one to read it")
+    try:
+        facts = last_report(file.attributes["report"], file.has_checksums)
+        if not file.has_checksums or not isinstance(facts["number"], int):
+            raise ValueError("it lacks its checksums")
+    except (ValueError, LookupError, TypeError) as error:
+        raise ResultFileError(f"{file.path}: is damaged: {error}") from None
+    return facts
+
+
+def whole_rows(file: File, number: int) -> np.ndarray:
+    """Return (number,): whether each row of a sweep's file is whole. Raises OSError where the file is shorter."""
+    finished = np.ones(number, bool)
+    finished[file.damaged_rows(number)] = False
+    return finished

@@ -1,0 +1,52 @@
+"""Scenes and functions that the tests of sweeps compute, importable by worker processes."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+import funicular as fu
+
+SHORT = {"duration": 0.02, "output_step": 0.005, "tol": 1e-3}
+E_MODULUS, FRICTION = "wire.material.youngs_modulus", "trolley.friction.coefficient"
+GRID = {E_MODULUS: [3e8, 4e8, 5e8], FRICTION: [0.0, 0.2]}
+KEPT = ["A.position", "trolley.force.y", "wire.position"]
+
+
+def scene() -> fu.Scene:
+    """The first scene, on one element, so that a point takes some ms."""
+    found = fu.load_scene("paper51").replace("wire", elements=2)
+    found.run_settings = dict(SHORT)
+    return found
+
+
+def by_hand(youngs_modulus: float, friction: float) -> fu.Run:
+    """One point of GRID without a sweep."""
+    base = scene()
+    material = fu.Material(youngs_modulus=youngs_modulus, shear_modulus=0.2e9, density=4200.0)
+    base = base.replace("wire", material=material).replace("trolley", friction=fu.Friction(coefficient=friction))
+    return base.run(**SHORT)
+
+
+def square(x: float, y: float) -> dict:
+    """Numbers, an array, and an error where x is 2."""
+    if x == 2:
+        raise ZeroDivisionError("x is two")
+    return {"product": x * y, "both": [x, y]}
+
+
+def counted(x: int, folder: str) -> dict:
+    """Leave a line in a file for each time that the point is computed."""
+    with open(Path(folder) / "computed", "a") as file:
+        file.write(f"{x}\n")
+    time.sleep(0.01)
+    return {"twice": 2.0 * x}
+
+
+def deadly(x: int, folder: str) -> dict:
+    """Kill the process at x = 5: once where there is no file "always" in the folder."""
+    once, always = Path(folder) / "died", Path(folder) / "always"
+    if x == 5 and (always.exists() or not once.exists()):
+        once.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"twice": 2.0 * x}
