@@ -20,14 +20,13 @@ void fu_extrapolation_take(fu_extrapolation *past, const fu_model *model, double
     past->earlier = fu_take(scratch, taken, model->n_dof);
     past->slope = fu_take(scratch, taken, model->n_coordinates);
     past->slope_before = fu_take(scratch, taken, model->n_coordinates);
+    past->last = (fu_last_steps *)fu_take(scratch, taken, FU_DOUBLES(1, fu_last_steps));
 }
 
 /* Begins where nothing is known of the past. */
-void fu_extrapolation_start(fu_extrapolation *past)
+void fu_extrapolation_start(const fu_extrapolation *past)
 {
-    past->steps = 0;
-    past->degree = BY_VELOCITIES;
-    past->h = past->h_before = 0.0;
+    *past->last = (fu_last_steps){0.0, 0.0, 0.0, BY_VELOCITIES};
 }
 
 /* Factors by which a prediction has the accelerations at `now` and of the two steps before. */
@@ -35,15 +34,14 @@ typedef struct {
     double now, before, earlier;
 } factors;
 
-static factors factors_of(const fu_extrapolation *past, int degree, double rest, double h)
+static factors factors_of(const fu_last_steps *last, int degree, double rest, double h)
 {
     if (degree == BY_VELOCITIES) return (factors){rest, 0.0, 0.0};
     if (degree == 0) return (factors){1.0, 0.0, 0.0};
-    const double first = h / past->h;
+    const double first = h / last->h;
     if (degree == 1) return (factors){1.0 + first, -first, 0.0};
-    const double second = h * (h + past->h) / (past->h + past->h_before), last = second / past->h_before;
-    const double both = second / past->h;
-    return (factors){1.0 + first + both, -first - both - last, last};
+    const double bend = h * (h + last->h) / (last->h + last->h_before), now = bend / last->h, earlier = bend / last->h_before;
+    return (factors){1.0 + first + now, -first - now - earlier, earlier};
 }
 
 static double predicted(const fu_extrapolation *past, factors f, const double *a, int i)
@@ -54,11 +52,12 @@ static double predicted(const fu_extrapolation *past, factors f, const double *a
 /* Makes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola. */
 void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, double h)
 {
-    const factors f = factors_of(past, past->degree, rest, h);
+    const fu_last_steps *last = past->last;
+    const factors f = factors_of(last, (int)last->degree, rest, h);
     for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] = predicted(past, f, run->now.a, i);
     fu_predict_own(run, h);
-    if (past->steps < 2) return;
-    const double bend = h * (h + past->h) / (past->h + past->h_before);
+    if (last->steps < 2) return;
+    const double bend = h * (h + last->h) / (last->h + last->h_before);
     for (int i = 0; i < run->model->n_coordinates; ++i)
         run->next.s[i] += bend * (past->slope[i] - past->slope_before[i]);
 }
@@ -76,26 +75,22 @@ static double miss(const fu_extrapolation *past, const fu_run *run, factors f)
 }
 
 /* Takes the step just made from `now` to `next`, and chooses how the one to come is predicted. */
-void fu_extrapolation_accept(fu_extrapolation *past, const fu_run *run, double rest, double h)
+void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, double rest, double h)
 {
-    const fu_model *model = run->model;
+    const size_t dofs = sizeof(double) * (size_t)run->model->n_dof;
+    const size_t coordinates = sizeof(double) * (size_t)run->model->n_coordinates;
+    fu_last_steps *last = past->last;
+    int best = BY_VELOCITIES;
     double least = INFINITY;
-    past->degree = BY_VELOCITIES;
-    for (int degree = BY_VELOCITIES; degree <= MOST_DEGREE && degree <= past->steps; ++degree) {
-        const double sum = miss(past, run, factors_of(past, degree, rest, h));
+    for (int degree = BY_VELOCITIES; degree <= MOST_DEGREE && degree <= last->steps; ++degree) {
+        const double sum = miss(past, run, factors_of(last, degree, rest, h));
         if (!(sum < least)) continue;
         least = sum;
-        past->degree = degree;
+        best = degree;
     }
-    double *spare = past->earlier;
-    past->earlier = past->before;
-    past->before = spare;
-    memcpy(past->before, run->now.a, sizeof(double) * (size_t)model->n_dof);
-    spare = past->slope_before;
-    past->slope_before = past->slope;
-    past->slope = spare;
-    memcpy(past->slope, run->s_slope, sizeof(double) * (size_t)model->n_coordinates);
-    past->h_before = past->h;
-    past->h = h;
-    ++past->steps;
+    memcpy(past->earlier, past->before, dofs);
+    memcpy(past->before, run->now.a, dofs);
+    memcpy(past->slope_before, past->slope, coordinates);
+    memcpy(past->slope, run->s_slope, coordinates);
+    *last = (fu_last_steps){h, last->h, last->steps + 1, best};
 }

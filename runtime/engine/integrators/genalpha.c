@@ -36,22 +36,16 @@ static long n_parameters(const double *given)
     return FU_DOUBLES(1, parameters);
 }
 
-/* The head of the integrator's work space, and the arrays behind it. */
+/* The integrator's work space. */
 typedef struct {
     fu_carried_residual carried;
     fu_extrapolation past;
 } workspace;
 
-static workspace *space(const fu_run *run)
+/* Places its arrays in the scratch; returns how many doubles it takes, which is all that is done where it is null. */
+static long lay_out(const fu_run *run, double *scratch, workspace *w)
 {
-    return (workspace *)run->scratch;
-}
-
-/* Places the arrays in the scratch; returns how many doubles it takes, which is all that is done where it is null. */
-static long lay_out(const fu_run *run, double *scratch)
-{
-    long taken = FU_DOUBLES(1, workspace);
-    workspace unused, *w = scratch ? (workspace *)scratch : &unused;
+    long taken = 0;
     fu_carried_residual_take(&w->carried, run->model, scratch, &taken);
     fu_extrapolation_take(&w->past, run->model, scratch, &taken);
     return taken;
@@ -59,14 +53,15 @@ static long lay_out(const fu_run *run, double *scratch)
 
 static long n_scratch(const fu_run *run)
 {
-    return lay_out(run, NULL);
+    workspace unused;
+    return lay_out(run, NULL, &unused);
 }
 
-static void forget(fu_run *run)
+static workspace space(const fu_run *run)
 {
-    lay_out(run, run->scratch);
-    fu_carried_residual_start(&space(run)->carried, run->model);
-    fu_extrapolation_start(&space(run)->past);
+    workspace w;
+    lay_out(run, run->scratch, &w);
+    return w;
 }
 
 static double sigma(const parameters *g, double h)
@@ -128,21 +123,24 @@ static double of_velocities(const fu_run *run)
 
 static void predict(fu_run *run, double h)
 {
-    fu_extrapolate(&space(run)->past, run, of_velocities(run), h);
+    const workspace w = space(run);
+    fu_extrapolate(&w.past, run, of_velocities(run), h);
     fu_choose_pieces(run);
-    fu_carried_residual_correct(&space(run)->carried, run->model, h);
+    fu_carried_residual_correct(&w.carried, run->model, h);
 }
 
 static void residual(fu_run *run, double h)
 {
     const fu_equations at = equations(run, h);
     fu_residual(run, &at);
-    fu_carried_residual_add(&space(run)->carried, run, at.weights.stiffness);
+    const workspace w = space(run);
+    fu_carried_residual_add(&w.carried, run, at.weights.stiffness);
 }
 
 static void note_rest(fu_run *run, double h)
 {
-    fu_carried_residual_note(&space(run)->carried, run, sigma(scheme_of(run), h));
+    const workspace w = space(run);
+    fu_carried_residual_note(&w.carried, run, sigma(scheme_of(run), h));
 }
 
 static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0, note_rest};
@@ -167,14 +165,17 @@ static double error(fu_run *run, double h)
 
 static void account(fu_run *run, double h)
 {
-    fu_carried_residual_accept(&space(run)->carried, run->model, h);
-    fu_extrapolation_accept(&space(run)->past, run, of_velocities(run), h);
+    const workspace w = space(run);
+    fu_carried_residual_accept(&w.carried, run->model, h);
+    fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
     fu_account_trapezoid(run, h);
 }
 
 static int start(fu_run *run)
 {
-    forget(run);
+    const workspace w = space(run);
+    if (run->statistics.steps == 0) fu_carried_residual_start(&w.carried, run->model);
+    fu_extrapolation_start(&w.past);
     memcpy(run->now.a, run->now.acceleration, sizeof(double) * (size_t)run->model->n_dof);
     run->factored = 0;
     return FU_RUNNING;
@@ -187,6 +188,6 @@ const fu_integrator fu_genalpha = {.name = "genalpha",
                                    .step = step,
                                    .error = error,
                                    .account = account,
-                                   .forget = forget,
                                    .crosses_boundaries = 1,
+                                   .keeps_scratch = 1,
                                    .newton = &newton};
