@@ -57,6 +57,12 @@ void fu_carried_residual_correct(const fu_carried_residual *carried, const fu_mo
         carried->correction[i] = -(per * carried->moment[i] + carried->impulse[i]) * per;
 }
 
+/* Makes up for nothing in the step to come. */
+void fu_carried_residual_suspend(const fu_carried_residual *carried, const fu_model *model)
+{
+    memset(carried->correction, 0, sizeof(double) * (size_t)size(model));
+}
+
 /* Adds it to minus the residual in run->rhs, whose equations of motion are multiplied by `scale`. */
 void fu_carried_residual_add(const fu_carried_residual *carried, fu_run *run, double scale)
 {

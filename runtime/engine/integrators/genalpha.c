@@ -126,7 +126,8 @@ static void predict(fu_run *run, double h)
     const workspace w = space(run);
     fu_extrapolate(&w.past, run, of_velocities(run), h);
     fu_choose_pieces(run);
-    fu_carried_residual_correct(&w.carried, run->model, h);
+    if (fu_carries_rest(run)) fu_carried_residual_correct(&w.carried, run->model, h);
+    else fu_carried_residual_suspend(&w.carried, run->model);
 }
 
 static void residual(fu_run *run, double h)
@@ -166,8 +167,11 @@ static double error(fu_run *run, double h)
 static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
-    fu_carried_residual_accept(&w.carried, run->model, h);
-    fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
+    if (fu_carries_rest(run)) {
+        fu_carried_residual_accept(&w.carried, run->model, h);
+        fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
+    } else
+        fu_extrapolation_start(&w.past);
     fu_account_trapezoid(run, h);
 }
 

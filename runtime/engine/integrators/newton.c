@@ -13,7 +13,6 @@
 #define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is not rounding */
 #define MATRIX_COST 2.0       /* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
 #define UNDERESTIMATE 10.0    /* how many times more an increment may shrink less than its residual, which counts stiffness more */
-#define FIXED_GAP 5e-12       /* of the extent: gaps that Newton may leave of a fixed step at most */
 #define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
 
 double fu_clock(void)
@@ -162,17 +161,16 @@ static double contraction_of_residual(residual_size before, residual_size after)
 static int leaves_little(const fu_run *run, double size, double contraction, double gap)
 {
     const double enough = fmax(run->newton_tolerance, run->round_off);
-    const double closed = run->fixed_step > 0.0 ? fmax(fmin(enough, FIXED_GAP * run->extent), run->round_off) : enough;
-    return size <= run->round_off || (size * contraction <= enough && gap <= closed);
+    return size <= run->round_off || (size * contraction <= enough && gap <= enough);
 }
 
 /* Counts the step just made for the matrix, which is made anew where going on with it costs more than steps did on the average,
  * the matrix included. */
-static void count_for_matrix(fu_run *run, int iterations)
+static void count_for_matrix(fu_run *run, int iterations, int most)
 {
     run->matrix_cost += iterations;
     ++run->matrix_steps;
-    if ((double)iterations * run->matrix_steps > run->matrix_cost) run->factored = 0;
+    if ((double)iterations * run->matrix_steps > run->matrix_cost || iterations > most) run->factored = 0;
 }
 
 /* Does the same where the steps to come make up for what is left: its residual is evaluated, and tells how much that is. */
@@ -198,7 +196,7 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
         if (i > 0) contraction = fmin(contraction, ratio / (1.0 - ratio));
         if (leaves_little(run, size, contraction, after.gap)) {
             method->note_rest(run, h);
-            count_for_matrix(run, i + 1);
+            count_for_matrix(run, i + 1, method->most_iterations / MANY);
             return 0;
         }
         last = size;
@@ -210,12 +208,20 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
     return 0;
 }
 
+/* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to
+ * rounding instead, as their forces show gaps of 1e-12 m; so are fixed steps that had to be divided. */
+int fu_carries_rest(const fu_run *run)
+{
+    const fu_newton *method = run->integrator->newton;
+    return method && method->note_rest && !(run->fixed_step > 0.0 && (run->model->n_extra || run->net_rejections > 0));
+}
+
 /* Makes one step of size h from `now` to `next`; returns 0 where the Newton iteration converged. */
 int fu_newton_step(fu_run *run, const fu_newton *method, double h)
 {
     if (fabs(h - run->h_factored) > FU_SAME_STEP * h) run->factored = 0;
     const int stale = run->factored;
-    int (*const solve)(fu_run *, const fu_newton *, double) = method->note_rest ? iterate_and_note : iterate;
+    int (*const solve)(fu_run *, const fu_newton *, double) = fu_carries_rest(run) ? iterate_and_note : iterate;
     method->predict(run, h);
     if (!solve(run, method, h)) return 0;
     if (stale) { /* the matrix was of an earlier step: make it here before giving up */
