@@ -13,6 +13,7 @@
 #define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is not rounding */
 #define MATRIX_COST 2.0       /* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
 #define UNDERESTIMATE 10.0    /* how many times more an increment may shrink less than its residual, which counts stiffness more */
+#define COARSE 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
 #define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
 
 double fu_clock(void)
@@ -209,11 +210,13 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
 }
 
 /* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to
- * rounding instead, as their forces show gaps of 1e-12 m; so are fixed steps that had to be divided. */
+ * rounding instead, as their forces show gaps of 1e-12 m; so are fixed steps that had to be divided, or are too coarse. */
 int fu_carries_rest(const fu_run *run)
 {
     const fu_newton *method = run->integrator->newton;
-    return method && method->note_rest && !(run->fixed_step > 0.0 && (run->model->n_extra || run->net_rejections > 0));
+    if (!method || !method->note_rest) return 0;
+    if (run->fixed_step <= 0.0) return 1;
+    return !run->model->n_extra && run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
 }
 
 /* Makes one step of size h from `now` to `next`; returns 0 where the Newton iteration converged. */
