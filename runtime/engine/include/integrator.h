@@ -5,7 +5,7 @@
 #include "newton.h"
 
 /* A way through time. Its parameters are the numbers run->parameters, in the order of the class of its name in the
- * package funicular.integrators; its work space is run->scratch, which nothing else reads and checkpoints do not hold. */
+ * package funicular.integrators; its work space is run->scratch, which nothing else reads. */
 typedef struct {
     const char *name;
     /* Returns how many parameters it takes, of which the first is given. */
@@ -24,6 +24,7 @@ typedef struct {
     void (*account)(fu_run *run, double h);
     /* Drops what it keeps from step to step in its work space, as at a pause; null: nothing. */
     void (*forget)(fu_run *run);
+    int keeps_scratch;      /* checkpoints hold its work space, which is real numbers alone */
     int keeps_energy;       /* velocities stay as they are where it starts anew: to project them would cost energy */
     int crosses_boundaries; /* it finds the slides' elements within a step, which may go over boundaries of elements */
     const fu_newton *newton; /* of implicit steps with constraints on positions; null where eq 38 gives accelerations */

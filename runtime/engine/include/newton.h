@@ -18,11 +18,15 @@ typedef struct {
     void (*matrix)(fu_run *run, double h);
     double (*apply)(fu_run *run, double h);
     int most_iterations, to_rounding; /* the latter: go on below the rounding of positions, until increments shrink no more */
+    /* Notes what Newton leaves, in run->rhs, which the steps to come make up for; null: they do not, and what Newton leaves
+     * acts on the motion like a force. */
+    void (*note_rest)(fu_run *run, double h);
 } fu_newton;
 
 void fu_linearise(fu_run *run, double h, const double *change);
 double fu_clock(void);
 
+int fu_carries_rest(const fu_run *run);
 int fu_newton_step(fu_run *run, const fu_newton *method, double h);
 void fu_predict_own(fu_run *run, double h);
 void fu_add_solution(fu_run *run, double inertia, double scale);

@@ -66,6 +66,8 @@ struct fu_run {
     double ceiling; /* s: that steps stay below, after one that failed */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     double acted; /* s: when a coupling has last changed by itself */
+    double matrix_cost; /* of the factored matrix and of the steps made with it, in iterations */
+    int matrix_steps;   /* how many these are */
     int factored, stopped_slide, turned, acts;
     int keep_pieces; /* couplings keep their pieces in a step, which ends where one of them leaves its piece */
     int net_rejections; /* steps rejected of late, less those taken */

@@ -8,10 +8,12 @@
  * with equilibrium and constraints at t_n+1. Unknowns of the Newton iteration: psi, and per slide s and f~, where
  * the force is f = f~ mass/sigma with sigma = beta h^2 (1 - alpha_f)/(1 - alpha_m). Rows of equilibrium are multiplied
  * by sigma, constraint rows by the mass: the matrix is M + sigma K bordered by mass C_q, of one scale for any h
- * (Bottasso, Dopico & Trainelli 2008).
+ * (Bottasso, Dopico & Trainelli 2008). What Newton leaves of a step, the next ones make up for (carried_residual.c).
  */
 #include "engine.h"
 
+#include "carried_residual.h"
+#include "extrapolation.h"
 #include "workspace.h"
 
 #include <string.h>
@@ -34,10 +36,32 @@ static long n_parameters(const double *given)
     return FU_DOUBLES(1, parameters);
 }
 
+/* The integrator's work space. */
+typedef struct {
+    fu_carried_residual carried;
+    fu_extrapolation past;
+} workspace;
+
+/* Places its arrays in the scratch; returns how many doubles it takes, which is all that is done where it is null. */
+static long lay_out(const fu_run *run, double *scratch, workspace *w)
+{
+    long taken = 0;
+    fu_carried_residual_take(&w->carried, run->model, scratch, &taken);
+    fu_extrapolation_take(&w->past, run->model, scratch, &taken);
+    return taken;
+}
+
 static long n_scratch(const fu_run *run)
 {
-    (void)run;
-    return 0;
+    workspace unused;
+    return lay_out(run, NULL, &unused);
+}
+
+static workspace space(const fu_run *run)
+{
+    workspace w;
+    lay_out(run, run->scratch, &w);
+    return w;
 }
 
 static double sigma(const parameters *g, double h)
@@ -91,22 +115,36 @@ static double apply(fu_run *run, double h)
     return size;
 }
 
-/* Predicts psi = h v: accelerations are those of vibrations that the step does not resolve, and do not predict where they lead. */
+/* Returns what a_n+1 is of a_n where psi = h v. */
+static double of_velocities(const fu_run *run)
+{
+    return 1.0 - 0.5 / scheme_of(run)->beta;
+}
+
 static void predict(fu_run *run, double h)
 {
-    const double kept = 1.0 - 0.5 / scheme_of(run)->beta;
-    for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] = kept * run->now.a[i];
-    fu_predict_own(run, h);
+    const workspace w = space(run);
+    fu_extrapolate(&w.past, run, of_velocities(run), h);
     fu_choose_pieces(run);
+    if (fu_carries_rest(run)) fu_carried_residual_correct(&w.carried, run->model, h);
+    else fu_carried_residual_suspend(&w.carried, run->model);
 }
 
 static void residual(fu_run *run, double h)
 {
     const fu_equations at = equations(run, h);
     fu_residual(run, &at);
+    const workspace w = space(run);
+    fu_carried_residual_add(&w.carried, run, at.weights.stiffness);
 }
 
-static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0};
+static void note_rest(fu_run *run, double h)
+{
+    const workspace w = space(run);
+    fu_carried_residual_note(&w.carried, run, sigma(scheme_of(run), h));
+}
+
+static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0, note_rest};
 
 static int step(fu_run *run, double h)
 {
@@ -126,8 +164,22 @@ static double error(fu_run *run, double h)
     return fu_is_short(run, h) ? fu_size(run->model, run->work) : fu_filtered_size(run);
 }
 
+static void account(fu_run *run, double h)
+{
+    const workspace w = space(run);
+    if (fu_carries_rest(run)) {
+        fu_carried_residual_accept(&w.carried, run->model, h);
+        fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
+    } else
+        fu_extrapolation_start(&w.past);
+    fu_account_trapezoid(run, h);
+}
+
 static int start(fu_run *run)
 {
+    const workspace w = space(run);
+    if (run->statistics.steps == 0) fu_carried_residual_start(&w.carried, run->model);
+    fu_extrapolation_start(&w.past);
     memcpy(run->now.a, run->now.acceleration, sizeof(double) * (size_t)run->model->n_dof);
     run->factored = 0;
     return FU_RUNNING;
@@ -139,6 +191,7 @@ const fu_integrator fu_genalpha = {.name = "genalpha",
                                    .start = start,
                                    .step = step,
                                    .error = error,
-                                   .account = fu_account_trapezoid,
+                                   .account = account,
                                    .crosses_boundaries = 1,
+                                   .keeps_scratch = 1,
                                    .newton = &newton};

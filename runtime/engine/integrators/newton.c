@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 199309L
 #include "engine.h"
 
+#include <math.h>
 #include <string.h>
 #include <time.h>
 
@@ -10,6 +11,9 @@
 #define SLOWEST 0.9           /* largest contraction by which the rest of the error is estimated */
 #define QUICK 0.03            /* least contraction by which it is: the first iterations mend what is linear, the next are slower */
 #define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is not rounding */
+#define MATRIX_COST 2.0       /* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
+#define UNDERESTIMATE 10.0    /* how many times more an increment may shrink less than its residual, which counts stiffness more */
+#define COARSE 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
 #define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
 
 double fu_clock(void)
@@ -35,6 +39,8 @@ static int factor(fu_run *run, const fu_newton *method, double h)
     }
     run->factored = !info;
     run->h_factored = h;
+    run->matrix_cost = MATRIX_COST;
+    run->matrix_steps = 0;
     ++run->statistics.factorisations;
     run->statistics.time_factor += fu_clock() - begin;
     return info;
@@ -122,17 +128,109 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
     return 0;
 }
 
+/* Largest residuals in run->rhs: root of the sum of squares over the equations of motion; of the couplings' own equations;
+ * and gaps of constraints, m. */
+typedef struct {
+    double motion, own, gap;
+} residual_size;
+
+static residual_size size_of_residual(fu_run *run)
+{
+    const fu_model *model = run->model;
+    const double *own = fu_own(run);
+    residual_size size = {0.0, 0.0, 0.0};
+    for (int i = 0; i < model->n_band + model->n_border_dof; ++i) size.motion += run->rhs[i] * run->rhs[i];
+    size.motion = sqrt(size.motion);
+    for (int i = 0; i < model->n_extra; ++i) size.own = fmax(size.own, fabs(own[i]));
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        for (int i = 0; i < c->n_forces; ++i)
+            size.gap = fmax(size.gap, fabs(own[c->unknown + c->n_coordinates + i]) / c->scale[i]);
+    }
+    return size;
+}
+
+/* Returns what the next increment is of the last, at most, by what the residual has become of the one before. */
+static double contraction_of_residual(residual_size before, residual_size after)
+{
+    const double motion = before.motion > 0.0 ? after.motion / before.motion : 0.0;
+    const double own = before.own > 0.0 ? after.own / before.own : 0.0;
+    return fmin(1.0, UNDERESTIMATE * fmax(motion, own));
+}
+
+/* Returns whether an iteration may end after an increment of this size, which the next will be `contraction` of, at these gaps. */
+static int leaves_little(const fu_run *run, double size, double contraction, double gap)
+{
+    const double enough = fmax(run->newton_tolerance, run->round_off);
+    return size <= run->round_off || (size * contraction <= enough && gap <= enough);
+}
+
+/* Counts the step just made for the matrix, which is made anew where going on with it costs more than steps did on the average,
+ * the matrix included. */
+static void count_for_matrix(fu_run *run, int iterations, int most)
+{
+    run->matrix_cost += iterations;
+    ++run->matrix_steps;
+    if ((double)iterations * run->matrix_steps > run->matrix_cost || iterations > most) run->factored = 0;
+}
+
+/* Does the same where the steps to come make up for what is left: its residual is evaluated, and tells how much that is. */
+static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
+{
+    double last = INFINITY;
+    method->kinematics(run, h);
+    method->residual(run, h);
+    residual_size before = size_of_residual(run);
+    for (int i = 0; i < method->most_iterations; ++i) {
+        if (!run->factored && factor(run, method, h)) return 1;
+        const double begin = fu_clock();
+        fu_system_solve(&run->newton, run->model->lapack, run->rhs);
+        run->statistics.time_solve += fu_clock() - begin;
+        const double size = method->apply(run, h), ratio = fmin(fmax(size / last, QUICK), SLOWEST);
+        ++run->statistics.newton_iterations;
+        if (!(size < FU_RUNS_AWAY)) return blame(run);
+        if (size >= last && size > BEYOND_ROUNDING * run->round_off) return blame(run);
+        method->kinematics(run, h);
+        method->residual(run, h);
+        const residual_size after = size_of_residual(run);
+        double contraction = contraction_of_residual(before, after);
+        if (i > 0) contraction = fmin(contraction, ratio / (1.0 - ratio));
+        if (leaves_little(run, size, contraction, after.gap)) {
+            method->note_rest(run, h);
+            count_for_matrix(run, i + 1, method->most_iterations / MANY);
+            return 0;
+        }
+        last = size;
+        before = after;
+    }
+    if (last > BEYOND_ROUNDING * run->round_off) return blame(run);
+    method->note_rest(run, h); /* rounding: long chains of joints make more of it than one position has */
+    run->factored = 0;
+    return 0;
+}
+
+/* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to
+ * rounding instead, as their forces show gaps of 1e-12 m; so are fixed steps that had to be divided, or are too coarse. */
+int fu_carries_rest(const fu_run *run)
+{
+    const fu_newton *method = run->integrator->newton;
+    if (!method || !method->note_rest) return 0;
+    if (run->fixed_step <= 0.0) return 1;
+    return !run->model->n_extra && run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
+}
+
 /* Makes one step of size h from `now` to `next`; returns 0 where the Newton iteration converged. */
 int fu_newton_step(fu_run *run, const fu_newton *method, double h)
 {
     if (fabs(h - run->h_factored) > FU_SAME_STEP * h) run->factored = 0;
     const int stale = run->factored;
+    int (*const solve)(fu_run *, const fu_newton *, double) = fu_carries_rest(run) ? iterate_and_note : iterate;
     method->predict(run, h);
-    if (!iterate(run, method, h)) return 0;
+    if (!solve(run, method, h)) return 0;
     if (stale) { /* the matrix was of an earlier step: make it here before giving up */
         run->factored = 0;
         method->predict(run, h);
-        if (!iterate(run, method, h)) return 0;
+        if (!solve(run, method, h)) return 0;
     }
     run->factored = 0;
     ++run->statistics.newton_failures;

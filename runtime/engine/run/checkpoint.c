@@ -50,6 +50,7 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, run->first, sizeof(double) * (size_t)model->n_q);
     copy(c, run->s_slope, sizeof(double) * (size_t)model->n_coordinates);
     copy(c, run->watched, sizeof(double) * (size_t)run->n_watches);
+    if (run->integrator->keeps_scratch) copy(c, run->scratch, sizeof(double) * (size_t)run->integrator->n_scratch(run));
     copy(c, run->late, sizeof(int) * (size_t)run->n_watches);
     copy(c, &run->record.n, sizeof run->record.n);
     copy(c, &run->statistics, sizeof run->statistics);
@@ -140,6 +141,8 @@ static int possible_numbers(const fu_run *run)
     for (size_t i = 0; i < sizeof positive / sizeof *positive; ++i)
         if (!(positive[i] >= 0.0 && isfinite(positive[i]))) return 0;
     return fu_all_finite(numbers, sizeof numbers / sizeof *numbers) && fu_all_finite(run->balance.first, FU_ENERGIES) &&
+           (!run->integrator->keeps_scratch || fu_all_finite(run->scratch, run->integrator->n_scratch(run))) &&
+           run->matrix_steps >= 0 && run->matrix_cost >= 0.0 && isfinite(run->matrix_cost) &&
            fu_all_finite(run->first, run->model->n_q) && fu_all_finite(run->s_slope, run->model->n_coordinates);
 }
 

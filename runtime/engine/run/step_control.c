@@ -18,12 +18,31 @@
 #define NEWTON_MOST 1e-10  /* of the extent: what Newton may leave at most */
 #define FIXED_PART 1e-2    /* of the last step's error, times the step over the duration: what Newton may leave of a fixed step */
 #define FIXED_MOST 1e-14   /* of the extent: what Newton may leave of a fixed step at most */
+#define CARRIED_PART 1e-3  /* of what is allowed: what Newton may leave where the steps to come make up for it */
+#define CARRIED_MOST 1e-9  /* of the extent: what Newton may leave there at most */
+#define CARRIED_FIXED_PART 3e-3  /* of the last step's error: what Newton may leave there of a fixed step */
+#define CARRIED_FIXED_MOST 1e-10 /* of the extent: what Newton may leave there of a fixed step at most */
 
 /* Returns the step that ends at the target, or one of equal steps to there, none larger than wanted, s. */
 double fu_fit_step(double remaining, double want)
 {
     const double pieces = ceil(remaining / want * (1.0 - ROUNDED));
     return pieces <= 1.0 ? remaining : remaining / pieces;
+}
+
+/* Returns what Newton may leave of a step, m. What it leaves has the same sign step after step and acts like a force: it
+ * counts (T/h)^2 times in positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its
+ * error. Where the steps to come make up for it, it counts once. Even so it must stay small: with a matrix of some steps
+ * before, what is left goes with the vibrations and can feed them, up to where they make it larger than this. */
+static double newton_tolerance(const fu_run *run, double h, double allowed, double extent)
+{
+    const int fixed = run->fixed_step > 0.0;
+    const double share = h / run->duration;
+    if (fu_carries_rest(run))
+        return fixed ? fmin(CARRIED_FIXED_PART * run->last_error, CARRIED_FIXED_MOST * extent)
+                     : fmin(CARRIED_PART * allowed, CARRIED_MOST * extent);
+    return fixed ? fmin(FIXED_PART * share * run->last_error, FIXED_MOST * extent)
+                 : fmin(NEWTON_PART * share * allowed, NEWTON_MOST * extent);
 }
 
 /* Sets the tolerances of a step: of its error, of Newton, and where rounding begins. Returns the first, m. */
@@ -36,11 +55,7 @@ double fu_allow(fu_run *run, double h)
      * moved yet, would take most of the steps. */
     const double share = SAFETY * h / fmax(run->now.t + h, FIRST_PART * run->duration);
     const double allowed = fmax(run->tol * scale * fmin(1.0, run->error_overestimate * share), run->round_off);
-    /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
-     * positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its error */
-    const double extent = fmax(run->extent, scale);
-    run->newton_tolerance = run->fixed_step > 0.0 ? fmin(FIXED_PART * h / run->duration * run->last_error, FIXED_MOST * extent)
-                                                  : fmin(NEWTON_PART * h / run->duration * allowed, NEWTON_MOST * extent);
+    run->newton_tolerance = newton_tolerance(run, h, allowed, fmax(run->extent, scale));
     return run->allowed = allowed;
 }
 

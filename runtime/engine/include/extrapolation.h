@@ -1,0 +1,25 @@
+/* Prediction of a step from the steps before: integrators/extrapolation.c. */
+#ifndef FUNICULAR_EXTRAPOLATION_H
+#define FUNICULAR_EXTRAPOLATION_H
+
+#include "common.h"
+
+/* Of the last steps: sizes of the last one and of the one before, s; how many are known; the degree of the polynomial that would
+ * have predicted the last one best, -1: none. Whole numbers are real ones here, as work spaces have. */
+typedef struct {
+    double h, h_before, steps, degree;
+} fu_last_steps;
+
+/* What an integrator keeps of the last steps, in its work space. */
+typedef struct {
+    double *before, *earlier;     /* n_dof: its accelerations one and two steps before `now` */
+    double *slope, *slope_before; /* of the couplings' own coordinates in the last step, and in the one before */
+    fu_last_steps *last;
+} fu_extrapolation;
+
+void fu_extrapolation_take(fu_extrapolation *past, const fu_model *model, double *scratch, long *taken);
+void fu_extrapolation_start(const fu_extrapolation *past);
+void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, double h);
+void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, double rest, double h);
+
+#endif

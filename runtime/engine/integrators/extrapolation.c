@@ -1,0 +1,96 @@
+/* Prediction of a step from the steps before. Accelerations are those of what a step resolves, which a polynomial
+ * through the last steps predicts, and of vibrations that it does not, which none predicts. So the next step is predicted
+ * by the polynomial, of degree 0 to 2, that would have predicted the last one best; or, where velocities alone would have
+ * been better, by `rest` times the last acceleration, with which the integrator goes on with its velocities.
+ */
+#include "engine.h"
+
+#include "extrapolation.h"
+#include "workspace.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { BY_VELOCITIES = -1, MOST_DEGREE = 2 };
+
+/* Places the arrays in a work space; only counts them where it is null. */
+void fu_extrapolation_take(fu_extrapolation *past, const fu_model *model, double *scratch, long *taken)
+{
+    past->before = fu_take(scratch, taken, model->n_dof);
+    past->earlier = fu_take(scratch, taken, model->n_dof);
+    past->slope = fu_take(scratch, taken, model->n_coordinates);
+    past->slope_before = fu_take(scratch, taken, model->n_coordinates);
+    past->last = (fu_last_steps *)fu_take(scratch, taken, FU_DOUBLES(1, fu_last_steps));
+}
+
+/* Begins where nothing is known of the past. */
+void fu_extrapolation_start(const fu_extrapolation *past)
+{
+    *past->last = (fu_last_steps){0.0, 0.0, 0.0, BY_VELOCITIES};
+}
+
+/* Factors by which a prediction has the accelerations at `now` and of the two steps before. */
+typedef struct {
+    double now, before, earlier;
+} factors;
+
+static factors factors_of(const fu_last_steps *last, int degree, double rest, double h)
+{
+    if (degree == BY_VELOCITIES) return (factors){rest, 0.0, 0.0};
+    if (degree == 0) return (factors){1.0, 0.0, 0.0};
+    const double first = h / last->h;
+    if (degree == 1) return (factors){1.0 + first, -first, 0.0};
+    const double bend = h * (h + last->h) / (last->h + last->h_before), now = bend / last->h, earlier = bend / last->h_before;
+    return (factors){1.0 + first + now, -first - now - earlier, earlier};
+}
+
+static double predicted(const fu_extrapolation *past, factors f, const double *a, int i)
+{
+    return f.now * a[i] + f.before * past->before[i] + f.earlier * past->earlier[i];
+}
+
+/* Makes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola. */
+void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, double h)
+{
+    const fu_last_steps *last = past->last;
+    const factors f = factors_of(last, (int)last->degree, rest, h);
+    for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] = predicted(past, f, run->now.a, i);
+    fu_predict_own(run, h);
+    if (last->steps < 2) return;
+    const double bend = h * (h + last->h) / (last->h + last->h_before);
+    for (int i = 0; i < run->model->n_coordinates; ++i)
+        run->next.s[i] += bend * (past->slope[i] - past->slope_before[i]);
+}
+
+/* Returns the sum of squares of what the prediction of `next` was off by. */
+static double miss(const fu_extrapolation *past, const fu_run *run, factors f)
+{
+    const double *weight = run->model->weight;
+    double sum = 0.0;
+    for (int i = 0; i < run->model->n_dof; ++i) {
+        const double d = weight[i] * (run->next.a[i] - predicted(past, f, run->now.a, i));
+        sum += d * d;
+    }
+    return sum;
+}
+
+/* Takes the step just made from `now` to `next`, and chooses how the one to come is predicted. */
+void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, double rest, double h)
+{
+    const size_t dofs = sizeof(double) * (size_t)run->model->n_dof;
+    const size_t coordinates = sizeof(double) * (size_t)run->model->n_coordinates;
+    fu_last_steps *last = past->last;
+    int best = BY_VELOCITIES;
+    double least = INFINITY;
+    for (int degree = BY_VELOCITIES; degree <= MOST_DEGREE && degree <= last->steps; ++degree) {
+        const double sum = miss(past, run, factors_of(last, degree, rest, h));
+        if (!(sum < least)) continue;
+        least = sum;
+        best = degree;
+    }
+    memcpy(past->earlier, past->before, dofs);
+    memcpy(past->before, run->now.a, dofs);
+    memcpy(past->slope_before, past->slope, coordinates);
+    memcpy(past->slope, run->s_slope, coordinates);
+    *last = (fu_last_steps){h, last->h, last->steps + 1, best};
+}
