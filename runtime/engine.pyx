@@ -150,10 +150,11 @@ cdef class Engine(Report):
         self.run.n_knots, self.run.knots = len(times), self.knots
 
     def start(self, *, duration, output_step, tol, step, method, first_step, knots=((), ()), capacity=None,
-              rest_start=False):
+              rest_start=False, absolute_tol=0.0, controlled=None):
         """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: one of integrators/.
 
-        knots: times at which steps end, increasing, and what jumps there; see model/knots.py.
+        knots: times at which steps end, increasing, and what jumps there; see model/knots.py. absolute_tol in m, negative:
+        by the scene's size; controlled: weights (n_dof,) of what tol is the error of, the model's where all is.
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
         cdef int k
@@ -161,6 +162,8 @@ cdef class Engine(Report):
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
+        run.absolute_tol = absolute_tol
+        run.controlled = self.model.weight if controlled is None else self._doubles(controlled)
         self._knots(*knots)
         self._take_integrator(method)
         rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if capacity is None else capacity

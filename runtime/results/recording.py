@@ -89,6 +89,8 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
         "integrator_reason": simulation.reason,
         "spectral_radius": settings.spectral_radius,
         "tol": settings.tol if settings.step is None else None,
+        "absolute_tol": engine.absolute_tol if settings.step is None else None,
+        "quantities": None if settings.quantities is None or settings.step is not None else list(settings.quantities),
         "step": settings.step,
         "unknowns": model.n_band + model.n_border_dof + model.n_extra,
         "kernels": model.kernels,

@@ -6,7 +6,7 @@ import logging
 import time
 import warnings
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..engine import Engine
 from ..errors import FunicularWarning, SceneError
 from ..integrators import Integrator
 from ..model.build import build
+from ..model.controlled import controlled_weights
 from ..model.knots import knots
 from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
@@ -126,6 +127,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         messages += long_run.notes()
     cpu, total = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     row_notes.see(engine.rows())
+    messages += _controlled_alone(engine, settings)
     if status == "completed":
         for note in [*notes(engine, settings), *trapped(scene, engine), *row_notes.notes()]:
             messages.append(note)
@@ -152,6 +154,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         output_step=settings.output_step,
         tol=settings.tol,
         step=settings.step or 0.0,
+        **_control(settings, scene, model),
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
         knots=knots(model, settings.duration, settings.tol, turns=settings.step is None),
@@ -168,6 +171,29 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
     closed = engine.closed > 1e-9 * engine.extent
     gaps = [f"gaps of joints were closed at the start: things moved by up to {engine.closed:.3g} m"] * closed
     return status, _Changed(gaps, change)
+
+
+def _control(settings: RunSettings, scene: SceneData, model: Model) -> dict[str, Any]:
+    """Return what tells the engine which error steps follow, and what is allowed beside tol; nothing where the step is
+    fixed.
+
+    Raises SceneError for a quantity whose error is not estimated.
+    """
+    weights = None if settings.quantities is None else controlled_weights(settings.quantities, scene, model)
+    if settings.step is not None:
+        return {}
+    return {"absolute_tol": -1.0 if settings.absolute_tol is None else settings.absolute_tol, "controlled": weights}
+
+
+def _controlled_alone(engine: Engine, settings: RunSettings) -> list[str]:
+    """Say which quantities steps were chosen by, where the user named some."""
+    if settings.quantities is None:
+        return []
+    named = ", ".join(settings.quantities)
+    if settings.step is not None:
+        return [f"the step is fixed: no error is controlled, of {named} or else"]
+    return [f"steps were chosen by the error of {named} alone, whose largest motion is {engine.controlled_motion:.3g} m: "
+            "other results may be less accurate"]
 
 
 def _divided_step(settings: RunSettings) -> list[str]:

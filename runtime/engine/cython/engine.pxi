@@ -237,7 +237,8 @@ cdef extern from "engine.h" nogil:
         fu_event event
         int n_knots
         const fu_knot *knots
-        double duration, output_step, fixed_step, tol
+        double duration, output_step, fixed_step, tol, absolute_tol
+        const double *controlled
         fu_state now, next
         fu_system newton
         fu_accelerator accelerator
@@ -250,7 +251,7 @@ cdef extern from "engine.h" nogil:
         double *before
         double *first
         double *s_slope
-        double h, h_factored, contraction, motion, extent, closed
+        double h, h_factored, contraction, motion, extent, controlled_motion, closed
         int factored, stopped_slide, rest_start
         fu_failure failure
         fu_energy_balance balance

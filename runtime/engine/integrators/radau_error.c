@@ -22,7 +22,7 @@ static double kink(fu_run *run, fu_radau_workspace *w, double h)
         if (!coupling->type->kink) continue;
         worst = fmax(worst, coupling->type->kink(model, coupling, &run->next, STAGES + 1, weight, w->multipliers, h * left));
     }
-    return worst * run->allowed / (KINK * run->tol * fmax(run->motion, run->least_motion));
+    return worst * run->allowed / (KINK * fu_allowed_error(run));
 }
 
 /* Makes run->work = (M + (h/L) D + (h/L)^2 K)^-1 M r on the joints, for the real L; returns its size as a length. */
@@ -32,7 +32,8 @@ static double filtered(fu_run *run, fu_radau_workspace *w, const double *r)
     fu_radau_right_side(run, r, w->unknowns);
     fu_system_solve(&run->newton, model->lapack, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
-    return fu_spread_size(run);
+    fu_spread(model, run->rhs, run->work);
+    return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
 }
 
 /* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the stages say of
@@ -61,6 +62,6 @@ double fu_radau_error(fu_run *run, double h)
     for (int i = 0; i < n; ++i) w->w[i] = w->w[n + i] = run->work[i];
     filtered(run, w, w->w);
     for (int i = 0; i < n; ++i) run->work[i] = w->w[n + i] - run->work[i];
-    const double linear = fmax(VIBRATION * fu_size(model, run->work), EMBEDDED * embedded);
+    const double linear = fmax(VIBRATION * fu_error_size(run, run->work, fu_allowed_elsewhere(run)), EMBEDDED * embedded);
     return run->fixed_step > 0.0 ? linear : fmax(linear, kink(run, w, h));
 }
