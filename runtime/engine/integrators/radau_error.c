@@ -3,6 +3,7 @@
 
 #define VIBRATION 0.5     /* times the estimate for vibrations is what counts: errors of one are not of one sign */
 #define EMBEDDED 0.02     /* times the embedded estimate is what counts, as its order is too low */
+#define TURNS_EMBEDDED 0.05 /* the same where bodies turn, of which the matrix has nothing */
 #define FED_VIBRATION 4.0 /* the same where motions, drives or friction feed vibrations: there errors grow with them */
 #define FED_EMBEDDED 0.1
 #define ONCE 0.1          /* of all that is allowed: the error of vibrations that a step does not resolve */
@@ -88,6 +89,7 @@ double fu_radau_error(fu_run *run, double h)
     if (model->n_reacting) return fmax(fmax(FED_VIBRATION * vibration, FED_EMBEDDED * all), kink(run, w, h));
     for (int i = 0; i < model->n_dof; ++i) w->w[i] = run->work[i];
     const double adding_up = (fed ? FED_VIBRATION : VIBRATION) * filtered(run, w, w->w);
+    const double by_embedded = fed ? FED_EMBEDDED : model->n_bodies ? TURNS_EMBEDDED : EMBEDDED;
     const double once = vibration * run->allowed / (ONCE * fu_allowed_error(run));
-    return fmax(fmax(adding_up, (fed ? FED_EMBEDDED : EMBEDDED) * slow), once);
+    return fmax(fmax(adding_up, by_embedded * slow), once);
 }
