@@ -189,14 +189,15 @@ cdef class Engine(Report):
         cdef int width = c.type.n_outputs
         return output[:, c.output:c.output + len(numbers) * width].reshape(len(output), len(numbers), width)
 
-    def advance(self, on_progress, int every=0, stream=None, double interval=0.05):
-        """Run to the end; returns the status, "interrupted" after Ctrl-C.
+    def advance(self, on_progress, int every=0, stream=None, double interval=0.05, long most_evaluations=0):
+        """Run to the end; returns the status, "interrupted" after Ctrl-C, "running" after so many evaluations of eq 38.
 
         every: at each so many output rows the run pauses, which leaves it in a state that `checkpoint` holds in full, and
         calls stream.pause(); otherwise stream.between() now and then, which may take rows.
         """
         cdef int status = FU_RUNNING
         run = &self.run
+        run.most_evaluations = most_evaluations
         try:
             while status == FU_RUNNING:
                 run.record.pause = (run.record.n // every + 1) * every if every else 0
@@ -224,6 +225,8 @@ cdef class Engine(Report):
                         break
                     status = FU_RUNNING
                 on_progress(run.now.t)
+                if status == FU_RUNNING and fu_has_worked(run):
+                    return "running"
         except KeyboardInterrupt:
             return "interrupted"
         return STATUS[status]

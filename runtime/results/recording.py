@@ -28,7 +28,7 @@ from ..solve.run import Simulation
 class Rows:
     """Output rows as plain arrays by name, time first. Units SI, vectors with three components.
 
-    parts: what each part tells of itself, as the ``quantities`` of its class say, by group and label; cables: their
+    parts: what each part tells of itself, as the ``results`` of its class say, by group and label; cables: their
     nodal vectors; modal: the coordinates of modal bodies.
     """
 

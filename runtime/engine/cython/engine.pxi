@@ -237,6 +237,7 @@ cdef extern from "engine.h" nogil:
         fu_event event
         int n_knots
         const fu_knot *knots
+        long most_evaluations
         double duration, output_step, fixed_step, tol, absolute_tol
         const double *controlled
         fu_state now, next
@@ -290,6 +291,7 @@ cdef extern from "engine.h" nogil:
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
     void fu_pause(fu_run *run)
+    int fu_has_worked(const fu_run *run)
     long fu_save(const fu_run *run, char *bytes)
     int fu_restore(fu_run *run, const char *bytes, int rows)
     int fu_stop(fu_run *run)

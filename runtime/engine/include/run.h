@@ -38,6 +38,7 @@ struct fu_run {
     fu_event event;      /* that the run has stopped at */
     int n_knots;
     const fu_knot *knots; /* increasing; steps end there */
+    long most_evaluations; /* after which fu_advance returns; 0: after any number */
     double duration, output_step, fixed_step, tol;
     double absolute_tol; /* m: error allowed beside tol times the motion; negative until the start: a part of the scene's size */
     const double *controlled; /* n_dof: model->weight of what tol is the error of, 0 of the rest */
@@ -112,6 +113,7 @@ int fu_pass_knot(fu_run *run, const fu_knot *knot, int event);
 int fu_step_towards(fu_run *run, double target);
 
 /* run/run.c: the time loop */
+int fu_has_worked(const fu_run *run);
 int fu_advance(fu_run *run, double seconds);
 
 #endif
