@@ -20,6 +20,13 @@ SHARE = 0.05
 """Of the other's cost: after each such share it is judged anew what remains."""
 
 
+SETTLED = 4
+"""Shares after which the rate counts as it is: the motion may begin with a shock."""
+
+CLEARLY = 3.0
+"""Times the other's cost that what remains must take before."""
+
+
 class Discarding:
     """Takes the rows of an engine at its pauses, and keeps none."""
 
@@ -47,7 +54,7 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
         if status != "running" or time >= PART * duration:
             return status, ""
         remains = SHARE * (duration - time) / max(time - before, 1e-12 * duration)
-        if shares > 1 and remains > 1.0:
+        if shares > 1 and remains > (CLEARLY if shares < SETTLED else 1.0):
             return status, (f"{method.name} on trial took work like {shares * SHARE * rival.cost:.3g} to t = {time:.3g} s, "
                             f"and for what remains at that rate {remains:.2g} times as much as {rival.method.name} for all")
         before = time
