@@ -118,8 +118,9 @@ def run(
             check_writable(_existing(pictures) / "picture.png")
         stopped = None
         try:
-            result = described.run(duration, tol=tol, absolute_tol=absolute_tol, quantities=_listed(quantities), step=step,
-                                   integrator=integrator, spectral_radius=spectral_radius, save=path, resume=resume)
+            result = described.run(duration, tol=tol, absolute_tol=absolute_tol, quantities=_listed(quantities),
+                                   step=step, integrator=integrator, spectral_radius=spectral_radius, save=path,
+                                   resume=resume)
         except (EndOfCableError, ConvergenceError) as error:
             result, stopped = error.run, error
         _report(result, path, pictures, forces)

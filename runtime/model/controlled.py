@@ -17,8 +17,8 @@ COUNTED = {"rigid_body": ("position", "orientation"), "modal_body": ("position",
 
 
 def controlled_weights(quantities: Sequence[str], scene: SceneData, model: Model) -> np.ndarray:
-    """Return the weight (n_dof,) of each degree of freedom in the error that steps are chosen by, m: the model's where a
-    quantity depends on it, 0 elsewhere.
+    """Return the weight (n_dof,) of each degree of freedom in the error that steps are chosen by, m: the model's where
+    a quantity depends on it, 0 elsewhere.
 
     What a slide's s is found from are the positions of its rider and of its cable. Raises SceneError for a quantity
     whose error is not estimated.

@@ -39,8 +39,8 @@ class RunSettings(Part):
     duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
     the step is chosen; absolute_tol in m is allowed beside it, tol times 1e-5 of the scene's size if not given;
     quantities: results such as "A.position", "wire.position.y" or "trolley.s" that alone count, in the error and in
-    the motion that tol is relative to; step: a fixed step in s instead, divided where need be so that steps end on output times and
-    where a signal is not smooth; output_step in s, a hundredth of the duration if not given;
+    the motion that tol is relative to; step: a fixed step in s instead, divided where need be so that steps end on
+    output times and where a signal is not smooth; output_step in s, a hundredth of the duration if not given;
     integrator: "explicit" (Runge-Kutta of order 8), "radau" (implicit, order 5, for stiff scenes), "genalpha"
     (implicit, order 2, with control of the dissipation), "energy" (order 2, keeps energy and momenta to rounding),
     or "auto": the cheaper of the first two for this scene and tol, genalpha where step or spectral_radius is given;

@@ -160,8 +160,8 @@ def _coarse_for_little_motion(engine: Engine, settings: RunSettings) -> list[str
     allowed, motion = engine.absolute_tol, engine.controlled_motion
     if settings.step is not None or settings.absolute_tol is not None or allowed <= settings.tol * motion:
         return []
-    return [f"errors of {allowed:.2g} m were allowed for the size of the scene, which is {allowed / max(motion, 1e-300):.2g} "
-            f"of the largest motion of {motion:.2g} m: give absolute_tol, in m, if that is too much"]
+    return [f"errors of {allowed:.2g} m were allowed for the size of the scene, beside a largest motion of "
+            f"{motion:.2g} m: give absolute_tol, in m, if that is too much"]
 
 
 def trapped(scene: SceneData, engine: Engine) -> list[str]:

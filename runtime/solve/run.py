@@ -213,8 +213,8 @@ def _controlled_alone(engine: Engine, settings: RunSettings) -> list[str]:
     named = ", ".join(settings.quantities)
     if settings.step is not None:
         return [f"the step is fixed: no error is controlled, of {named} or else"]
-    return [f"steps were chosen by the error of {named} alone, whose largest motion is {engine.controlled_motion:.3g} m: "
-            "other results may be less accurate"]
+    return [f"steps were chosen by the error of {named} alone, whose largest motion is "
+            f"{engine.controlled_motion:.3g} m: other results may be less accurate"]
 
 
 def _divided_step(settings: RunSettings) -> list[str]:

@@ -55,6 +55,7 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
             return status, ""
         remains = SHARE * (duration - time) / max(time - before, 1e-12 * duration)
         if shares > 1 and remains > (CLEARLY if shares < SETTLED else 1.0):
-            return status, (f"{method.name} on trial took work like {shares * SHARE * rival.cost:.3g} to t = {time:.3g} s, "
-                            f"and for what remains at that rate {remains:.2g} times as much as {rival.method.name} for all")
+            spent = shares * SHARE * rival.cost
+            return status, (f"{method.name} on trial took work like {spent:.3g} to t = {time:.3g} s: what remains would "
+                            f"cost {remains:.2g} times as much as all by {rival.method.name}")
         before = time
