@@ -45,10 +45,10 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
     resumed: the integrator's name of a run that goes on. Raises SceneError where the one that was asked for cannot run
     the scene.
     """
-    if settings.integrator == AUTO and resumed in INTEGRATORS:
-        return INTEGRATORS[resumed].of(settings.spectral_radius), "as the run began", None
     if settings.integrator != AUTO or settings.step is not None or "spectral_radius" in settings.model_fields_set:
         return *_asked_for(settings, scene, model, engine), None
+    if resumed in INTEGRATORS:
+        return INTEGRATORS[resumed].of(settings.spectral_radius), "as the run began", None
     return cheapest(demands_of(settings, scene, model, engine), settings.duration)
 
 

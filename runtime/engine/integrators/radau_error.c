@@ -6,6 +6,7 @@
 #define TURNS_EMBEDDED 0.05 /* the same where bodies turn, of which the matrix has nothing */
 #define FED_VIBRATION 4.0 /* the same where motions, drives or friction feed vibrations: there errors grow with them */
 #define FED_EMBEDDED 0.1
+#define REPORTED 2.0      /* times the estimate for vibrations is what is told of a fixed step */
 #define ONCE 0.1          /* of all that is allowed: the error of vibrations that a step does not resolve */
 #define KINK 0.15         /* of tol: the error that one kink of friction may make */
 
@@ -85,7 +86,7 @@ double fu_radau_error(fu_run *run, double h)
     const int fed = model->n_motions || model->n_driven || model->n_reacting;
     const double all = embedded(run, w, h), slow = take_filtered(run, w);
     const double vibration = fu_error_size(run, run->work, fu_allowed_elsewhere(run));
-    if (run->fixed_step > 0.0) return fmax(vibration, FED_EMBEDDED * all);
+    if (run->fixed_step > 0.0) return fmax(REPORTED * vibration, FED_EMBEDDED * all);
     if (model->n_reacting) return fmax(fmax(FED_VIBRATION * vibration, FED_EMBEDDED * all), kink(run, w, h));
     for (int i = 0; i < model->n_dof; ++i) w->w[i] = run->work[i];
     const double adding_up = (fed ? FED_VIBRATION : VIBRATION) * filtered(run, w, w->w);
