@@ -76,13 +76,13 @@ def test_an_absolute_error_is_kept_and_reported():
 
 
 def test_the_default_follows_the_size_of_the_scene_and_says_where_it_rules():
-    """1e-5 of the box around nodes and bodies, times tol: of a motion smaller than that a note says so."""
+    """1e-6 of the box around nodes and bodies, times tol: of a motion smaller than that a note says so."""
     still = fu.Scene(gravity=(0, 0, 0))
     still.rigid_body("A", mass=1.0, inertia=(1e-2,) * 3, position=(0, 0, 0), velocity=(1e-7, 0, 0))
     still.rigid_body("B", mass=1.0, inertia=(1e-2,) * 3, position=(10, 0, 0))
     with pytest.warns(fu.FunicularWarning, match="give absolute_tol"):
         run = still.run(1.0, tol=1e-3, progress=False)
-    assert run.report["absolute_tol"] == pytest.approx(1e-5 * 1e-3 * 10)
+    assert run.report["absolute_tol"] == pytest.approx(1e-6 * 1e-3 * 10)
 
 
 @pytest.mark.parametrize(("quantities", "said"), [

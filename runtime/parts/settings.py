@@ -37,7 +37,7 @@ class RunSettings(Part):
     """How a scene is run.
 
     duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
-    the step is chosen; absolute_tol in m is allowed beside it, tol times 1e-5 of the scene's size if not given;
+    the step is chosen; absolute_tol in m is allowed beside it, tol times 1e-6 of the scene's size if not given;
     quantities: results such as "A.position", "wire.position.y" or "trolley.s" that alone count, in the error and in
     the motion that tol is relative to; step: a fixed step in s instead, divided where need be so that steps end on
     output times and where a signal is not smooth; output_step in s, a hundredth of the duration if not given;

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define AT_REST 1e-9      /* of the extent: a scene that moves less may be at rest */
-#define STILL 1e-5        /* of the scene's size: a motion that errors may be relative to where the scene moves less */
+#define STILL 1e-6        /* of the scene's size: a motion that errors may be relative to where the scene moves less */
 #define FIRST_MOTION 1e-3 /* of the duration: until then the motion is judged by the velocities at the start */
 
 /* Starts the scheme at `now` with consistent velocities, which are projected on the joints where that is asked for, and with
