@@ -89,6 +89,10 @@ def run(
     forces: Annotated[bool, typer.Option("--forces", help="draw tension and moment along the cables, too")] = False,
     duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
     tol: Annotated[float | None, typer.Option(help="error aimed at, instead of the scene's")] = None,
+    absolute_tol: Annotated[float | None, typer.Option(help="error allowed beside it, m")] = None,
+    quantities: Annotated[
+        str | None, typer.Option(help="results that alone count in the error, such as A.position,trolley.s")
+    ] = None,
     step: Annotated[float | None, typer.Option(help="fixed step in s, instead of the scene's")] = None,
     integrator: Annotated[str | None, typer.Option(help="instead of the scene's")] = None,
     spectral_radius: Annotated[
@@ -117,8 +121,9 @@ def run(
             check_writable(_existing(pictures) / "picture.png")
         stopped = None
         try:
-            result = described.run(duration, tol=tol, step=step, integrator=integrator, spectral_radius=spectral_radius,
-                                   save=path, resume=resume, estimate=estimate or None)
+            result = described.run(duration, tol=tol, absolute_tol=absolute_tol, quantities=_listed(quantities),
+                                   step=step, integrator=integrator, spectral_radius=spectral_radius, save=path,
+                                   resume=resume, estimate=estimate or None)
         except (EndOfCableError, ConvergenceError) as error:
             result, stopped = error.run, error
         _report(result, path, pictures, forces)

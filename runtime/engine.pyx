@@ -150,10 +150,11 @@ cdef class Engine(Report):
         self.run.n_knots, self.run.knots = len(times), self.knots
 
     def start(self, *, duration, output_step, tol, step, method, first_step, knots=((), ()), capacity=None,
-              rest_start=False):
+              rest_start=False, absolute_tol=0.0, controlled=None):
         """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: one of integrators/.
 
-        knots: times at which steps end, increasing, and what jumps there; see model/knots.py.
+        knots: times at which steps end, increasing, and what jumps there; see model/knots.py. absolute_tol in m, negative:
+        by the scene's size; controlled: weights (n_dof,) of what tol is the error of, the model's where all is.
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
         cdef int k
@@ -161,6 +162,8 @@ cdef class Engine(Report):
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
+        run.absolute_tol = absolute_tol
+        run.controlled = self.model.weight if controlled is None else self._doubles(controlled)
         self._knots(*knots)
         self._take_integrator(method)
         rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if capacity is None else capacity
@@ -186,14 +189,15 @@ cdef class Engine(Report):
         cdef int width = c.type.n_outputs
         return output[:, c.output:c.output + len(numbers) * width].reshape(len(output), len(numbers), width)
 
-    def advance(self, on_progress, int every=0, stream=None, double interval=0.05):
-        """Run to the end; returns the status, "interrupted" after Ctrl-C.
+    def advance(self, on_progress, int every=0, stream=None, double interval=0.05, long most_evaluations=0):
+        """Run to the end; returns the status, "interrupted" after Ctrl-C, "running" after so many evaluations of eq 38.
 
         every: at each so many output rows the run pauses, which leaves it in a state that `checkpoint` holds in full, and
         calls stream.pause(); otherwise stream.between() now and then, which may take rows.
         """
         cdef int status = FU_RUNNING
         run = &self.run
+        run.most_evaluations = most_evaluations
         try:
             while status == FU_RUNNING:
                 run.record.pause = (run.record.n // every + 1) * every if every else 0
@@ -221,6 +225,8 @@ cdef class Engine(Report):
                         break
                     status = FU_RUNNING
                 on_progress(run.now.t)
+                if status == FU_RUNNING and fu_has_worked(run):
+                    return "running"
         except KeyboardInterrupt:
             return "interrupted"
         return STATUS[status]

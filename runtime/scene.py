@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any, Never, Self, TypeVar
 
@@ -160,6 +160,8 @@ class Scene(Viewable, SceneMethods):
         duration: float | None = None,
         *,
         tol: float | None = None,
+        absolute_tol: float | None = None,
+        quantities: Sequence[str] | None = None,
         step: float | None = None,
         output_step: float | None = None,
         integrator: str | None = None,
@@ -191,8 +193,9 @@ class Scene(Viewable, SceneMethods):
         """
         _refuse_unknown("run", unknown, (*RunSettings.keywords(), "resume", "progress"))
         state = None if initial is None or isinstance(initial, str) else _state(self, initial)
-        given = {"duration": duration, "tol": tol, "step": step, "output_step": output_step, "integrator": integrator,
-                 "spectral_radius": spectral_radius, "threads": threads, "save": save, "estimate": estimate,
+        given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
+                 "output_step": output_step, "integrator": integrator, "spectral_radius": spectral_radius,
+                 "threads": threads, "save": save, "estimate": estimate,
                  "initial": initial if state is None else "state" if isinstance(initial, Mapping) else "equilibrium"}
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
         if settings.initial == "state" and state is None:

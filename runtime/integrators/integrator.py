@@ -69,6 +69,9 @@ class Integrator(ABC):
         """Return the integrator with this spectral radius at infinite frequency, if it has one."""
         return cls()
 
+    cost_of_evaluation: ClassVar[float] = 1.0
+    """Of an evaluation of eq 38 with its share of the other work of a step, in evaluations alone."""
+
     @classmethod
     def cost(cls, demands: Demands) -> tuple[float, str] | None:
         """Return what a second of a scene costs, in evaluations of eq 38, and why; None: "auto" does not take it."""

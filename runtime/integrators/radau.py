@@ -23,6 +23,7 @@ class Radau(Integrator):
     """
 
     name, order, retry_factor = "radau", 3, 0.65
+    cost_of_evaluation = 2.8
 
     def __init__(self) -> None:
         root = np.sqrt(6.0)

@@ -56,7 +56,7 @@ class Joint(Part):
     kind: ClassVar[str] = "joint"
     group: ClassVar[str] = "joints"
     positional: ClassVar[tuple[str, ...]] = ("kind", "a", "b")
-    quantities: ClassVar[dict[str, Quantity]] = {
+    results: ClassVar[dict[str, Quantity]] = {
         "force": vector_of_time("N", "force on what carries the end b, at that end"),
         "moment": vector_of_time("N m", "moment on what carries the end b, about that end"),
         "residual": of_time("1", "largest of its equations, in m or of cosines"),

@@ -59,7 +59,7 @@ class ModalBody(Part):
 
     kind: ClassVar[str] = "modal_body"
     group: ClassVar[str] = "bodies"
-    quantities: ClassVar[dict[str, Quantity]] = RigidBody.quantities
+    results: ClassVar[dict[str, Quantity]] = RigidBody.results
     name: Name
     start: Annotated[Vector | None, xyz("m")] = None
     end: Annotated[Vector | None, xyz("m")] = None

@@ -93,7 +93,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
     positional: ClassVar[tuple[str, ...]] = ("name",)
     """Keywords that the scene's method for such parts takes without their names, too."""
 
-    quantities: ClassVar[dict[str, Quantity]] = {}
+    results: ClassVar[dict[str, Quantity]] = {}
     """What results tell of such parts, beside the nodal vectors of cables and the modes of bodies."""
 
     def __setattr__(self, name: str, value: Any) -> None:

@@ -21,7 +21,7 @@ class PointForce(Part):
 
     group: ClassVar[str] = "point_forces"
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
-    quantities: ClassVar[dict[str, Quantity]] = {
+    results: ClassVar[dict[str, Quantity]] = {
         "force": vector_of_time("N", "force on the first end"),
         "tension": of_time("N", "force with which the ends are drawn together"),
         "length": of_time("m", "distance of the ends"),

@@ -66,7 +66,7 @@ class RigidBody(Part):
 
     kind: ClassVar[str] = "rigid_body"
     group: ClassVar[str] = "bodies"
-    quantities: ClassVar[dict[str, Quantity]] = {
+    results: ClassVar[dict[str, Quantity]] = {
         "position": vector_of_time("m", "position of the body's origin"),
         "orientation": Quantity(("time", "wxyz"), "1", "unit quaternion from body axes to the ground's"),
         "velocity": vector_of_time("m/s", "velocity of the body's origin"),

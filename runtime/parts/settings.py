@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from ..integrators import AUTO, INTEGRATORS, stable_at
 from .part import Part
-from .validation import Count, Flag, one_of, positive, within
+from .validation import Count, Flag, names, not_negative, one_of, positive, within
 
 SMALLEST_STEP = 1e-12
 """Of the duration, as in engine/run/steps.c."""
@@ -37,8 +37,10 @@ class RunSettings(Part):
     """How a scene is run.
 
     duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
-    the step is chosen; step: a fixed step in s instead, divided where need be so that steps end on output times and
-    where a signal is not smooth; output_step in s, a hundredth of the duration if not given;
+    the step is chosen; absolute_tol in m is allowed beside it, tol times 1e-6 of the scene's size if not given;
+    quantities: results such as "A.position", "wire.position.y" or "trolley.s" that alone count, in the error and in
+    the motion that tol is relative to; step: a fixed step in s instead, divided where need be so that steps end on
+    output times and where a signal is not smooth; output_step in s, a hundredth of the duration if not given;
     integrator: "explicit" (Runge-Kutta of order 8), "radau" (implicit, order 5, for stiff scenes), "genalpha"
     (implicit, order 2, with control of the dissipation), "energy" (order 2, keeps energy and momenta to rounding),
     or "auto": the cheaper of the first two for this scene and tol, genalpha where step or spectral_radius is given;
@@ -53,6 +55,8 @@ class RunSettings(Part):
     kind: ClassVar[str] = "run"
     duration: Duration
     tol: Annotated[float, positive()] = 1e-4
+    absolute_tol: Annotated[float, not_negative("m")] | None = None
+    quantities: Annotated[tuple[str, ...], names()] | None = None
     step: Duration | None = None
     output_step: Duration = Field(default_factory=lambda data: data["duration"] / 100)
     integrator: Annotated[str, one_of((AUTO, *INTEGRATORS))] = AUTO

@@ -39,7 +39,7 @@ class Slide(Part):
     kind: ClassVar[str] = "slide"
     group: ClassVar[str] = "slides"
     positional: ClassVar[tuple[str, ...]] = ("body",)
-    quantities: ClassVar[dict[str, Quantity]] = {
+    results: ClassVar[dict[str, Quantity]] = {
         "s": of_time("m", "undeformed arc-length of the rider's place"),
         "s_rate": of_time("m/s", "rate of s"),
         "s_acceleration": of_time("m/s2", "second rate of s"),

@@ -29,7 +29,7 @@ ON_CABLE = {"force": vector_of_time("N", "force on the cable"), "moment": vector
 class Support(Part):
     """Base of the supports of a cable's node at ``s`` (m)."""
 
-    quantities: ClassVar[dict[str, Quantity]] = ON_CABLE
+    results: ClassVar[dict[str, Quantity]] = ON_CABLE
     cable: Reference
     s: Annotated[float, finite("m")]
 
@@ -50,7 +50,7 @@ class Pin(Support):
     kind: ClassVar[str] = "pin"
     group: ClassVar[str] = "pins"
     positional: ClassVar[tuple[str, ...]] = ("cable",)
-    quantities: ClassVar[dict[str, Quantity]] = {"force": ON_CABLE["force"]}
+    results: ClassVar[dict[str, Quantity]] = {"force": ON_CABLE["force"]}
 
 
 class Clamp(Support):
@@ -185,7 +185,7 @@ class Tie(Part):
     kind: ClassVar[str] = "tie"
     group: ClassVar[str] = "ties"
     positional: ClassVar[tuple[str, ...]] = ("cable",)
-    quantities: ClassVar[dict[str, Quantity]] = ON_CABLE
+    results: ClassVar[dict[str, Quantity]] = ON_CABLE
     name: Name | None = None
     cable: Reference
     s: Annotated[float, finite("m")]

@@ -206,6 +206,16 @@ def list_of(unit: str = "", *, least: int) -> PlainValidator:
     return checked(check, list_schema(unit, least, None))
 
 
+def names() -> PlainValidator:
+    """Return the check of a list of one or more texts, each once."""
+    def check(value: Any) -> tuple[str, ...]:
+        if not isinstance(value, list | tuple) or not value or not all(isinstance(one, str) for one in value):
+            raise ValueError(f"must be a list of names, got {shown(value)}")
+        return tuple(dict.fromkeys(value))
+
+    return checked(check, {"type": "array", "items": {"type": "string"}, "minItems": 1})
+
+
 def _count(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
         raise ValueError(f"must be a whole number, 1 or more, got {shown(value)}")

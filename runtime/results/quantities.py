@@ -22,7 +22,7 @@ class Variable(NamedTuple):
 QUANTITIES: dict[str, dict[str, Quantity]] = {}
 """What results tell of the parts of each group, by name."""
 for _kind in KINDS:
-    QUANTITIES.setdefault(_kind.group, {}).update(_kind.quantities)
+    QUANTITIES.setdefault(_kind.group, {}).update(_kind.results)
 
 ENERGIES = {
     "kinetic": "kinetic energy",

@@ -29,7 +29,7 @@ from ..solve.run import Simulation
 class Rows:
     """Output rows as plain arrays by name, time first. Units SI, vectors with three components.
 
-    parts: what each part tells of itself, as the ``quantities`` of its class say, by group and label; cables: their
+    parts: what each part tells of itself, as the ``results`` of its class say, by group and label; cables: their
     nodal vectors; modal: the coordinates of modal bodies.
     """
 
@@ -94,6 +94,8 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
         "integrator_reason": simulation.reason,
         "spectral_radius": settings.spectral_radius,
         "tol": settings.tol if settings.step is None else None,
+        "absolute_tol": engine.absolute_tol if settings.step is None else None,
+        "quantities": None if settings.quantities is None or settings.step is not None else list(settings.quantities),
         "step": settings.step,
         "unknowns": model.n_band + model.n_border_dof + model.n_extra,
         "kernels": model.kernels,

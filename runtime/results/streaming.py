@@ -99,6 +99,11 @@ class Stream:
         return self._kept.facts.elapsed_s if self._kept else 0.0
 
     @property
+    def integrator(self) -> str | None:
+        """Return the name of the integrator of a run that is resumed, None where one begins."""
+        return self._kept.facts.integrator if self._kept else None
+
+    @property
     def free(self) -> int:
         """Return the bytes that the file can have: those that are free, and those of the one that is there."""
         return shutil.disk_usage(self._path.parent).free + (self._path.stat().st_size if self._path.exists() else 0)

@@ -147,11 +147,21 @@ def notes(engine: Engine, settings: RunSettings) -> list[str]:
                     f"{settings.tol:g} allows: draw the scene nearer to it")
     if not engine.moves:
         return notes
+    notes += _coarse_for_little_motion(engine, settings)
     error = counts["sum_of_local_error_estimates_m"] / counts["largest_motion_m"]
     if settings.step is not None and error > QUIET_ERROR:
         notes.append(f"the estimated errors of the steps sum up to {error:.2g} of the largest motion: take a smaller "
                     "step, or none, so that tol chooses it")
     return notes + unexplained(engine, settings)
+
+
+def _coarse_for_little_motion(engine: Engine, settings: RunSettings) -> list[str]:
+    """Return a note where the absolute error that was allowed unasked is more than tol of the motion."""
+    allowed, motion = engine.absolute_tol, engine.controlled_motion
+    if settings.step is not None or settings.absolute_tol is not None or allowed <= settings.tol * motion:
+        return []
+    return [f"errors of {allowed:.2g} m were allowed for the size of the scene, beside a largest motion of "
+            f"{motion:.2g} m: give absolute_tol, in m, if that is too much"]
 
 
 def trapped(scene: SceneData, engine: Engine) -> list[str]:

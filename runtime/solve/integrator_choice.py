@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -26,11 +27,38 @@ DENSE = 120
 """Unknowns up to which matrices are arrays: sparse ones take longer to make than their zeros to multiply."""
 
 
-def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
-    """Return the integrator of a run, and why it is that one. "auto" takes the cheaper by stiffness and tolerance.
+NEAR = 8.0
+"""Ratio of expected costs up to which the implicit method is put on trial where it is expected to be the dearer one."""
 
-    Raises SceneError where the one that was asked for cannot run the scene.
+WORTH_A_TRIAL = 3000.0
+"""Evaluations of eq 38 that the explicit method takes at least where it is a rival to one on trial."""
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Another integrator for a run, and what the whole run costs with it, in evaluations of eq 38."""
+
+    method: Integrator
+    cost: float
+
+
+def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine,
+           resumed: str | None) -> tuple[Integrator, str, Rival | None]:
+    """Return the integrator that a run begins with, why it is that one, and the one that replaces it if that turns out
+    cheaper.
+
+    resumed: the integrator's name of a run that goes on. Raises SceneError where the one that was asked for cannot run
+    the scene.
     """
+    if settings.integrator != AUTO or settings.step is not None or "spectral_radius" in settings.model_fields_set:
+        return *_asked_for(settings, scene, model, engine), None
+    if resumed in INTEGRATORS:
+        return INTEGRATORS[resumed].of(settings.spectral_radius), "as the run began", None
+    return cheapest(demands_of(settings, scene, model, engine), settings.duration)
+
+
+def _asked_for(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
+    """Return the integrator that the settings ask for, themselves or by what they say of the step, and why."""
     if settings.integrator != AUTO:
         chosen = INTEGRATORS[settings.integrator].of(settings.spectral_radius)
         check(chosen, scene, model, engine)
@@ -38,16 +66,24 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
     fixed = stable_at(fixed_step=True).of(settings.spectral_radius)
     if settings.step is not None:
         return fixed, f"the step is fixed: {fixed.name} is stable at any"
-    if "spectral_radius" in settings.model_fields_set:
-        return fixed, f"spectral_radius is given, which is {fixed.name}'s"
-    return cheapest(demands_of(settings, scene, model, engine))
+    return fixed, f"spectral_radius is given, which is {fixed.name}'s"
 
 
-def cheapest(demands: Demands) -> tuple[Integrator, str]:
-    """Return the cheapest of the integrators that say what they cost, and what each says; the last one of equals."""
-    said = [(one, *cost) for one in INTEGRATORS.values() if (cost := one.cost(demands)) is not None]
-    chosen = min(reversed(said), key=lambda of_one: of_one[1])[0]
-    return _made(chosen), ", ".join(why for _, _, why in said)
+def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival | None]:
+    """Return the integrator whose cost is expected to be the least, or worth a trial, why, and its rival on trial.
+
+    What stability asks for is sure, what the motion asks for is expected: of two that are near each other the latter is
+    tried, but for kinks of friction, which it follows less well.
+    """
+    said = {one: cost for one in INTEGRATORS.values() if (cost := one.cost(demands)) is not None}
+    stable, limited = stable_at(fixed_step=False), min(said, key=lambda one: (one.stability is None, said[one][0]))
+    why, sure = ", ".join(text for _, text in said.values()), said[limited][0]
+    if said[stable][0] > sure * (1.0 if demands.friction else NEAR):
+        return _made(limited), why, None
+    worth = sure * duration >= WORTH_A_TRIAL
+    if not worth and said[stable][0] > sure:
+        return _made(limited), why, None
+    return _made(stable), why, Rival(_made(limited), sure * duration) if worth else None
 
 
 def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:

@@ -6,7 +6,7 @@ import logging
 import time
 import warnings
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..engine import Engine
 from ..errors import FunicularWarning, SceneError
 from ..integrators import Integrator
 from ..model.build import build
+from ..model.controlled import controlled_weights
 from ..model.knots import knots
 from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
@@ -30,6 +31,7 @@ from .progress import Meter
 from .row_notes import RowNotes
 from .signal_steps import unresolved
 from .threads import share_elements
+from .trial_run import on_trial
 
 LOG = logging.getLogger(__name__)
 
@@ -54,6 +56,10 @@ class Sink(Protocol):
     @property
     def elapsed(self) -> float:
         """Return the seconds that the run took before it was resumed."""
+
+    @property
+    def integrator(self) -> str | None:
+        """Return the name of the integrator of a run that is resumed, None where one begins."""
 
     @property
     def free(self) -> int:
@@ -99,22 +105,27 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     come, so that only the last ones are in what is returned.
     """
     begin = time.perf_counter()
-    model = build(scene)
-    if initial is not None:
-        initial.start(model, scene)
-    engine, watcher = Engine(model), EventWatcher(scene, model)
+    model, engine, watcher, said = _prepared(scene, settings, initial)
     _check_size(engine.row_bytes, settings, stream)
     pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, engine.row_bytes)
-    engine.watch(watcher)
-    messages = implausible(scene) + drop_redundant_rows(model, engine)
+    messages = implausible(scene) + said
     if initial is not None:
         messages += [f"state to start from: {message}" for message in initial.messages]
-    messages += _divided_step(settings) + share_elements(engine, settings.threads)
-    method, reason = choose(settings, scene, model, engine)
+    messages += _divided_step(settings)
+    method, reason, rival = choose(settings, scene, model, engine, None if stream is None else stream.integrator)
     set_up, cpu = time.perf_counter() - begin, time.process_time()
     LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, model.n_dof,
              method.name, reason, set_up)
-    status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
+    capacity = None if stream is None else pace.capacity
+    status, changed = _start(scene, settings, model, engine, method, capacity)
+    if status is None and rival is not None:
+        status, lost = on_trial(engine, rival, method, settings.duration, pace.every,
+                                LongRun(model, engine, settings, watcher, on_progress), discard=stream is not None)
+        if lost:
+            method, reason = rival.method, f"{reason}; {lost}"
+        if lost or (stream is not None and status != "interrupted"):
+            model, engine, watcher, _ = _prepared(scene, settings, initial)
+            status, changed = _start(scene, settings, model, engine, method, capacity)
     messages += changed.gaps
     warned = _broken_velocities(model, changed.velocities) + velocity_jumps(scene, settings.duration)
     warned += unresolved(scene, settings)
@@ -123,14 +134,15 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     messages += warned
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0)
     started = time.perf_counter() - begin - set_up
-    if status is None:
-        if stream is not None:
-            stream.start(model, engine, pace, watcher.happened, row_notes)
-        long_run = LongRun(model, engine, settings, watcher, on_progress)
+    long_run = LongRun(model, engine, settings, watcher, on_progress)
+    if stream is not None and status in (None, "interrupted"):
+        stream.start(model, engine, pace, watcher.happened, row_notes)
+    if status in (None, "running"):
         status = engine.advance(long_run, pace.every, stream)
-        messages += long_run.notes()
+    messages += long_run.notes()
     cpu, ended = time.process_time() - cpu, time.perf_counter()
     row_notes.see(engine.rows())
+    messages += _controlled_alone(engine, settings)
     if status == "completed":
         for note in [*notes(engine, settings), *trapped(scene, engine), *row_notes.notes()]:
             messages.append(note)
@@ -141,6 +153,17 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     for message in messages:
         LOG.info("run: %s", message)
     return Simulation(model, engine, watcher, status, messages, reason, set_up, started, noted, total, cpu)
+
+
+def _prepared(scene: SceneData, settings: RunSettings,
+              initial: Start | None) -> tuple[Model, Engine, EventWatcher, list[str]]:
+    """Return the model of a scene, an engine that is not started, what watches its events, and messages on them."""
+    model = build(scene)
+    if initial is not None:
+        initial.start(model, scene)
+    engine, watcher = Engine(model), EventWatcher(scene, model)
+    engine.watch(watcher)
+    return model, engine, watcher, drop_redundant_rows(model, engine) + share_elements(engine, settings.threads)
 
 
 @dataclass
@@ -159,6 +182,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         output_step=settings.output_step,
         tol=settings.tol,
         step=settings.step or 0.0,
+        **_control(settings, scene, model),
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
         knots=knots(model, settings.duration, settings.tol, turns=settings.step is None),
@@ -175,6 +199,29 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
     closed = engine.closed > 1e-9 * engine.extent
     gaps = [f"gaps of joints were closed at the start: things moved by up to {engine.closed:.3g} m"] * closed
     return status, _Changed(gaps, change)
+
+
+def _control(settings: RunSettings, scene: SceneData, model: Model) -> dict[str, Any]:
+    """Return what tells the engine which error steps follow, and what is allowed beside tol; nothing where the step is
+    fixed.
+
+    Raises SceneError for a quantity whose error is not estimated.
+    """
+    weights = None if settings.quantities is None else controlled_weights(settings.quantities, scene, model)
+    if settings.step is not None:
+        return {}
+    return {"absolute_tol": -1.0 if settings.absolute_tol is None else settings.absolute_tol, "controlled": weights}
+
+
+def _controlled_alone(engine: Engine, settings: RunSettings) -> list[str]:
+    """Say which quantities steps were chosen by, where the user named some."""
+    if settings.quantities is None:
+        return []
+    named = ", ".join(settings.quantities)
+    if settings.step is not None:
+        return [f"the step is fixed: no error is controlled, of {named} or else"]
+    return [f"steps were chosen by the error of {named} alone, whose largest motion is "
+            f"{engine.controlled_motion:.3g} m: other results may be less accurate"]
 
 
 def _divided_step(settings: RunSettings) -> list[str]:

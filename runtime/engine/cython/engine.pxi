@@ -237,7 +237,9 @@ cdef extern from "engine.h" nogil:
         fu_event event
         int n_knots
         const fu_knot *knots
-        double duration, output_step, fixed_step, tol
+        long most_evaluations
+        double duration, output_step, fixed_step, tol, absolute_tol
+        const double *controlled
         fu_state now, next
         fu_system newton
         fu_accelerator accelerator
@@ -250,7 +252,7 @@ cdef extern from "engine.h" nogil:
         double *before
         double *first
         double *s_slope
-        double h, h_factored, contraction, motion, extent, closed
+        double h, h_factored, contraction, motion, extent, controlled_motion, closed
         int factored, stopped_slide, rest_start
         fu_failure failure
         fu_energy_balance balance
@@ -289,6 +291,7 @@ cdef extern from "engine.h" nogil:
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
     void fu_pause(fu_run *run)
+    int fu_has_worked(const fu_run *run)
     long fu_save(const fu_run *run, char *bytes)
     int fu_restore(fu_run *run, const char *bytes, int rows)
     int fu_stop(fu_run *run)

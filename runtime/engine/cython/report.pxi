@@ -114,6 +114,16 @@ cdef class Report(Statics):
         return b.grown, b.lost, b.exchanged, b.in_motion, b.rounding
 
     @property
+    def absolute_tol(self):
+        """Error that is allowed beside tol times the motion, m."""
+        return self.run.absolute_tol
+
+    @property
+    def controlled_motion(self):
+        """Largest motion so far of what tol is the error of, m."""
+        return self.run.controlled_motion
+
+    @property
     def moves(self):
         """Whether anything has moved beyond rounding."""
         return bool(fu_moves(&self.run))

@@ -41,7 +41,10 @@ struct fu_run {
     fu_event event;      /* that the run has stopped at */
     int n_knots;
     const fu_knot *knots; /* increasing; steps end there */
+    long most_evaluations; /* after which fu_advance returns; 0: after any number */
     double duration, output_step, fixed_step, tol;
+    double absolute_tol; /* m: error allowed beside tol times the motion; negative until the start: a part of the scene's size */
+    const double *controlled; /* n_dof: model->weight of what tol is the error of, 0 of the rest */
     fu_state now, next;
     fu_system newton;
     fu_accelerator accelerator;
@@ -60,6 +63,7 @@ struct fu_run {
     double recorded; /* s: time of the last row */
     double usual; /* s: the step that is wanted, were it not for an event or an output time */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
+    double controlled_motion; /* m: largest so far of what tol is the error of */
     double size; /* m: of the scene as it is at the start, wherever it lies */
     double allowed; /* m: error of the step */
     double closed;  /* m: gaps at the start */
@@ -78,12 +82,16 @@ struct fu_run {
 
 /* run/scene_size.c */
 double fu_largest_motion(const fu_model *model, const double *from, const double *to);
+double fu_controlled_motion(const fu_run *run);
 double fu_extent(const fu_model *model, const double *origin, const double *q);
 double fu_scene_size(const fu_model *model, const double *origin, const double *q);
 
 /* run/step_control.c */
 double fu_fit_step(double remaining, double want);
+double fu_allowed_error(const fu_run *run);
 double fu_allow(fu_run *run, double h);
+double fu_allowed_elsewhere(const fu_run *run);
+double fu_error_size(const fu_run *run, const double *error, double others);
 void fu_adapt_step(fu_run *run, double h, double ratio);
 double fu_shrink_step(fu_run *run, double h, double ratio);
 double fu_retry_step(fu_run *run, double h);
@@ -110,6 +118,7 @@ int fu_pass_knot(fu_run *run, const fu_knot *knot, int event);
 int fu_step_towards(fu_run *run, double target);
 
 /* run/run.c: the time loop */
+int fu_has_worked(const fu_run *run);
 int fu_advance(fu_run *run, double seconds);
 
 #endif

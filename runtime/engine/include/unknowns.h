@@ -13,5 +13,6 @@ void fu_spread(const fu_model *model, const double *x, double *dofs);
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value);
 int fu_extra(const fu_model *model, int k);
 double fu_size(const fu_model *model, const double *dofs);
+double fu_weighted_size(const fu_model *model, const double *weight, const double *dofs);
 
 #endif

@@ -162,7 +162,9 @@ static double estimate(fu_run *run, const double *row, double h)
     }
     for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = v[model->motions[k].dof] = 0.0;
     for (int i = 0; i < model->n_dof; ++i) v[i] *= h;
-    return fmax(fu_size(model, run->work), fu_size(model, v));
+    /* what is not named must not either grow unstable: it errs by tol of the largest motion */
+    const double others = run->allowed * run->tol * fmax(run->motion, run->least_motion) / fu_allowed_error(run);
+    return fmax(fu_error_size(run, run->work, others), fu_error_size(run, v, others));
 }
 
 /* Returns the local error of positions, m, from two embedded estimates, combined as in DOP853. */

@@ -161,7 +161,7 @@ static double error(fu_run *run, double h)
     const double factor = h * h * (fu_count_changes(run) ? JUMP : smooth);
     for (int i = 0; i < run->model->n_dof; ++i)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
-    return fu_is_short(run, h) ? fu_size(run->model, run->work) : fu_filtered_size(run);
+    return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run);
 }
 
 static void account(fu_run *run, double h)

@@ -248,8 +248,8 @@ double fu_filtered_size(fu_run *run)
     const double begin = fu_clock();
     fu_system_solve(&run->newton, model->lapack, run->rhs);
     run->statistics.time_solve += fu_clock() - begin;
-    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
-    return fu_spread_size(run);
+    fu_spread(model, run->rhs, run->work);
+    return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
 }
 
 /* Makes, for tests of the matrix, the residual after moving the predicted step by `change` (unknowns), in run->rhs with its sign

@@ -1,9 +1,14 @@
 /* The local error of Radau IIA. */
 #include "radau.h"
 
-#define VIBRATION 2.0 /* times the estimate for vibrations is what counts, as sensitive motions let errors grow */
-#define EMBEDDED 0.1  /* times the embedded estimate is what counts, as its order is too low */
-#define KINK 0.2      /* of tol: the error that one kink of friction may make */
+#define VIBRATION 0.5     /* times the estimate for vibrations is what counts: errors of one are not of one sign */
+#define EMBEDDED 0.02     /* times the embedded estimate is what counts, as its order is too low */
+#define TURNS_EMBEDDED 0.05 /* the same where bodies turn, of which the matrix has nothing */
+#define FED_VIBRATION 4.0 /* the same where motions, drives or friction feed vibrations: there errors grow with them */
+#define FED_EMBEDDED 0.1
+#define REPORTED 2.0      /* times the estimate for vibrations is what is told of a fixed step */
+#define ONCE 0.1          /* of all that is allowed: the error of vibrations that a step does not resolve */
+#define KINK 0.15         /* of tol: the error that one kink of friction may make */
 
 /* Returns the largest error that a kink of a force within the step may make, as a part of what is allowed, m. Kinks are single
  * events, so that one may cost a part of tol, however short its step. */
@@ -22,7 +27,7 @@ static double kink(fu_run *run, fu_radau_workspace *w, double h)
         if (!coupling->type->kink) continue;
         worst = fmax(worst, coupling->type->kink(model, coupling, &run->next, STAGES + 1, weight, w->multipliers, h * left));
     }
-    return worst * run->allowed / (KINK * run->tol * fmax(run->motion, run->least_motion));
+    return worst * run->allowed / (KINK * fu_allowed_error(run));
 }
 
 /* Makes run->work = (M + (h/L) D + (h/L)^2 K)^-1 M r on the joints, for the real L; returns its size as a length. */
@@ -32,20 +37,25 @@ static double filtered(fu_run *run, fu_radau_workspace *w, const double *r)
     fu_radau_right_side(run, r, w->unknowns);
     fu_system_solve(&run->newton, model->lapack, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
-    return fu_spread_size(run);
+    fu_spread(model, run->rhs, run->work);
+    return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
 }
 
-/* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the stages say of
- * it for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the method. What the same
- * filter, applied to E, takes away has the right order, and is 0.55 to 2.5 times the error for every z. A part of E counts
- * beside it, for what the matrix has nothing of: loads that change in time, bodies that turn.
- */
-double fu_radau_error(fu_run *run, double h)
+/* Makes run->work what the filter takes from what is in run->work, which it was made by; returns the size of what it leaves. */
+static double take_filtered(fu_run *run, fu_radau_workspace *w)
 {
-    const fu_model *model = run->model;
+    const int n = run->model->n_dof;
+    for (int i = 0; i < n; ++i) w->w[i] = w->w[n + i] = run->work[i];
+    const double left = filtered(run, w, w->w);
+    for (int i = 0; i < n; ++i) run->work[i] = w->w[n + i] - run->work[i];
+    return left;
+}
+
+/* Makes run->work the embedded estimate E of the error; returns its size as a length. */
+static double embedded(fu_run *run, fu_radau_workspace *w, double h)
+{
     const fu_radau_parameters *method = fu_radau_method(run);
-    fu_radau_workspace *w = fu_radau_space(run);
-    const int n = model->n_dof;
+    const int n = run->model->n_dof;
     const double real = h / method->gamma, *e = method->error;
     for (int i = 0; i < n; ++i) {
         double by_velocity = run->now.acceleration[i], by_position = run->now.v[i];
@@ -57,10 +67,30 @@ double fu_radau_error(fu_run *run, double h)
         }
         w->w[i] = real * real * by_velocity + real * by_position;
     }
-    const double embedded = filtered(run, w, w->w);
-    for (int i = 0; i < n; ++i) w->w[i] = w->w[n + i] = run->work[i];
-    filtered(run, w, w->w);
-    for (int i = 0; i < n; ++i) run->work[i] = w->w[n + i] - run->work[i];
-    const double linear = fmax(VIBRATION * fu_size(model, run->work), EMBEDDED * embedded);
-    return run->fixed_step > 0.0 ? linear : fmax(linear, kink(run, w, h));
+    return filtered(run, w, w->w);
+}
+
+/* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the stages say of
+ * it for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the method. What the same
+ * filter, applied to E, takes away, V, has the right order, and is 0.55 to 2.5 times the error for every z. A part of E counts
+ * beside it, for what the matrix has nothing of: loads that change in time, bodies that turn.
+ *
+ * Errors of steps add up, those of vibrations that a step does not resolve do not: the method damps them, so that all that can be
+ * lost is what there is, once. They may be a part of all that is allowed; what adds up, which the filter leaves of E and V, may be
+ * the step's share of it. Friction has kinks, which show in what the filter takes away: there all counts as adding up.
+ */
+double fu_radau_error(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    fu_radau_workspace *w = fu_radau_space(run);
+    const int fed = model->n_motions || model->n_driven || model->n_reacting;
+    const double all = embedded(run, w, h), slow = take_filtered(run, w);
+    const double vibration = fu_error_size(run, run->work, fu_allowed_elsewhere(run));
+    if (run->fixed_step > 0.0) return fmax(REPORTED * vibration, FED_EMBEDDED * all);
+    if (model->n_reacting) return fmax(fmax(FED_VIBRATION * vibration, FED_EMBEDDED * all), kink(run, w, h));
+    for (int i = 0; i < model->n_dof; ++i) w->w[i] = run->work[i];
+    const double adding_up = (fed ? FED_VIBRATION : VIBRATION) * filtered(run, w, w->w);
+    const double by_embedded = fed ? FED_EMBEDDED : model->n_bodies ? TURNS_EMBEDDED : EMBEDDED;
+    const double once = vibration * run->allowed / (ONCE * fu_allowed_error(run));
+    return fmax(fmax(adding_up, by_embedded * slow), once);
 }

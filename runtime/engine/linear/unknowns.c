@@ -95,10 +95,9 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
             add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
 }
 
-/* Returns the largest of what the dofs move points by, as a length, m; not a number where one is none. */
-double fu_size(const fu_model *model, const double *dofs)
+/* Returns the largest of what the dofs, times their weights, move points by, as a length, m; not a number where one is none. */
+double fu_weighted_size(const fu_model *model, const double *weight, const double *dofs)
 {
-    const double *weight = model->weight;
     double largest[MAXIMA] = {0.0}, check = 0.0; /* a maximum does not see a NaN */
     int i = 0;
     for (; i + MAXIMA <= model->n_dof; i += MAXIMA)
@@ -113,4 +112,10 @@ double fu_size(const fu_model *model, const double *dofs)
         check += 0.0 * size;
     }
     return check + fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
+}
+
+/* Returns the largest of what the dofs move points by, as a length, m; not a number where one is none. */
+double fu_size(const fu_model *model, const double *dofs)
+{
+    return fu_weighted_size(model, model->weight, dofs);
 }

@@ -130,7 +130,7 @@ static int possible_indices(const fu_run *run)
 static int possible_numbers(const fu_run *run)
 {
     const double steps[] = {run->h, run->ceiling};
-    const double positive[] = {run->motion, run->least_motion, run->extent};
+    const double positive[] = {run->motion, run->least_motion, run->extent, run->controlled_motion};
     const double numbers[] = {run->contraction, run->since, run->dissipated, run->dissipated_power, run->external,
                               run->external_power, run->drive_power, run->drive_power_before, run->drive_step,
                               run->closed, run->allowed, run->round_off, run->newton_tolerance, run->statistics.h_min,

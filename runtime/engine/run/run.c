@@ -14,6 +14,12 @@ static int approach(fu_run *run, double target)
     return passed ? passed : status;
 }
 
+/* Returns whether the run has taken the evaluations after which it is asked whether it shall go on. */
+int fu_has_worked(const fu_run *run)
+{
+    return run->most_evaluations && run->statistics.evaluations >= run->most_evaluations;
+}
+
 /* Goes on for about so many seconds, or to the pause; returns a status, FU_RUNNING where there is more to do. */
 int fu_advance(fu_run *run, double seconds)
 {
@@ -34,7 +40,7 @@ int fu_advance(fu_run *run, double seconds)
                 const int stopped = fu_stop(run);
                 return stopped == FU_EVENT ? status : stopped;
             }
-            if (fu_clock() > until) return FU_RUNNING;
+            if (fu_clock() > until || fu_has_worked(run)) return FU_RUNNING;
         }
     }
 }

@@ -26,6 +26,54 @@ double fu_largest_motion(const fu_model *model, const double *from, const double
     return sqrt(largest);
 }
 
+/* Returns the square of the distance that the dofs of a position have moved, those of no weight left out, m^2. */
+static double square_moved(const double *weight, const double *from, const double *to, int n)
+{
+    double square = 0.0;
+    for (int d = 0; d < n; ++d)
+        if (weight[d] > 0.0) square += (to[d] - from[d]) * (to[d] - from[d]);
+    return square;
+}
+
+/* Returns how far a body has turned, as a length, m: the chord between unit vectors for the weight of the turns. A quaternion
+ * turns by half the angle, and is the same attitude with its sign turned. */
+static double turned(const fu_body *body, const double *weight, const double *from, const double *to)
+{
+    const fu_body_kernels *kernel = body->kernel;
+    double largest = 0.0, there = 0.0, opposite = 0.0;
+    for (int i = kernel->dim; i < kernel->velocity; ++i) largest = fmax(largest, weight[body->dof + i]);
+    for (int i = kernel->dim; i < kernel->configuration; ++i) {
+        const double a = from[body->configuration + i], b = to[body->configuration + i];
+        there += (b - a) * (b - a);
+        opposite += (b + a) * (b + a);
+    }
+    return largest * (kernel->dim == 3 ? 2.0 * sqrt(fmin(there, opposite)) : sqrt(there));
+}
+
+/* Returns the largest distance that what tol is the error of has moved since the start, m: nodes, bodies' centres, and where
+ * they count turns and modes. */
+double fu_controlled_motion(const fu_run *run)
+{
+    const fu_model *model = run->model;
+    const double *weight = run->controlled, *from = run->first, *to = run->now.q;
+    double square = 0.0, largest = 0.0;
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        for (int k = 0, at = cable->first; k <= cable->n_elements; ++k, at += cable->per_node)
+            square = fmax(square, square_moved(weight + at, from + at, to + at, cable->kernel->dim));
+    }
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
+        const int at = body->configuration, mode = at + body->kernel->configuration;
+        const double *of_modes = weight + body->dof + body->kernel->velocity;
+        square = fmax(square, square_moved(weight + body->dof, from + at, to + at, body->kernel->dim));
+        largest = fmax(largest, turned(body, weight, from, to));
+        for (int i = 0; i < body->modes; ++i)
+            largest = fmax(largest, of_modes[i] * fabs(to[mode + i] - from[mode + i]));
+    }
+    return fmax(largest, sqrt(square));
+}
+
 /* Returns the size of what coordinates are rounded to, m: the farthest position, or what unit slopes and turns move a point
  * by. */
 double fu_extent(const fu_model *model, const double *origin, const double *q)

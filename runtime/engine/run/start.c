@@ -4,6 +4,7 @@
 #include <string.h>
 
 #define AT_REST 1e-9      /* of the extent: a scene that moves less may be at rest */
+#define STILL 1e-6        /* of the scene's size: a motion that errors may be relative to where the scene moves less */
 #define FIRST_MOTION 1e-3 /* of the duration: until then the motion is judged by the velocities at the start */
 
 /* Starts the scheme at `now` with consistent velocities, which are projected on the joints where that is asked for, and with
@@ -64,10 +65,11 @@ int fu_start(fu_run *run)
     }
     /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
      * never to less than what a scene at rest cannot help */
+    if (run->absolute_tol < 0.0) run->absolute_tol = STILL * run->tol * run->size;
     run->least_motion = AT_REST * run->extent;
     for (int i = 0; i < model->n_dof; ++i) {
         const double t = fmin(run->output_step, FIRST_MOTION * run->duration);
-        const double d = model->weight[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
+        const double d = run->controlled[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
         if (d > run->least_motion) run->least_motion = d;
     }
     fu_watch_now(run, fu_no_event);

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#define UNCONTROLLED 0.1   /* of the largest motion: what a step may err by in what nobody named, lest it upset the step */
+
 #define RECOVERY 1.05      /* growth, with each step that is taken, of what steps stay below after a failure */
 #define FIRST_PART 1e-3    /* of the duration: errors in it share one allowance, as in it hardly anything has moved */
 #define SAFETY 0.5         /* of tol: local errors add up to tol times a logarithm, which this pays for */
@@ -45,6 +47,27 @@ static double newton_tolerance(const fu_run *run, double h, double allowed, doub
                  : fmin(NEWTON_PART * share * allowed, NEWTON_MOST * extent);
 }
 
+/* Returns the error that is allowed over the whole run, m, of what has moved so far. */
+double fu_allowed_error(const fu_run *run)
+{
+    return run->tol * fmax(run->controlled_motion, run->least_motion) + run->absolute_tol;
+}
+
+/* Returns the size of a step's error of the dofs, m: of what tol is the error of, and of the rest over what that may err by
+ * (others, m), so that both are compared to run->allowed. */
+double fu_error_size(const fu_run *run, const double *error, double others)
+{
+    const fu_model *model = run->model;
+    if (run->controlled == model->weight) return fu_size(model, error);
+    return fmax(fu_weighted_size(model, run->controlled, error), fu_size(model, error) * run->allowed / others);
+}
+
+/* Returns what a step may err by in what is not named, m. */
+double fu_allowed_elsewhere(const fu_run *run)
+{
+    return UNCONTROLLED * fmax(run->motion, run->least_motion);
+}
+
 /* Sets the tolerances of a step: of its error, of Newton, and where rounding begins. Returns the first, m. */
 double fu_allow(fu_run *run, double h)
 {
@@ -54,7 +77,7 @@ double fu_allow(fu_run *run, double h)
      * to tol times the logarithm of the times at most. With h/duration the first instants, in which hardly anything has
      * moved yet, would take most of the steps. */
     const double share = SAFETY * h / fmax(run->now.t + h, FIRST_PART * run->duration);
-    const double allowed = fmax(run->tol * scale * fmin(1.0, run->error_overestimate * share), run->round_off);
+    const double allowed = fmax(fu_allowed_error(run) * fmin(1.0, run->error_overestimate * share), run->round_off);
     run->newton_tolerance = newton_tolerance(run, h, allowed, fmax(run->extent, scale));
     return run->allowed = allowed;
 }

@@ -23,6 +23,7 @@ static void accept(fu_run *run, double h, fu_event event)
     fu_carry(model, &run->now);
     const double moved = fu_largest_motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
+    run->controlled_motion = run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
     fu_watch_now(run, event);
     run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
     fu_statistics *s = &run->statistics;

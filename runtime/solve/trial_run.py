@@ -1,0 +1,61 @@
+"""A trial of the integrator that a scene's data let expect to be the cheaper one: its cost is measured as it runs.
+
+What steps must follow, an estimate by a scene's stiffness and tolerance cannot know: how much of a motion is vibration.
+What stability asks of the explicit method is known beforehand. So the run begins with the implicit one, and where what
+remains would cost more at its present rate than the whole run by the other, it begins anew with that. Costs are counted
+in evaluations of eq 38 and not in seconds: a run takes the same course on any machine.
+"""
+
+from __future__ import annotations
+
+from ..engine import Engine
+from ..integrators import Integrator
+from .integrator_choice import Rival
+from .long_runs import LongRun
+
+PART = 0.25
+"""Of the duration: what is run on trial."""
+
+SHARE = 0.05
+"""Of the other's cost: after each such share it is judged anew what remains."""
+
+
+SETTLED = 4
+"""Shares after which the rate counts as it is: the motion may begin with a shock."""
+
+CLEARLY = 3.0
+"""Times the other's cost that what remains must take before."""
+
+
+class Discarding:
+    """Takes the rows of an engine at its pauses, and keeps none."""
+
+    def __init__(self, engine: Engine):
+        self.pause = engine.take_rows
+
+    def between(self) -> None:
+        """Take nothing between pauses."""
+
+
+def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, every: int,
+             follow: LongRun, discard: bool) -> tuple[str, str]:
+    """Run a started engine as far as it takes to judge its method by its cost; every: rows between pauses, of which the
+    engine keeps none where they are to be discarded.
+
+    Returns the status that the run has come to, "running" where there is more of it, and why the rival is the cheaper
+    one, or "" where it is not. The first share of the cost, in which steps find their size, does not count.
+    """
+    share = max(1, int(SHARE * rival.cost / method.cost_of_evaluation))
+    before, shares = engine.time, 0
+    while True:
+        shares += 1
+        status = engine.advance(follow, every, Discarding(engine) if discard else None, most_evaluations=shares * share)
+        time = engine.time
+        if status != "running" or time >= PART * duration:
+            return status, ""
+        remains = SHARE * (duration - time) / max(time - before, 1e-12 * duration)
+        if shares > 1 and remains > (CLEARLY if shares < SETTLED else 1.0):
+            spent = shares * SHARE * rival.cost
+            return status, (f"{method.name} on trial took work like {spent:.3g} to t = {time:.3g} s: what remains "
+                            f"would cost {remains:.2g} times as much as all by {rival.method.name}")
+        before = time

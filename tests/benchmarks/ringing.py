@@ -1,0 +1,92 @@
+"""What steps cost where a scene rings: error first, then steps and CPU time, beside the best fixed step.
+
+    python tests/benchmarks/ringing.py [--only WORDS] [--out FILE.csv] [--repetitions N]
+
+Errors are of the nodes of a cable at 50 output times, of the axes that count, over their largest motion; the reference
+is the explicit method at tol = 1e-9. Beside each tolerance stands the cheapest of the fixed steps of radau and genalpha
+with no larger an error, or "none" where the finest of them errs more. "limit" is tol and what absolute_tol adds
+to it.
+"""
+
+from __future__ import annotations
+
+import statistics
+import warnings
+from functools import cache
+
+import funicular as fu
+import numpy as np
+from ringing_scenes import SCENES, Ringing
+from table import parser, show
+
+OUTPUTS = 50
+FIXED = ("radau", "genalpha")
+
+
+def run_of(subject: Ringing, **settings) -> fu.Run:
+    """A run of a scene that rings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        return subject.make().run(subject.duration, output_step=subject.duration / OUTPUTS, progress=False, **settings)
+
+
+def path_of(subject: Ringing, run: fu.Run) -> np.ndarray:
+    """Positions (time, node, axis) in m of what counts."""
+    return run[f"{subject.cable}.position"][..., list(subject.axes)]
+
+
+@cache
+def reference(name: str) -> np.ndarray:
+    """The converged motion (time, node, axis) in m of what counts."""
+    return path_of(SCENES[name], run_of(SCENES[name], integrator="explicit", tol=1e-9))
+
+
+def error_of(name: str, run: fu.Run) -> float:
+    """The largest error of what counts, over its largest motion."""
+    exact = reference(name)
+    motion = np.linalg.norm(exact - exact[:1], axis=-1).max()
+    return float(np.linalg.norm(path_of(SCENES[name], run) - exact, axis=-1).max() / motion)
+
+
+def limit_of(name: str, tol: float) -> float:
+    """The error that the settings of a scene allow at a tolerance, over the largest motion of what counts."""
+    exact = reference(name)
+    motion = np.linalg.norm(exact - exact[:1], axis=-1).max()
+    return float(tol + SCENES[name].settings.get("absolute_tol", 0.0) / motion)
+
+
+def cells(name: str, repetitions: int) -> list[dict]:
+    """The lines of the table for a scene."""
+    subject = SCENES[name]
+    fixed = [timed(name, repetitions, step=step, integrator=method) for method in FIXED for step in subject.steps]
+    rows = []
+    for tol in subject.tols:
+        error, run, seconds = timed(name, repetitions, tol=tol, **subject.settings)
+        enough = [one for one in fixed if one[0] <= max(error, 0.0)]
+        best = min(enough, key=lambda one: one[2]) if enough else None
+        rows.append({"scene": name, "tol": tol, "limit": limit_of(name, tol), "error": error,
+                     "integrator": run.report["integrator"], "steps": run.report["steps"],
+                     "rejected": run.report["rejected_steps"], "CPU s": seconds,
+                     "best fixed": f"{best[1].report['integrator']} {best[1].report['step']:g}" if best else "none",
+                     "its error": best[0] if best else np.nan, "its CPU s": best[2] if best else np.nan,
+                     "ratio": seconds / best[2] if best else np.nan})
+    return rows
+
+
+def timed(name: str, repetitions: int, **settings) -> tuple[float, fu.Run, float]:
+    """Error, run, and the median of its CPU seconds."""
+    runs = [run_of(SCENES[name], **settings) for _ in range(repetitions)]
+    return (error_of(name, runs[0]), runs[0],
+            statistics.median(run.report["time_s"]["solve_cpu"] for run in runs))
+
+
+def main() -> None:
+    """Measure and print."""
+    options = parser(__doc__, repetitions=(1, "runs of each, of which the median of the CPU time counts"))
+    options.add_argument("--only", default="", help="scenes whose name holds this")
+    options = options.parse_args()
+    show([row for name in SCENES if options.only in name for row in cells(name, options.repetitions)], options.out)
+
+
+if __name__ == "__main__":
+    main()

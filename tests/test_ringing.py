@@ -1,0 +1,108 @@
+"""Steps follow what counts, and no vibrations beside it: errors and numbers of steps of tests/benchmarks/ringing.py."""
+
+import funicular as fu
+import numpy as np
+import pytest
+from ringing import error_of, limit_of, run_of
+from ringing_scenes import SCENES
+
+
+@pytest.mark.parametrize(("name", "tol", "steps"), [
+    ("twisted rod, sideways", 1e-3, 400),  # 61,288 of genalpha and 6,480 of radau before
+    ("twisted rod, absolute_tol 1e-5", 1e-3, 600),
+    ("stretched pendulum, 25", 1e-3, 2600),  # 7,210 before
+    ("stretched pendulum, 50", 1e-3, 2000),  # 3,352 before
+])
+def test_vibrations_beside_what_counts_cost_no_steps(name, tol, steps):
+    run = run_of(SCENES[name], tol=tol, **SCENES[name].settings)
+    assert error_of(name, run) <= limit_of(name, tol)
+    assert run.report["steps"] <= steps
+
+
+def test_a_looser_tolerance_costs_no_more_steps_where_vibrations_die():
+    steps = [run_of(SCENES["stretched pendulum, 25"], tol=tol, integrator="radau").report["steps"]
+             for tol in (1e-1, 1e-2, 1e-3)]
+    assert steps == sorted(steps)
+
+
+def test_radau_on_trial_gives_way_to_the_explicit_method():
+    """All of the rod's motion is a wave that rings; the costs are counted, so that any machine decides alike."""
+    subject = SCENES["twisted rod, all of its motion"]
+    run, again = (run_of(subject, tol=1e-3) for _ in range(2))
+    assert run.report["integrator"] == "explicit" and "on trial" in run.report["integrator_reason"]
+    assert error_of("twisted rod, all of its motion", run) <= 1e-3
+    assert np.array_equal(run["rod0.position"], again["rod0.position"])
+
+
+def test_a_trial_leaves_no_trace_in_a_file(tmp_path):
+    """The same bits whether rows are written on the way or not, and after it was resumed."""
+    subject = SCENES["twisted rod, all of its motion"]
+    plain = run_of(subject, tol=1e-2)
+    saved = run_of(subject, tol=1e-2, save=tmp_path / "rod.nc")
+    assert saved.report["integrator"] == plain.report["integrator"] == "explicit"
+    assert np.array_equal(plain["rod0.position"], saved["rod0.position"])
+    assert saved.report["steps"] == plain.report["steps"]
+
+
+def mass_on_a_spring(amplitude: float) -> fu.Scene:
+    """A body on a soft spring that swings in x; beside it one on a stiff spring that turns and vibrates fast."""
+    scene = fu.Scene(gravity=(0, 0, -9.81))
+    scene.rigid_body("A", mass=1.0, inertia=(1e-2,) * 3, position=(amplitude, 0, -1), orientation=(1, 0, 0, 0))
+    scene.rigid_body("B", mass=1.0, inertia=(1e-2, 2e-2, 3e-2), position=(5, 0, 0), angular_velocity=(30, 1, 0))
+    scene.spring("A", (0, 0, 0), stiffness=100.0, length=1.0)
+    scene.spring(("B", (0.1, 0, 0)), (5, 0, 1), stiffness=1e5, length=1.0)
+    return scene
+
+
+def test_only_named_quantities_are_controlled():
+    """The fast turn of B costs no steps where A alone counts, whose error is within tol of its own motion."""
+    runs = {named: mass_on_a_spring(0.1).run(1.0, tol=1e-4, integrator="radau", quantities=named, progress=False)
+            for named in (None, ("A.position",))}
+    exact = mass_on_a_spring(0.1).run(1.0, tol=1e-10, integrator="explicit", progress=False)
+    motion = np.linalg.norm(exact["A.position"] - exact["A.position"][0], axis=1).max()
+    error = {named: np.abs(run["A.position"] - exact["A.position"]).max() for named, run in runs.items()}
+    assert error["A.position",] <= 1e-4 * motion
+    assert runs["A.position",].report["steps"] < 0.5 * runs[None].report["steps"]
+    assert any("A.position alone" in message for message in runs["A.position",].report["messages"])
+
+
+def test_an_absolute_error_is_kept_and_reported():
+    name = "stretched pendulum, 25"
+    loose = run_of(SCENES[name], tol=1e-3, absolute_tol=4e-4, integrator="radau")
+    tight = run_of(SCENES[name], tol=1e-3, absolute_tol=0.0, integrator="radau")
+    assert error_of(name, loose) <= 1e-3 + 4e-4 / 0.0399
+    assert loose.report["steps"] < 0.5 * tight.report["steps"]
+    assert (loose.report["absolute_tol"], tight.report["absolute_tol"]) == (4e-4, 0.0)
+
+
+def test_the_default_follows_the_size_of_the_scene_and_says_where_it_rules():
+    """1e-6 of the box around nodes and bodies, times tol: of a motion smaller than that a note says so."""
+    still = fu.Scene(gravity=(0, 0, 0))
+    still.rigid_body("A", mass=1.0, inertia=(1e-2,) * 3, position=(0, 0, 0), velocity=(1e-7, 0, 0))
+    still.rigid_body("B", mass=1.0, inertia=(1e-2,) * 3, position=(10, 0, 0))
+    with pytest.warns(fu.FunicularWarning, match="give absolute_tol"):
+        run = still.run(1.0, tol=1e-3, progress=False)
+    assert run.report["absolute_tol"] == pytest.approx(1e-6 * 1e-3 * 10)
+
+
+@pytest.mark.parametrize(("quantities", "said"), [
+    (["wire.position"], 'did you mean "rod0.position"'), (["rod0.velocity"], "rod0.position"),
+    (["rod0.position.w"], "rod0.position.x, rod0.position.y"), (["rod0.nodal_vectors.x"], "no component x"),
+    ([], "must be a list of names"), ("rod0.position", "must be a list of names")])
+def test_what_is_not_estimated_is_refused_with_what_is(quantities, said):
+    with pytest.raises(fu.SceneError, match=said):
+        SCENES["twisted rod, sideways"].make().run(0.1, quantities=quantities, progress=False)
+
+
+def test_a_fixed_step_says_that_it_controls_nothing():
+    run = mass_on_a_spring(0.1).run(0.1, step=1e-3, quantities=["A.position"], progress=False)
+    assert any("the step is fixed" in message for message in run.report["messages"])
+
+
+def test_slides_and_components_can_be_named():
+    """The error of s is that of what it is found from; a component of a position counts alone."""
+    scene = fu.load_scene("paper51")
+    exact = scene.run(0.3, tol=1e-9, progress=False)
+    for name in ("trolley.s", "A.position.y"):
+        run = scene.run(0.3, tol=1e-3, quantities=[name], progress=False)
+        assert np.abs(run["trolley.s"] - exact["trolley.s"]).max() <= 1e-3 * np.ptp(exact["trolley.s"])
