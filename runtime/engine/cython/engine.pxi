@@ -134,10 +134,38 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_span:
         int first, end
     ctypedef struct fu_piece:
-        int k
+        int k, slot
         fu_span rows
+    ctypedef struct fu_fronts:
+        int m, n, size
+        const int *start
+        const int *first
+        const int *pivots
+        const int *neighbours
+        const int *unknown
+        const int *in_parent
+        const int *parent
+        const int *child
+        const int *sibling
+        const int *front
+        const int *place
+    ctypedef struct fu_factors:
+        double *numbers
+        int *unknowns
+        int *map
+        double *x
+        int *start
+        int *first
+        int *size
+        int *pivots
+        int *done
+        int most_numbers, most_unknowns
     ctypedef struct fu_system:
-        int n, width, m, n_chains, definite
+        int n, width, m, n_chains, n_slots, definite
+        const int *slot
+        const int *of_slot
+        const fu_fronts *fronts
+        fu_factors factors
         const int *chains
         const int *half
         double *K

@@ -4,6 +4,7 @@ cdef class Statics(Translation):
     """Residual and matrix of a state."""
 
     cdef object spreads
+    cdef object corner  # rows and columns of the border's entries
     cdef dict weight  # gravity's forces as the model has them
 
     cdef _matrix(self):
@@ -16,16 +17,19 @@ cdef class Statics(Translation):
         columns, diagonals = np.nonzero(band)
         entries = [(columns + diagonals - 2 * width, columns, band[columns, diagonals])]
         if m:
-            corner = np.asarray(<double[:m * m]>system.D).reshape(m, m)
-            rows, at = np.nonzero(corner.T)
-            entries.append((n + rows, n + at, corner.T[rows, at]))
-        if n and m:
-            right = np.asarray(<double[:m * n]>system.B).reshape(m, n)
-            below = np.asarray(<double[:m * n]>system.C).reshape(m, n)
+            if self.corner is None:
+                self.corner = self.newton_elimination.entries()
+            corner = np.asarray(<double[:system.fronts.size]>system.D)
+            used = np.flatnonzero(corner)
+            entries.append((n + self.corner[0][used], n + self.corner[1][used], corner[used]))
+        if n and system.n_slots:
+            slots = self.newton_elimination.slots
+            right = np.asarray(<double[:system.n_slots * n]>system.B).reshape(-1, n)
+            below = np.asarray(<double[:system.n_slots * n]>system.C).reshape(-1, n)
             at, rows = np.nonzero(right)
-            entries.append((rows, n + at, right[at, rows]))
+            entries.append((rows, n + slots[at], right[at, rows]))
             rows, at = np.nonzero(below)
-            entries.append((n + rows, at, below[rows, at]))
+            entries.append((n + slots[rows], at, below[rows, at]))
         row, column, value = (np.concatenate(part) for part in zip(*entries))
         return coo_array((value, (row, column)), shape=(n + m, n + m)).tocsc()
 

@@ -1,5 +1,7 @@
 # A model as the engine's C structures.
 
+SPARE = 4  # times the fronts' memory as it is foreseen: what pivots may take that are left to later fronts
+
 cdef const fu_coupling_type *_type_of(coupling) except NULL:
     """Return the engine's type of a coupling of a model."""
     type = fu_coupling_type_of(coupling.type.encode())
@@ -22,6 +24,8 @@ cdef class Translation(Arrays):
     cdef fu_watch *watches
     cdef fu_model model
     cdef fu_run run
+    cdef fu_fronts newton_fronts, mass_fronts
+    cdef object newton_elimination
 
     def __cinit__(self, model, blocks=True):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
@@ -241,19 +245,49 @@ cdef class Translation(Arrays):
         m = &self.model
         m.n_motions, m.motions, m.signals, m.load_fraction = len(model.motions), self.motions, self.signals, 1.0
 
-    cdef void _system(self, fu_system *system, model, int width, int m):
-        cdef int n = model.n_band, chains = len(model.chains) - 1
-        system.n, system.width, system.m, system.n_chains = n, width, m, chains
+    cdef _fronts(self, fu_fronts *fronts, elimination):
+        """Fill in the order in which a border is eliminated."""
+        fronts.m, fronts.n, fronts.size = elimination.m, elimination.n, elimination.size
+        fronts.start, fronts.first = self._ints(elimination.start), self._ints(elimination.first)
+        fronts.pivots, fronts.neighbours = self._ints(elimination.pivots), self._ints(elimination.neighbours)
+        fronts.unknown, fronts.in_parent = self._ints(elimination.unknown), self._ints(elimination.in_parent)
+        fronts.parent, fronts.child = self._ints(elimination.parent), self._ints(elimination.child)
+        fronts.sibling = self._ints(elimination.sibling)
+        fronts.front, fronts.place = self._ints(elimination.front), self._ints(elimination.place)
+
+    cdef _factors(self, fu_factors *factors, elimination):
+        """Make the memory of a border's factors: none where they replace the matrix."""
+        cdef int n = elimination.n, m = elimination.m
+        if n == 1:
+            return
+        sizes = elimination.sizes.astype(float)
+        factors.most_numbers = min(SPARE * (sizes ** 2).sum(), INDICES)
+        factors.most_unknowns = min(2 * SPARE * sizes.sum(), INDICES)
+        factors.numbers, factors.x = self._zeros(factors.most_numbers), self._zeros(m)
+        factors.unknowns, factors.map = self._ints(np.zeros(factors.most_unknowns)), self._ints(np.zeros(m))
+        factors.start, factors.first = self._ints(np.zeros(n)), self._ints(np.zeros(n))
+        factors.size, factors.pivots, factors.done = (self._ints(np.zeros(n)), self._ints(np.zeros(n)),
+                                                      self._ints(np.zeros(n)))
+
+    cdef _system(self, fu_system *system, fu_fronts *fronts, model, elimination, int width):
+        cdef int n = model.n_band, m = elimination.m, chains = len(model.chains) - 1, slots = len(elimination.slots)
+        system.n, system.width, system.m, system.n_chains, system.n_slots = n, width, m, chains, slots
+        self._fronts(fronts, elimination)
+        self._factors(&system.factors, elimination)
+        system.fronts, system.of_slot = fronts, self._ints(elimination.slots)
+        slot = np.full(m, -1)
+        slot[elimination.slots] = np.arange(slots)
+        system.slot = self._ints(slot)
         system.chains = self._ints(model.chains)
         middles = (model.chains[:-1] + model.chains[1:]) // 2
         system.half = self._ints(np.searchsorted(np.sort([*model.chains[:-1], *middles]), np.arange(n), "right") - 1)
-        system.D, system.L = self._zeros(<double>m * m), self._zeros((width + 1.0) * (n + FU_BAND_GROUP * chains))
-        system.B, system.C = self._zeros(<double>n * m), self._zeros(<double>n * m)
-        system.X = self._zeros(<double>FU_BAND_LENGTH(n, width) * m)
-        system.span_B = <fu_span *>self._ints(np.zeros(2 * 2 * m * chains))
-        system.span_C = <fu_span *>self._ints(np.zeros(2 * 2 * m * chains))
-        system.columns = <fu_piece *>self._ints(np.zeros(3 * 2 * m * chains))
-        system.rows = <fu_piece *>self._ints(np.zeros(3 * 2 * m * chains))
+        system.D, system.L = self._zeros(elimination.size + 1.0), self._zeros((width + 1.0) * (n + FU_BAND_GROUP * chains))
+        system.B, system.C = self._zeros(<double>n * slots), self._zeros(<double>n * slots)
+        system.X = self._zeros(<double>FU_BAND_LENGTH(n, width) * slots)
+        system.span_B = <fu_span *>self._ints(np.zeros(2 * 2 * slots * chains))
+        system.span_C = <fu_span *>self._ints(np.zeros(2 * 2 * slots * chains))
+        system.columns = <fu_piece *>self._ints(np.zeros(4 * 2 * slots * chains))
+        system.rows = <fu_piece *>self._ints(np.zeros(4 * 2 * slots * chains))
         system.pivot_band, system.pivot_border = self._ints(np.zeros(n)), self._ints(np.zeros(m))
 
     cdef _state(self, fu_state *state, model):
@@ -295,12 +329,13 @@ cdef class Translation(Arrays):
         self._state(&run.now, model)
         self._state(&run.next, model)
         width = max(model.width, FU_BAND_GROUP - 1)
-        self._system(&run.newton, model, width, model.n_border_dof + model.n_extra)
+        self.newton_elimination, accelerations = model.newton, model.accelerations
+        self._system(&run.newton, &self.newton_fronts, model, model.newton, width)
         a = &run.accelerator
-        self._system(&a.mass, model, width, model.n_border_dof + model.n_multipliers)
+        self._system(&a.mass, &self.mass_fronts, model, accelerations, width)
         # that of the mass is factored elsewhere, before the first of Newton is made
         run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
-        a.corner = self._zeros(<double>a.mass.m * a.mass.m)
+        a.corner = self._zeros(accelerations.size)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
         a.rows = <fu_rows *>self._zeros(self.model.n_rows * sizeof(fu_rows) // sizeof(double) + 1)
         a.scratch = self._zeros(self.model.n_scratch)

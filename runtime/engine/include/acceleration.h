@@ -9,7 +9,7 @@
 /* Eq 38 and what comes out of it */
 struct fu_accelerator {
     fu_system mass;   /* [M H'; H 0], its band factored once */
-    double *corner;   /* m x m: D of M, before constraints are added and it is factored */
+    double *corner;   /* D of M, before constraints are added and it is factored */
     double *rhs;      /* unknowns, and FU_BAND_BEYOND */
     fu_rows *rows;    /* of the couplings that have constraints */
     double *scratch;  /* of couplings, from `scratch` of each on: what its type keeps from rows to outputs */

@@ -3,6 +3,7 @@
 #define FUNICULAR_LINEAR_H
 
 #include "common.h"
+#include "fronts.h"
 
 /* The functions of LAPACK that the engine calls, with their arguments; linear/lapack.c. */
 #define FU_LAPACK_FUNCTIONS(LAPACK)                                                                                    \
@@ -43,9 +44,9 @@ typedef struct {
     int first, end;
 } fu_span;
 
-/* What column k of X, or row k of C, has in half a chain. */
+/* What column k of X, or row k of C, has in half a chain; slot: where these have it. */
 typedef struct {
-    int k;
+    int k, slot;
     fu_span rows;
 } fu_piece;
 
@@ -54,18 +55,23 @@ typedef struct {
     int n, width;      /* band part: size, half bandwidth */
     int m;             /* border */
     int n_chains;
-    int constant, constant_columns, constant_rows; /* of the border, from the first on, that stay; their pieces */
+    int n_slots;       /* of the border that touch the band */
+    int constant, constant_columns, constant_rows; /* slots, from the first on, that stay; their pieces */
     int definite;      /* the band is factored in L (band.c), else in K (dgbtrf) */
     int n_columns, n_rows; /* pieces */
     const int *chains; /* n_chains + 1: the first row of each, and n */
     const int *half;   /* of each row of the band: 2 chain, and 1 more from the middle on */
     double *K;         /* LAPACK's band storage, FU_BAND_ROWS x n; of all systems of a run the same */
     double *L;         /* (width + 1) x n, and a group more for each chain */
-    double *B;         /* n x m, column by column */
-    double *C;         /* the border's rows, transposed: n x m */
-    double *D;         /* m x m, column by column */
+    const int *slot;   /* of each unknown of the border the place in B, C and X, -1 where it does not touch the band */
+    const int *of_slot; /* the unknown of the border; both increase */
+    double *B;         /* n x n_slots, column by column */
+    double *C;         /* the border's rows, transposed: n x n_slots */
+    double *D;         /* as `fronts` stores it, and one number more, which stays zero */
+    const fu_fronts *fronts;
+    fu_factors factors; /* of D, unless there is only one front: then D has them */
     double *X;         /* K^-1 B in the chains that B touches, FU_BAND_LENGTH a column */
-    fu_span *span_B, *span_C; /* 2 n_chains x m: rows of each half that are not zero; end 0 where none is */
+    fu_span *span_B, *span_C; /* 2 n_chains x n_slots: rows of each half that are not zero; end 0 where none is */
     fu_piece *columns, *rows; /* of X and C */
     int *pivot_band, *pivot_border;
 } fu_system;
@@ -73,10 +79,15 @@ typedef struct {
 int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A);
 void fu_band_solve(int n, int width, const double *A, int first, double *x);
 
+int fu_fronts_at(const fu_fronts *fronts, int row, int column);
+void fu_fronts_add_product(const fu_fronts *fronts, const double *matrix, int columns, const double *x, double *y);
+int fu_fronts_factor(const fu_fronts *fronts, const double *matrix, fu_factors *factors, const fu_lapack *lapack);
+void fu_fronts_solve(const fu_fronts *fronts, const fu_factors *factors, double *y);
+
 void fu_system_clear(fu_system *system);
 void fu_system_clear_border(fu_system *system);
 fu_span fu_common(fu_span one, fu_span other);
-int fu_pieces(const fu_system *system, int k, int chain, const double *x, fu_piece *pieces);
+int fu_pieces(const fu_system *system, int slot, int chain, const double *x, fu_piece *pieces);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
 void fu_system_keep_border(fu_system *system, const fu_lapack *lapack, int columns);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);

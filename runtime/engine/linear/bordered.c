@@ -14,7 +14,7 @@ void fu_system_clear(fu_system *s)
 
 void fu_system_clear_border(fu_system *s)
 {
-    for (int k = s->constant; k < s->m; ++k)
+    for (int k = s->constant; k < s->n_slots; ++k)
         for (int half = 0; half < FU_HALVES * s->n_chains; ++half) {
             fu_span *of[2] = {&s->span_B[k * FU_HALVES * s->n_chains + half], &s->span_C[k * FU_HALVES * s->n_chains + half]};
             double *column[2] = {s->B + (long)k * s->n, s->C + (long)k * s->n};
@@ -23,7 +23,7 @@ void fu_system_clear_border(fu_system *s)
                 *of[side] = (fu_span){s->n, 0};
             }
         }
-    for (int i = 0; i < s->m * s->m; ++i) s->D[i] = 0.0;
+    for (int i = 0; i <= s->fronts->size; ++i) s->D[i] = 0.0;
 }
 
 fu_span fu_common(fu_span one, fu_span other)
@@ -89,16 +89,16 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
 /* Returns a piece of a row of C times the rows `of` a column. */
 static double times(const fu_system *s, const fu_piece *p, fu_span of, const double *x)
 {
-    const double *row = s->C + (long)p->k * s->n;
+    const double *row = s->C + (long)p->slot * s->n;
     const fu_span rows = fu_common(p->rows, of);
     double sum = 0.0;
     for (int i = rows.first; i < rows.end; ++i) sum += row[i] * x[i];
     return sum;
 }
 
-/* Finds the rows that count of column k of X in a chain, by halves; returns how many pieces they are. The column decays away from
+/* Finds the rows that count of a column of X in a chain, by halves; returns how many pieces they are. The column decays away from
  * what it touches, in the end to numbers so small that the processor is slow with them. */
-int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *pieces)
+int fu_pieces(const fu_system *s, int slot, int chain, const double *x, fu_piece *pieces)
 {
     const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
     const fu_span halves[FU_HALVES] = {{begin, middle}, {middle, end}};
@@ -109,12 +109,12 @@ int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *p
         fu_span rows = halves[half];
         while (rows.first < rows.end && fabs(x[rows.first]) <= FADED * largest) ++rows.first;
         while (rows.first < rows.end && fabs(x[rows.end - 1]) <= FADED * largest) --rows.end;
-        if (rows.first < rows.end) pieces[n++] = (fu_piece){k, rows};
+        if (rows.first < rows.end) pieces[n++] = (fu_piece){s->of_slot[slot], slot, rows};
     }
     return n;
 }
 
-/* Makes column k of X = K^-1 B in a chain. */
+/* Makes a column of X = K^-1 B in a chain. */
 static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain)
 {
     const int begin = s->chains[chain], end = s->chains[chain + 1];
@@ -133,25 +133,27 @@ static void couple(fu_system *s, const fu_lapack *lapack)
 {
     s->n_columns = s->constant_columns;
     s->n_rows = s->constant_rows;
-    for (int k = s->constant; k < s->m; ++k)
+    for (int k = s->constant; k < s->n_slots; ++k)
         for (int c = 0; c < s->n_chains; ++c) {
             const fu_span *of = s->span_C + FU_HALVES * (k * s->n_chains + c);
             for (int half = 0; half < FU_HALVES; ++half)
-                if (of[half].end) s->rows[s->n_rows++] = (fu_piece){k, of[half]};
+                if (of[half].end) s->rows[s->n_rows++] = (fu_piece){s->of_slot[k], k, of[half]};
             solve_column(s, lapack, k, c);
         }
 }
 
-/* Lets the first columns and rows of the border stay as they are, beside the band, which is factored. */
+/* Lets the first `columns` columns and rows of the border stay as they are, beside the band, which is factored. */
 void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
 {
     couple(s, lapack);
-    s->constant = columns;
+    s->constant = 0;
+    while (s->constant < s->n_slots && s->of_slot[s->constant] < columns) ++s->constant;
     s->constant_columns = s->n_columns;
     s->constant_rows = s->n_rows;
 }
 
-/* Makes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D; returns LAPACK's info. */
+/* Makes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D or beside it; returns 0, or 1 + the unknown of the border at which it
+ * is singular. */
 int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
 {
     int m = s->m, info = 0;
@@ -159,7 +161,9 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
     couple(s, lapack);
     for (const fu_piece *p = s->columns; p < s->columns + s->n_columns; ++p)
         for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r)
-            s->D[(long)p->k * m + r->k] -= times(s, r, p->rows, s->X + FU_BAND_LENGTH(s->n, s->width) * p->k);
+            s->D[fu_fronts_at(s->fronts, r->k, p->k)] -= times(s, r, p->rows, s->X + FU_BAND_LENGTH(s->n, s->width) * p->slot);
+    if (s->D[s->fronts->size] != 0.0) return 1; /* the order of elimination has no place for it */
+    if (s->fronts->n > 1) return fu_fronts_factor(s->fronts, s->D, &s->factors, lapack);
     lapack->dgetrf(&m, &m, s->D, &m, s->pivot_border, &info);
     return info;
 }
@@ -174,9 +178,10 @@ void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
     for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, s->chains[c], x);
     if (!m) return;
     for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r) y[r->k] -= times(s, r, r->rows, x);
-    lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
+    if (s->fronts->n > 1) fu_fronts_solve(s->fronts, &s->factors, y);
+    else lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
     for (const fu_piece *p = s->columns; p < s->columns + s->n_columns; ++p) {
-        const double *column = s->X + FU_BAND_LENGTH(s->n, s->width) * p->k, scale = y[p->k];
+        const double *column = s->X + FU_BAND_LENGTH(s->n, s->width) * p->slot, scale = y[p->k];
         for (int i = p->rows.first; i < p->rows.end; ++i) x[i] -= scale * column[i];
     }
 }

@@ -19,34 +19,43 @@ static fu_complex *take(double *scratch, long *taken, long n)
 /* Takes the arrays of a system as large as the real one from a work space (fu_take). */
 void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *scratch, long *taken)
 {
-    const long n = s->n, m = s->m, pieces = FU_HALVES * m * s->n_chains;
+    const long n = s->n, m = s->m, slots = s->n_slots, pieces = FU_HALVES * slots * s->n_chains;
+    const fu_factors *real = &s->factors;
     c->K = take(scratch, taken, storage_rows(s) * n);
-    c->B = take(scratch, taken, n * m);
-    c->C = take(scratch, taken, n * m);
-    c->D = take(scratch, taken, m * m);
-    c->X = take(scratch, taken, n * m);
+    c->B = take(scratch, taken, n * slots);
+    c->C = take(scratch, taken, n * slots);
+    c->D = take(scratch, taken, s->fronts->size);
+    c->X = take(scratch, taken, n * slots);
     c->x = take(scratch, taken, n + m);
     c->columns = (fu_piece *)fu_take(scratch, taken, FU_DOUBLES(pieces, fu_piece));
     c->pivot_band = (int *)fu_take(scratch, taken, FU_DOUBLES(n, int));
     c->pivot_border = (int *)fu_take(scratch, taken, FU_DOUBLES(m, int));
+    c->factors = *real;
+    c->factors.numbers = (double *)take(scratch, taken, real->most_numbers);
+    c->factors.x = (double *)take(scratch, taken, m);
+    int **own[] = {&c->factors.unknowns, &c->factors.map, &c->factors.start, &c->factors.first, &c->factors.size,
+                   &c->factors.pivots, &c->factors.done};
+    const long fronts = s->fronts->n, lengths[] = {real->most_unknowns, m, fronts, fronts, fronts, fronts, fronts};
+    for (int k = 0; k < (int)(sizeof own / sizeof *own); ++k)
+        *own[k] = (int *)fu_take(scratch, taken, FU_DOUBLES(lengths[k], int));
 }
 
 /* Makes the matrix zero. */
 void fu_complex_system_clear(fu_complex_system *c, const fu_system *s)
 {
-    const size_t n = (size_t)s->n, m = (size_t)s->m;
+    const size_t n = (size_t)s->n, slots = (size_t)s->n_slots;
     memset(c->K, 0, sizeof(fu_complex) * (size_t)storage_rows(s) * n);
-    memset(c->B, 0, sizeof(fu_complex) * n * m);
-    memset(c->C, 0, sizeof(fu_complex) * n * m);
-    memset(c->D, 0, sizeof(fu_complex) * m * m);
+    memset(c->B, 0, sizeof(fu_complex) * n * slots);
+    memset(c->C, 0, sizeof(fu_complex) * n * slots);
+    memset(c->D, 0, sizeof(fu_complex) * (size_t)s->fronts->size);
 }
 
 /* Adds the real matrix times a factor. */
 void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_complex factor)
 {
-    const long band = (long)FU_BAND_ROWS(s->width) * s->n, corner = (long)s->m * s->m;
+    const long band = (long)FU_BAND_ROWS(s->width) * s->n, corner = s->fronts->size;
     for (long i = 0; i < band; ++i) fu_complex_add(&c->K[i], factor, s->K[i]);
-    for (int k = 0; k < s->m; ++k)
+    for (int k = 0; k < s->n_slots; ++k)
         for (int half = 0; half < FU_HALVES * s->n_chains; ++half) {
             const fu_span right = s->span_B[k * FU_HALVES * s->n_chains + half], below = s->span_C[k * FU_HALVES * s->n_chains + half];
             fu_complex *B = c->B + (long)k * s->n, *C = c->C + (long)k * s->n;
@@ -56,7 +65,7 @@ void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_c
     for (long i = 0; i < corner; ++i) fu_complex_add(&c->D[i], factor, s->D[i]);
 }
 
-/* Solves for column k of X and finds the rows of it that count, unless B has none; size: work space of the band's size. */
+/* Solves for a column of X and finds the rows of it that count, unless B has none; size: work space of the band's size. */
 static void solve_column(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int k, double *size)
 {
     int n = s->n, width = s->width, rows = FU_BAND_ROWS(width), one = 1, touched = 0, info;
@@ -79,13 +88,15 @@ int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_
     if (n) lapack->zgbtrf(&n, &n, &width, &width, c->K, &rows, c->pivot_band, &info);
     if (info || !m) return info;
     c->n_columns = 0;
-    for (int k = 0; k < m; ++k) solve_column(c, s, lapack, k, size);
+    for (int k = 0; k < s->n_slots; ++k) solve_column(c, s, lapack, k, size);
     for (const fu_piece *p = c->columns; p < c->columns + c->n_columns; ++p)
         for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r) {
             const fu_span of = fu_common(p->rows, r->rows);
+            fu_complex *entry = D + fu_fronts_at(s->fronts, r->k, p->k);
             for (int i = of.first; i < of.end; ++i)
-                fu_complex_subtract_product(&D[(long)p->k * m + r->k], C[(long)r->k * n + i], X[(long)p->k * n + i]);
+                fu_complex_subtract_product(entry, C[(long)r->slot * n + i], X[(long)p->slot * n + i]);
         }
+    if (s->fronts->n > 1) return fu_complex_fronts_factor(s->fronts, D, &c->factors, lapack);
     lapack->zgetrf(&m, &m, D, &m, c->pivot_border, &info);
     return info;
 }
@@ -99,9 +110,10 @@ void fu_complex_system_solve(const fu_complex_system *c, const fu_system *s, con
     if (!m) return;
     for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r)
         for (int i = r->rows.first; i < r->rows.end; ++i)
-            fu_complex_subtract_product(&y[r->k], C[(long)r->k * n + i], x[i]);
-    lapack->zgetrs("N", &m, &one, c->D, &m, c->pivot_border, y, &m, &info);
+            fu_complex_subtract_product(&y[r->k], C[(long)r->slot * n + i], x[i]);
+    if (s->fronts->n > 1) fu_complex_fronts_solve(s->fronts, &c->factors, y);
+    else lapack->zgetrs("N", &m, &one, c->D, &m, c->pivot_border, y, &m, &info);
     for (const fu_piece *p = c->columns; p < c->columns + c->n_columns; ++p)
         for (int i = p->rows.first; i < p->rows.end; ++i)
-            fu_complex_subtract_product(&x[i], y[p->k], X[(long)p->k * n + i]);
+            fu_complex_subtract_product(&x[i], y[p->k], X[(long)p->slot * n + i]);
 }

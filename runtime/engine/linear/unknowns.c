@@ -67,14 +67,20 @@ static void add(fu_system *s, int row, int column, double value)
     if (row < 0 || column < 0) return; /* a fixed dof */
     if (row < n && column < n)
         s->K[(long)column * FU_BAND_ROWS(s->width) + FU_BAND_DIAGONAL(s->width) + row - column] += value;
+    else if (row >= n && column >= n) {
+        const int at = fu_fronts_at(s->fronts, row - n, column - n);
+        s->D[at] += at < s->fronts->size ? value : fabs(value); /* what has no place is not to cancel: it is refused */
+    } else if (s->slot[(row < n ? column : row) - n] < 0)
+        s->D[s->fronts->size] += fabs(value);
     else if (row < n) {
-        s->B[(long)(column - n) * n + row] += value;
-        touch(&s->span_B[(column - n) * FU_HALVES * s->n_chains + s->half[row]], row);
-    } else if (column < n) {
-        s->C[(long)(row - n) * n + column] += value;
-        touch(&s->span_C[(row - n) * FU_HALVES * s->n_chains + s->half[column]], column);
-    } else
-        s->D[(long)(column - n) * s->m + row - n] += value;
+        const int slot = s->slot[column - n];
+        s->B[(long)slot * n + row] += value;
+        touch(&s->span_B[slot * FU_HALVES * s->n_chains + s->half[row]], row);
+    } else {
+        const int slot = s->slot[row - n];
+        s->C[(long)slot * n + column] += value;
+        touch(&s->span_C[slot * FU_HALVES * s->n_chains + s->half[column]], column);
+    }
 }
 
 /* Adds T' value T to a system at dofs (or unknowns beyond them, fu_extra) i, j, and notes which rows of the border that touches;

@@ -36,7 +36,7 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
     fu_system_clear(s);
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, s);
     fu_bodies_mass(model, model->zero, 1, s);
-    memcpy(work->corner, s->D, sizeof(double) * (size_t)(s->m * s->m));
+    memcpy(work->corner, s->D, sizeof(double) * (size_t)s->fronts->size);
     if (fu_system_factor_band(s, model->lapack)) return 1;
     fu_system_keep_border(s, model->lapack, model->n_border_dof);
     return !s->definite; /* else it would be in K, which the Newton matrix takes */
@@ -46,10 +46,8 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 static void border(const fu_model *model, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    const int n = model->n_border_dof, whole = n + model->n_multipliers;
     fu_system_clear_border(s);
-    for (int k = 0; k < n; ++k)
-        memcpy(s->D + (long)k * s->m, work->corner + (long)k * whole, sizeof(double) * (size_t)n);
+    memcpy(s->D, work->corner, sizeof(double) * (size_t)s->fronts->size);
     fu_bodies_mass(model, q, 0, s);
 }
 
@@ -146,10 +144,10 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
 {
     fu_system *s = &work->mass;
-    const int n = model->n_multipliers, whole = s->m;
+    const int n = model->n_multipliers;
     evaluate(model, state, work);
-    s->m = model->n_border_dof; /* M alone */
     border(model, state->q, work);
+    for (int k = 0; k < n; ++k) fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, and no multipliers */
     const int info = fu_system_factor_border(s, model->lapack);
     for (int r = 0; r < model->n_rows && !info; ++r) {
         const fu_rows *rows = &work->rows[r];
@@ -158,6 +156,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
             for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
             for (int k = 0; k < rows->n; ++k) work->work[rows->at[k]] += H[k];
             fu_gather(model, work->work, work->rhs);
+            memset(work->rhs + model->n_band + model->n_border_dof, 0, sizeof(double) * (size_t)n);
             fu_system_solve(s, model->lapack, work->rhs);
             fu_spread(model, work->rhs, work->work);
             for (int i = 0; i < model->n_rows; ++i)
@@ -165,7 +164,6 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
                     S[(rows->first + c) * n + work->rows[i].first + d] = -minus_H(&work->rows[i], d, work->work);
         }
     }
-    s->m = whole;
     return info;
 }
 
