@@ -109,6 +109,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_joint, kernel, FU_KERNELS, 0),
     FU_FIELD_ARRAY(fu_joint, attachments, FU_ATTACHMENT),
     FU_FIELD_AS("drive", fu_joint, signal, FU_INTEGER),
+    FU_FIELD(fu_joint, of_points, FU_INTEGER, 0),
     FU_FIELD_AS("base", fu_joint, c0, FU_REAL),
     {0},
 };

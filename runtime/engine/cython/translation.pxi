@@ -263,7 +263,7 @@ cdef class Translation(Arrays):
         sizes = elimination.sizes.astype(float)
         factors.most_numbers = min(SPARE * (sizes ** 2).sum(), INDICES)
         factors.most_unknowns = min(2 * SPARE * sizes.sum(), INDICES)
-        factors.numbers, factors.x = self._zeros(factors.most_numbers), self._zeros(m)
+        factors.numbers, factors.x = self._zeros(factors.most_numbers), self._zeros(2.0 * m)
         factors.unknowns, factors.map = self._ints(np.zeros(factors.most_unknowns)), self._ints(np.zeros(m))
         factors.start, factors.first = self._ints(np.zeros(n)), self._ints(np.zeros(n))
         factors.size, factors.pivots, factors.done = (self._ints(np.zeros(n)), self._ints(np.zeros(n)),

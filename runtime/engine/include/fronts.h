@@ -25,7 +25,7 @@ typedef struct {
     double *numbers;  /* fronts, column by column, one behind the other; complex ones take two doubles a number */
     int *unknowns;    /* of each: those of its rows, then those of its columns, in the order of elimination */
     int *map;         /* m: places of a child's unknowns in its parent */
-    double *x;        /* m numbers: the solution */
+    double *x;        /* 2 m numbers: the solution; of a front, the right side */
     int *start, *first, *size, *pivots, *done; /* n: in `numbers`, in `unknowns`; unknowns, candidates for pivots, and pivots */
     int most_numbers, most_unknowns; /* that there is memory for */
 } fu_factors;

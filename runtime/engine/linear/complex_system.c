@@ -32,7 +32,7 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->pivot_border = (int *)fu_take(scratch, taken, FU_DOUBLES(m, int));
     c->factors = *real;
     c->factors.numbers = (double *)take(scratch, taken, real->most_numbers);
-    c->factors.x = (double *)take(scratch, taken, m);
+    c->factors.x = (double *)take(scratch, taken, 2 * m);
     int **own[] = {&c->factors.unknowns, &c->factors.map, &c->factors.start, &c->factors.first, &c->factors.size,
                    &c->factors.pivots, &c->factors.done};
     const long fronts = s->fronts->n, lengths[] = {real->most_unknowns, m, fronts, fronts, fronts, fronts, fronts};

@@ -140,20 +140,22 @@ static int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factors *
 /* Solves in place: y is the right side, then the solution. */
 static void PREFIX(solve)(const fu_fronts *t, const fu_factors *f, NUMBER *y)
 {
-    NUMBER *x = (NUMBER *)f->x;
+    NUMBER *x = (NUMBER *)f->x, *local = x + t->m;
     for (int k = 0; k < t->n; ++k) {
         const int n = f->size[k], done = f->done[k], *rows = f->unknowns + f->first[k];
-        const NUMBER *column = PREFIX(front)(f, k);
-        for (int j = 0; j < done; ++j, column += n)
-            for (int i = j + 1; i < n; ++i) SUBTRACT(y[rows[i]], column[i], y[rows[j]]);
+        for (int i = 0; i < n; ++i) local[i] = y[rows[i]];
+        APPLY(PREFIX(front)(f, k), n, 0, done, local);
+        for (int i = 0; i < n; ++i) y[rows[i]] = local[i];
     }
     for (int k = t->n - 1; k >= 0; --k) {
         const int n = f->size[k], done = f->done[k], *rows = f->unknowns + f->first[k], *columns = rows + n;
         const NUMBER *F = PREFIX(front)(f, k);
+        for (int i = 0; i < done; ++i) local[i] = y[rows[i]];
         for (int j = n - 1; j >= 0; --j) {
             const NUMBER *column = F + j * n;
-            if (j < done) x[columns[j]] = DIVIDE(y[rows[j]], column[j]);
-            for (int i = 0; i < (j < done ? j : done); ++i) SUBTRACT(y[rows[i]], column[i], x[columns[j]]);
+            if (j < done) x[columns[j]] = DIVIDE(local[j], column[j]);
+            const NUMBER known = x[columns[j]];
+            for (int i = 0; i < (j < done ? j : done); ++i) SUBTRACT(local[i], column[i], known);
         }
     }
     for (int i = 0; i < t->m; ++i) y[i] = x[i];

@@ -68,6 +68,7 @@ static void add(fu_system *s, int row, int column, double value)
     if (row < n && column < n)
         s->K[(long)column * FU_BAND_ROWS(s->width) + FU_BAND_DIAGONAL(s->width) + row - column] += value;
     else if (row >= n && column >= n) {
+        if (value == 0.0) return; /* most of what a joint has */
         const int at = fu_fronts_at(s->fronts, row - n, column - n);
         s->D[at] += at < s->fronts->size ? value : fabs(value); /* what has no place is not to cancel: it is refused */
     } else if (s->slot[(row < n ? column : row) - n] < 0)
@@ -99,6 +100,17 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
     for (int k = 0; k < a.n; ++k)
         for (int m = 0; m < b.n; ++m)
             add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
+}
+
+/* Adds an n x n matrix, row by row, over the dofs of a body from `dof` on. */
+void fu_add_body(const fu_model *model, fu_system *s, int dof, int n, const double *values)
+{
+    const fu_fronts *fronts = s->fronts;
+    const int first = model->unknown_of_dof[dof] - s->n, front = fronts->front[first];
+    const int stride = fronts->pivots[front] + fronts->neighbours[front];
+    double *to = s->D + fu_fronts_at(fronts, first, first);
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) to[(long)j * stride + i] += values[i * n + j];
 }
 
 /* Returns the largest of what the dofs move points by, as a length, m; not a number where one is none. */
