@@ -45,7 +45,10 @@ def check_other_joints(scene: SceneData, joint: Joint, near: float) -> None:
 
     near: points nearer than this, in m, are the same.
     """
+    between = {joint.a.on, joint.b.on}
     for other in scene.joints.values():
+        if {other.a.on, other.b.on} != between:
+            continue
         for a, b in ((other.a, other.b), (other.b, other.a)):
             if move_as_one(scene, joint.a, a) and move_as_one(scene, joint.b, b):
                 if what := _clash(scene, joint, other, (a, b), near):

@@ -86,8 +86,7 @@ def _completed(scene: SceneData, joint: Joint) -> dict:
 
 def scene_size(scene: SceneData, joint: Joint) -> float:
     """Return the largest extent in m of what is in the scene."""
-    points = [point_of(scene, joint.a), point_of(scene, joint.b)]
-    points += [body.point((0.0, 0.0, 0.0)) for body in scene.bodies.values()]
+    points = [point_of(scene, joint.a), point_of(scene, joint.b), *scene.bounds_of_bodies()]
     return max(float(np.linalg.norm(np.ptp(points, axis=0))), *(cable.length for cable in scene.cables.values()), 0.0)
 
 
