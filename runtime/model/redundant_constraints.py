@@ -8,6 +8,7 @@ from scipy.linalg import solve_triangular
 from ..engine import Engine
 from ..errors import SceneError
 from .joints import JointModel
+from .loops import joints_in_loops
 from .model import Model
 
 SAME, NEARLY = 1e-12, 1e-8
@@ -30,19 +31,17 @@ def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
 
     Raises SceneError where slides, or what drives joints, constrain the same, and for a start in a singular position.
     """
-    riders = [(slide.rider.body, slide.rider.cable) for slide in model.slides]
-    if not model.joints and len(set(riders)) == len(riders):
-        return []  # slides of different bodies never do: each acts on its own body, whose mass is not zero
-    if not engine.prepare():
-        return []  # start says why
-    S, owner = _compliance(engine), _owners(model)
+    rows = _in_loops(model, two_riders=False)
+    if not len(rows) or not engine.prepare():
+        return []  # where there are rows start says why
+    S, owner = _compliance(engine, rows), _owners(model)
     if S is None:
         return []  # here, too
     spare = _spare(model)
-    if locked := [owner[k] for k, own in enumerate(np.diag(S)) if own == 0 and k not in spare]:
+    if locked := [owner[k] for k, own in zip(rows, np.diag(S), strict=True) if own == 0 and k not in spare]:
         raise SceneError("scene", f"is over-constrained: {_listed(locked)} between points that supports fix already",
                          "leave that out, or the supports")
-    follows = _following(S)
+    follows = {int(rows[row]): [int(rows[k]) for k in others] for row, others in _following(S).items()}
     if not follows:
         return []
     dropped = [_left_out(model, row, others, owner) for row, others in follows.items()]
@@ -94,9 +93,10 @@ def _check_that_they_follow(model: Model, engine: Engine, dropped: list[tuple[in
 
 def redundant(model: Model, engine: Engine, ratio: float = NEARLY) -> str:
     """Return names of slides and joints that constrain nearly the same motion at the time reached; "" without any."""
-    if not model.joints and len(model.slides) < 2:
+    rows = _in_loops(model, two_riders=True)
+    if not len(rows):
         return ""
-    S = _compliance(engine)
+    S = _compliance(engine, rows)
     if S is None or not np.any(np.diag(S) > 0):
         return ""
     used = np.flatnonzero(np.diag(S) > 0)
@@ -104,14 +104,28 @@ def redundant(model: Model, engine: Engine, ratio: float = NEARLY) -> str:
     values, vectors = np.linalg.eigh(scale[:, None] * S[np.ix_(used, used)] * scale)
     nearly_free = values < ratio * values[-1]
     owner = _owners(model)
-    return _listed([owner[k] for k, part in zip(used, np.linalg.norm(vectors[:, nearly_free], axis=1), strict=True)
+    return _listed([owner[k] for k, part in zip(rows[used], np.linalg.norm(vectors[:, nearly_free], axis=1), strict=True)
                     if part > 1e-3])
 
 
-def _compliance(engine: Engine) -> np.ndarray | None:
-    """Return H M^-1 H'; None where the state is not finite, or the mass matrix is singular there."""
+def _in_loops(model: Model, *, two_riders: bool) -> np.ndarray:
+    """Return the multipliers whose constraints may follow from others: those of joints in loops, and of slides with them.
+
+    Slides of different bodies alone never do, as each acts on its own body, whose mass is not zero; they may nearly, and
+    count with two_riders.
+    """
+    joints = [joint for joint, loops in zip(model.joints, joints_in_loops(model), strict=True) if loops]
+    riders = [(slide.rider.body, slide.rider.cable) for slide in model.slides]
+    alone = len(riders) < 2 if two_riders else len(set(riders)) == len(riders)
+    slides = [] if alone and not joints else model.slides
+    return np.array([k for part in (*slides, *joints)
+                     for k in range(part.multiplier, part.multiplier + part.n_multipliers)], dtype=int)
+
+
+def _compliance(engine: Engine, rows: np.ndarray) -> np.ndarray | None:
+    """Return H M^-1 H' of these multipliers; None where the state is not finite, or the mass matrix is singular there."""
     try:
-        S = engine.compliance()
+        S = engine.compliance(rows)
     except ArithmeticError:
         return None
     return S if np.isfinite(S).all() else None

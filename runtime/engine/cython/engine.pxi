@@ -305,7 +305,7 @@ cdef extern from "engine.h" nogil:
     void fu_find_pieces(const fu_model *model, fu_state *state)
     void fu_touch(const fu_model *model, fu_state *state)
     int fu_moves(const fu_run *run)
-    int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
+    int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)
     int fu_prepare(fu_run *run)
     int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,

@@ -21,7 +21,7 @@ struct fu_accelerator {
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      double *reaction);
-int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S);
+int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S);
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int row, int constraint,

@@ -140,28 +140,31 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
     return 0;
 }
 
-/* Makes S = H M^-1 H' (multipliers x multipliers) at a state: singular where joints hold the same. */
-int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
+/* Makes S = H M^-1 H' (n x n) at a state, of n multipliers: singular where joints hold the same. at: of each multiplier its row
+ * of S, -1 where it has none. */
+int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)
 {
     fu_system *s = &work->mass;
-    const int n = model->n_multipliers;
+    const int all = model->n_multipliers;
     evaluate(model, state, work);
     border(model, state->q, work);
-    for (int k = 0; k < n; ++k) fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, and no multipliers */
+    for (int k = 0; k < all; ++k) fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, and no multipliers */
     const int info = fu_system_factor_border(s, model->lapack);
     for (int r = 0; r < model->n_rows && !info; ++r) {
         const fu_rows *rows = &work->rows[r];
         for (int c = 0; c < rows->rows; ++c) {
             const double *H = rows->H + c * rows->n;
+            if (at[rows->first + c] < 0) continue;
             for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
             for (int k = 0; k < rows->n; ++k) work->work[rows->at[k]] += H[k];
             fu_gather(model, work->work, work->rhs);
-            memset(work->rhs + model->n_band + model->n_border_dof, 0, sizeof(double) * (size_t)n);
+            memset(work->rhs + model->n_band + model->n_border_dof, 0, sizeof(double) * (size_t)all);
             fu_system_solve(s, model->lapack, work->rhs);
             fu_spread(model, work->rhs, work->work);
             for (int i = 0; i < model->n_rows; ++i)
                 for (int d = 0; d < work->rows[i].rows; ++d)
-                    S[(rows->first + c) * n + work->rows[i].first + d] = -minus_H(&work->rows[i], d, work->work);
+                    if (at[work->rows[i].first + d] >= 0)
+                        S[(long)at[rows->first + c] * n + at[work->rows[i].first + d]] = -minus_H(&work->rows[i], d, work->work);
         }
     }
     return info;
