@@ -85,7 +85,8 @@ def driven() -> Scene:
     """A chain of bodies with joints of every kind, some of them driven, hung from a node that moves."""
     scene = cable_scene(length=1, elements=3, **ROPE)
     scene.motion("wire", s=0.0, displacement=("free", Harmonic(amplitude=0.1, frequency=2.0), 0.0))
-    kinds = [("revolute", {"axis": (0, 0, 1)}), ("revolute", {"axis": (0, 1, 0), "angle": Harmonic(amplitude=0.2, frequency=1)}),
+    kinds = [("revolute", {"axis": (0, 0, 1)}),
+             ("revolute", {"axis": (0, 1, 0), "angle": Harmonic(amplitude=0.2, frequency=1)}),
              ("prismatic", {"axis": (1, 0, 0)}), ("cylindrical", {"axis": (1, 0, 0)}), ("weld", {}),
              ("universal", {"axis": (0, 0, 1), "second_axis": (0, 1, 0)}), ("distance", {}),
              ("prismatic", {"axis": (1, 0, 0), "distance": Harmonic(amplitude=0.02, frequency=3)})]

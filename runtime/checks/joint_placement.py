@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import warnings
+from itertools import islice
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -22,6 +24,9 @@ MOVABLE = 1e-3
 
 UPRIGHT = 1e-3
 """A tangent nearer than this (sine of the angle) to up leaves the frame undefined."""
+
+_BOUNDS: WeakKeyDictionary[SceneData, tuple[int, np.ndarray]] = WeakKeyDictionary()
+"""How many bodies of a scene have been looked at, and their bounds."""
 
 
 def placed_joint(scene: SceneData, joint: Joint) -> Joint:
@@ -86,8 +91,21 @@ def _completed(scene: SceneData, joint: Joint) -> dict:
 
 def scene_size(scene: SceneData, joint: Joint) -> float:
     """Return the largest extent in m of what is in the scene."""
-    points = [point_of(scene, joint.a), point_of(scene, joint.b), *scene.bounds_of_bodies()]
+    points = [point_of(scene, joint.a), point_of(scene, joint.b), *_bounds_of_bodies(scene)]
     return max(float(np.linalg.norm(np.ptp(points, axis=0))), *(cable.length for cable in scene.cables.values()), 0.0)
+
+
+def _bounds_of_bodies(scene: SceneData) -> np.ndarray:
+    """Return (2, 3): the least and the largest coordinates of the bodies' origins, in m; (0, 3) without bodies.
+
+    Bodies are looked at once, not for each joint of a chain again: they do not change, and none is taken away.
+    """
+    count, bounds = _BOUNDS.get(scene, (0, np.zeros((0, 3))))
+    if new := [body.point((0.0, 0.0, 0.0)) for body in islice(scene.bodies.values(), count, None)]:
+        points = np.vstack([bounds, *new])
+        bounds = np.array([points.min(axis=0), points.max(axis=0)])
+        _BOUNDS[scene] = len(scene.bodies), bounds
+    return bounds
 
 
 def _gap(scene: SceneData, joint: Joint) -> tuple[float, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,7 +21,10 @@ NEWTON, ACCELERATIONS = "newton", "accelerations"
 def elimination(model: Model, system: str) -> Elimination:
     """Return the order in which the border of a system is eliminated; small ones are dense."""
     m = model.n_border_dof + (model.n_extra if system == NEWTON else model.n_multipliers)
-    return dense(m, np.arange(m)) if m <= DENSE else _Border(model, system).graph.eliminate()
+    if m > DENSE:
+        return _Border(model, system).graph.eliminate()
+    chains = len(model.chains) - 1
+    return dense(m, np.stack([np.repeat(np.arange(m), chains), np.tile(np.arange(chains), m)], axis=1))
 
 
 class _Place:
@@ -42,7 +46,7 @@ class _Border:
         self._nodes()
         self.bodies = []
         ends = [*(body.dof for body in model.bodies), model.n_dof]
-        for first, end in zip(ends[:-1], ends[1:], strict=True):
+        for first, end in pairwise(ends):
             self.bodies.append(self.graph.group(model.unknown_of_dof[first:end] - model.n_band))
         self.cables = [self._place(cable.coordinates) for cable in model.cables]
         self.slides: list[int] = []
@@ -150,8 +154,8 @@ def _ties_turns(joint: JointModel, dim: int) -> bool:
     some = np.random.default_rng(0).uniform(0.5, 1.0, 100)
     shapes = force.shapes
     given = [some[: int(np.prod(shape))].reshape(shape) for shape in list(shapes.values())[:5]]
-    K = np.asarray(force(*given)[2]).reshape(-1)
-    moves = int(np.sqrt(K.size))
-    K, turns = K.reshape(moves, moves), (moves - dim) // 2
+    numbers = np.asarray(force(*given)[2]).ravel()
+    moves = int(np.sqrt(numbers.size))
+    K, turns = numbers.reshape(moves, moves), (moves - dim) // 2
     first, second = K[: dim + turns], [*range(dim), *range(dim + turns, moves)]
     return bool(np.any(first[:, second] != 0))

@@ -1,8 +1,9 @@
 """The order in which the border is eliminated: symbolic analysis of its graph, once for a scene.
 
-The graph's nodes are groups of unknowns: of a body, of a coupling's own, of nodes of cables that are border. Eliminating
-a group connects its neighbours with each other. Minimum degree keeps them few: chains and trees of bodies take a number of
-operations that is linear in the bodies. Groups that are eliminated together are a front (engine/include/fronts.h).
+The graph's nodes are groups of unknowns: of a body, of a coupling's own, of nodes of cables that are border.
+Eliminating a group connects its neighbours with each other. Minimum degree keeps them few: chains and trees of bodies
+take a number of operations that is linear in the bodies. Groups that are eliminated together are a front
+(engine/include/fronts.h).
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ SOLVES = 5
 
 @dataclass
 class Elimination:
-    """Fronts as engine/include/fronts.h has them; slots: the unknowns of the border that touch the band, increasing."""
+    """Fronts as engine/include/fronts.h has them; strips (n, 2): an unknown and a chain that it touches, increasing."""
 
     m: int
     start: np.ndarray
@@ -38,7 +39,7 @@ class Elimination:
     sibling: np.ndarray
     front: np.ndarray
     place: np.ndarray
-    slots: np.ndarray
+    strips: np.ndarray
 
     @property
     def n(self) -> int:
@@ -77,10 +78,10 @@ class Elimination:
         return np.concatenate([none, *rows]), np.concatenate([none, *columns])
 
 
-def dense(m: int, slots: np.ndarray) -> Elimination:
-    """Return the elimination of m unknowns in one front; slots: those that touch the band."""
+def dense(m: int, strips: np.ndarray) -> Elimination:
+    """Return the elimination of m unknowns in one front; strips: as in `Elimination`."""
     none, zero, every = np.array([-1]), np.array([0]), np.arange(m)
-    return Elimination(m, zero, zero, np.array([m]), zero, every, 0 * every, none, none, none, 0 * every, every, slots)
+    return Elimination(m, zero, zero, np.array([m]), zero, every, 0 * every, none, none, none, 0 * every, every, strips)
 
 
 class BorderGraph:
@@ -117,12 +118,13 @@ class BorderGraph:
 
     def eliminate(self) -> Elimination:
         """Return the order of elimination: one front, or those of minimum degree where they take fewer operations."""
-        touching = set().union(*self.on_chain.values())
-        slots = np.sort(np.concatenate([np.zeros(0, dtype=int), *(self.unknowns[group] for group in touching)]))
+        pairs = [(int(unknown), chain) for chain, groups in self.on_chain.items() for group in groups
+                 for unknown in self.unknowns[group]]
+        strips = np.array(sorted(pairs), dtype=int).reshape(-1, 2)
         for groups in self.on_chain.values():
             self.join(groups)
-        sparse = self._laid_out(*self._merged(*self._fronts()), slots)
-        return sparse if sparse.cost < _cost(sparse.m, 0) else dense(sparse.m, slots)
+        sparse = self._laid_out(*self._merged(*self._fronts()), strips)
+        return sparse if sparse.cost < _cost(sparse.m, 0) else dense(sparse.m, strips)
 
     def _fronts(self) -> tuple[list[list[int]], list[set[int]]]:
         """Return the groups and the neighbours of each front, in the order of elimination, by minimum degree."""
@@ -186,7 +188,7 @@ class BorderGraph:
         return ([front for front, keep in zip(fronts, kept, strict=True) if keep],
                 [front for front, keep in zip(neighbours, kept, strict=True) if keep])
 
-    def _laid_out(self, fronts: list[list[int]], beside: list[set[int]], slots: np.ndarray) -> Elimination:
+    def _laid_out(self, fronts: list[list[int]], beside: list[set[int]], strips: np.ndarray) -> Elimination:
         """Return the arrays of fronts, of which the groups and the neighbours are given."""
         def sorted_unknowns(groups: Iterable[int]) -> np.ndarray:
             return np.sort(np.concatenate([np.zeros(0, dtype=int), *(self.unknowns[group] for group in groups)]))
@@ -213,7 +215,7 @@ class BorderGraph:
         starts = pivots * (pivots + 2 * neighbours)
         return Elimination(m, np.cumsum(starts) - starts, np.cumsum(lengths) - lengths, pivots, neighbours,
                            np.concatenate([part for pair in zip(own, around, strict=True) for part in pair]),
-                           np.concatenate(in_parent), parent, child, sibling, front, place, slots)
+                           np.concatenate(in_parent), parent, child, sibling, front, place, strips)
 
 
 def _parents(fronts: list[list[int]], neighbours: list[set[int]]) -> list[int]:

@@ -104,15 +104,15 @@ def redundant(model: Model, engine: Engine, ratio: float = NEARLY) -> str:
     values, vectors = np.linalg.eigh(scale[:, None] * S[np.ix_(used, used)] * scale)
     nearly_free = values < ratio * values[-1]
     owner = _owners(model)
-    return _listed([owner[k] for k, part in zip(rows[used], np.linalg.norm(vectors[:, nearly_free], axis=1), strict=True)
-                    if part > 1e-3])
+    shares = np.linalg.norm(vectors[:, nearly_free], axis=1)
+    return _listed([owner[k] for k, part in zip(rows[used], shares, strict=True) if part > 1e-3])
 
 
 def _in_loops(model: Model, *, two_riders: bool) -> np.ndarray:
-    """Return the multipliers whose constraints may follow from others: those of joints in loops, and of slides with them.
+    """Return the multipliers whose constraints may follow from others: of joints in loops, and of slides with them.
 
-    Slides of different bodies alone never do, as each acts on its own body, whose mass is not zero; they may nearly, and
-    count with two_riders.
+    Slides of different bodies alone never do, as each acts on its own body, whose mass is not zero; they may nearly,
+    and count with two_riders.
     """
     joints = [joint for joint, loops in zip(model.joints, joints_in_loops(model), strict=True) if loops]
     riders = [(slide.rider.body, slide.rider.cable) for slide in model.slides]
@@ -123,7 +123,7 @@ def _in_loops(model: Model, *, two_riders: bool) -> np.ndarray:
 
 
 def _compliance(engine: Engine, rows: np.ndarray) -> np.ndarray | None:
-    """Return H M^-1 H' of these multipliers; None where the state is not finite, or the mass matrix is singular there."""
+    """Return H M^-1 H' of these multipliers; None where the state is not finite, or the mass matrix singular."""
     try:
         S = engine.compliance(rows)
     except ArithmeticError:

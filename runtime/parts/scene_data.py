@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import islice
 from typing import Any
-
-import numpy as np
 
 from ..errors import SceneError, check_renamed
 from .attachment import Attachment
@@ -56,7 +53,6 @@ class SceneData:
         for kind in KINDS:
             setattr(self, kind.group, {} if kind.is_named() else [])
         self.messages: list[str] = []
-        self._bounded, self._bounds = 0, np.zeros((0, 3))
         self.title = ""
         self.run_settings: dict[str, Any] = {}
         self.equilibrium_settings: dict[str, Any] = {}
@@ -95,17 +91,6 @@ class SceneData:
         """Return the parts of a group, in the order in which they were added."""
         parts = getattr(self, name)
         return parts.values() if isinstance(parts, dict) else parts
-
-    def bounds_of_bodies(self) -> np.ndarray:
-        """Return (2, 3): the least and the largest coordinates of the bodies' origins, in m; (0, 3) without bodies.
-
-        Bodies that have been looked at once are not looked at again: each joint of a chain asks for its size.
-        """
-        new = [body.point((0.0, 0.0, 0.0)) for body in islice(self.bodies.values(), self._bounded, None)]
-        if new:
-            points = np.vstack([self._bounds, *new])
-            self._bounds, self._bounded = np.array([points.min(axis=0), points.max(axis=0)]), len(self.bodies)
-        return self._bounds
 
     def put(self, part: Part) -> None:
         """Store a part in its group, as it is."""

@@ -126,7 +126,8 @@ def measure(name: str, n: int, steps: int, repetitions: int) -> dict:
     end, reference = positions(engine, model), positions(run(model, 4 * steps, STEP / 4)[0], model)
     motion = np.linalg.norm(reference - start, axis=1).max()
     counts = engine.statistics
-    return {"scene": name, "bodies": len(model.bodies), "error": float(np.linalg.norm(end - reference, axis=1).max() / motion),
+    error = float(np.linalg.norm(end - reference, axis=1).max() / motion)
+    return {"scene": name, "bodies": len(model.bodies), "error": error,
             "energy": energy_change(engine), "us_per_step": 1e6 * taken / counts["steps"],
             "us_per_step_and_body": 1e6 * taken / counts["steps"] / len(model.bodies),
             "iterations_per_step": counts["newton_iterations"] / counts["steps"],

@@ -133,8 +133,10 @@ cdef extern from "engine.h" nogil:
     void fu_lapack_attach(fu_lapack *lapack, int k, const void *function)
     ctypedef struct fu_span:
         int first, end
+    ctypedef struct fu_strip:
+        int k, chain, at, x
     ctypedef struct fu_piece:
-        int k, slot
+        int k, strip
         fu_span rows
     ctypedef struct fu_fronts:
         int m, n, size
@@ -161,9 +163,15 @@ cdef extern from "engine.h" nogil:
         int *done
         int most_numbers, most_unknowns
     ctypedef struct fu_system:
-        int n, width, m, n_chains, n_slots, definite
-        const int *slot
-        const int *of_slot
+        int n, width, m, n_chains, n_strips, n_strip_rows, definite
+        const fu_strip *strips
+        const int *first_strip
+        const int *chain_start
+        const int *on_chain
+        int *n_columns
+        int *n_rows
+        int *constant_columns
+        int *constant_rows
         const fu_fronts *fronts
         fu_factors factors
         const int *chains

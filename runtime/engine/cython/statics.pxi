@@ -22,14 +22,16 @@ cdef class Statics(Translation):
             corner = np.asarray(<double[:system.fronts.size]>system.D)
             used = np.flatnonzero(corner)
             entries.append((n + self.corner[0][used], n + self.corner[1][used], corner[used]))
-        if n and system.n_slots:
-            slots = self.newton_elimination.slots
-            right = np.asarray(<double[:system.n_slots * n]>system.B).reshape(-1, n)
-            below = np.asarray(<double[:system.n_slots * n]>system.C).reshape(-1, n)
-            at, rows = np.nonzero(right)
-            entries.append((rows, n + slots[at], right[at, rows]))
-            rows, at = np.nonzero(below)
-            entries.append((n + slots[rows], at, below[rows, at]))
+        if system.n_strip_rows:
+            strips, chains = self.newton_elimination.strips, np.array([system.chains[i] for i in range(system.n_chains + 1)])
+            in_band = np.concatenate([np.arange(*chains[chain:chain + 2]) for chain in strips[:, 1]])
+            beside = n + np.repeat(strips[:, 0], np.diff(chains)[strips[:, 1]])
+            right = np.asarray(<double[:system.n_strip_rows]>system.B)
+            below = np.asarray(<double[:system.n_strip_rows]>system.C)
+            used = np.flatnonzero(right)
+            entries.append((in_band[used], beside[used], right[used]))
+            used = np.flatnonzero(below)
+            entries.append((beside[used], in_band[used], below[used]))
         row, column, value = (np.concatenate(part) for part in zip(*entries))
         return coo_array((value, (row, column)), shape=(n + m, n + m)).tocsc()
 

@@ -269,25 +269,42 @@ cdef class Translation(Arrays):
         factors.size, factors.pivots, factors.done = (self._ints(np.zeros(n)), self._ints(np.zeros(n)),
                                                       self._ints(np.zeros(n)))
 
+    cdef _strips(self, fu_system *system, model, strips):
+        """Fill in what of the border touches which chains, with the memory for it."""
+        cdef int n = len(strips), chains = len(model.chains) - 1
+        k, chain = strips.T
+        lengths, beyond = np.diff(model.chains)[chain], FU_BAND_BEYOND(system.width)
+        ends, ends_of_x = np.cumsum(lengths), np.cumsum(lengths + beyond)
+        system.n_strips, system.n_strip_rows = n, self._counted(ends[-1] if n else 0)
+        system.strips = <fu_strip *>self._ints(np.stack([
+            k, chain, ends - lengths - model.chains[chain], ends_of_x - lengths - beyond - model.chains[chain]], axis=1))
+        system.first_strip = self._ints(np.searchsorted(k, np.arange(system.m + 1)))
+        on_chain = np.argsort(chain, kind="stable")
+        system.on_chain = self._ints(on_chain)
+        system.chain_start = self._ints(np.searchsorted(chain[on_chain], np.arange(chains + 1)))
+        system.B, system.C = self._zeros(system.n_strip_rows), self._zeros(system.n_strip_rows)
+        system.X = self._zeros(self._counted(ends_of_x[-1] if n else 0))
+        system.span_B, system.span_C = <fu_span *>self._ints(np.zeros(2 * 2 * n)), <fu_span *>self._ints(np.zeros(2 * 2 * n))
+        system.columns, system.rows = <fu_piece *>self._ints(np.zeros(4 * 2 * n)), <fu_piece *>self._ints(np.zeros(4 * 2 * n))
+        system.n_columns, system.n_rows = self._ints(np.zeros(chains)), self._ints(np.zeros(chains))
+        system.constant_columns, system.constant_rows = self._ints(np.zeros(chains)), self._ints(np.zeros(chains))
+
+    cdef int _counted(self, double n) except -1:
+        """Return a number of numbers as C's int. Raises MemoryError where it is none."""
+        if n > INDICES:
+            raise MemoryError
+        return <int>n
+
     cdef _system(self, fu_system *system, fu_fronts *fronts, model, elimination, int width):
-        cdef int n = model.n_band, m = elimination.m, chains = len(model.chains) - 1, slots = len(elimination.slots)
-        system.n, system.width, system.m, system.n_chains, system.n_slots = n, width, m, chains, slots
+        cdef int n = model.n_band, m = elimination.m, chains = len(model.chains) - 1
+        system.n, system.width, system.m, system.n_chains = n, width, m, chains
         self._fronts(fronts, elimination)
         self._factors(&system.factors, elimination)
-        system.fronts, system.of_slot = fronts, self._ints(elimination.slots)
-        slot = np.full(m, -1)
-        slot[elimination.slots] = np.arange(slots)
-        system.slot = self._ints(slot)
-        system.chains = self._ints(model.chains)
+        self._strips(system, model, elimination.strips)
+        system.fronts, system.chains = fronts, self._ints(model.chains)
         middles = (model.chains[:-1] + model.chains[1:]) // 2
         system.half = self._ints(np.searchsorted(np.sort([*model.chains[:-1], *middles]), np.arange(n), "right") - 1)
         system.D, system.L = self._zeros(elimination.size + 1.0), self._zeros((width + 1.0) * (n + FU_BAND_GROUP * chains))
-        system.B, system.C = self._zeros(<double>n * slots), self._zeros(<double>n * slots)
-        system.X = self._zeros(<double>FU_BAND_LENGTH(n, width) * slots)
-        system.span_B = <fu_span *>self._ints(np.zeros(2 * 2 * slots * chains))
-        system.span_C = <fu_span *>self._ints(np.zeros(2 * 2 * slots * chains))
-        system.columns = <fu_piece *>self._ints(np.zeros(4 * 2 * slots * chains))
-        system.rows = <fu_piece *>self._ints(np.zeros(4 * 2 * slots * chains))
         system.pivot_band, system.pivot_border = self._ints(np.zeros(n)), self._ints(np.zeros(m))
 
     cdef _state(self, fu_state *state, model):

@@ -10,8 +10,8 @@ typedef struct {
     fu_complex *K, *B, *C, *D, *X;
     fu_complex *x;     /* right side, then solution */
     fu_factors factors; /* of D, unless there is only one front */
-    int n_columns;
-    fu_piece *columns; /* of X; those of C are the real system's */
+    int *n_columns;
+    fu_piece *columns; /* of X, by chain; those of C are the real system's */
     int *pivot_band, *pivot_border;
 } fu_complex_system;
 

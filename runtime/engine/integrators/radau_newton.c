@@ -57,8 +57,11 @@ static void keep_rows(fu_run *run, const double *unknowns)
     const fu_system *s = &run->newton;
     double *kept = fu_radau_space(run)->kept;
     for (int row = 0; row < s->m; ++row) kept[row] = 0.0;
-    for (const fu_piece *p = s->rows; p < s->rows + s->n_rows; ++p)
-        for (int i = p->rows.first; i < p->rows.end; ++i) kept[p->k] += s->C[(long)p->slot * s->n + i] * unknowns[i];
+    for (int c = 0; c < s->n_chains; ++c) {
+        const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[c];
+        for (const fu_piece *p = rows; p < rows + s->n_rows[c]; ++p)
+            for (int i = p->rows.first; i < p->rows.end; ++i) kept[p->k] += s->C[s->strips[p->strip].at + i] * unknowns[i];
+    }
     fu_fronts_add_product(s->fronts, fu_radau_space(run)->D_real, run->model->n_border_dof, unknowns + s->n, kept);
 }
 

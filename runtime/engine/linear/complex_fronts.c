@@ -4,6 +4,8 @@
 
 #define NUMBER fu_complex
 #define ZERO ((fu_complex){0.0, 0.0})
+#define ONE ((fu_complex){1.0, 0.0})
+#define TIMES(a, b) fu_complex_product(a, b)
 #define PREFIX(name) complex_##name
 #define SIZE(x) (fabs((x).re) + fabs((x).im))
 #define DIVIDE(x, by) fu_complex_quotient(x, by)

@@ -3,6 +3,8 @@
 
 #define NUMBER double
 #define ZERO 0.0
+#define ONE 1.0
+#define TIMES(a, b) ((a) * (b))
 #define PREFIX(name) real_##name
 #define SIZE(x) fabs(x)
 #define DIVIDE(x, by) ((x) / (by))

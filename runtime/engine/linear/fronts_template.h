@@ -1,6 +1,8 @@
 /* Gaussian elimination by fronts (Duff & Reid 1983) with threshold pivoting, for real and for complex numbers. A file that
- * includes this has defined NUMBER, PREFIX(name), SIZE(x), DIVIDE(x, by), SUBTRACT(from, a, b), which makes from -= a b,
- * ADD(to, x), ZERO, FACTOR (LAPACK's getrf), and APPLY, which makes a column what pivots leave of it.
+ * includes this has defined NUMBER, PREFIX(name), SIZE(x), DIVIDE(x, by), TIMES(a, b), SUBTRACT(from, a, b), which makes
+ * from -= a b, ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), and APPLY, which makes a column what pivots leave of it.
+ *
+ * Pivots are kept as their inverses.
  *
  * A pivot is taken from the rows and columns that have all their entries, if it is not much smaller than what its column
  * has elsewhere. What finds none is left to the parent front. The last front has no other rows: LAPACK factors it. */
@@ -105,8 +107,8 @@ static int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns, i
                 PREFIX(swap)(F + k, F + row, n, n);
                 PREFIX(swap_unknowns)(rows, k, row);
             }
-            const NUMBER by = column[k];
-            for (int i = k + 1; i < n; ++i) column[i] = DIVIDE(column[i], by);
+            column[k] = DIVIDE(ONE, column[k]);
+            for (int i = k + 1; i < n; ++i) column[i] = TIMES(column[i], column[k]);
             ++k;
         }
         if (k == last && k > before) { /* those that were put off, as long as that finds any */
@@ -132,6 +134,7 @@ static int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factors *
                 if (f->map[i] - 1 != i) PREFIX(swap_unknowns)(rows, i, f->map[i] - 1);
             f->done[k] = n;
             if (info) return 1 + columns[info - 1];
+            for (int i = 0; i < n; ++i) PREFIX(front)(f, k)[i * n + i] = DIVIDE(ONE, PREFIX(front)(f, k)[i * n + i]);
         }
     }
     return 0;
@@ -153,7 +156,7 @@ static void PREFIX(solve)(const fu_fronts *t, const fu_factors *f, NUMBER *y)
         for (int i = 0; i < done; ++i) local[i] = y[rows[i]];
         for (int j = n - 1; j >= 0; --j) {
             const NUMBER *column = F + j * n;
-            if (j < done) x[columns[j]] = DIVIDE(local[j], column[j]);
+            if (j < done) x[columns[j]] = TIMES(local[j], column[j]);
             const NUMBER known = x[columns[j]];
             for (int i = 0; i < (j < done ? j : done); ++i) SUBTRACT(local[i], column[i], known);
         }

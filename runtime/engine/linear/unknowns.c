@@ -71,16 +71,15 @@ static void add(fu_system *s, int row, int column, double value)
         if (value == 0.0) return; /* most of what a joint has */
         const int at = fu_fronts_at(s->fronts, row - n, column - n);
         s->D[at] += at < s->fronts->size ? value : fabs(value); /* what has no place is not to cancel: it is refused */
-    } else if (s->slot[(row < n ? column : row) - n] < 0)
-        s->D[s->fronts->size] += fabs(value);
-    else if (row < n) {
-        const int slot = s->slot[column - n];
-        s->B[(long)slot * n + row] += value;
-        touch(&s->span_B[slot * FU_HALVES * s->n_chains + s->half[row]], row);
     } else {
-        const int slot = s->slot[row - n];
-        s->C[(long)slot * n + column] += value;
-        touch(&s->span_C[slot * FU_HALVES * s->n_chains + s->half[column]], column);
+        const int in_band = row < n ? row : column, half = s->half[in_band];
+        const int strip = fu_strip_of(s, (row < n ? column : row) - n, half / FU_HALVES);
+        if (strip < 0) {
+            s->D[s->fronts->size] += fabs(value);
+            return;
+        }
+        (row < n ? s->B : s->C)[s->strips[strip].at + in_band] += value;
+        touch((row < n ? s->span_B : s->span_C) + FU_HALVES * strip + half % FU_HALVES, in_band);
     }
 }
 

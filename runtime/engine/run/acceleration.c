@@ -32,7 +32,7 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    s->constant = s->constant_columns = s->constant_rows = 0;
+    fu_system_release_border(s);
     fu_system_clear(s);
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, s);
     fu_bodies_mass(model, model->zero, 1, s);
