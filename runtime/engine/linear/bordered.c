@@ -141,7 +141,8 @@ static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_pie
 static void couple(fu_system *s, const fu_lapack *lapack)
 {
     for (int c = 0; c < s->n_chains; ++c) {
-        fu_piece *columns = s->columns + FU_HALVES * s->chain_start[c], *rows = s->rows + FU_HALVES * s->chain_start[c];
+        const int start = FU_HALVES * s->chain_start[c];
+        fu_piece *columns = s->columns + start, *rows = s->rows + start;
         s->n_columns[c] = s->constant_columns[c];
         s->n_rows[c] = s->constant_rows[c];
         for (int i = s->chain_start[c]; i < s->chain_start[c + 1]; ++i) {
@@ -161,7 +162,8 @@ void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
     couple(s, lapack);
     s->constant = columns;
     for (int c = 0; c < s->n_chains; ++c) {
-        const fu_piece *column = s->columns + FU_HALVES * s->chain_start[c], *row = s->rows + FU_HALVES * s->chain_start[c];
+        const int start = FU_HALVES * s->chain_start[c];
+        const fu_piece *column = s->columns + start, *row = s->rows + start;
         int *kept[2] = {&s->constant_columns[c], &s->constant_rows[c]};
         for (*kept[0] = 0; *kept[0] < s->n_columns[c] && column[*kept[0]].k < columns;) ++*kept[0];
         for (*kept[1] = 0; *kept[1] < s->n_rows[c] && row[*kept[1]].k < columns;) ++*kept[1];
@@ -175,15 +177,16 @@ void fu_system_release_border(fu_system *s)
     for (int c = 0; c < s->n_chains; ++c) s->constant_columns[c] = s->constant_rows[c] = 0;
 }
 
-/* Makes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D or beside it; returns 0, or 1 + the
- * unknown of the border at which it is singular. */
+/* Makes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D or beside it; returns 0, or
+ * 1 + the unknown of the border at which it is singular. */
 int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
 {
     int m = s->m, info = 0;
     if (!m) return 0;
     couple(s, lapack);
     for (int c = 0; c < s->n_chains; ++c) {
-        const fu_piece *columns = s->columns + FU_HALVES * s->chain_start[c], *rows = s->rows + FU_HALVES * s->chain_start[c];
+        const int start = FU_HALVES * s->chain_start[c];
+        const fu_piece *columns = s->columns + start, *rows = s->rows + start;
         for (const fu_piece *p = columns; p < columns + s->n_columns[c]; ++p)
             for (const fu_piece *r = rows; r < rows + s->n_rows[c]; ++r)
                 s->D[fu_fronts_at(s->fronts, r->k, p->k)] -= times(s, r, p->rows, s->X + s->strips[p->strip].x);

@@ -69,13 +69,14 @@ void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_c
 /* Makes x = K^-1 x in a chain. */
 static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int chain, fu_complex *x)
 {
-    int first = s->chains[chain], n = s->chains[chain + 1] - first, width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
-    lapack->zgbtrs("N", &n, &width, &width, &one, c->K + first * storage_rows(s), &rows, c->pivot_band + first, x + first,
-                   &n, &info);
+    int first = s->chains[chain], n = s->chains[chain + 1] - first, width = s->width, rows = FU_BAND_ROWS(width);
+    int one = 1, info;
+    lapack->zgbtrs("N", &n, &width, &width, &one, c->K + first * storage_rows(s), &rows, c->pivot_band + first,
+                   x + first, &n, &info);
 }
 
-/* Makes a column of X in a chain and finds the rows of it that count, unless B has none; returns how many pieces they are. size:
- * work space of the band's size. */
+/* Makes a column of X in a chain and finds the rows of it that count, unless B has none; returns how many pieces they
+ * are. size: work space of the band's size. */
 static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int strip, double *size,
                         fu_piece *pieces)
 {
@@ -92,7 +93,8 @@ static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapac
 /* Makes the Schur complement of a chain in D. */
 static void subtract(fu_complex_system *c, const fu_system *s, int chain)
 {
-    const fu_piece *columns = c->columns + FU_HALVES * s->chain_start[chain], *rows = s->rows + FU_HALVES * s->chain_start[chain];
+    const int start = FU_HALVES * s->chain_start[chain];
+    const fu_piece *columns = c->columns + start, *rows = s->rows + start;
     for (const fu_piece *p = columns; p < columns + c->n_columns[chain]; ++p)
         for (const fu_piece *r = rows; r < rows + s->n_rows[chain]; ++r) {
             const fu_span of = fu_common(p->rows, r->rows);
@@ -109,7 +111,8 @@ int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_
     int m = s->m, width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     for (int chain = 0; chain < s->n_chains; ++chain) {
         int first = s->chains[chain], n = s->chains[chain + 1] - first;
-        if (n) lapack->zgbtrf(&n, &n, &width, &width, c->K + first * storage_rows(s), &rows, c->pivot_band + first, &info);
+        if (n)
+            lapack->zgbtrf(&n, &n, &width, &width, c->K + first * storage_rows(s), &rows, c->pivot_band + first, &info);
         if (info) return first + info;
     }
     if (!m) return 0;

@@ -1,19 +1,19 @@
-/* Gaussian elimination by fronts (Duff & Reid 1983) with threshold pivoting, for real and for complex numbers. A file that
- * includes this has defined NUMBER, PREFIX(name), SIZE(x), DIVIDE(x, by), TIMES(a, b), SUBTRACT(from, a, b), which makes
- * from -= a b, ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), and APPLY, which makes a column what pivots leave of it.
- *
- * Pivots are kept as their inverses.
+/* Gaussian elimination by fronts (Duff & Reid 1983) with threshold pivoting, for real and for complex numbers:
+ * linear/fronts.c, linear/complex_fronts.c. A file that includes this has defined NUMBER, PREFIX(name), SIZE(x),
+ * DIVIDE(x, by), TIMES(a, b), SUBTRACT(from, a, b), which makes from -= a b, ADD(to, x), ZERO, ONE, FACTOR (LAPACK's
+ * getrf), and APPLY, which makes a column what pivots leave of it.
  *
  * A pivot is taken from the rows and columns that have all their entries, if it is not much smaller than what its column
- * has elsewhere. What finds none is left to the parent front. The last front has no other rows: LAPACK factors it. */
-#define THRESHOLD 1e-5 /* of a column's largest entry: a smaller one is no pivot. Rounding grows by no more than its inverse. */
+ * has elsewhere. What finds none is left to the parent front. The last front has no other rows: LAPACK factors it.
+ * Pivots are kept as their inverses. */
+#define THRESHOLD 1e-5 /* of a column's largest entry: less is no pivot. Rounding grows by no more than its inverse. */
 
 static NUMBER *PREFIX(front)(const fu_factors *f, int k)
 {
     return (NUMBER *)f->numbers + f->start[k];
 }
 
-/* Makes a front of the matrix and of what its children have left; returns 0, or not zero where there is no memory for it. */
+/* Makes a front of the matrix and of what its children have left; returns 0, or 1 where there is no memory for it. */
 static int PREFIX(assemble)(const fu_fronts *t, const NUMBER *matrix, fu_factors *f, int k)
 {
     const int p = t->pivots[k], s = t->neighbours[k];
@@ -81,7 +81,10 @@ static int PREFIX(pivot)(const NUMBER *column, int k, int q, int n)
     double largest = 0.0, elsewhere = 0.0;
     int row = -1;
     for (int i = k; i < q; ++i)
-        if (SIZE(column[i]) > largest) largest = SIZE(column[row = i]);
+        if (SIZE(column[i]) > largest) {
+            largest = SIZE(column[i]);
+            row = i;
+        }
     for (int i = q; i < n; ++i) elsewhere = SIZE(column[i]) > elsewhere ? SIZE(column[i]) : elsewhere;
     return largest >= THRESHOLD * elsewhere ? row : -1;
 }
@@ -134,7 +137,7 @@ static int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factors *
                 if (f->map[i] - 1 != i) PREFIX(swap_unknowns)(rows, i, f->map[i] - 1);
             f->done[k] = n;
             if (info) return 1 + columns[info - 1];
-            for (int i = 0; i < n; ++i) PREFIX(front)(f, k)[i * n + i] = DIVIDE(ONE, PREFIX(front)(f, k)[i * n + i]);
+            for (NUMBER *F = PREFIX(front)(f, k), *end = F + n * n; F < end; F += n + 1) *F = DIVIDE(ONE, *F);
         }
     }
     return 0;
