@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -150,10 +151,15 @@ def _ties_turns(joint: JointModel, dim: int) -> bool:
         return True
     if all(end.cable >= 0 for end in joint.attachments):
         return False  # engine/couplings/joint_operations.c leaves that out
-    force = getattr(kernels_of(None), f"{joint.kernel}_force")
-    some = np.random.default_rng(0).uniform(0.5, 1.0, 100)
-    shapes = force.shapes
-    given = [some[: int(np.prod(shape))].reshape(shape) for shape in list(shapes.values())[:5]]
+    return _has_cross_stiffness(joint.kernel, dim)
+
+
+@cache
+def _has_cross_stiffness(kernel: str, dim: int) -> bool:
+    """Return whether the kernel's second derivatives couple what moves its first end to what moves its second."""
+    force = getattr(kernels_of(None), f"{kernel}_force")
+    rng = np.random.default_rng(0)  # of numbers without any relation no two cancel each other
+    given = [rng.uniform(0.5, 1.0, force.shapes[name]) for name in list(force.shapes)[:5]]
     numbers = np.asarray(force(*given)[2]).ravel()
     moves = int(np.sqrt(numbers.size))
     K, turns = numbers.reshape(moves, moves), (moves - dim) // 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -87,6 +88,7 @@ def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], drive: i
                       n_multipliers=len(scale), drive=drive)
 
 
+@cache
 def _derivatives(kernel: str, dim: int) -> np.ndarray:
     """Return the derivatives (rows, dim + turns) of a joint's equations by the gap and the turns, somewhere."""
     eye, ones = np.eye(dim), np.ones(dim)

@@ -1,7 +1,7 @@
 /* Gaussian elimination by fronts (Duff & Reid 1983) with threshold pivoting, for real and for complex numbers:
  * linear/fronts.c, linear/complex_fronts.c. A file that includes this has defined NUMBER, PREFIX(name), SIZE(x),
- * DIVIDE(x, by), TIMES(a, b), SUBTRACT(from, a, b), which makes from -= a b, ADD(to, x), ZERO, ONE, FACTOR (LAPACK's
- * getrf), and APPLY, which makes a column what pivots leave of it.
+ * DIVIDE(x, by), TIMES(a, b), ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), APPLY, which makes a column what pivots
+ * leave of it, and BACK, which makes the first unknowns of a front from the others.
  *
  * A pivot is taken from the rows and columns that have all their entries, if it is not much smaller than what its column
  * has elsewhere. What finds none is left to the parent front. The last front has no other rows: LAPACK factors it.
@@ -156,13 +156,9 @@ static void PREFIX(solve)(const fu_fronts *t, const fu_factors *f, NUMBER *y)
     for (int k = t->n - 1; k >= 0; --k) {
         const int n = f->size[k], done = f->done[k], *rows = f->unknowns + f->first[k], *columns = rows + n;
         const NUMBER *F = PREFIX(front)(f, k);
-        for (int i = 0; i < done; ++i) local[i] = y[rows[i]];
-        for (int j = n - 1; j >= 0; --j) {
-            const NUMBER *column = F + j * n;
-            if (j < done) x[columns[j]] = TIMES(local[j], column[j]);
-            const NUMBER known = x[columns[j]];
-            for (int i = 0; i < (j < done ? j : done); ++i) SUBTRACT(local[i], column[i], known);
-        }
+        for (int i = 0; i < n; ++i) local[i] = i < done ? y[rows[i]] : x[columns[i]];
+        BACK(F, n, done, local);
+        for (int i = 0; i < done; ++i) x[columns[i]] = local[i];
     }
     for (int i = 0; i < t->m; ++i) y[i] = x[i];
 }

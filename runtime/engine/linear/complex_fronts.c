@@ -10,8 +10,8 @@
 #define SIZE(x) (fabs((x).re) + fabs((x).im))
 #define DIVIDE(x, by) fu_complex_quotient(x, by)
 #define ADD(to, x) ((to).re += (x).re, (to).im += (x).im)
-#define SUBTRACT(from, a, b) fu_complex_subtract_product(&(from), a, b)
 #define APPLY eliminated
+#define BACK substituted
 #define FACTOR zgetrf
 
 /* Makes a column of n what the pivots from `from` to `to` leave of it. */
@@ -19,6 +19,16 @@ static void eliminated(const fu_complex *F, int n, int from, int to, fu_complex 
 {
     for (int k = from; k < to; ++k)
         for (int i = k + 1; i < n; ++i) fu_complex_subtract_product(&column[i], F[k * n + i], column[k]);
+}
+
+/* Makes the first `done` of n unknowns from their right side and the others. */
+static void substituted(const fu_complex *F, int n, int done, fu_complex *x)
+{
+    for (int k = n - 1; k >= 0; --k) {
+        const fu_complex *column = F + k * n;
+        if (k < done) x[k] = fu_complex_product(x[k], column[k]);
+        for (int i = 0; i < (k < done ? k : done); ++i) fu_complex_subtract_product(&x[i], column[i], x[k]);
+    }
 }
 
 #include "fronts_template.h"

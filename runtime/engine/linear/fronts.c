@@ -9,8 +9,8 @@
 #define SIZE(x) fabs(x)
 #define DIVIDE(x, by) ((x) / (by))
 #define ADD(to, x) ((to) += (x))
-#define SUBTRACT(from, a, b) ((from) -= (a) * (b))
 #define APPLY eliminated
+#define BACK substituted
 #define FACTOR dgetrf
 
 /* Makes a column of n what the pivots from `from` to `to` leave of it; four at once, which need it from memory once. */
@@ -29,6 +29,34 @@ static void eliminated(const double *F, int n, int from, int to, double *restric
     for (; k < to; ++k) {
         const double *a = F + k * n, x = column[k];
         for (int i = k + 1; i < n; ++i) column[i] -= a[i] * x;
+    }
+}
+
+/* Makes the first `done` of n unknowns from their right side and the others; four columns at once, as above. */
+static void substituted(const double *F, int n, int done, double *restrict x)
+{
+    int k = n;
+    for (; k - 4 >= done; k -= 4) {
+        const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
+        for (int i = 0; i < done; ++i) x[i] -= a[i] * x[k - 4] + b[i] * x[k - 3] + c[i] * x[k - 2] + d[i] * x[k - 1];
+    }
+    for (; k > done; --k)
+        for (int i = 0; i < done; ++i) x[i] -= F[(k - 1) * n + i] * x[k - 1];
+    for (; k >= 4; k -= 4) {
+        const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
+        const double x3 = x[k - 1] * d[k - 1], x2 = (x[k - 2] - d[k - 2] * x3) * c[k - 2];
+        const double x1 = (x[k - 3] - c[k - 3] * x2 - d[k - 3] * x3) * b[k - 3];
+        const double x0 = (x[k - 4] - b[k - 4] * x1 - c[k - 4] * x2 - d[k - 4] * x3) * a[k - 4];
+        x[k - 1] = x3;
+        x[k - 2] = x2;
+        x[k - 3] = x1;
+        x[k - 4] = x0;
+        for (int i = 0; i < k - 4; ++i) x[i] -= a[i] * x0 + b[i] * x1 + c[i] * x2 + d[i] * x3;
+    }
+    for (; k > 0; --k) {
+        const double *d = F + (k - 1) * n;
+        x[k - 1] *= d[k - 1];
+        for (int i = 0; i < k - 1; ++i) x[i] -= d[i] * x[k - 1];
     }
 }
 
