@@ -255,11 +255,13 @@ cdef class Engine(Report):
         if fu_restore(&self.run, checkpoint, rows):
             raise ValueError("the checkpoint is of no state that a run can pause in")
 
-    def compliance(self):
-        """(multipliers, multipliers): H M^-1 H' at the time reached, singular where joints hold the same."""
-        cdef int n = self.model.n_multipliers
+    def compliance(self, multipliers):
+        """(n, n): H M^-1 H' of n multipliers at the time reached, singular where joints hold the same."""
+        cdef int n = len(multipliers)
+        cdef int[::1] at = np.full(self.model.n_multipliers + 1, -1, dtype=np.intc)
+        np.asarray(at)[multipliers] = np.arange(n)
         cdef double[:, ::1] S = np.zeros((max(n, 1), max(n, 1)))
-        if fu_compliance(&self.model, &self.run.now, &self.run.accelerator, &S[0, 0]):
+        if fu_compliance(&self.model, &self.run.now, &self.run.accelerator, &at[0], n, &S[0, 0]):
             raise ArithmeticError("the mass matrix is singular")
         return np.asarray(S)[:n, :n]
 

@@ -22,10 +22,10 @@ def two_hinges() -> fu.Scene:
 
 def failed(model, S, cause=None, joint=None, integrator="genalpha", dof=0):
     """An engine after a failure: with this compliance, or none if it is None."""
-    def compliance():
+    def compliance(multipliers):
         if S is None:
             raise ArithmeticError("the mass matrix is singular")
-        return np.full((model.n_multipliers,) * 2, S)
+        return np.full((len(multipliers),) * 2, S)
 
     return SimpleNamespace(compliance=compliance, failure=(cause, dof, joint), time=0.5, integrator=integrator,
                            prepare=lambda: True, statistics={"steps": 3, "smallest_step_s": 1e-9},

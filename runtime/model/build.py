@@ -8,6 +8,7 @@ from ..kernels.libraries import tables_of
 from ..parts.scene_data import SceneData
 from .attachments import AttachmentBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
+from .border import ACCELERATIONS, NEWTON, elimination
 from .cables import cable_gravity, cable_model, cable_rates, cable_weights
 from .coupling import number
 from .joints import JointModel, frame_joint_model, joint_model
@@ -41,7 +42,7 @@ def build(scene: SceneData) -> Model:
     n_extra, n_multipliers = number([*loads.dead, *loads.turning, *slides, *joints, *point_forces])
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
-    return Model(
+    model = Model(
         dim, cables, bodies, slides, joints, point_forces, loads.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
         [*loads.dead, *loads.turning],
@@ -61,6 +62,8 @@ def build(scene: SceneData) -> Model:
         nodes=nodes,
         tables=[tables_of(name) for name in scene.libraries],
     )
+    model.newton, model.accelerations = elimination(model, NEWTON), elimination(model, ACCELERATIONS)
+    return model
 
 
 def _elements(nodes: dict[str, list[Node]]) -> np.ndarray:

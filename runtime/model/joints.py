@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -21,12 +22,14 @@ from .coupling import CouplingModel
 class JointModel(CouplingModel):
     """A joint between two ends; base: its distance or angle without the signal that drives it, m or rad.
 
+    of_points: its equations are of the two points alone, and do not see turns.
     slide: the one beside which it ties a rider's axes to the cable; reversed: the first end is the joint's b.
     """
 
     kernel: str
     attachments: tuple[AttachmentModel, AttachmentModel]
     base: float
+    of_points: bool
     slide: str | None = None
     reversed: bool = False
 
@@ -77,15 +80,17 @@ def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int)
 
 def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], drive: int, base: float) -> JointModel:
     kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
-    scale = _scales(kernel, dim, ends)
-    return JointModel(kernel, (ends[0], ends[1]), base, type="joint", name=name, scale=scale,
+    J = _derivatives(kernel, dim)
+    mass, length = max(end.mass for end in ends), max(end.length for end in ends)
+    # kg, and kg m where a row is about turns alone: no displacement of the points changes it
+    scale = np.where(np.any(J[:, :dim] != 0, axis=1), mass, mass * length)
+    return JointModel(kernel, (ends[0], ends[1]), base, not np.any(J[:, dim:]), type="joint", name=name, scale=scale,
                       n_multipliers=len(scale), drive=drive)
 
 
-def _scales(kernel: str, dim: int, ends: list[AttachmentModel]) -> np.ndarray:
-    """Return (rows,): kg, and kg m where a row is about turns alone: no displacement of the points changes it."""
+@cache
+def _derivatives(kernel: str, dim: int) -> np.ndarray:
+    """Return the derivatives (rows, dim + turns) of a joint's equations by the gap and the turns, somewhere."""
     eye, ones = np.eye(dim), np.ones(dim)
     force = getattr(kernels_of(None), f"{kernel}_force")
-    J = force(ones, eye, eye, np.array([0.5, np.cos(0.5), np.sin(0.5)]), np.zeros(force.shapes["f"]))[1]
-    mass, length = max(end.mass for end in ends), max(end.length for end in ends)
-    return np.where(np.any(J[:, :dim] != 0, axis=1), mass, mass * length)
+    return force(ones, eye, eye, np.array([0.5, np.cos(0.5), np.sin(0.5)]), np.zeros(force.shapes["f"]))[1]

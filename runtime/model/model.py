@@ -15,6 +15,7 @@ from ..kernels.libraries import kernels_of
 from ..parts.body_shape import Shape
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
+from .elimination import Elimination
 from .joints import JointModel
 from .loads import DeadLoadModel, LoadModel, PointForceModel, SignalModel
 from .unknowns import Node
@@ -150,7 +151,10 @@ class MotionModel:
 
 @dataclass
 class Model:
-    """Arrays that the engine reads; engine/include/ says what they mean. tables: addresses of further kernels."""
+    """Arrays that the engine reads; engine/include/ says what they mean. tables: addresses of further kernels.
+
+    newton, accelerations: how the borders of Newton's systems and of those of eq 38 are eliminated.
+    """
 
     dim: int
     cables: list[CableModel]
@@ -175,6 +179,8 @@ class Model:
     chains: np.ndarray
     nodes: dict[str, list[Node]]
     tables: list[int] = field(default_factory=list)
+    newton: Elimination = field(init=False)
+    accelerations: Elimination = field(init=False)
 
     @property
     def couplings(self) -> list[CouplingModel]:

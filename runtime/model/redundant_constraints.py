@@ -8,6 +8,7 @@ from scipy.linalg import solve_triangular
 from ..engine import Engine
 from ..errors import SceneError
 from .joints import JointModel
+from .loops import joints_in_loops
 from .model import Model
 
 SAME, NEARLY = 1e-12, 1e-8
@@ -30,20 +31,17 @@ def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
 
     Raises SceneError where slides, or what drives joints, constrain the same, and for a start in a singular position.
     """
-    riders = [(slide.rider.body, slide.rider.cable) for slide in model.slides]
-    if not model.joints and len(set(riders)) == len(riders):
-        return []  # slides of different bodies never do: each acts on its own body, whose mass is not zero
-    rows = _in_loops(model)
-    if not rows or not engine.prepare():  # start says why
-        return []
-    S, owner = _compliance(engine), _owners(model)
+    rows = _in_loops(model, two_riders=False)
+    if not len(rows) or not engine.prepare():
+        return []  # where there are rows start says why
+    S, owner = _compliance(engine, rows), _owners(model)
     if S is None:
         return []  # here, too
     spare = _spare(model)
-    if locked := [owner[k] for k in rows if S[k, k] == 0 and k not in spare]:
+    if locked := [owner[k] for k, own in zip(rows, np.diag(S), strict=True) if own == 0 and k not in spare]:
         raise SceneError("scene", f"is over-constrained: {_listed(locked)} between points that supports fix already",
                          "leave that out, or the supports")
-    follows = {rows[row]: [rows[k] for k in others] for row, others in _following(S[np.ix_(rows, rows)]).items()}
+    follows = {int(rows[row]): [int(rows[k]) for k in others] for row, others in _following(S).items()}
     if not follows:
         return []
     dropped = [_left_out(model, row, others, owner) for row, others in follows.items()]
@@ -53,42 +51,6 @@ def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
     _check_that_they_follow(model, engine, dropped,
                             _listed([owner[k] for row in follows for k in (*follows[row], row)]))
     return [_message(model.joints[k], follows, owner) for k in dict.fromkeys(k for k, _ in dropped)]
-
-
-def _in_loops(model: Model) -> list[int]:
-    """Return the multipliers that may be redundant, in increasing order: those of joints and slides in loops.
-
-    A body with one link is moved by that link as its equations ask, whatever else there is: these follow from no
-    others, nor do others follow from them. Such bodies are taken away with their links, one after the other, until each
-    that is left has two or more. A cable has supports, which may fix it: what it has links with stays.
-    """
-    bodies_of, rows_of = _links(model)
-    links_of: dict[int, set[str]] = {}
-    for link, bodies in bodies_of.items():
-        for body in bodies:
-            links_of.setdefault(body, set()).add(link)
-    ends = [body for body, links in links_of.items() if len(links) == 1]
-    while ends:
-        for link in tuple(links_of[ends.pop()]):
-            del rows_of[link]
-            for body in bodies_of[link]:
-                links_of[body].discard(link)
-                if len(links_of[body]) == 1:
-                    ends.append(body)
-    return sorted(row for rows in rows_of.values() for row in rows)
-
-
-def _links(model: Model) -> tuple[dict[str, set[int]], dict[str, list[int]]]:
-    """Return the bodies, and the multipliers, of each joint and slide by its name; a slide has those of the joint that
-    keeps its rider's axes, too.
-    """
-    bodies: dict[str, set[int]] = {}
-    rows: dict[str, list[int]] = {}
-    for link, ends in [*((slide, [slide.rider]) for slide in model.slides),
-                       *((joint, joint.attachments) for joint in model.joints)]:
-        bodies.setdefault(link.name, set()).update(end.body for end in ends if end.body >= 0)
-        rows.setdefault(link.name, []).extend(range(link.multiplier, link.multiplier + link.n_multipliers))
-    return bodies, rows
 
 
 def _message(joint: JointModel, follows: dict[int, list[int]], owner: list[str]) -> str:
@@ -131,9 +93,10 @@ def _check_that_they_follow(model: Model, engine: Engine, dropped: list[tuple[in
 
 def redundant(model: Model, engine: Engine, ratio: float = NEARLY) -> str:
     """Return names of slides and joints that constrain nearly the same motion at the time reached; "" without any."""
-    if not model.joints and len(model.slides) < 2:
+    rows = _in_loops(model, two_riders=True)
+    if not len(rows):
         return ""
-    S = _compliance(engine)
+    S = _compliance(engine, rows)
     if S is None or not np.any(np.diag(S) > 0):
         return ""
     used = np.flatnonzero(np.diag(S) > 0)
@@ -141,14 +104,28 @@ def redundant(model: Model, engine: Engine, ratio: float = NEARLY) -> str:
     values, vectors = np.linalg.eigh(scale[:, None] * S[np.ix_(used, used)] * scale)
     nearly_free = values < ratio * values[-1]
     owner = _owners(model)
-    return _listed([owner[k] for k, part in zip(used, np.linalg.norm(vectors[:, nearly_free], axis=1), strict=True)
-                    if part > 1e-3])
+    shares = np.linalg.norm(vectors[:, nearly_free], axis=1)
+    return _listed([owner[k] for k, part in zip(rows[used], shares, strict=True) if part > 1e-3])
 
 
-def _compliance(engine: Engine) -> np.ndarray | None:
-    """Return H M^-1 H'; None where the state is not finite, or the mass matrix is singular there."""
+def _in_loops(model: Model, *, two_riders: bool) -> np.ndarray:
+    """Return the multipliers whose constraints may follow from others: of joints in loops, and of slides with them.
+
+    Slides of different bodies alone never do, as each acts on its own body, whose mass is not zero; they may nearly,
+    and count with two_riders.
+    """
+    joints = [joint for joint, loops in zip(model.joints, joints_in_loops(model), strict=True) if loops]
+    riders = [(slide.rider.body, slide.rider.cable) for slide in model.slides]
+    alone = len(riders) < 2 if two_riders else len(set(riders)) == len(riders)
+    slides = [] if alone and not joints else model.slides
+    return np.array([k for part in (*slides, *joints)
+                     for k in range(part.multiplier, part.multiplier + part.n_multipliers)], dtype=int)
+
+
+def _compliance(engine: Engine, rows: np.ndarray) -> np.ndarray | None:
+    """Return H M^-1 H' of these multipliers; None where the state is not finite, or the mass matrix singular."""
     try:
-        S = engine.compliance()
+        S = engine.compliance(rows)
     except ArithmeticError:
         return None
     return S if np.isfinite(S).all() else None

@@ -93,14 +93,14 @@ static void add_body(const fu_model *model, const fu_body *body, const fu_state 
     if (weights.inertia != 0.0) body->matter->mass(body, instant.b, M);
     if (weights.stiffness != 0.0) body->matter->tangent(body, &instant, D, K);
     if (turns && psi) fu_turn_columns(body->kernel, K, n, n, 0, psi + body->dof);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-            double value = 0.0;
-            if (weights.inertia != 0.0) value += weights.inertia * M[n * i + j];
-            if (weights.stiffness != 0.0) value += weights.stiffness * weights.rate * D[n * i + j];
-            if (turns) value += weights.stiffness * K[n * i + j];
-            fu_add(model, system, body->dof + i, body->dof + j, value);
-        }
+    for (int i = 0; i < n * n; ++i) {
+        double value = 0.0;
+        if (weights.inertia != 0.0) value += weights.inertia * M[i];
+        if (weights.stiffness != 0.0) value += weights.stiffness * weights.rate * D[i];
+        if (turns) value += weights.stiffness * K[i];
+        M[i] = value;
+    }
+    fu_add_body(model, system, body->dof, n, M);
 }
 
 void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights, fu_system *system)

@@ -48,7 +48,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_state *next = equations->next;
     const fu_weights w = equations->weights;
     const int rows = joint->kernel->rows, first = fu_extra(model, coupling->unknown);
-    double J[6 * 2 * FU_ATTACHMENT_COORDINATES], K[4 * FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    double J[6 * 2 * FU_ATTACHMENT_COORDINATES], K[4 * FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], unit[6];
     int at[2 * FU_ATTACHMENT_COORDINATES], unused[FU_ATTACHMENT_COORDINATES];
     if (fu_joint_is_inactive(model, joint, next)) {
         unit_rows(model, joint, ~0, w.inertia, system);
@@ -59,15 +59,16 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     for (int r = 0; r < rows; ++r)
         if (joint->redundant_rows >> r & 1) memset(J + r * n, 0, sizeof(double) * (size_t)n);
     unit_rows(model, joint, joint->redundant_rows, w.inertia, system);
+    for (int r = 0; r < rows; ++r) unit[r] = fu_row_unit(w.inertia, coupling->scale[r]);
     for (int r = 0; r < rows; ++r)
         for (int i = 0; i < n; ++i)
-            if (fu_joint_moves(model, joint, next, at[i]))
-                fu_add(model, system, at[i], first + r, fu_row_unit(w.inertia, coupling->scale[r]) * J[r * n + i]);
+            if (J[r * n + i] != 0.0 && fu_joint_moves(model, joint, next, at[i]))
+                fu_add(model, system, at[i], first + r, unit[r] * J[r * n + i]);
     turn_ends(model, joint, equations->psi, J, rows, n, n_first);
     turn_ends(model, joint, equations->psi, K, n, n, n_first);
     for (int i = 0; i < n; ++i) {
         for (int r = 0; r < rows; ++r)
-            fu_add(model, system, first + r, at[i], fu_row_unit(w.inertia, coupling->scale[r]) * J[r * n + i]);
+            if (J[r * n + i] != 0.0) fu_add(model, system, first + r, at[i], unit[r] * J[r * n + i]);
         if (!fu_joint_moves(model, joint, next, at[i])) continue;
         for (int m = 0; m < n; ++m) {
             /* what is between two cables would widen the band: Newton converges without */
@@ -109,6 +110,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_joint, kernel, FU_KERNELS, 0),
     FU_FIELD_ARRAY(fu_joint, attachments, FU_ATTACHMENT),
     FU_FIELD_AS("drive", fu_joint, signal, FU_INTEGER),
+    FU_FIELD(fu_joint, of_points, FU_INTEGER, 0),
     FU_FIELD_AS("base", fu_joint, c0, FU_REAL),
     {0},
 };

@@ -12,7 +12,7 @@ typedef struct {
     fu_attachment_state at[2];
     double gap[3], c[3], rate, second;
     double B[MOVES * 2 * FU_ATTACHMENT_COORDINATES]; /* derivatives of gap and turns by the coordinates of both */
-    int moves, n;
+    int moves, used, n; /* columns of the kernel's derivatives, and of these the first that are not nil */
 } joint_view;
 
 static void look(const fu_model *model, const fu_joint *joint, const fu_state *state, const double s_rate[2],
@@ -20,11 +20,18 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
     for (int e = 0; e < 2; ++e)
-        fu_attachment_at(model, &joint->attachments[e], state, s_rate ? s_rate[e] : 0.0, FU_POINT | FU_AXES, &view->at[e]);
+        fu_attachment_at(model, &joint->attachments[e], state, s_rate ? s_rate[e] : 0.0,
+                         joint->of_points ? FU_POINT : FU_POINT | FU_AXES, &view->at[e]);
     const fu_attachment_state *one = &view->at[0], *two = &view->at[1];
     const int n1 = one->n, n2 = two->n, n = n1 + n2;
     view->n = n;
     view->moves = dim + 2 * turns;
+    view->used = joint->of_points ? dim : view->moves;
+    for (int e = 0; e < 2 && joint->of_points; ++e) {
+        memset(view->at[e].A, 0, sizeof view->at[e].A);
+        memset(view->at[e].omega, 0, sizeof view->at[e].omega);
+        memset(view->at[e].alpha, 0, sizeof view->at[e].alpha);
+    }
     for (int d = 0; d < 3; ++d) view->gap[d] = two->p[d] - one->p[d];
     view->rate = view->second = 0.0;
     view->c[0] = joint->c0;
@@ -32,12 +39,12 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
         view->c[0] += fu_signal_at(&model->signals[joint->signal], state->t, &view->rate, &view->second);
     view->c[1] = cos(view->c[0]);
     view->c[2] = sin(view->c[0]);
-    memset(view->B, 0, sizeof(double) * (size_t)(view->moves * n));
+    memset(view->B, 0, sizeof(double) * (size_t)(view->used * n));
     for (int d = 0; d < dim; ++d) {
         for (int i = 0; i < n1; ++i) view->B[d * n + i] = -one->P[d * n1 + i];
         for (int i = 0; i < n2; ++i) view->B[d * n + n1 + i] = two->P[d * n2 + i];
     }
-    for (int d = 0; d < turns; ++d) {
+    for (int d = 0; d < turns && !joint->of_points; ++d) {
         memcpy(view->B + (dim + d) * n, one->T + d * n1, sizeof(double) * (size_t)n1);
         memcpy(view->B + (dim + turns + d) * n + n1, two->T + d * n2, sizeof(double) * (size_t)n2);
     }
@@ -49,7 +56,7 @@ static void over_coordinates(const joint_view *view, int rows, const double *by_
     const int n = view->n;
     memset(J, 0, sizeof(double) * (size_t)(rows * n));
     for (int r = 0; r < rows; ++r)
-        for (int m = 0; m < view->moves; ++m) {
+        for (int m = 0; m < view->used; ++m) {
             const double value = by_moves[r * view->moves + m];
             if (value == 0.0) continue;
             for (int i = 0; i < n; ++i) J[r * n + i] += value * view->B[m * n + i];
@@ -106,6 +113,14 @@ int fu_between_cables(const fu_joint *joint)
     return joint->attachments[0].cable >= 0 && joint->attachments[1].cable >= 0;
 }
 
+/* Returns whether any of n numbers is not zero. */
+static int any(int n, const double *numbers)
+{
+    for (int i = 0; i < n; ++i)
+        if (numbers[i] != 0.0) return 1;
+    return 0;
+}
+
 /* Makes J, and K, the derivative of J' multipliers, over the joint's coordinates, with their numbers; returns how many they are. */
 int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K)
 {
@@ -118,20 +133,21 @@ int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_stat
     const int n = coordinates(&view, at), n1 = view.at[0].n;
     joint->kernel->force(view.gap, view.at[0].A, view.at[1].A, view.c, multipliers, phi, by_moves, of_moves);
     over_coordinates(&view, rows, by_moves, J);
-    over_coordinates(&view, view.moves, of_moves, half);
+    over_coordinates(&view, view.used, of_moves, half);
     for (int r = 0; r < rows; ++r)
         for (int m = 0; m < view.moves; ++m) g[m] += by_moves[r * view.moves + m] * multipliers[r];
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-            K[i * n + j] = 0.0;
-            for (int m = 0; m < view.moves; ++m) K[i * n + j] += view.B[m * n + i] * half[m * n + j];
+    memset(K, 0, sizeof(double) * (size_t)(n * n));
+    for (int m = 0; m < view.used; ++m)
+        for (int i = 0; i < n && any(view.moves, of_moves + m * view.moves); ++i) {
+            const double by = view.B[m * n + i];
+            for (int j = 0; j < n && by != 0.0; ++j) K[i * n + j] += by * half[m * n + j];
         }
     for (int e = 0; e < 2; ++e) {
         double pull[3], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
         const int m = view.at[e].n, from = e ? n1 : 0;
         for (int d = 0; d < dim; ++d) pull[d] = e ? g[d] : -g[d];
         memset(part, 0, sizeof(double) * (size_t)(m * m));
-        fu_geometric_stiffness(model, &joint->attachments[e], state, pull, g + dim + e * turns, m, part);
+        fu_geometric_stiffness(model, &joint->attachments[e], state, pull, joint->of_points ? 0 : g + dim + e * turns, m, part);
         for (int i = 0; i < m; ++i)
             for (int j = 0; j < m; ++j) K[(from + i) * n + from + j] += part[i * m + j];
     }

@@ -133,11 +133,47 @@ cdef extern from "engine.h" nogil:
     void fu_lapack_attach(fu_lapack *lapack, int k, const void *function)
     ctypedef struct fu_span:
         int first, end
+    ctypedef struct fu_strip:
+        int k, chain, at, x
     ctypedef struct fu_piece:
-        int k
+        int k, strip
         fu_span rows
+    ctypedef struct fu_fronts:
+        int m, n, size
+        const int *start
+        const int *first
+        const int *pivots
+        const int *neighbours
+        const int *unknown
+        const int *in_parent
+        const int *parent
+        const int *child
+        const int *sibling
+        const int *front
+        const int *place
+    ctypedef struct fu_factors:
+        double *numbers
+        int *unknowns
+        int *map
+        double *x
+        int *start
+        int *first
+        int *size
+        int *pivots
+        int *done
+        int most_numbers, most_unknowns
     ctypedef struct fu_system:
-        int n, width, m, n_chains, definite
+        int n, width, m, n_chains, n_strips, n_strip_rows, definite
+        const fu_strip *strips
+        const int *first_strip
+        const int *chain_start
+        const int *on_chain
+        int *n_columns
+        int *n_rows
+        int *constant_columns
+        int *constant_rows
+        const fu_fronts *fronts
+        fu_factors factors
         const int *chains
         const int *half
         double *K
@@ -279,7 +315,7 @@ cdef extern from "engine.h" nogil:
     void fu_find_pieces(const fu_model *model, fu_state *state)
     void fu_touch(const fu_model *model, fu_state *state)
     int fu_moves(const fu_run *run)
-    int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
+    int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)
     int fu_prepare(fu_run *run)
     int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,

@@ -4,6 +4,7 @@ cdef class Statics(Translation):
     """Residual and matrix of a state."""
 
     cdef object spreads
+    cdef object corner  # rows and columns of the border's entries
     cdef dict weight  # gravity's forces as the model has them
 
     cdef _entries(self):
@@ -14,16 +15,21 @@ cdef class Statics(Translation):
         columns, diagonals = np.nonzero(band)
         entries = [(columns + diagonals - 2 * width, columns, band[columns, diagonals])]
         if m:
-            corner = np.asarray(<double[:m * m]>system.D).reshape(m, m)
-            rows, at = np.nonzero(corner.T)
-            entries.append((n + rows, n + at, corner.T[rows, at]))
-        if n and m:
-            right = np.asarray(<double[:m * n]>system.B).reshape(m, n)
-            below = np.asarray(<double[:m * n]>system.C).reshape(m, n)
-            at, rows = np.nonzero(right)
-            entries.append((rows, n + at, right[at, rows]))
-            rows, at = np.nonzero(below)
-            entries.append((n + rows, at, below[rows, at]))
+            if self.corner is None:
+                self.corner = self.newton_elimination.entries()
+            corner = np.asarray(<double[:system.fronts.size]>system.D)
+            used = np.flatnonzero(corner)
+            entries.append((n + self.corner[0][used], n + self.corner[1][used], corner[used]))
+        if system.n_strip_rows:
+            strips, chains = self.newton_elimination.strips, np.array([system.chains[i] for i in range(system.n_chains + 1)])
+            in_band = np.concatenate([np.arange(*chains[chain:chain + 2]) for chain in strips[:, 1]])
+            beside = n + np.repeat(strips[:, 0], np.diff(chains)[strips[:, 1]])
+            right = np.asarray(<double[:system.n_strip_rows]>system.B)
+            below = np.asarray(<double[:system.n_strip_rows]>system.C)
+            used = np.flatnonzero(right)
+            entries.append((in_band[used], beside[used], right[used]))
+            used = np.flatnonzero(below)
+            entries.append((beside[used], in_band[used], below[used]))
         return [np.concatenate(part) for part in zip(*entries)]
 
     cdef _matrix(self):
@@ -163,19 +169,11 @@ cdef class Statics(Translation):
 
     def dense_matrix(self, double inertia, double rate, double stiffness):
         """The same as an array (n, n), which is quicker where there are few unknowns."""
-        cdef fu_system *system = &self.run.newton
-        cdef int i, k, n = system.n, width = system.width, m = system.m
+        cdef int total = self.run.newton.n + self.run.newton.m
         self._weigh(inertia, rate, stiffness)
-        full = np.zeros((n + m, n + m))
-        cdef double[:, :] entry = full
-        for k in range(n):
-            for i in range(max(0, k - width), min(n, k + width + 1)):
-                entry[i, k] = system.K[k * (3 * width + 1) + i - k + 2 * width]
-        for k in range(m):
-            for i in range(n):
-                entry[i, n + k], entry[n + k, i] = system.B[k * n + i], system.C[k * n + i]
-            for i in range(m):
-                entry[n + i, n + k] = system.D[k * m + i]
+        row, column, value = self._entries()
+        full = np.zeros((total, total))
+        full[row, column] = value
         between = self._between_cables() if stiffness else None
         return full if between is None else full + stiffness * between.toarray()
 

@@ -1,5 +1,7 @@
 # A model as the engine's C structures.
 
+SPARE = 4  # times the fronts' memory as it is foreseen: what pivots may take that are left to later fronts
+
 cdef const fu_coupling_type *_type_of(coupling) except NULL:
     """Return the engine's type of a coupling of a model."""
     type = fu_coupling_type_of(coupling.type.encode())
@@ -22,6 +24,8 @@ cdef class Translation(Arrays):
     cdef fu_watch *watches
     cdef fu_model model
     cdef fu_run run
+    cdef fu_fronts newton_fronts, mass_fronts
+    cdef object newton_elimination
 
     def __cinit__(self, model, blocks=True):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
@@ -242,19 +246,66 @@ cdef class Translation(Arrays):
         m = &self.model
         m.n_motions, m.motions, m.signals, m.load_fraction = len(model.motions), self.motions, self.signals, 1.0
 
-    cdef void _system(self, fu_system *system, model, int width, int m):
-        cdef int n = model.n_band, chains = len(model.chains) - 1
+    cdef _fronts(self, fu_fronts *fronts, elimination):
+        """Fill in the order in which a border is eliminated."""
+        fronts.m, fronts.n, fronts.size = elimination.m, elimination.n, elimination.size
+        fronts.start, fronts.first = self._ints(elimination.start), self._ints(elimination.first)
+        fronts.pivots, fronts.neighbours = self._ints(elimination.pivots), self._ints(elimination.neighbours)
+        fronts.unknown, fronts.in_parent = self._ints(elimination.unknown), self._ints(elimination.in_parent)
+        fronts.parent, fronts.child = self._ints(elimination.parent), self._ints(elimination.child)
+        fronts.sibling = self._ints(elimination.sibling)
+        fronts.front, fronts.place = self._ints(elimination.front), self._ints(elimination.place)
+
+    cdef _factors(self, fu_factors *factors, elimination):
+        """Make the memory of a border's factors: none where they replace the matrix."""
+        cdef int n = elimination.n, m = elimination.m
+        if n == 1:
+            return
+        sizes = elimination.sizes.astype(float)
+        factors.most_numbers = min(SPARE * (sizes ** 2).sum(), INDICES)
+        factors.most_unknowns = min(2 * SPARE * sizes.sum(), INDICES)
+        factors.numbers, factors.x = self._zeros(factors.most_numbers), self._zeros(2.0 * m)
+        factors.unknowns, factors.map = self._ints(np.zeros(factors.most_unknowns)), self._ints(np.zeros(m))
+        factors.start, factors.first = self._ints(np.zeros(n)), self._ints(np.zeros(n))
+        factors.size, factors.pivots, factors.done = (self._ints(np.zeros(n)), self._ints(np.zeros(n)),
+                                                      self._ints(np.zeros(n)))
+
+    cdef _strips(self, fu_system *system, model, strips):
+        """Fill in what of the border touches which chains, with the memory for it."""
+        cdef int n = len(strips), chains = len(model.chains) - 1
+        k, chain = strips.T
+        lengths, beyond = np.diff(model.chains)[chain], FU_BAND_BEYOND(system.width)
+        ends, ends_of_x = np.cumsum(lengths), np.cumsum(lengths + beyond)
+        system.n_strips, system.n_strip_rows = n, self._counted(ends[-1] if n else 0)
+        system.strips = <fu_strip *>self._ints(np.stack([
+            k, chain, ends - lengths - model.chains[chain], ends_of_x - lengths - beyond - model.chains[chain]], axis=1))
+        system.first_strip = self._ints(np.searchsorted(k, np.arange(system.m + 1)))
+        on_chain = np.argsort(chain, kind="stable")
+        system.on_chain = self._ints(on_chain)
+        system.chain_start = self._ints(np.searchsorted(chain[on_chain], np.arange(chains + 1)))
+        system.B, system.C = self._zeros(system.n_strip_rows), self._zeros(system.n_strip_rows)
+        system.X = self._zeros(self._counted(ends_of_x[-1] if n else 0))
+        system.span_B, system.span_C = <fu_span *>self._ints(np.zeros(2 * 2 * n)), <fu_span *>self._ints(np.zeros(2 * 2 * n))
+        system.columns, system.rows = <fu_piece *>self._ints(np.zeros(4 * 2 * n)), <fu_piece *>self._ints(np.zeros(4 * 2 * n))
+        system.n_columns, system.n_rows = self._ints(np.zeros(chains)), self._ints(np.zeros(chains))
+        system.constant_columns, system.constant_rows = self._ints(np.zeros(chains)), self._ints(np.zeros(chains))
+
+    cdef int _counted(self, double n) except -1:
+        """Return a number of numbers as C's int. Raises MemoryError where it is none."""
+        if n > INDICES:
+            raise MemoryError
+        return <int>n
+
+    cdef _system(self, fu_system *system, fu_fronts *fronts, model, elimination, int width):
+        cdef int n = model.n_band, m = elimination.m, chains = len(model.chains) - 1
         system.n, system.width, system.m, system.n_chains = n, width, m, chains
-        system.chains = self._ints(model.chains)
+        self._fronts(fronts, elimination)
+        self._factors(&system.factors, elimination)
+        self._strips(system, model, elimination.strips)
+        system.fronts, system.chains = fronts, self._ints(model.chains)
         middles = (model.chains[:-1] + model.chains[1:]) // 2
         system.half = self._ints(np.searchsorted(np.sort([*model.chains[:-1], *middles]), np.arange(n), "right") - 1)
-        system.D, system.L = self._zeros(<double>m * m), self._zeros((width + 1.0) * (n + FU_BAND_GROUP * chains))
-        system.B, system.C = self._zeros(<double>n * m), self._zeros(<double>n * m)
-        system.X = self._zeros(<double>FU_BAND_LENGTH(n, width) * m)
-        system.span_B = <fu_span *>self._ints(np.zeros(2 * 2 * m * chains))
-        system.span_C = <fu_span *>self._ints(np.zeros(2 * 2 * m * chains))
-        system.columns = <fu_piece *>self._ints(np.zeros(3 * 2 * m * chains))
-        system.rows = <fu_piece *>self._ints(np.zeros(3 * 2 * m * chains))
+        system.D, system.L = self._zeros(elimination.size + 1.0), self._zeros((width + 1.0) * (n + FU_BAND_GROUP * chains))
         system.pivot_band, system.pivot_border = self._ints(np.zeros(n)), self._ints(np.zeros(m))
 
     cdef _state(self, fu_state *state, model):
@@ -296,12 +347,13 @@ cdef class Translation(Arrays):
         self._state(&run.now, model)
         self._state(&run.next, model)
         width = max(model.width, FU_BAND_GROUP - 1)
-        self._system(&run.newton, model, width, model.n_border_dof + model.n_extra)
+        self.newton_elimination, accelerations = model.newton, model.accelerations
+        self._system(&run.newton, &self.newton_fronts, model, model.newton, width)
         a = &run.accelerator
-        self._system(&a.mass, model, width, model.n_border_dof + model.n_multipliers)
+        self._system(&a.mass, &self.mass_fronts, model, accelerations, width)
         # that of the mass is factored elsewhere, before the first of Newton is made
         run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
-        a.corner = self._zeros(<double>a.mass.m * a.mass.m)
+        a.corner = self._zeros(accelerations.size)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
         a.rows = <fu_rows *>self._zeros(self.model.n_rows * sizeof(fu_rows) // sizeof(double) + 1)
         a.scratch = self._zeros(self.model.n_scratch)

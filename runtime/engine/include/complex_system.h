@@ -9,10 +9,15 @@
 typedef struct {
     fu_complex *K, *B, *C, *D, *X;
     fu_complex *x;     /* right side, then solution */
-    int n_columns;
-    fu_piece *columns; /* of X; those of C are the real system's */
+    fu_factors factors; /* of D, unless there is only one front */
+    int *n_columns;
+    fu_piece *columns; /* of X, by chain; those of C are the real system's */
     int *pivot_band, *pivot_border;
 } fu_complex_system;
+
+int fu_complex_fronts_factor(const fu_fronts *fronts, const fu_complex *matrix, fu_factors *factors,
+                             const fu_lapack *lapack);
+void fu_complex_fronts_solve(const fu_fronts *fronts, const fu_factors *factors, fu_complex *y);
 
 void fu_complex_system_take(fu_complex_system *c, const fu_system *real, double *scratch, long *taken);
 void fu_complex_system_clear(fu_complex_system *c, const fu_system *real);

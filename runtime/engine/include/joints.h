@@ -11,6 +11,7 @@ typedef struct {
     const fu_joint_kernels *kernel;
     fu_attachment attachments[2];
     int signal;
+    int of_points;      /* its equations are of the two points alone, and do not see turns */
     int redundant_rows; /* bits of the rows that other joints' imply: their multipliers are nil */
     double c0;          /* m or rad: c without the signal */
 } fu_joint;

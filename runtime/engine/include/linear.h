@@ -3,6 +3,7 @@
 #define FUNICULAR_LINEAR_H
 
 #include "common.h"
+#include "fronts.h"
 
 /* The functions of LAPACK that the engine calls, with their arguments; linear/lapack.c. */
 #define FU_LAPACK_FUNCTIONS(LAPACK)                                                                                    \
@@ -43,9 +44,15 @@ typedef struct {
     int first, end;
 } fu_span;
 
-/* What column k of X, or row k of C, has in half a chain. */
+/* What unknown k of the border has in a chain: columns of B and X, a row of C. Its entry in a row of the band is at `at` + row
+ * of B and C, at `x` + row of X. */
 typedef struct {
-    int k;
+    int k, chain, at, x;
+} fu_strip;
+
+/* What a column of X, or a row of C, has in half a chain. */
+typedef struct {
+    int k, strip;
     fu_span rows;
 } fu_piece;
 
@@ -54,29 +61,42 @@ typedef struct {
     int n, width;      /* band part: size, half bandwidth */
     int m;             /* border */
     int n_chains;
-    int constant, constant_columns, constant_rows; /* of the border, from the first on, that stay; their pieces */
+    int constant;      /* of the border, from the first on, that stay */
     int definite;      /* the band is factored in L (band.c), else in K (dgbtrf) */
-    int n_columns, n_rows; /* pieces */
+    int n_strips, n_strip_rows; /* n_strip_rows: the numbers of B, or of C */
+    const fu_strip *strips; /* by unknown of the border, then by chain */
+    const int *first_strip; /* m + 1: of each unknown of the border, and n_strips */
+    const int *chain_start, *on_chain; /* n_chains + 1: where in on_chain the strips of each chain begin */
     const int *chains; /* n_chains + 1: the first row of each, and n */
     const int *half;   /* of each row of the band: 2 chain, and 1 more from the middle on */
     double *K;         /* LAPACK's band storage, FU_BAND_ROWS x n; of all systems of a run the same */
     double *L;         /* (width + 1) x n, and a group more for each chain */
-    double *B;         /* n x m, column by column */
-    double *C;         /* the border's rows, transposed: n x m */
-    double *D;         /* m x m, column by column */
-    double *X;         /* K^-1 B in the chains that B touches, FU_BAND_LENGTH a column */
-    fu_span *span_B, *span_C; /* 2 n_chains x m: rows of each half that are not zero; end 0 where none is */
-    fu_piece *columns, *rows; /* of X and C */
+    double *B;         /* strip by strip */
+    double *C;         /* the border's rows, likewise */
+    double *D;         /* as `fronts` stores it, and one number more, which stays zero */
+    const fu_fronts *fronts;
+    fu_factors factors; /* of D, unless there is only one front: then D has them */
+    double *X;         /* K^-1 B, FU_BAND_BEYOND more a strip */
+    fu_span *span_B, *span_C; /* FU_HALVES a strip: rows of each half that are not zero; end 0 where none is */
+    fu_piece *columns, *rows; /* of X and C: those of a chain from FU_HALVES chain_start on */
+    int *n_columns, *n_rows, *constant_columns, *constant_rows; /* n_chains: how many pieces there are, and stay */
     int *pivot_band, *pivot_border;
 } fu_system;
 
 int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A);
 void fu_band_solve(int n, int width, const double *A, int first, double *x);
 
+int fu_fronts_at(const fu_fronts *fronts, int row, int column);
+void fu_fronts_add_product(const fu_fronts *fronts, const double *matrix, int columns, const double *x, double *y);
+int fu_fronts_factor(const fu_fronts *fronts, const double *matrix, fu_factors *factors, const fu_lapack *lapack);
+void fu_fronts_solve(const fu_fronts *fronts, const fu_factors *factors, double *y);
+
 void fu_system_clear(fu_system *system);
 void fu_system_clear_border(fu_system *system);
 fu_span fu_common(fu_span one, fu_span other);
-int fu_pieces(const fu_system *system, int k, int chain, const double *x, fu_piece *pieces);
+int fu_strip_of(const fu_system *system, int k, int chain);
+int fu_pieces(const fu_system *system, int strip, const double *x, fu_piece *pieces);
+void fu_system_release_border(fu_system *system);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
 void fu_system_keep_border(fu_system *system, const fu_lapack *lapack, int columns);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);

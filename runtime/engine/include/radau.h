@@ -28,6 +28,7 @@ typedef struct {
     double *multipliers; /* of eq 38 at the start and at each stage, where forces depend on them */
     double *unknowns; /* of a Newton system */
     double *D_real;   /* the real system's border before it was factored */
+    double *kept;     /* what the border's rows make of dofs */
     double *last;     /* the last step's Z */
     double h_last;    /* its size, s; 0: there is none to predict from */
     fu_complex_system newton;

@@ -40,7 +40,7 @@ int fu_radau_factor(fu_run *run, double h)
     }
     fu_matrix_of_weights(run, (fu_weights){1.0, rate, real * real});
     fu_complex_system_accumulate(c, s, damped ? by_damping : (fu_complex){2.0 - by_stiffness.re, -by_stiffness.im});
-    memcpy(w->D_real, s->D, sizeof(double) * (size_t)s->m * (size_t)s->m);
+    memcpy(w->D_real, s->D, sizeof(double) * (size_t)s->fronts->size);
     int info = fu_system_factor_band(&run->newton, run->model->lapack);
     if (!info) info = fu_system_factor_border(&run->newton, run->model->lapack);
     if (!info) info = fu_complex_system_factor(c, s, run->model->lapack, w->unknowns);
@@ -51,20 +51,18 @@ int fu_radau_factor(fu_run *run, double h)
     return info;
 }
 
-/* Writes the right sides H r of the constraint rows from this one on. */
-static void keep_row(fu_run *run, int first, int rows, const double *unknowns)
+/* Makes the border's rows times dofs, which for constraint rows are H r. */
+static void keep_rows(fu_run *run, const double *unknowns)
 {
-    const fu_model *model = run->model;
     const fu_system *s = &run->newton;
-    for (int row = model->n_border_dof + first; rows-- > 0; ++row) {
-        const double *along = s->C + (long)row * s->n;
-        double sum = 0.0;
-        for (const fu_piece *p = s->rows; p < s->rows + s->n_rows; ++p)
-            for (int i = p->rows.first; i < p->rows.end && p->k == row; ++i) sum += along[i] * unknowns[i];
-        for (int i = 0; i < model->n_border_dof; ++i)
-            sum += fu_radau_space(run)->D_real[(long)i * s->m + row] * unknowns[s->n + i];
-        run->rhs[s->n + row] = sum;
+    double *kept = fu_radau_space(run)->kept;
+    for (int row = 0; row < s->m; ++row) kept[row] = 0.0;
+    for (int c = 0; c < s->n_chains; ++c) {
+        const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[c];
+        for (const fu_piece *p = rows; p < rows + s->n_rows[c]; ++p)
+            for (int i = p->rows.first; i < p->rows.end; ++i) kept[p->k] += s->C[s->strips[p->strip].at + i] * unknowns[i];
     }
+    fu_fronts_add_product(s->fronts, fu_radau_space(run)->D_real, run->model->n_border_dof, unknowns + s->n, kept);
 }
 
 void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
@@ -78,9 +76,12 @@ void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
     fu_mass_times(model, run->next.q, run->work, run->psi);
     fu_gather(model, run->psi, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
+    keep_rows(run, unknowns);
     for (int k = 0; k < model->n_couplings; ++k) {
         const fu_coupling *c = model->couplings[k];
-        if (c->row >= 0) keep_row(run, c->unknown + c->n_coordinates, c->n_forces, unknowns);
+        const int first = c->unknown + c->n_coordinates;
+        for (int i = first; i < first + c->n_forces && c->row >= 0; ++i)
+            run->rhs[beyond + i] = fu_radau_space(run)->kept[model->n_border_dof + i];
     }
 }
 

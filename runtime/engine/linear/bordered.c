@@ -14,16 +14,16 @@ void fu_system_clear(fu_system *s)
 
 void fu_system_clear_border(fu_system *s)
 {
-    for (int k = s->constant; k < s->m; ++k)
-        for (int half = 0; half < FU_HALVES * s->n_chains; ++half) {
-            fu_span *of[2] = {&s->span_B[k * FU_HALVES * s->n_chains + half], &s->span_C[k * FU_HALVES * s->n_chains + half]};
-            double *column[2] = {s->B + (long)k * s->n, s->C + (long)k * s->n};
+    for (int i = s->first_strip[s->constant]; i < s->n_strips; ++i)
+        for (int half = FU_HALVES * i; half < FU_HALVES * (i + 1); ++half) {
+            fu_span *of[2] = {&s->span_B[half], &s->span_C[half]};
+            double *column[2] = {s->B + s->strips[i].at, s->C + s->strips[i].at};
             for (int side = 0; side < 2; ++side) {
-                for (int i = of[side]->first; i < of[side]->end; ++i) column[side][i] = 0.0;
+                for (int row = of[side]->first; row < of[side]->end; ++row) column[side][row] = 0.0;
                 *of[side] = (fu_span){s->n, 0};
             }
         }
-    for (int i = 0; i < s->m * s->m; ++i) s->D[i] = 0.0;
+    for (int i = 0; i <= s->fronts->size; ++i) s->D[i] = 0.0;
 }
 
 fu_span fu_common(fu_span one, fu_span other)
@@ -86,20 +86,29 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
                        x + start, &n, &info);
 }
 
+/* Returns the strip of an unknown of the border in a chain, -1 where there is none. */
+int fu_strip_of(const fu_system *s, int k, int chain)
+{
+    for (int i = s->first_strip[k]; i < s->first_strip[k + 1]; ++i)
+        if (s->strips[i].chain == chain) return i;
+    return -1;
+}
+
 /* Returns a piece of a row of C times the rows `of` a column. */
 static double times(const fu_system *s, const fu_piece *p, fu_span of, const double *x)
 {
-    const double *row = s->C + (long)p->k * s->n;
+    const double *row = s->C + s->strips[p->strip].at;
     const fu_span rows = fu_common(p->rows, of);
     double sum = 0.0;
     for (int i = rows.first; i < rows.end; ++i) sum += row[i] * x[i];
     return sum;
 }
 
-/* Finds the rows that count of column k of X in a chain, by halves; returns how many pieces they are. The column decays away from
+/* Finds the rows that count of a column of X in a chain, by halves; returns how many pieces they are. The column decays away from
  * what it touches, in the end to numbers so small that the processor is slow with them. */
-int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *pieces)
+int fu_pieces(const fu_system *s, int strip, const double *x, fu_piece *pieces)
 {
+    const int chain = s->strips[strip].chain;
     const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
     const fu_span halves[FU_HALVES] = {{begin, middle}, {middle, end}};
     double largest = 0.0;
@@ -109,57 +118,81 @@ int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *p
         fu_span rows = halves[half];
         while (rows.first < rows.end && fabs(x[rows.first]) <= FADED * largest) ++rows.first;
         while (rows.first < rows.end && fabs(x[rows.end - 1]) <= FADED * largest) --rows.end;
-        if (rows.first < rows.end) pieces[n++] = (fu_piece){k, rows};
+        if (rows.first < rows.end) pieces[n++] = (fu_piece){s->strips[strip].k, strip, rows};
     }
     return n;
 }
 
-/* Makes column k of X = K^-1 B in a chain. */
-static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain)
+/* Makes a column of X = K^-1 B in a chain; returns how many pieces it has. */
+static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_piece *pieces)
 {
-    const int begin = s->chains[chain], end = s->chains[chain + 1];
-    const fu_span *of = s->span_B + FU_HALVES * (k * s->n_chains + chain);
-    double *x = s->X + FU_BAND_LENGTH(s->n, s->width) * k;
-    if (!of[0].end && !of[1].end) return;
+    const int chain = s->strips[strip].chain, begin = s->chains[chain], end = s->chains[chain + 1];
+    const fu_span *of = s->span_B + FU_HALVES * strip;
+    double *x = s->X + s->strips[strip].x, *B = s->B + s->strips[strip].at;
+    if (!of[0].end && !of[1].end) return 0;
     for (int i = begin; i < end + FU_BAND_BEYOND(s->width); ++i) x[i] = 0.0;
     for (int half = 0; half < FU_HALVES; ++half)
-        for (int i = of[half].first; i < of[half].end; ++i) x[i] = s->B[(long)k * s->n + i];
+        for (int i = of[half].first; i < of[half].end; ++i) x[i] = B[i];
     solve_chain(s, lapack, chain, of[of[0].end == 0].first, x);
-    s->n_columns += fu_pieces(s, k, chain, x, s->columns + s->n_columns);
+    return fu_pieces(s, strip, x, pieces);
 }
 
 /* Makes the columns of X and the pieces of C, but those that stay. */
 static void couple(fu_system *s, const fu_lapack *lapack)
 {
-    s->n_columns = s->constant_columns;
-    s->n_rows = s->constant_rows;
-    for (int k = s->constant; k < s->m; ++k)
-        for (int c = 0; c < s->n_chains; ++c) {
-            const fu_span *of = s->span_C + FU_HALVES * (k * s->n_chains + c);
+    for (int c = 0; c < s->n_chains; ++c) {
+        const int start = FU_HALVES * s->chain_start[c];
+        fu_piece *columns = s->columns + start, *rows = s->rows + start;
+        s->n_columns[c] = s->constant_columns[c];
+        s->n_rows[c] = s->constant_rows[c];
+        for (int i = s->chain_start[c]; i < s->chain_start[c + 1]; ++i) {
+            const int strip = s->on_chain[i], k = s->strips[strip].k;
+            const fu_span *of = s->span_C + FU_HALVES * strip;
+            if (k < s->constant) continue;
             for (int half = 0; half < FU_HALVES; ++half)
-                if (of[half].end) s->rows[s->n_rows++] = (fu_piece){k, of[half]};
-            solve_column(s, lapack, k, c);
+                if (of[half].end) rows[s->n_rows[c]++] = (fu_piece){k, strip, of[half]};
+            s->n_columns[c] += solve_column(s, lapack, strip, columns + s->n_columns[c]);
         }
+    }
 }
 
-/* Lets the first columns and rows of the border stay as they are, beside the band, which is factored. */
+/* Lets the first `columns` columns and rows of the border stay as they are, beside the band, which is factored. */
 void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
 {
     couple(s, lapack);
     s->constant = columns;
-    s->constant_columns = s->n_columns;
-    s->constant_rows = s->n_rows;
+    for (int c = 0; c < s->n_chains; ++c) {
+        const int start = FU_HALVES * s->chain_start[c];
+        const fu_piece *column = s->columns + start, *row = s->rows + start;
+        int *kept[2] = {&s->constant_columns[c], &s->constant_rows[c]};
+        for (*kept[0] = 0; *kept[0] < s->n_columns[c] && column[*kept[0]].k < columns;) ++*kept[0];
+        for (*kept[1] = 0; *kept[1] < s->n_rows[c] && row[*kept[1]].k < columns;) ++*kept[1];
+    }
 }
 
-/* Makes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D; returns LAPACK's info. */
+/* Lets none of the border stay. */
+void fu_system_release_border(fu_system *s)
+{
+    s->constant = 0;
+    for (int c = 0; c < s->n_chains; ++c) s->constant_columns[c] = s->constant_rows[c] = 0;
+}
+
+/* Makes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D or beside it; returns 0, or
+ * 1 + the unknown of the border at which it is singular. */
 int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
 {
     int m = s->m, info = 0;
     if (!m) return 0;
     couple(s, lapack);
-    for (const fu_piece *p = s->columns; p < s->columns + s->n_columns; ++p)
-        for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r)
-            s->D[(long)p->k * m + r->k] -= times(s, r, p->rows, s->X + FU_BAND_LENGTH(s->n, s->width) * p->k);
+    for (int c = 0; c < s->n_chains; ++c) {
+        const int start = FU_HALVES * s->chain_start[c];
+        const fu_piece *columns = s->columns + start, *rows = s->rows + start;
+        for (const fu_piece *p = columns; p < columns + s->n_columns[c]; ++p)
+            for (const fu_piece *r = rows; r < rows + s->n_rows[c]; ++r)
+                s->D[fu_fronts_at(s->fronts, r->k, p->k)] -= times(s, r, p->rows, s->X + s->strips[p->strip].x);
+    }
+    if (s->D[s->fronts->size] != 0.0) return 1; /* the order of elimination has no place for it */
+    if (s->fronts->n > 1) return fu_fronts_factor(s->fronts, s->D, &s->factors, lapack);
     lapack->dgetrf(&m, &m, s->D, &m, s->pivot_border, &info);
     return info;
 }
@@ -173,10 +206,17 @@ void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
     for (int i = m; i < m + FU_BAND_BEYOND(s->width); ++i) y[i] = 0.0;
     for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, s->chains[c], x);
     if (!m) return;
-    for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r) y[r->k] -= times(s, r, r->rows, x);
-    lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
-    for (const fu_piece *p = s->columns; p < s->columns + s->n_columns; ++p) {
-        const double *column = s->X + FU_BAND_LENGTH(s->n, s->width) * p->k, scale = y[p->k];
-        for (int i = p->rows.first; i < p->rows.end; ++i) x[i] -= scale * column[i];
+    for (int c = 0; c < s->n_chains; ++c) {
+        const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[c];
+        for (const fu_piece *r = rows; r < rows + s->n_rows[c]; ++r) y[r->k] -= times(s, r, r->rows, x);
+    }
+    if (s->fronts->n > 1) fu_fronts_solve(s->fronts, &s->factors, y);
+    else lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
+    for (int c = 0; c < s->n_chains; ++c) {
+        const fu_piece *columns = s->columns + FU_HALVES * s->chain_start[c];
+        for (const fu_piece *p = columns; p < columns + s->n_columns[c]; ++p) {
+            const double *column = s->X + s->strips[p->strip].x, scale = y[p->k];
+            for (int i = p->rows.first; i < p->rows.end; ++i) x[i] -= scale * column[i];
+        }
     }
 }

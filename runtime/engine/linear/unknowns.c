@@ -67,14 +67,20 @@ static void add(fu_system *s, int row, int column, double value)
     if (row < 0 || column < 0) return; /* a fixed dof */
     if (row < n && column < n)
         s->K[(long)column * FU_BAND_ROWS(s->width) + FU_BAND_DIAGONAL(s->width) + row - column] += value;
-    else if (row < n) {
-        s->B[(long)(column - n) * n + row] += value;
-        touch(&s->span_B[(column - n) * FU_HALVES * s->n_chains + s->half[row]], row);
-    } else if (column < n) {
-        s->C[(long)(row - n) * n + column] += value;
-        touch(&s->span_C[(row - n) * FU_HALVES * s->n_chains + s->half[column]], column);
-    } else
-        s->D[(long)(column - n) * s->m + row - n] += value;
+    else if (row >= n && column >= n) {
+        if (value == 0.0) return; /* most of what a joint has */
+        const int at = fu_fronts_at(s->fronts, row - n, column - n);
+        s->D[at] += at < s->fronts->size ? value : fabs(value); /* what has no place is not to cancel: it is refused */
+    } else {
+        const int in_band = row < n ? row : column, half = s->half[in_band];
+        const int strip = fu_strip_of(s, (row < n ? column : row) - n, half / FU_HALVES);
+        if (strip < 0) {
+            s->D[s->fronts->size] += fabs(value);
+            return;
+        }
+        (row < n ? s->B : s->C)[s->strips[strip].at + in_band] += value;
+        touch((row < n ? s->span_B : s->span_C) + FU_HALVES * strip + half % FU_HALVES, in_band);
+    }
 }
 
 /* Adds T' value T to a system at dofs (or unknowns beyond them, fu_extra) i, j, and notes which rows of the border that touches;
@@ -93,6 +99,17 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
     for (int k = 0; k < a.n; ++k)
         for (int m = 0; m < b.n; ++m)
             add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
+}
+
+/* Adds an n x n matrix, row by row, over the dofs of a body from `dof` on. */
+void fu_add_body(const fu_model *model, fu_system *s, int dof, int n, const double *values)
+{
+    const fu_fronts *fronts = s->fronts;
+    const int first = model->unknown_of_dof[dof] - s->n, front = fronts->front[first];
+    const int stride = fronts->pivots[front] + fronts->neighbours[front];
+    double *to = s->D + fu_fronts_at(fronts, first, first);
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) to[(long)j * stride + i] += values[i * n + j];
 }
 
 /* Returns the largest of what the dofs, times their weights, move points by, as a length, m; not a number where one is none. */

@@ -32,11 +32,11 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    s->constant = s->constant_columns = s->constant_rows = 0;
+    fu_system_release_border(s);
     fu_system_clear(s);
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, s);
     fu_bodies_mass(model, model->zero, 1, s);
-    memcpy(work->corner, s->D, sizeof(double) * (size_t)(s->m * s->m));
+    memcpy(work->corner, s->D, sizeof(double) * (size_t)s->fronts->size);
     if (fu_system_factor_band(s, model->lapack)) return 1;
     fu_system_keep_border(s, model->lapack, model->n_border_dof);
     return !s->definite; /* else it would be in K, which the Newton matrix takes */
@@ -46,10 +46,8 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 static void border(const fu_model *model, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    const int n = model->n_border_dof, whole = n + model->n_multipliers;
     fu_system_clear_border(s);
-    for (int k = 0; k < n; ++k)
-        memcpy(s->D + (long)k * s->m, work->corner + (long)k * whole, sizeof(double) * (size_t)n);
+    memcpy(s->D, work->corner, sizeof(double) * (size_t)s->fronts->size);
     fu_bodies_mass(model, q, 0, s);
 }
 
@@ -142,30 +140,33 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
     return 0;
 }
 
-/* Makes S = H M^-1 H' (multipliers x multipliers) at a state: singular where joints hold the same. */
-int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
+/* Makes S = H M^-1 H' (n x n) at a state, of n multipliers: singular where joints hold the same. at: of each multiplier its row
+ * of S, -1 where it has none. */
+int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)
 {
     fu_system *s = &work->mass;
-    const int n = model->n_multipliers, whole = s->m;
+    const int all = model->n_multipliers;
     evaluate(model, state, work);
-    s->m = model->n_border_dof; /* M alone */
     border(model, state->q, work);
+    for (int k = 0; k < all; ++k) fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, and no multipliers */
     const int info = fu_system_factor_border(s, model->lapack);
     for (int r = 0; r < model->n_rows && !info; ++r) {
         const fu_rows *rows = &work->rows[r];
         for (int c = 0; c < rows->rows; ++c) {
             const double *H = rows->H + c * rows->n;
+            if (at[rows->first + c] < 0) continue;
             for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
             for (int k = 0; k < rows->n; ++k) work->work[rows->at[k]] += H[k];
             fu_gather(model, work->work, work->rhs);
+            memset(work->rhs + model->n_band + model->n_border_dof, 0, sizeof(double) * (size_t)all);
             fu_system_solve(s, model->lapack, work->rhs);
             fu_spread(model, work->rhs, work->work);
             for (int i = 0; i < model->n_rows; ++i)
                 for (int d = 0; d < work->rows[i].rows; ++d)
-                    S[(rows->first + c) * n + work->rows[i].first + d] = -minus_H(&work->rows[i], d, work->work);
+                    if (at[work->rows[i].first + d] >= 0)
+                        S[(long)at[rows->first + c] * n + at[work->rows[i].first + d]] = -minus_H(&work->rows[i], d, work->work);
         }
     }
-    s->m = whole;
     return info;
 }
 

@@ -1,0 +1,44 @@
+/* The border of a complex system, front by front. */
+#include "complex_system.h"
+#include "engine.h"
+
+#define NUMBER fu_complex
+#define ZERO ((fu_complex){0.0, 0.0})
+#define ONE ((fu_complex){1.0, 0.0})
+#define TIMES(a, b) fu_complex_product(a, b)
+#define PREFIX(name) complex_##name
+#define SIZE(x) (fabs((x).re) + fabs((x).im))
+#define DIVIDE(x, by) fu_complex_quotient(x, by)
+#define ADD(to, x) ((to).re += (x).re, (to).im += (x).im)
+#define APPLY eliminated
+#define BACK substituted
+#define FACTOR zgetrf
+
+/* Makes a column of n what the pivots from `from` to `to` leave of it. */
+static void eliminated(const fu_complex *F, int n, int from, int to, fu_complex *column)
+{
+    for (int k = from; k < to; ++k)
+        for (int i = k + 1; i < n; ++i) fu_complex_subtract_product(&column[i], F[k * n + i], column[k]);
+}
+
+/* Makes the first `done` of n unknowns from their right side and the others. */
+static void substituted(const fu_complex *F, int n, int done, fu_complex *x)
+{
+    for (int k = n - 1; k >= 0; --k) {
+        const fu_complex *column = F + k * n;
+        if (k < done) x[k] = fu_complex_product(x[k], column[k]);
+        for (int i = 0; i < (k < done ? k : done); ++i) fu_complex_subtract_product(&x[i], column[i], x[k]);
+    }
+}
+
+#include "fronts_template.h"
+
+int fu_complex_fronts_factor(const fu_fronts *t, const fu_complex *matrix, fu_factors *factors, const fu_lapack *lapack)
+{
+    return complex_factor(t, matrix, factors, lapack);
+}
+
+void fu_complex_fronts_solve(const fu_fronts *t, const fu_factors *factors, fu_complex *y)
+{
+    complex_solve(t, factors, y);
+}

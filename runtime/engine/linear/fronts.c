@@ -1,0 +1,115 @@
+/* The border of a real system, front by front. */
+#include "engine.h"
+
+#define NUMBER double
+#define ZERO 0.0
+#define ONE 1.0
+#define TIMES(a, b) ((a) * (b))
+#define PREFIX(name) real_##name
+#define SIZE(x) fabs(x)
+#define DIVIDE(x, by) ((x) / (by))
+#define ADD(to, x) ((to) += (x))
+#define APPLY eliminated
+#define BACK substituted
+#define FACTOR dgetrf
+
+/* Makes a column of n what the pivots from `from` to `to` leave of it; four at once, which need it from memory once. */
+static void eliminated(const double *F, int n, int from, int to, double *restrict column)
+{
+    int k = from;
+    for (; k + 4 <= to; k += 4) {
+        const double *a = F + k * n, *b = a + n, *c = b + n, *d = c + n;
+        const double w = column[k], x = column[k + 1] - a[k + 1] * w, y = column[k + 2] - a[k + 2] * w - b[k + 2] * x;
+        const double z = column[k + 3] - a[k + 3] * w - b[k + 3] * x - c[k + 3] * y;
+        column[k + 1] = x;
+        column[k + 2] = y;
+        column[k + 3] = z;
+        for (int i = k + 4; i < n; ++i) column[i] -= a[i] * w + b[i] * x + c[i] * y + d[i] * z;
+    }
+    for (; k < to; ++k) {
+        const double *a = F + k * n, x = column[k];
+        for (int i = k + 1; i < n; ++i) column[i] -= a[i] * x;
+    }
+}
+
+/* Makes the first `done` of n unknowns from their right side and the others; four columns at once, as above. */
+static void substituted(const double *F, int n, int done, double *restrict x)
+{
+    int k = n;
+    for (; k - 4 >= done; k -= 4) {
+        const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
+        for (int i = 0; i < done; ++i) x[i] -= a[i] * x[k - 4] + b[i] * x[k - 3] + c[i] * x[k - 2] + d[i] * x[k - 1];
+    }
+    for (; k > done; --k)
+        for (int i = 0; i < done; ++i) x[i] -= F[(k - 1) * n + i] * x[k - 1];
+    for (; k >= 4; k -= 4) {
+        const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
+        const double x3 = x[k - 1] * d[k - 1], x2 = (x[k - 2] - d[k - 2] * x3) * c[k - 2];
+        const double x1 = (x[k - 3] - c[k - 3] * x2 - d[k - 3] * x3) * b[k - 3];
+        const double x0 = (x[k - 4] - b[k - 4] * x1 - c[k - 4] * x2 - d[k - 4] * x3) * a[k - 4];
+        x[k - 1] = x3;
+        x[k - 2] = x2;
+        x[k - 3] = x1;
+        x[k - 4] = x0;
+        for (int i = 0; i < k - 4; ++i) x[i] -= a[i] * x0 + b[i] * x1 + c[i] * x2 + d[i] * x3;
+    }
+    for (; k > 0; --k) {
+        const double *d = F + (k - 1) * n;
+        x[k - 1] *= d[k - 1];
+        for (int i = 0; i < k - 1; ++i) x[i] -= d[i] * x[k - 1];
+    }
+}
+
+#include "fronts_template.h"
+
+int fu_fronts_factor(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack)
+{
+    return real_factor(t, matrix, factors, lapack);
+}
+
+void fu_fronts_solve(const fu_fronts *t, const fu_factors *factors, double *y)
+{
+    real_solve(t, factors, y);
+}
+
+/* Returns the place of an unknown among the neighbours of a front, -1 where it is none of them. */
+static int neighbour(const fu_fronts *t, int k, int unknown)
+{
+    const int *all = t->unknown + t->first[k] + t->pivots[k];
+    int low = 0, high = t->neighbours[k] - 1;
+    while (low <= high) {
+        const int middle = (low + high) / 2;
+        if (all[middle] == unknown) return middle;
+        if (all[middle] < unknown) low = middle + 1;
+        else high = middle - 1;
+    }
+    return -1;
+}
+
+/* Returns where the storage has an entry of the matrix; behind its end, which is `stray`, what has no place there. */
+int fu_fronts_at(const fu_fronts *t, int row, int column)
+{
+    if (t->n == 1) return column * t->m + row;
+    const int of_row = t->front[row], of_column = t->front[column], k = of_row < of_column ? of_row : of_column;
+    const int p = t->pivots[k], s = t->neighbours[k];
+    if (of_column == k) {
+        const int below = of_row == k ? 0 : neighbour(t, k, row);
+        return below < 0 ? t->size : t->start[k] + t->place[column] * (p + s) + (of_row == k ? t->place[row] : p + below);
+    }
+    const int beside = neighbour(t, k, column);
+    return beside < 0 ? t->size : t->start[k] + p * (p + s) + beside * p + t->place[row];
+}
+
+/* Adds to y the product of the first `columns` columns of a matrix with x. */
+void fu_fronts_add_product(const fu_fronts *t, const double *matrix, int columns, const double *x, double *y)
+{
+    for (int k = 0; k < t->n; ++k) {
+        const int p = t->pivots[k], s = t->neighbours[k], *unknown = t->unknown + t->first[k];
+        const double *entry = matrix + t->start[k];
+        for (int j = 0; j < p + s; ++j) {
+            const int rows = j < p ? p + s : p;
+            for (int i = 0; i < rows && unknown[j] < columns; ++i) y[unknown[i]] += entry[i] * x[unknown[j]];
+            entry += rows;
+        }
+    }
+}

@@ -1,0 +1,167 @@
+"""What of the border touches what: groups of its unknowns, made of a model's bodies, couplings and cables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+
+from ..kernels.libraries import kernels_of
+from .attachments import AttachmentModel
+from .coupling import CouplingModel
+from .elimination import DENSE, BorderGraph, Elimination, dense
+from .joints import JointModel
+from .model import Model, SlideModel
+
+NEWTON, ACCELERATIONS = "newton", "accelerations"
+"""Systems that have a border: of Newton's method, with the couplings' own unknowns; of eq 38, with multipliers."""
+
+
+def elimination(model: Model, system: str) -> Elimination:
+    """Return the order in which the border of a system is eliminated; small ones are dense."""
+    m = model.n_border_dof + (model.n_extra if system == NEWTON else model.n_multipliers)
+    if m > DENSE:
+        return _Border(model, system).graph.eliminate()
+    chains = len(model.chains) - 1
+    return dense(m, np.stack([np.repeat(np.arange(m), chains), np.tile(np.arange(chains), m)], axis=1))
+
+
+class _Place:
+    """What a part of the scene has of the border, and which chains of the band it is on."""
+
+    def __init__(self, groups: Iterable[int] = (), chains: Iterable[int] = ()):
+        self.groups, self.chains = set(groups), set(chains)
+
+    def __or__(self, other: _Place) -> _Place:
+        return _Place(self.groups | other.groups, self.chains | other.chains)
+
+
+class _Border:
+    """The graph of a border; `bodies` and `of_coupling` are the numbers of groups."""
+
+    def __init__(self, model: Model, system: str):
+        self.model, self.system, self.graph = model, system, BorderGraph()
+        self.group_of_node: dict[int, int] = {}
+        self._nodes()
+        self.bodies = []
+        ends = [*(body.dof for body in model.bodies), model.n_dof]
+        for first, end in pairwise(ends):
+            self.bodies.append(self.graph.group(model.unknown_of_dof[first:end] - model.n_band))
+        self.cables = [self._place(cable.coordinates) for cable in model.cables]
+        self.slides: list[int] = []
+        for coupling in model.couplings:
+            self._coupling(coupling)
+
+    def _nodes(self) -> None:
+        """Add what cables have in the border: a group of the unknowns that the same elements share."""
+        model = self.model
+        shared: dict[int, list[int]] = {}
+        elements: list[np.ndarray] = []
+        for cable in model.cables:
+            per_node = cable.shape[1] * cable.shape[2]
+            for k in range(cable.n_elements if self._in_border(cable.coordinates) else 0):
+                at = self._unknowns(slice(cable.first + k * per_node, cable.first + (k + 2) * per_node))
+                for unknown in at[at >= model.n_band]:
+                    shared.setdefault(int(unknown), []).append(len(elements))
+                elements.append(at)
+        groups: dict[tuple[int, ...], list[int]] = {}
+        for unknown, of in shared.items():
+            groups.setdefault(tuple(of), []).append(unknown)
+        for unknowns in groups.values():
+            number = self.graph.group(np.sort(unknowns) - model.n_band)
+            self.group_of_node.update(dict.fromkeys(unknowns, number))
+        for at in elements:
+            place = self._of_unknowns(at)
+            self._touch(place.groups, place)
+
+    def _in_border(self, dofs: slice) -> bool:
+        return bool(np.any(self._unknowns(dofs) >= self.model.n_band))
+
+    def _unknowns(self, dofs: slice) -> np.ndarray:
+        """Return the unknowns that these dofs are made of."""
+        model = self.model
+        unknown = model.unknown_of_dof[dofs]
+        if (combined := -2 - unknown[unknown < -1]).size:
+            unknown = np.append(unknown, model.combinations[combined].indices)
+        return np.unique(unknown[unknown >= 0])
+
+    def _of_unknowns(self, at: np.ndarray) -> _Place:
+        model = self.model
+        chains = np.unique(np.searchsorted(model.chains, at[at < model.n_band], "right") - 1)
+        return _Place((self.group_of_node[int(k)] for k in at[at >= model.n_band]), map(int, chains))
+
+    def _place(self, dofs: slice) -> _Place:
+        return self._of_unknowns(self._unknowns(dofs))
+
+    def _touch(self, groups: Iterable[int], place: _Place) -> None:
+        """Let groups touch each other and a place."""
+        self.graph.join({*groups, *place.groups})
+        for group in groups:
+            self.graph.touch(group, place.chains)
+
+    def _coupling(self, coupling: CouplingModel) -> None:
+        """Add the unknowns of a coupling, and what it connects."""
+        newton = self.system == NEWTON
+        first, count = ((coupling.unknown, coupling.n_coordinates + coupling.n_forces) if newton
+                        else (coupling.multiplier, coupling.n_multipliers))
+        if not count:
+            return
+        ends = [coupling.rider] if isinstance(coupling, SlideModel) else getattr(coupling, "attachments", [])
+        bodies = {body for end in ends for body in self._bodies_of(end)}
+        own = self.graph.group(range(self.model.n_border_dof + first, self.model.n_border_dof + first + count),
+                               None if coupling.follows_law else bodies)
+        places = [self._end(end) for end in ends]
+        if isinstance(coupling, SlideModel):
+            self.slides.append(own)
+            places.append(self.cables[coupling.cable])
+        for place in places:
+            self._touch({own}, place)
+        if newton and isinstance(coupling, JointModel) and _ties_turns(coupling, self.model.dim):
+            self._touch(places[0].groups, places[1])
+            self._touch(places[1].groups, places[0])
+
+    def _bodies_of(self, end: AttachmentModel) -> set[int]:
+        """Return the groups of the bodies that an attachment is on, a slide's rider among them."""
+        body = self.model.slides[end.slide].rider.body if end.slide >= 0 else end.body
+        return {self.bodies[body]} if body >= 0 else set()
+
+    def _end(self, end: AttachmentModel) -> _Place:
+        """Return what an attachment's equations have entries for."""
+        if end.slide >= 0:
+            slide = self.model.slides[end.slide]
+            along = self.cables[end.cable]
+            return along | (_Place({self.slides[end.slide]}) if self.system == NEWTON else self._end(slide.rider))
+        if end.body >= 0:
+            return _Place({self.bodies[end.body]})
+        if end.cable < 0:
+            return _Place()
+        cable = self.model.cables[end.cable]
+        per_node = cable.shape[1] * cable.shape[2]
+        return self._place(slice(cable.first + end.element * per_node, cable.first + (end.element + 2) * per_node))
+
+
+def _ties_turns(joint: JointModel, dim: int) -> bool:
+    """Return whether a joint's forces change with the turns of both ends, or with a gap: its stiffness is between them.
+
+    Of a spherical joint they do not: what it adds to the stiffness is of each end alone.
+    """
+    if any(end.slide >= 0 for end in joint.attachments):
+        return True
+    if all(end.cable >= 0 for end in joint.attachments):
+        return False  # engine/couplings/joint_operations.c leaves that out
+    return _has_cross_stiffness(joint.kernel, dim)
+
+
+@cache
+def _has_cross_stiffness(kernel: str, dim: int) -> bool:
+    """Return whether the kernel's second derivatives couple what moves its first end to what moves its second."""
+    force = getattr(kernels_of(None), f"{kernel}_force")
+    rng = np.random.default_rng(0)  # of numbers without any relation no two cancel each other
+    given = [rng.uniform(0.5, 1.0, force.shapes[name]) for name in list(force.shapes)[:5]]
+    numbers = np.asarray(force(*given)[2]).ravel()
+    moves = int(np.sqrt(numbers.size))
+    K, turns = numbers.reshape(moves, moves), (moves - dim) // 2
+    first, second = K[: dim + turns], [*range(dim), *range(dim + turns, moves)]
+    return bool(np.any(first[:, second] != 0))

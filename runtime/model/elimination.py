@@ -1,0 +1,229 @@
+"""The order in which the border is eliminated: symbolic analysis of its graph, once for a scene.
+
+The graph's nodes are groups of unknowns: of a body, of a coupling's own, of nodes of cables that are border.
+Eliminating a group connects its neighbours with each other. Minimum degree keeps them few: chains and trees of bodies
+take a number of operations that is linear in the bodies. Groups that are eliminated together are a front
+(engine/include/fronts.h).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
+from typing import Any
+
+import numpy as np
+
+DENSE = 60
+"""Unknowns of a border up to which one front takes no longer than several."""
+FRONT = 500.0
+"""Operations that take as long as what a front takes beside its arithmetic."""
+SOLVES = 5
+"""That a factored border serves, about."""
+
+
+@dataclass
+class Elimination:
+    """Fronts as engine/include/fronts.h has them; strips (n, 2): an unknown and a chain that it touches, increasing."""
+
+    m: int
+    start: np.ndarray
+    first: np.ndarray
+    pivots: np.ndarray
+    neighbours: np.ndarray
+    unknown: np.ndarray
+    in_parent: np.ndarray
+    parent: np.ndarray
+    child: np.ndarray
+    sibling: np.ndarray
+    front: np.ndarray
+    place: np.ndarray
+    strips: np.ndarray
+
+    @property
+    def n(self) -> int:
+        """Return the number of fronts."""
+        return len(self.pivots)
+
+    @property
+    def sizes(self) -> np.ndarray:
+        """Return (fronts,): how many unknowns each has, its neighbours among them."""
+        return self.pivots + self.neighbours
+
+    @property
+    def size(self) -> int:
+        """Return how many numbers the matrix takes."""
+        return int((self.pivots * (self.pivots + 2 * self.neighbours)).sum())
+
+    @property
+    def operations(self) -> float:
+        """Return the number of multiplications of a factorisation."""
+        p, s = self.pivots.astype(float), self.neighbours.astype(float)
+        return float((p**3 / 3 + p**2 * s + p * s**2).sum())
+
+    @property
+    def cost(self) -> float:
+        """Return the operations of a factorisation and its solutions, the work beside them counted as operations."""
+        return float(_cost(self.pivots.astype(float), self.neighbours.astype(float)).sum())
+
+    def entries(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return (size,) each: the rows and columns of what the storage holds, in its order."""
+        rows, columns = [], []
+        for first, p, s in zip(self.first, self.pivots, self.neighbours, strict=True):
+            own, all_of_it = self.unknown[first : first + p], self.unknown[first : first + p + s]
+            rows += [np.tile(all_of_it, p), np.tile(own, s)]
+            columns += [np.repeat(own, p + s), np.repeat(all_of_it[p:], p)]
+        none = np.zeros(0, dtype=int)
+        return np.concatenate([none, *rows]), np.concatenate([none, *columns])
+
+
+def dense(m: int, strips: np.ndarray) -> Elimination:
+    """Return the elimination of m unknowns in one front; strips: as in `Elimination`."""
+    none, zero, every = np.array([-1]), np.array([0]), np.arange(m)
+    return Elimination(m, zero, zero, np.array([m]), zero, every, 0 * every, none, none, none, 0 * every, every, strips)
+
+
+class BorderGraph:
+    """Groups of the border's unknowns, which of them touch each other, and which touch a chain of the band.
+
+    A constraint waits for the bodies that it is on: before them its rows have nothing to divide by.
+    """
+
+    def __init__(self) -> None:
+        self.unknowns: list[np.ndarray] = []
+        self.beside: list[set[int]] = []
+        self.on_chain: dict[int, set[int]] = {}
+        self.waits: dict[int, set[int]] = {}
+
+    def group(self, unknowns: Iterable[int], waits: Iterable[int] | None = None) -> int:
+        """Add a group of unknowns and return its number; waits: of a constraint, the groups of its bodies."""
+        self.unknowns.append(np.array(list(unknowns), dtype=int))
+        self.beside.append(set())
+        if waits is not None:
+            self.waits[len(self.beside) - 1] = set(waits)
+        return len(self.beside) - 1
+
+    def join(self, groups: Iterable[int]) -> None:
+        """Let these groups touch each other."""
+        groups = set(groups)
+        for group in groups:
+            self.beside[group] |= groups
+            self.beside[group].discard(group)
+
+    def touch(self, group: int, chains: Iterable[int]) -> None:
+        """Let a group touch chains, whose elimination connects it with all that touches them."""
+        for chain in chains:
+            self.on_chain.setdefault(chain, set()).add(group)
+
+    def eliminate(self) -> Elimination:
+        """Return the order of elimination: one front, or those of minimum degree where they take fewer operations."""
+        pairs = [(int(unknown), chain) for chain, groups in self.on_chain.items() for group in groups
+                 for unknown in self.unknowns[group]]
+        strips = np.array(sorted(pairs), dtype=int).reshape(-1, 2)
+        for groups in self.on_chain.values():
+            self.join(groups)
+        sparse = self._laid_out(*self._merged(*self._fronts()), strips)
+        return sparse if sparse.cost < _cost(sparse.m, 0) else dense(sparse.m, strips)
+
+    def _fronts(self) -> tuple[list[list[int]], list[set[int]]]:
+        """Return the groups and the neighbours of each front, in the order of elimination, by minimum degree."""
+        size = [len(own) for own in self.unknowns]
+        beside = [set(groups) for groups in self.beside]
+        waits = {group: set(of) for group, of in self.waits.items()}
+        degree = [sum(size[other] for other in groups) for groups in beside]
+        # of equals the one that was touched last: chains are eliminated from their ends
+        waiting = [(degree[group], 0, group) for group in range(len(size)) if not waits.get(group)]
+        heapify(waiting)
+        gone = [False] * len(size)
+        fronts: list[list[int]] = []
+        neighbours: list[set[int]] = []
+        while waiting:
+            of, _, pivot = heappop(waiting)
+            if gone[pivot] or of != degree[pivot]:
+                continue
+            around = beside[pivot]
+            constraints = [group for group in around if group in waits]
+            if len(constraints) == 1:  # all that lies behind it is attached by it alone, and gone
+                waits[constraints[0]] = set()
+            for group in around:
+                beside[group] |= around
+                beside[group] -= {group, pivot}
+            # what has no other neighbours costs nothing more
+            together = [pivot, *(group for group in sorted(around)
+                                 if len(beside[group]) == len(around) - 1 and not waits.get(group, set()) - {pivot})]
+            around = around.difference(together)
+            for group in together:
+                gone[group] = True
+            for group in around:
+                beside[group].difference_update(together)
+                degree[group] = sum(size[other] for other in beside[group])
+                if group in waits:
+                    waits[group].difference_update(together)
+                if not waits.get(group):
+                    heappush(waiting, (degree[group], -len(fronts), group))
+            fronts.append(together)
+            neighbours.append(around)
+        assert all(gone), "every constraint is on bodies that are eliminated"
+        return fronts, neighbours
+
+    def _merged(self, fronts: list[list[int]], neighbours: list[set[int]]) -> tuple[list[list[int]], list[set[int]]]:
+        """Return the fronts with those taken together that take no longer so."""
+        p, s = ([sum(len(self.unknowns[group]) for group in part) for part in parts] for parts in (fronts, neighbours))
+        children: list[list[int]] = [[] for _ in fronts]
+        kept = [True] * len(fronts)
+        for k, above in enumerate(_parents(fronts, neighbours)):
+            waiting, children[k] = children[k], []
+            while waiting:
+                child = waiting.pop()
+                if _cost(p[k] + p[child], s[k]) <= _cost(p[k], s[k]) + _cost(p[child], s[child]):
+                    kept[child] = False
+                    p[k] += p[child]
+                    fronts[k] = fronts[child] + fronts[k]
+                    waiting += children[child]
+                else:
+                    children[k].append(child)
+            if above >= 0:
+                children[above].append(k)
+        return ([front for front, keep in zip(fronts, kept, strict=True) if keep],
+                [front for front, keep in zip(neighbours, kept, strict=True) if keep])
+
+    def _laid_out(self, fronts: list[list[int]], beside: list[set[int]], strips: np.ndarray) -> Elimination:
+        """Return the arrays of fronts, of which the groups and the neighbours are given."""
+        def sorted_unknowns(groups: Iterable[int]) -> np.ndarray:
+            return np.sort(np.concatenate([np.zeros(0, dtype=int), *(self.unknowns[group] for group in groups)]))
+
+        own, around = [sorted_unknowns(part) for part in fronts], [sorted_unknowns(part) for part in beside]
+        pivots, neighbours = np.array([len(part) for part in own]), np.array([len(part) for part in around])
+        parent = np.array(_parents(fronts, beside))
+        child, sibling = np.full(len(fronts), -1), np.full(len(fronts), -1)
+        for k in reversed(range(len(fronts))):
+            if parent[k] >= 0:
+                sibling[k], child[parent[k]] = child[parent[k]], k
+        m = int(pivots.sum())
+        front, place = np.zeros(m, dtype=int), np.zeros(m, dtype=int)
+        in_parent = []
+        for k, (of, others) in enumerate(zip(own, around, strict=True)):
+            front[of], place[of] = k, np.arange(len(of))
+            in_parent += [np.zeros(len(of), dtype=int)]
+            if len(others):
+                above, beyond = own[parent[k]], around[parent[k]]
+                at = np.searchsorted(above, others).clip(max=len(above) - 1)
+                outside = len(above) + np.searchsorted(beyond, others)
+                in_parent += [np.where(above[at] == others, at, outside)]
+        lengths = pivots + neighbours
+        starts = pivots * (pivots + 2 * neighbours)
+        return Elimination(m, np.cumsum(starts) - starts, np.cumsum(lengths) - lengths, pivots, neighbours,
+                           np.concatenate([part for pair in zip(own, around, strict=True) for part in pair]),
+                           np.concatenate(in_parent), parent, child, sibling, front, place, strips)
+
+
+def _parents(fronts: list[list[int]], neighbours: list[set[int]]) -> list[int]:
+    """Return the front that eliminates the first of each one's neighbours, -1 where it has none."""
+    of = {group: k for k, front in enumerate(fronts) for group in front}
+    return [min((of[group] for group in around), default=-1) for around in neighbours]
+
+
+def _cost(p: Any, s: Any) -> Any:
+    """Return operations of a front with p pivots and s neighbours, the solutions' among them."""
+    return p**3 / 3 + p**2 * s + p * s**2 + SOLVES * (p**2 + 2 * p * s) + FRONT

@@ -1,0 +1,255 @@
+"""The border front by front: the dense solution, in a number of operations that grows with the bodies and no faster."""
+
+import bodies
+import numpy as np
+import pytest
+from bodies import chain, ladder, net, tree
+from difficult_scenes import SCENES as DIFFICULT
+from funicular import Circle, Harmonic, Material, Ramp, Scene
+from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
+from funicular.model import border, elimination
+from funicular.model.build import build
+from funicular.model.elimination import BorderGraph
+from funicular.model.loops import bridges, joints_in_loops
+from linear_cost import SCENES as CABLES
+from linear_cost import scene as cables
+from shared_scenes import cable_scene
+
+ROPE = {"element": "cable12", "section": Circle(radius=0.01),
+        "material": Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000)}
+
+
+@pytest.fixture
+def in_fronts(monkeypatch):
+    """Every border in as many fronts as its graph has, however small it is."""
+    monkeypatch.setattr(border, "DENSE", 0)
+    monkeypatch.setattr(elimination, "FRONT", 0.0)
+
+
+def ring() -> Scene:
+    """Eight bodies in a closed ring of universal joints that turn a little, one hung up."""
+    scene, n = Scene(), 8
+    angles = 2 * np.pi * np.arange(n) / n
+    for k, angle in enumerate(angles):
+        scene.rigid_body(f"A{k}", mass=1.0 + 0.1 * k, inertia=(0.01, 0.02, 0.03),
+                         position=(np.cos(angle), np.sin(angle), 0.1 * (-1) ** k))
+    for k in range(n):
+        middle = angles[k] + np.pi / n
+        at = np.array([np.cos(middle), np.sin(middle), 0.0])
+        here, there = scene.bodies[f"A{k}"], scene.bodies[f"A{(k + 1) % n}"]
+        scene.joint("universal" if k % 2 else "spherical", (here.name, tuple(at - here.position)),
+                    (there.name, tuple(at - there.position)), **({"axis": (0, 0, 1), "second_axis": tuple(at)} if k % 2
+                                                                 else {}))
+    scene.joint("spherical", "A0", tuple(scene.bodies["A0"].position))
+    return scene
+
+
+def four_bar() -> Scene:
+    """A crank that turns as prescribed, a coupler, a rocker, in space: a loop without redundant equations."""
+    scene = Scene()
+    scene.rigid_body("crank", mass=1.0, inertia=(0.1, 0.1, 0.1), position=(0.1, 0, 0))
+    scene.rigid_body("coupler", mass=2.0, inertia=(0.1, 0.2, 0.3), position=(0.6, 0.2, 0))
+    scene.rigid_body("rocker", mass=1.5, inertia=(0.1, 0.1, 0.1), position=(1.0, 0.2, 0))
+    scene.joint("revolute", (0, 0, 0), ("crank", (-0.1, 0, 0)), axis=(0, 0, 1),
+                angle=Ramp(start=0.0, end=0.5, before=0.0, after=1.0))
+    scene.joint("spherical", ("crank", (0.1, 0, 0)), ("coupler", (-0.4, -0.2, 0)))
+    scene.joint("universal", ("coupler", (0.4, 0.2, 0)), ("rocker", (0, 0.2, 0)), axis=(0, 0, 1),
+                second_axis=(0, 1, 0))
+    scene.joint("revolute", (1.0, 0, 0), ("rocker", (0, -0.2, 0)), axis=(0, 0, 1))
+    return scene
+
+
+def on_a_cable(kind: str) -> Scene:
+    """A chain of bodies on a cable: hung from a place of it, welded to it, or riding by a slide with a frame."""
+    scene = cable_scene(length=2, pins=(0.0, 2.0), elements=7, **ROPE)
+    along = np.array([0.0, -1.0, 0.0])
+    end = np.array([0.9, 0.0, 0.0])
+    for k in range(12):
+        if k:
+            end = bodies.rod(scene, f"rod{k}", end, along, (f"rod{k - 1}", tuple(0.05 * along)))
+            continue
+        scene.rigid_body("rod0", mass=0.1, inertia=(1e-4,) * 3, position=(0.9, -0.05, 0))
+        end = end + 0.1 * along
+        if kind == "slide":
+            scene.slide("rod0", along="wire", s=0.9, at=(0, 0.05, 0), frame="tangent", name="trolley")
+        else:
+            scene.joint(kind, ("wire", 0.9), ("rod0", (0, 0.05, 0)), **({"up": (0, 1, 0)} if kind == "weld" else {}))
+    scene.spring("rod3", "rod7", stiffness=10.0, damping=0.1)
+    scene.spring("rod5", ("wire", 1.5), stiffness=10.0, length=0.3)
+    scene.force("rod11", value=(1, 0, 2), follower=True, at=(0.1, 0, 0))
+    return scene
+
+
+def driven() -> Scene:
+    """A chain of bodies with joints of every kind, some of them driven, hung from a node that moves."""
+    scene = cable_scene(length=1, elements=3, **ROPE)
+    scene.motion("wire", s=0.0, displacement=("free", Harmonic(amplitude=0.1, frequency=2.0), 0.0))
+    kinds = [("revolute", {"axis": (0, 0, 1)}),
+             ("revolute", {"axis": (0, 1, 0), "angle": Harmonic(amplitude=0.2, frequency=1)}),
+             ("prismatic", {"axis": (1, 0, 0)}), ("cylindrical", {"axis": (1, 0, 0)}), ("weld", {}),
+             ("universal", {"axis": (0, 0, 1), "second_axis": (0, 1, 0)}), ("distance", {}),
+             ("prismatic", {"axis": (1, 0, 0), "distance": Harmonic(amplitude=0.02, frequency=3)})]
+    before = ("wire", 1.0)
+    for k, (kind, given) in enumerate([("spherical", {}), *kinds]):
+        at = (1.0 + 0.2 * k, 0, 0)
+        scene.rigid_body(f"A{k}", mass=0.3, inertia=(0.01, 0.02, 0.03), position=at, angular_velocity=(0, 0, 0))
+        end = (f"A{k}", (0, 0, 0) if kind == "distance" or not k else (-0.1, 0, 0))
+        scene.joint(kind, before, end, **given)
+        before = (f"A{k}", (0.1, 0, 0))
+    return scene
+
+
+def light() -> Scene:
+    """A chain in which every other body has next to no mass: on it alone no pivot stands."""
+    scene, end, along = Scene(), np.zeros(3), np.array([1.0, 0, 0])
+    for k in range(16):
+        mass = 1.0 if k % 2 else 1e-8
+        scene.rigid_body(f"A{k}", mass=mass, inertia=(0.01 * mass,) * 3, position=tuple(end + 0.05 * along))
+        scene.joint("revolute" if k % 3 else "spherical", (f"A{k - 1}", (0.05, 0, 0)) if k else (0, 0, 0),
+                    (f"A{k}", (-0.05, 0, 0)), **({"axis": (0, 0, 1)} if k % 3 else {}))
+        end = end + 0.1 * along
+    return scene
+
+
+SCENES = {"chain": lambda: chain(30), "tree": lambda: tree(30), "ladder": lambda: ladder(20), "net": lambda: net(25),
+          "ring": ring, "four-bar": four_bar, "hung": lambda: on_a_cable("spherical"),
+          "welded": lambda: on_a_cable("weld"), "riding": lambda: on_a_cable("slide"), "driven": driven, "light": light,
+          **DIFFICULT}
+
+
+def started(model) -> Engine:
+    engine = Engine(model)
+    engine.start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=GeneralisedAlpha(0.8), first_step=1e-3)
+    return engine
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("step", [1e-3, 3e-2])
+def test_solution_is_that_of_the_dense_matrix(name, step, in_fronts):
+    engine = started(build(SCENES[name]()))
+    rng = np.random.default_rng(3)
+    _, matrix = engine.linearise(step, 1e-3 * rng.standard_normal(engine.unknowns))
+    right = rng.standard_normal(engine.unknowns)
+    found, _ = engine.solve(right)
+    expected = np.linalg.solve(matrix, right)
+    assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
+@pytest.mark.parametrize("name", ["tree", "net", "ring", "four-bar", "hung", "welded", "riding", "driven", "loaded"])
+def test_motion_is_that_of_the_dense_border(name, integrator, monkeypatch):
+    def motion() -> np.ndarray:
+        step = 5e-6 if integrator == "explicit" else 5e-4
+        run = SCENES[name]().run(duration=8 * step, output_step=8 * step, step=step, integrator=integrator)
+        return np.concatenate([run[f"{body}.position"][-1] for body in run.scene.bodies])
+
+    monkeypatch.setattr(border, "DENSE", 10**9)
+    dense = motion()
+    monkeypatch.setattr(border, "DENSE", 0)
+    monkeypatch.setattr(elimination, "FRONT", 0.0)
+    np.testing.assert_allclose(motion(), dense, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("made", [chain, tree])
+def test_operations_and_memory_are_linear_in_the_bodies(made):
+    models = [build(made(n)) for n in (63, 127, 255)]
+    engines = [Engine(model) for model in models]
+    for numbers in ([model.newton.operations for model in models], [model.accelerations.operations for model in models],
+                    [float(engine.memory) for engine in engines]):
+        assert numbers[2] / numbers[1] == pytest.approx(255 / 127, rel=0.06)
+    assert max(models[-1].newton.sizes) < 40
+
+
+def test_few_bodies_stay_dense():
+    assert build(chain(6)).newton.n == 1
+    assert build(chain(20)).newton.n > 10
+
+
+def test_an_entry_without_a_place_is_refused(in_fronts):
+    """Were the graph of the border to lack what couples two of its unknowns, no number would come of it."""
+    model = build(chain(3))
+    lacking = BorderGraph()
+    for body in range(3):
+        lacking.group(range(6 * body, 6 * body + 6))
+    for joint in range(3):
+        lacking.group(range(18 + 3 * joint, 21 + 3 * joint), waits=())
+    model.newton = lacking.eliminate()
+    engine = started(model)
+    engine.linearise(1e-3, np.zeros(engine.unknowns))
+    with pytest.raises(ArithmeticError):
+        engine.solve(np.ones(engine.unknowns))
+
+
+def test_a_singular_border_is_refused(in_fronts):
+    """Bodies that have lost their mass: turns about the joints cost nothing, and no front has a pivot for them."""
+    model = build(chain(8))
+    for body in model.bodies:
+        body.mass, body.inertia = 0.0, 0.0 * body.inertia
+    engine = started(model)
+    engine.linearise(1e-3, np.zeros(engine.unknowns))
+    with pytest.raises(ArithmeticError):
+        engine.solve(np.ones(engine.unknowns))
+
+
+def doors(n: int) -> Scene:
+    """A chain of doors, each on two hinges, of which the second's equations follow from the first's."""
+    scene = Scene()
+    for k in range(n):
+        scene.rigid_body(f"door{k}", mass=1.0, inertia=(0.1, 0.1, 0.1), position=(k + 0.5, 0, 0))
+        for height in (-0.3, 0.3):
+            scene.joint("revolute", (f"door{k - 1}", (0.5, height, 0)) if k else (0, height, 0),
+                        (f"door{k}", (-0.5, height, 0)), axis=(0, 1, 0))
+    return scene
+
+
+def test_redundant_equations_are_left_out_as_of_few_bodies():
+    few, many = (doors(n).run(duration=0.02, output_step=0.01, step=1e-3, integrator="genalpha") for n in (2, 12))
+    said = few.report["messages"]
+    assert len(said) == 2
+    assert many.report["messages"][:2] == said
+    assert len(many.report["messages"]) == 12
+    assert max(many[f"{name}.residual"].max() for name in many.scene.joints) < 1e-12
+
+
+def test_a_hundred_bodies_keep_their_energy():
+    """Of 127 bodies of a tree and of 100 of a chain, without numerical damping."""
+    for made, n in ((chain, 100), (tree, 127)):
+        run = made(n).run(duration=0.05, output_step=0.01, step=1e-3, integrator="genalpha", spectral_radius=1.0)
+        total = run["energy.kinetic"] + run["energy.potential"]
+        assert np.ptp(total) < 1e-4 * run["energy.kinetic"].max()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", bodies.SCENES)
+def test_a_thousand_bodies_keep_their_energy(name):
+    run = bodies.SCENES[name](1000).run(duration=0.05, output_step=0.01, step=1e-3, integrator="genalpha")
+    total = run["energy.kinetic"] + run["energy.potential"]
+    assert np.ptp(total) < 1e-4 * run["energy.kinetic"].max()
+
+
+def test_bridges_are_the_edges_without_which_a_graph_falls_apart():
+    def parts(n, edges):
+        at = list(range(n))
+        for a, b in edges:
+            at = [at[a] if k == at[b] else k for k in at]
+        return len(set(at))
+
+    rng = np.random.default_rng(5)
+    for _ in range(60):
+        n = int(rng.integers(1, 9))
+        edges = [tuple(map(int, pair)) for pair in rng.integers(0, n, (int(rng.integers(0, 11)), 2))]
+        expected = [parts(n, edges[:k] + edges[k + 1 :]) > parts(n, edges) for k in range(len(edges))]
+        assert bridges(n, edges) == expected
+
+
+def test_joints_in_loops():
+    assert not any(joints_in_loops(build(chain(5))))
+    assert joints_in_loops(build(four_bar())) == [True] * 4
+    assert joints_in_loops(build(ring())) == [True] * 8 + [False]
+
+
+@pytest.mark.parametrize("name", CABLES)
+def test_cables_alone_have_the_border_that_they_had(name):
+    """Riders and knots of a few cables are too few for more than one front."""
+    assert build(cables(name, 60)).newton.n == 1
