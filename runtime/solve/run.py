@@ -73,7 +73,8 @@ class Sink(Protocol):
 class Simulation:
     """What is left at the end of a run: the engine with its last rows, how it ended, why it was integrated so.
 
-    set_up_s, total_s: wall time; solve_cpu_s: CPU seconds of the integration alone, whatever else the machine does.
+    set_up_s, total_s: wall time; solve_cpu_s: CPU seconds of the integration alone, whatever else
+    the machine does, and other threads of the process with other scenes.
     """
 
     model: Model
@@ -107,7 +108,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         messages += [f"state to start from: {message}" for message in initial.messages]
     messages += _divided_step(settings) + share_elements(engine, settings.threads)
     method, reason = choose(settings, scene, model, engine)
-    set_up, cpu = time.perf_counter() - begin, time.process_time()
+    set_up, clock = time.perf_counter() - begin, time.thread_time if settings.threads == 1 else time.process_time
+    cpu = clock()
     LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, model.n_dof,
              method.name, reason, set_up)
     status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
@@ -124,7 +126,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         long_run = LongRun(model, engine, settings, watcher, on_progress)
         status = engine.advance(long_run, pace.every, stream)
         messages += long_run.notes()
-    cpu, total = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
+    cpu, total = clock() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     row_notes.see(engine.rows())
     if status == "completed":
         for note in [*notes(engine, settings), *trapped(scene, engine), *row_notes.notes()]:
