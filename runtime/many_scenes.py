@@ -27,7 +27,7 @@ OF_ONE_RUN = ("save", "resume", "progress")
 """Arguments of `Scene.run` that name a file or a display, which many scenes would share."""
 
 
-class _Abandoned(BaseException):  # noqa: N818
+class _Abandoned(BaseException):
     """Ends a run whose results nobody takes any more."""
 
 
