@@ -1,5 +1,7 @@
 # A model as the engine's C structures.
 
+cdef int INVERTED = 4  # times as many unknowns as a band is wide: longer ones are solved faster than multiplied
+
 cdef const fu_coupling_type *_type_of(coupling) except NULL:
     """Return the engine's type of a coupling of a model."""
     type = fu_coupling_type_of(coupling.type.encode())
@@ -298,6 +300,9 @@ cdef class Translation(Arrays):
         self._system(&run.newton, model, width, model.n_border_dof + model.n_extra)
         a = &run.accelerator
         self._system(&a.mass, model, width, model.n_border_dof + model.n_multipliers)
+        sizes = np.diff(model.chains).tolist()
+        if max(sizes, default=0) <= min(FU_INVERSE_MOST, INVERTED * (width + 1)):
+            a.mass.inverse = self._zeros(sum(n * FU_INVERSE_ROWS(n) for n in sizes))
         # that of the mass is factored elsewhere, before the first of Newton is made
         run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
         a.corner = self._zeros(<double>a.mass.m * a.mass.m)

@@ -37,7 +37,9 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, s);
     fu_bodies_mass(model, model->zero, 1, s);
     memcpy(work->corner, s->D, sizeof(double) * (size_t)(s->m * s->m));
+    s->inverted = 0;
     if (fu_system_factor_band(s, model->lapack)) return 1;
+    fu_system_invert_band(s);
     fu_system_keep_border(s, model->lapack, model->n_border_dof);
     return !s->definite; /* else it would be in K, which the Newton matrix takes */
 }
