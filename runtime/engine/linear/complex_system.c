@@ -29,6 +29,10 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->columns = (fu_piece *)fu_take(scratch, taken, FU_DOUBLES(pieces, fu_piece));
     c->pivot_band = (int *)fu_take(scratch, taken, FU_DOUBLES(n, int));
     c->pivot_border = (int *)fu_take(scratch, taken, FU_DOUBLES(m, int));
+    for (int part = 0; part < 2; ++part) {
+        c->L[part] = fu_take(scratch, taken, FU_COMPLEX_STRIDE((long)s->width) * n);
+        c->right[part] = fu_take(scratch, taken, n + FU_COMPLEX_BEYOND(s->width));
+    }
 }
 
 /* Makes the matrix zero. */
@@ -56,15 +60,63 @@ void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_c
     for (long i = 0; i < corner; ++i) fu_complex_add(&c->D[i], factor, s->D[i]);
 }
 
+/* Makes the lower half of the band as complex_band.c wants it. */
+static void pack(fu_complex_system *c, const fu_system *s)
+{
+    const int n = s->n, width = s->width, stride = FU_COMPLEX_STRIDE(width);
+    for (int j = 0; j < n; ++j) {
+        const fu_complex *below = c->K + storage_rows(s) * j + FU_BAND_DIAGONAL(width);
+        double *re = c->L[0] + (long)j * stride, *im = c->L[1] + (long)j * stride;
+        const int most = n - 1 - j < width ? n - 1 - j : width;
+        for (int i = 0; i <= most; ++i) {
+            re[i] = below[i].re;
+            im[i] = below[i].im;
+        }
+        for (int i = most + 1; i < stride; ++i) re[i] = im[i] = 0.0;
+    }
+}
+
+/* Factors the band: without pivots where the real one was definite, as the complex one is then. Returns 0, or not 0 where it is
+ * singular. */
+static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack)
+{
+    int n = s->n, width = s->width, rows = FU_BAND_ROWS(width), info = 0;
+    c->definite = s->definite;
+    if (c->definite) {
+        pack(c, s);
+        fu_complex_band_factor(n, width, c->L[0], c->L[1]);
+    } else if (n)
+        lapack->zgbtrf(&n, &n, &width, &width, c->K, &rows, c->pivot_band, &info);
+    return info;
+}
+
+/* Makes x = K^-1 x. */
+static void solve_band(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, fu_complex *x)
+{
+    int n = s->n, width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
+    if (!n) return;
+    if (!c->definite) {
+        lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
+        return;
+    }
+    double *re = c->right[0], *im = c->right[1];
+    for (int i = 0; i < n + FU_COMPLEX_BEYOND(width); ++i) {
+        re[i] = i < n ? x[i].re : 0.0;
+        im[i] = i < n ? x[i].im : 0.0;
+    }
+    fu_complex_band_solve(n, width, c->L[0], c->L[1], re, im);
+    for (int i = 0; i < n; ++i) x[i] = (fu_complex){re[i], im[i]};
+}
+
 /* Solves for column k of X and finds the rows of it that count, unless B has none; size: work space of the band's size. */
 static void solve_column(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int k, double *size)
 {
-    int n = s->n, width = s->width, rows = FU_BAND_ROWS(width), one = 1, touched = 0, info;
+    int n = s->n, touched = 0;
     fu_complex *x = c->X + (long)k * n;
     for (int half = 0; half < FU_HALVES * s->n_chains; ++half) touched |= s->span_B[k * FU_HALVES * s->n_chains + half].end;
     if (!touched) return;
     memcpy(x, c->B + (long)k * n, sizeof(fu_complex) * (size_t)n);
-    lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
+    solve_band(c, s, lapack, x);
     for (int i = 0; i < n; ++i) size[i] = hypot(x[i].re, x[i].im);
     for (int chain = 0; chain < s->n_chains; ++chain)
         c->n_columns += fu_pieces(s, k, chain, size, c->columns + c->n_columns);
@@ -74,9 +126,8 @@ static void solve_column(fu_complex_system *c, const fu_system *s, const fu_lapa
  * doubles as the band has columns. Returns 0, or not 0 where it is singular. */
 int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, double *size)
 {
-    int n = s->n, m = s->m, width = s->width, rows = FU_BAND_ROWS(width), info = 0;
+    int n = s->n, m = s->m, info = factor_band(c, s, lapack);
     fu_complex *C = c->C, *D = c->D, *X = c->X;
-    if (n) lapack->zgbtrf(&n, &n, &width, &width, c->K, &rows, c->pivot_band, &info);
     if (info || !m) return info;
     c->n_columns = 0;
     for (int k = 0; k < m; ++k) solve_column(c, s, lapack, k, size);
@@ -93,9 +144,9 @@ int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_
 /* Solves for the right side in x, in place. */
 void fu_complex_system_solve(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack)
 {
-    int n = s->n, m = s->m, width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
+    int n = s->n, m = s->m, one = 1, info;
     fu_complex *x = c->x, *y = x + n, *C = c->C, *X = c->X;
-    if (n) lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
+    solve_band(c, s, lapack, x);
     if (!m) return;
     for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r)
         for (int i = r->rows.first; i < r->rows.end; ++i)

@@ -95,6 +95,29 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
             add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
 }
 
+/* Adds a row of the border and the column that is its transpose: a factor times n values over the dofs `at`. row: as fu_extra
+ * numbers it. */
+void fu_add_row_and_column(const fu_model *model, fu_system *s, int row, int n, const int *at, const double *value,
+                           double factor)
+{
+    const int k = model->n_band + model->n_border_dof - model->n_dof + row - s->n;
+    fu_span *span_B = s->span_B + (long)k * FU_HALVES * s->n_chains, *span_C = s->span_C + (long)k * FU_HALVES * s->n_chains;
+    double *right = s->B + (long)k * s->n, *below = s->C + (long)k * s->n;
+    for (int i = 0; i < n; ++i) {
+        const int unknown = model->unknown_of_dof[at[i]];
+        const double added = factor * value[i];
+        if (unknown >= 0 && unknown < s->n) {
+            right[unknown] += added;
+            below[unknown] += added;
+            touch(&span_B[s->half[unknown]], unknown);
+            touch(&span_C[s->half[unknown]], unknown);
+        } else if (unknown != FU_FIXED) {
+            fu_add(model, s, row, at[i], added);
+            fu_add(model, s, at[i], row, added);
+        }
+    }
+}
+
 /* Returns the largest of what the dofs move points by, as a length, m; not a number where one is none. */
 double fu_size(const fu_model *model, const double *dofs)
 {
