@@ -97,23 +97,19 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
 
 /* Adds a row of the border and the column that is its transpose: a factor times n values over the dofs `at`. row: as fu_extra
  * numbers it. */
-void fu_add_row_and_column(const fu_model *model, fu_system *s, int row, int n, const int *at, const double *value,
+void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, int n, const int *at, const double *value,
                            double factor)
 {
-    const int k = model->n_band + model->n_border_dof - model->n_dof + row - s->n;
-    fu_span *span_B = s->span_B + (long)k * FU_HALVES * s->n_chains, *span_C = s->span_C + (long)k * FU_HALVES * s->n_chains;
-    double *right = s->B + (long)k * s->n, *below = s->C + (long)k * s->n;
+    const int own = model->n_band + model->n_border_dof - model->n_dof + row;
     for (int i = 0; i < n; ++i) {
         const int unknown = model->unknown_of_dof[at[i]];
         const double added = factor * value[i];
-        if (unknown >= 0 && unknown < s->n) {
-            right[unknown] += added;
-            below[unknown] += added;
-            touch(&span_B[s->half[unknown]], unknown);
-            touch(&span_C[s->half[unknown]], unknown);
+        if (unknown >= 0) {
+            add(system, own, unknown, added);
+            add(system, unknown, own, added);
         } else if (unknown != FU_FIXED) {
-            fu_add(model, s, row, at[i], added);
-            fu_add(model, s, at[i], row, added);
+            fu_add(model, system, row, at[i], added);
+            fu_add(model, system, at[i], row, added);
         }
     }
 }
