@@ -10,6 +10,7 @@
 #define FU_COMPLEX_BEYOND(width) ((width) + 4)
 
 void fu_complex_band_factor(int n, int width, double *re, double *im);
+void fu_complex_band_add(int n, int width, const double *K, fu_complex factor, double *re, double *im);
 void fu_complex_band_solve(int n, int width, const double *re, const double *im, double *x, double *y);
 
 /* [K B; C D] as an fu_system has it; real systems of several weights are combined to it. */
@@ -19,7 +20,8 @@ typedef struct {
     int n_columns;
     fu_piece *columns; /* of X; those of C are the real system's */
     int *pivot_band, *pivot_border;
-    int definite;      /* the band is factored in L (complex_band.c), else in K (zgbtrf) */
+    int is_lower;      /* the band is made in L, its lower half, else in K, all of it */
+    int definite;      /* it is factored in L (complex_band.c), else in K (zgbtrf) */
     double *L[2];      /* FU_COMPLEX_STRIDE x n, real and imaginary parts */
     double *right[2];  /* n + FU_COMPLEX_BEYOND: a right side of the band, likewise */
 } fu_complex_system;

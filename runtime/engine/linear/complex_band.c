@@ -71,6 +71,26 @@ FU_INLINE void solve(int n, int width, const double *re, const double *im, doubl
     }
 }
 
+FU_INLINE void add(int n, int width, const double *K, fu_complex factor, double *re, double *im)
+{
+    const int rows = width + 1, whole = rows - rows % FU_LANES;
+    for (int j = 0; j < n; ++j, re += FU_COMPLEX_STRIDE(width), im += FU_COMPLEX_STRIDE(width)) {
+        const double *below = K + (long)j * FU_BAND_ROWS(width) + FU_BAND_DIAGONAL(width);
+        for (int i = 0; i < whole; i += FU_LANES) {
+            *(fu_lanes *)(re + i) += *(const fu_lanes *)(below + i) * factor.re;
+            *(fu_lanes *)(im + i) += *(const fu_lanes *)(below + i) * factor.im;
+        }
+        for (int i = whole; i < rows; ++i) {
+            re[i] += below[i] * factor.re;
+            im[i] += below[i] * factor.im;
+        }
+    }
+}
+
+/* Adds the lower half of a real band, in LAPACK's storage, times a factor. */
+FU_IN_LANES(fu_complex_band_add, add, (int n, int width, const double *K, fu_complex factor, double *re, double *im),
+            (n, width, K, factor, re, im))
+
 /* Factors in place: L below the diagonal, 1/D on it. */
 FU_IN_LANES(fu_complex_band_factor, factor, (int n, int width, double *re, double *im), (n, width, re, im))
 

@@ -29,6 +29,7 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->columns = (fu_piece *)fu_take(scratch, taken, FU_DOUBLES(pieces, fu_piece));
     c->pivot_band = (int *)fu_take(scratch, taken, FU_DOUBLES(n, int));
     c->pivot_border = (int *)fu_take(scratch, taken, FU_DOUBLES(m, int));
+    c->is_lower = 1;
     for (int part = 0; part < 2; ++part) {
         c->L[part] = fu_take(scratch, taken, FU_COMPLEX_STRIDE((long)s->width) * n);
         c->right[part] = fu_take(scratch, taken, n + FU_COMPLEX_BEYOND(s->width));
@@ -39,7 +40,9 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
 void fu_complex_system_clear(fu_complex_system *c, const fu_system *s)
 {
     const size_t n = (size_t)s->n, m = (size_t)s->m;
-    memset(c->K, 0, sizeof(fu_complex) * (size_t)storage_rows(s) * n);
+    if (c->is_lower)
+        for (int part = 0; part < 2; ++part) memset(c->L[part], 0, sizeof(double) * FU_COMPLEX_STRIDE((size_t)s->width) * n);
+    else memset(c->K, 0, sizeof(fu_complex) * (size_t)storage_rows(s) * n);
     memset(c->B, 0, sizeof(fu_complex) * n * m);
     memset(c->C, 0, sizeof(fu_complex) * n * m);
     memset(c->D, 0, sizeof(fu_complex) * m * m);
@@ -49,7 +52,9 @@ void fu_complex_system_clear(fu_complex_system *c, const fu_system *s)
 void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_complex factor)
 {
     const long band = (long)FU_BAND_ROWS(s->width) * s->n, corner = (long)s->m * s->m;
-    for (long i = 0; i < band; ++i) fu_complex_add(&c->K[i], factor, s->K[i]);
+    if (c->is_lower) fu_complex_band_add(s->n, s->width, s->K, factor, c->L[0], c->L[1]);
+    else
+        for (long i = 0; i < band; ++i) fu_complex_add(&c->K[i], factor, s->K[i]);
     for (int k = 0; k < s->m; ++k)
         for (int half = 0; half < FU_HALVES * s->n_chains; ++half) {
             const fu_span right = s->span_B[k * FU_HALVES * s->n_chains + half], below = s->span_C[k * FU_HALVES * s->n_chains + half];
@@ -76,14 +81,14 @@ static void pack(fu_complex_system *c, const fu_system *s)
     }
 }
 
-/* Factors the band: without pivots where the real one was definite, as the complex one is then. Returns 0, or not 0 where it is
- * singular. */
+/* Factors the band: without pivots where the real one was definite, as the complex one is then; else all of it must be there.
+ * Returns 0, or not 0 where it is singular. */
 static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack)
 {
     int n = s->n, width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     c->definite = s->definite;
     if (c->definite) {
-        pack(c, s);
+        if (!c->is_lower) pack(c, s);
         fu_complex_band_factor(n, width, c->L[0], c->L[1]);
     } else if (n)
         lapack->zgbtrf(&n, &n, &width, &width, c->K, &rows, c->pivot_band, &info);
