@@ -11,7 +11,7 @@ static int pivot_of(int n, const double *column, int diagonal)
     return largest;
 }
 
-/* Factors A = P L U in place, with pivots from rows; returns 0, or the number from 1 on of the first pivot that is zero. */
+/* Factors A = P L U in place, with pivots from rows; on the diagonal is 1 over that of U. Returns 0, or the number from 1 on of the first pivot that is zero. */
 int fu_small_factor(int n, double *A, int *pivot)
 {
     int info = 0;
@@ -29,6 +29,7 @@ int fu_small_factor(int n, double *A, int *pivot)
                 A[k * n + p] = kept;
             }
         const double scale = 1.0 / column[j];
+        column[j] = scale;
         for (int i = j + 1; i < n; ++i) column[i] *= scale;
         for (int k = j + 1; k < n; ++k) {
             double *other = A + k * n;
@@ -50,7 +51,7 @@ void fu_small_solve(int n, const double *A, const int *pivot, double *x)
     for (int j = 0; j < n; ++j)
         for (int i = j + 1; i < n; ++i) x[i] -= A[j * n + i] * x[j];
     for (int j = n - 1; j >= 0; --j) {
-        x[j] /= A[j * n + j];
+        x[j] *= A[j * n + j];
         for (int i = 0; i < j; ++i) x[i] -= A[j * n + i] * x[j];
     }
 }
