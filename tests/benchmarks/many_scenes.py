@@ -11,7 +11,8 @@ the fewest that come to the error that ours have.
 
 All of a scene is timed: it is described, checked, built, run, and its results are labelled; there it is described,
 assembled, run, and the rider's last position read. "wall" is by the clock, "CPU" by that of the process and its
-children; methods take turns, and the median counts. Where other programs run, CPU says more.
+children; methods take turns, and the median counts. Where other programs run, CPU says more. "locked" is the part of
+it with Python's lock, here, which one thread has at a time.
 """
 
 import os
@@ -70,13 +71,17 @@ OURS = {"first scene": first_scene,
 
 @dataclass
 class Method:
-    """A way to run n scenes, its error and how long that took: wall and CPU seconds, a pair a repetition."""
+    """A way to run n scenes and its error; how long that took: wall and CPU seconds, a pair a repetition.
+
+    locked: seconds of a scene with Python's lock, which one thread has at a time.
+    """
 
     scene: str
     name: str
     n: int
     run: Callable[[], object]
     error: float
+    locked: float = np.nan
     times: list[tuple[float, float]] = field(default_factory=list)
 
     def measure(self) -> None:
@@ -124,16 +129,27 @@ def their_errors() -> dict[int, float]:
     return errors
 
 
+def locked_seconds(make: Callable[[float], fu.Scene], settings: dict) -> float:
+    """CPU seconds of a scene with Python's lock: all but those of the integration. The least of the sample."""
+    found = []
+    for mass in SAMPLE:
+        begin = time.thread_time()
+        run = make(mass).run(**settings)
+        found.append(time.thread_time() - begin - run.report["time_s"]["solve_cpu"])
+    return min(found)
+
+
 def our_methods(n: int) -> list[Method]:
     """Ways to run the scenes here, by the integrator."""
     methods = []
     for (name, make), integrator in product(OURS.items(), ("auto", "genalpha")):
         error, settings = our_error(make, integrator), SETTINGS | {"integrator": integrator}
+        locked = locked_seconds(make, settings)
         methods.append(Method(name, f"{integrator}, each by itself", n, lambda make=make, settings=settings: [
-            scene.run(**settings) for scene in variants(make, n)], error))
+            scene.run(**settings) for scene in variants(make, n)], error, locked))
         for threads in (1, 2):
             methods.append(Method(name, f"{integrator}, run_many, threads = {threads}", n, partial(
-                run_all, make, n, threads, settings), error))
+                run_all, make, n, threads, settings), error, locked))
     return methods
 
 
@@ -171,7 +187,7 @@ def main() -> None:
         wall, cpu = (median(times) for times in zip(*method.times, strict=True))
         rows.append({"scene": method.scene, "method": method.name, "error": method.error,
                      "scenes per s (wall)": method.n / wall, "scenes per CPU s": method.n / cpu,
-                     "CPU ms a scene": 1e3 * cpu / method.n})
+                     "CPU ms a scene": 1e3 * cpu / method.n, "of them locked": 1e3 * method.locked})
     show(rows, options.out)
 
 
