@@ -13,6 +13,7 @@ from .errors import (
     UnknownResultError,
     check_renamed,
 )
+from .many_scenes import run_many
 from .parts.cable import Cable
 from .parts.end_stops import Buffer, HardStop
 from .parts.event import Event
@@ -82,6 +83,7 @@ __all__ = [
     "combine",
     "load_run",
     "load_scene",
+    "run_many",
 ]
 
 

@@ -87,6 +87,12 @@ def pages_and_pictures(space):
     assert Path("shape.png").stat().st_size > 10_000
 
 
+def many_scenes(space):
+    run = space["scene"].replace("A", mass=space["masses"][-1]).run(duration=0.1, tol=1e-3)
+    assert space["mass"] == space["masses"][-1]
+    assert space["kept"]["A.position"].tobytes() == run["A.position"].tobytes()
+
+
 def own_element(space):
     assert space["run"].status == "completed"
 
@@ -101,6 +107,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "Events"): events,
               ("runtime/README.md", "Sweeps"): sweeps,
               ("runtime/README.md", "See it"): pages_and_pictures,
+              ("runtime/README.md", "Many scenes"): many_scenes,
               ("runtime/README.md", "Statics, modes and section forces"): rest,
               ("derive/README.md", "Kernels from Python"): middle_of_an_element,
               ("derive/README.md", "Your own element"): own_element,

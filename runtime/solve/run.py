@@ -81,7 +81,7 @@ class Simulation:
 
     Wall time: set_up_s until the engine starts, start_s from there to its first step, notes_s of the notes on results
     after its last one, total_s of all that; solve_cpu_s: CPU seconds of the integration alone, whatever else the
-    machine does.
+    machine does, and other threads of the process with other scenes.
     """
 
     model: Model
@@ -113,7 +113,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         messages += [f"state to start from: {message}" for message in initial.messages]
     messages += _divided_step(settings)
     method, reason, rival = choose(settings, scene, model, engine, None if stream is None else stream.integrator)
-    set_up, cpu = time.perf_counter() - begin, time.process_time()
+    set_up, clock = time.perf_counter() - begin, time.thread_time if settings.threads == 1 else time.process_time
+    cpu = clock()
     LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, model.n_dof,
              method.name, reason, set_up)
     capacity = None if stream is None else pace.capacity
@@ -140,7 +141,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     if status in (None, "running"):
         status = engine.advance(long_run, pace.every, stream)
     messages += long_run.notes()
-    cpu, ended = time.process_time() - cpu, time.perf_counter()
+    cpu, ended = clock() - cpu, time.perf_counter()
     row_notes.see(engine.rows())
     messages += _controlled_alone(engine, settings)
     if status == "completed":

@@ -133,6 +133,12 @@ def cpu_seconds(make: Callable[[], System], duration: float, steps: int) -> floa
     return time.process_time() - begin
 
 
+def last_position(made: System, duration: float, steps: int) -> list[float]:
+    """Run a system to its end; return where the node is then, in m."""
+    _solve(made, _settings(duration, steps))
+    return made.system.GetNodeOutput(made.node, exu.OutputVariableType.Position).tolist()
+
+
 def trajectory(make: Callable[[], System], duration: float, steps: int, outputs: int) -> np.ndarray:
     """(outputs + 1, 3): the path of the node, in m; steps must be a multiple of the outputs."""
     made = make()

@@ -188,6 +188,9 @@ cdef extern from "engine.h" nogil:
         fu_piece *rows
         int *pivot_band
         int *pivot_border
+        double *inverse
+    int FU_INVERSE_MOST
+    long FU_INVERSE_ROWS(long n)
     ctypedef struct fu_model:
         int dim, n_cables, n_bodies, n_couplings, n_motions
         const fu_cable *cables

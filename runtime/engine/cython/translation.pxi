@@ -1,6 +1,7 @@
 # A model as the engine's C structures.
 
 SPARE = 4  # times the fronts' memory as it is foreseen: what pivots may take that are left to later fronts
+cdef int INVERTED = 4  # times as many unknowns as a band is wide: longer ones are solved faster than multiplied
 
 cdef const fu_coupling_type *_type_of(coupling) except NULL:
     """Return the engine's type of a coupling of a model."""
@@ -351,6 +352,9 @@ cdef class Translation(Arrays):
         self._system(&run.newton, &self.newton_fronts, model, model.newton, width)
         a = &run.accelerator
         self._system(&a.mass, &self.mass_fronts, model, accelerations, width)
+        sizes = np.diff(model.chains).tolist()
+        if max(sizes, default=0) <= min(FU_INVERSE_MOST, INVERTED * (width + 1)):
+            a.mass.inverse = self._zeros(sum(n * FU_INVERSE_ROWS(n) for n in sizes))
         # that of the mass is factored elsewhere, before the first of Newton is made
         run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
         a.corner = self._zeros(accelerations.size)

@@ -1,9 +1,17 @@
-/* Complex matrices laid out as an fu_system: linear/complex_system.c. */
+/* Complex matrices laid out as an fu_system: linear/complex_system.c, linear/complex_band.c. */
 #ifndef FUNICULAR_COMPLEX_SYSTEM_H
 #define FUNICULAR_COMPLEX_SYSTEM_H
 
 #include "complex_number.h"
 #include "linear.h"
+
+/* complex_band.c: numbers of a column of the factor's storage, and those that are touched behind a column of unknowns. */
+#define FU_COMPLEX_STRIDE(width) ((width) + 4)
+#define FU_COMPLEX_BEYOND(width) ((width) + 4)
+
+void fu_complex_band_factor(int n, int width, double *re, double *im);
+void fu_complex_band_add(int n, int width, const double *K, fu_complex factor, double *re, double *im);
+void fu_complex_band_solve(int n, int width, const double *re, const double *im, double *x, double *y);
 
 /* [K B; C D] as an fu_system has it; real systems of several weights are combined to it. */
 typedef struct {
@@ -13,6 +21,10 @@ typedef struct {
     int *n_columns;
     fu_piece *columns; /* of X, by chain; those of C are the real system's */
     int *pivot_band, *pivot_border;
+    int is_lower;      /* the band is made in L, its lower half, else in K, all of it */
+    int definite;      /* it is factored in L (complex_band.c), else in K (zgbtrf) */
+    double *L[2];      /* FU_COMPLEX_STRIDE x n, real and imaginary parts */
+    double *right[2];  /* n + FU_COMPLEX_BEYOND: a right side of the band, likewise */
 } fu_complex_system;
 
 int fu_complex_fronts_factor(const fu_fronts *fronts, const fu_complex *matrix, fu_factors *factors,

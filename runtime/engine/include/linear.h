@@ -1,4 +1,5 @@
-/* Banded matrices with a border, and LAPACK for their parts: linear/band.c, linear/bordered.c. */
+/* Banded matrices with a border, and LAPACK for their parts: linear/band.c, linear/bordered.c,
+ * linear/inverse.c, linear/small.c. */
 #ifndef FUNICULAR_LINEAR_H
 #define FUNICULAR_LINEAR_H
 
@@ -30,6 +31,14 @@ void fu_lapack_attach(fu_lapack *lapack, int k, const void *function);
 #define FU_BAND_GROUP 4
 #define FU_BAND_BEYOND(width) ((width) + FU_BAND_GROUP)
 #define FU_BAND_LENGTH(n, width) ((long)(n) + FU_BAND_BEYOND(width))
+
+/* inverse.c: of how many unknowns at most a band is inverted, and the rows that a column of the inverse has. */
+#define FU_INVERSE_MOST 96
+#define FU_INVERSE_GROUP 16
+#define FU_INVERSE_ROWS(n) (((n) + FU_INVERSE_GROUP - 1) / FU_INVERSE_GROUP * FU_INVERSE_GROUP)
+
+/* small.c: the largest matrix that is factored there. */
+#define FU_SMALL_MOST 24
 
 /* LAPACK's band storage for a factorisation with pivots: rows of it, and the row of the diagonal. Above the 2 width + 1 rows of
  * the band there are width more, which pivots fill. */
@@ -81,6 +90,8 @@ typedef struct {
     fu_piece *columns, *rows; /* of X and C: those of a chain from FU_HALVES chain_start on */
     int *n_columns, *n_rows, *constant_columns, *constant_rows; /* n_chains: how many pieces there are, and stay */
     int *pivot_band, *pivot_border;
+    double *inverse;   /* null, or that of the band, FU_INVERSE_ROWS a column, where `inverted` */
+    int inverted;
 } fu_system;
 
 int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A);
@@ -91,6 +102,12 @@ void fu_fronts_add_product(const fu_fronts *fronts, const double *matrix, int co
 int fu_fronts_factor(const fu_fronts *fronts, const double *matrix, fu_factors *factors, const fu_lapack *lapack);
 void fu_fronts_solve(const fu_fronts *fronts, const fu_factors *factors, double *y);
 
+void fu_inverse_make(int n, int width, const double *L, double *inverse);
+void fu_inverse_times(int rows, const double *inverse, int first, int end, const double *b, double *x);
+
+int fu_small_factor(int n, double *A, int *pivot);
+void fu_small_solve(int n, const double *A, const int *pivot, double *x);
+
 void fu_system_clear(fu_system *system);
 void fu_system_clear_border(fu_system *system);
 fu_span fu_common(fu_span one, fu_span other);
@@ -98,6 +115,7 @@ int fu_strip_of(const fu_system *system, int k, int chain);
 int fu_pieces(const fu_system *system, int strip, const double *x, fu_piece *pieces);
 void fu_system_release_border(fu_system *system);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
+void fu_system_invert_band(fu_system *system);
 void fu_system_keep_border(fu_system *system, const fu_lapack *lapack, int columns);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);
 void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x);

@@ -12,6 +12,8 @@ void fu_gather(const fu_model *model, const double *force, double *x);
 void fu_spread(const fu_model *model, const double *x, double *dofs);
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value);
 void fu_add_body(const fu_model *model, fu_system *system, int dof, int n, const double *values);
+void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, int n, const int *at, const double *value,
+                           double factor);
 int fu_extra(const fu_model *model, int k);
 double fu_size(const fu_model *model, const double *dofs);
 double fu_weighted_size(const fu_model *model, const double *weight, const double *dofs);

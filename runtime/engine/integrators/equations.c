@@ -30,16 +30,24 @@ void fu_residual(fu_run *run, const fu_equations *at)
     run->statistics.time_residual += fu_clock() - begin;
 }
 
+static void matrix_of_cables(fu_run *run, const fu_equations *at)
+{
+    const fu_weights w = at->weights;
+    fu_system_clear(&run->newton);
+    fu_dynamic_matrix(run->model, at->next->q, at->next->v, w.inertia, w.rate, w.stiffness, &run->newton);
+}
+
+static void add_matrix_of_others(fu_run *run, const fu_equations *at)
+{
+    fu_bodies_matrix(run->model, at->next, at->psi, at->weights, &run->newton);
+    if (at->weights.stiffness != 0.0) fu_coupling_tangents(run->model, at, &run->newton);
+}
+
 /* Makes run->newton, the derivative at `next` of the scaled residual by the unknowns. */
 void fu_matrix(fu_run *run, const fu_equations *at)
 {
-    const fu_model *model = run->model;
-    const fu_state *next = at->next;
-    const fu_weights w = at->weights;
-    fu_system_clear(&run->newton);
-    fu_dynamic_matrix(model, next->q, next->v, w.inertia, w.rate, w.stiffness, &run->newton);
-    fu_bodies_matrix(model, next, at->psi, w, &run->newton);
-    if (w.stiffness != 0.0) fu_coupling_tangents(model, at, &run->newton);
+    matrix_of_cables(run, at);
+    add_matrix_of_others(run, at);
 }
 
 /* Makes the same of these weights, unfactored; unknowns move bodies from `next`. */
@@ -48,6 +56,21 @@ void fu_matrix_of_weights(fu_run *run, fu_weights weights)
     const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
     fu_matrix(run, &at);
     run->factored = 0;
+}
+
+/* Makes the part of it that is the cables'. */
+void fu_matrix_of_cables(fu_run *run, fu_weights weights)
+{
+    const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
+    matrix_of_cables(run, &at);
+    run->factored = 0;
+}
+
+/* Adds the part of it that is of bodies and couplings. */
+void fu_add_matrix_of_others(fu_run *run, fu_weights weights)
+{
+    const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
+    add_matrix_of_others(run, &at);
 }
 
 /* Moves `next` by unknowns, from where it is, in statics. */

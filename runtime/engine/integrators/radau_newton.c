@@ -9,41 +9,78 @@ static fu_complex complex_step(const fu_radau_parameters *method, double h)
     return fu_complex_quotient((fu_complex){h, 0.0}, (fu_complex){method->alpha, method->beta});
 }
 
-/* Returns whether any force depends on velocities. */
-static int is_damped(const fu_model *model)
+/* Returns whether forces of the cables depend on velocities. */
+static int cables_are_damped(const fu_model *model)
 {
     int damped = 0;
     for (int c = 0; c < model->n_cables; ++c) damped |= model->cables[c].tau > 0.0 || model->cables[c].mass_damping > 0.0;
-    return damped || model->n_damped || model->n_bodies; /* forces of inertia go with the velocity of a body */
+    return damped;
 }
 
-/* Both matrices at `now` are made of M + J, K and D, which systems of other weights differ by. */
-int fu_radau_factor(fu_run *run, double h)
+/* Adds the matrix of these weights to the complex one, times a factor; whole: with the cables' part, else without. */
+static void add_weights(fu_run *run, fu_weights weights, int whole, fu_complex factor)
 {
-    const double begin = fu_clock();
+    if (whole) fu_matrix_of_weights(run, weights);
+    else {
+        fu_system_clear(&run->newton);
+        fu_add_matrix_of_others(run, weights);
+    }
+    fu_complex_system_accumulate(&fu_radau_space(run)->newton, &run->newton, factor);
+}
+
+/* Makes both matrices at `now`. They are made of M + J, K and D, which systems of other weights differ by. Cables without damping
+ * have M, and M + K; their K, which takes longest, is made once. */
+static void make_matrices(fu_run *run, double h)
+{
     const fu_radau_parameters *method = fu_radau_method(run);
-    const fu_system *s = &run->newton;
-    fu_radau_workspace *w = fu_radau_space(run);
-    fu_complex_system *c = &w->newton;
+    const fu_model *model = run->model;
+    fu_complex_system *c = &fu_radau_space(run)->newton;
     const double real = h / method->gamma, rate = 1.0 / real;
     const fu_complex other = complex_step(method, h), square = fu_complex_product(other, other);
     const fu_complex by_damping = {other.re / real, other.im / real};
     const fu_complex by_stiffness = {square.re / (real * real), square.im / (real * real)};
-    const int damped = is_damped(run->model);
-    fu_complex_system_clear(c, s);
-    fu_matrix_of_weights(run, (fu_weights){1.0, 0.0, 2.0 * real * real});
-    fu_complex_system_accumulate(c, s, (fu_complex){by_stiffness.re - 1.0, by_stiffness.im});
+    const int whole = cables_are_damped(model), damped = whole || model->n_damped || model->n_bodies; /* forces of inertia
+                                                                        * go with the velocity of a body */
+    const fu_complex last = damped ? by_damping : (fu_complex){2.0 - by_stiffness.re, -by_stiffness.im};
+    fu_complex_system_clear(c, &run->newton);
+    add_weights(run, (fu_weights){1.0, 0.0, 2.0 * real * real}, whole, (fu_complex){by_stiffness.re - 1.0, by_stiffness.im});
     if (damped) {
-        fu_matrix_of_weights(run, (fu_weights){1.0, 0.0, real * real});
         const fu_complex rest = {2.0 - by_stiffness.re - by_damping.re, -by_stiffness.im - by_damping.im};
-        fu_complex_system_accumulate(c, s, rest);
+        add_weights(run, (fu_weights){1.0, 0.0, real * real}, whole, rest);
     }
-    fu_matrix_of_weights(run, (fu_weights){1.0, rate, real * real});
-    fu_complex_system_accumulate(c, s, damped ? by_damping : (fu_complex){2.0 - by_stiffness.re, -by_stiffness.im});
-    memcpy(w->D_real, s->D, sizeof(double) * (size_t)s->fronts->size);
-    int info = fu_system_factor_band(&run->newton, run->model->lapack);
+    if (!whole) {
+        fu_matrix_of_cables(run, (fu_weights){1.0, 0.0, 0.0});
+        fu_complex_system_accumulate(c, &run->newton, (fu_complex){1.0 - by_stiffness.re, -by_stiffness.im});
+    }
+    fu_matrix_of_cables(run, (fu_weights){1.0, rate, real * real});
+    if (!whole)
+        fu_complex_system_accumulate(c, &run->newton, (fu_complex){by_stiffness.re - last.re, by_stiffness.im - last.im});
+    fu_add_matrix_of_others(run, (fu_weights){1.0, rate, real * real});
+    fu_complex_system_accumulate(c, &run->newton, last);
+}
+
+/* Makes both and factors the real band. Where that is not definite, the complex one needs more than its lower half. */
+static int make_and_factor_band(fu_run *run, double h)
+{
+    fu_system *s = &run->newton;
+    fu_radau_workspace *w = fu_radau_space(run);
+    for (;;) {
+        make_matrices(run, h);
+        memcpy(w->D_real, s->D, sizeof(double) * (size_t)s->fronts->size);
+        const int info = fu_system_factor_band(s, run->model->lapack);
+        if (s->definite || !w->newton.is_lower) return info;
+        w->newton.is_lower = 0; /* from now on: it may stay so */
+    }
+}
+
+/* Makes and factors the real and the complex matrix at `now`; returns 0, or not 0 where one is singular. */
+int fu_radau_factor(fu_run *run, double h)
+{
+    const double begin = fu_clock();
+    fu_radau_workspace *w = fu_radau_space(run);
+    int info = make_and_factor_band(run, h);
     if (!info) info = fu_system_factor_border(&run->newton, run->model->lapack);
-    if (!info) info = fu_complex_system_factor(c, s, run->model->lapack, w->unknowns);
+    if (!info) info = fu_complex_system_factor(&w->newton, &run->newton, run->model->lapack, w->unknowns);
     run->factored = !info;
     run->h_factored = h;
     run->statistics.factorisations += 2;

@@ -76,11 +76,37 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
     return 0;
 }
 
+/* Inverts the band, which is factored and definite and stays as it is, where it is small enough to have an inverse. */
+void fu_system_invert_band(fu_system *s)
+{
+    s->inverted = s->inverse != 0 && s->definite;
+    double *inverse = s->inverse;
+    for (int c = 0; c < s->n_chains && s->inverted; ++c) {
+        const int n = size_of(s, c);
+        fu_inverse_make(n, s->width, factor_of(s, c), inverse);
+        inverse += (long)n * FU_INVERSE_ROWS(n);
+    }
+}
+
+/* Makes x = K^-1 x in a chain by the inverse of the band, where x is zero before the row `first` */
+static void multiply_chain(const fu_system *s, int chain, int first, double *x)
+{
+    const int n = size_of(s, chain);
+    const double *inverse = s->inverse;
+    double solution[FU_INVERSE_ROWS(FU_INVERSE_MOST)];
+    int end = n;
+    for (int c = 0; c < chain; ++c) inverse += (long)size_of(s, c) * FU_INVERSE_ROWS(size_of(s, c));
+    while (end > first && x[end - 1] == 0.0) --end;
+    fu_inverse_times(FU_INVERSE_ROWS(n), inverse, first, end, x, solution);
+    for (int i = 0; i < n; ++i) x[i] = solution[i];
+}
+
 /* Makes x = K^-1 x in a chain, where x is zero before the row `first` */
 static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, int first, double *x)
 {
     int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
-    if (s->definite) fu_band_solve(n, width, factor_of(s, chain), first - start, x + start);
+    if (s->inverted) multiply_chain(s, chain, first - start, x + start);
+    else if (s->definite) fu_band_solve(n, width, factor_of(s, chain), first - start, x + start);
     else
         lapack->dgbtrs("N", &n, &width, &width, &one, s->K + (long)start * rows, &rows, s->pivot_band + start,
                        x + start, &n, &info);
@@ -193,6 +219,7 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
     }
     if (s->D[s->fronts->size] != 0.0) return 1; /* the order of elimination has no place for it */
     if (s->fronts->n > 1) return fu_fronts_factor(s->fronts, s->D, &s->factors, lapack);
+    if (m <= FU_SMALL_MOST) return fu_small_factor(m, s->D, s->pivot_border);
     lapack->dgetrf(&m, &m, s->D, &m, s->pivot_border, &info);
     return info;
 }
@@ -211,6 +238,7 @@ void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
         for (const fu_piece *r = rows; r < rows + s->n_rows[c]; ++r) y[r->k] -= times(s, r, r->rows, x);
     }
     if (s->fronts->n > 1) fu_fronts_solve(s->fronts, &s->factors, y);
+    else if (m <= FU_SMALL_MOST) fu_small_solve(m, s->D, s->pivot_border, y);
     else lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
     for (int c = 0; c < s->n_chains; ++c) {
         const fu_piece *columns = s->columns + FU_HALVES * s->chain_start[c];

@@ -39,13 +39,20 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     const long fronts = s->fronts->n, lengths[] = {real->most_unknowns, m, fronts, fronts, fronts, fronts, fronts};
     for (int k = 0; k < (int)(sizeof own / sizeof *own); ++k)
         *own[k] = (int *)fu_take(scratch, taken, FU_DOUBLES(lengths[k], int));
+    c->is_lower = 1;
+    for (int part = 0; part < 2; ++part) {
+        c->L[part] = fu_take(scratch, taken, FU_COMPLEX_STRIDE((long)s->width) * n);
+        c->right[part] = fu_take(scratch, taken, n + FU_COMPLEX_BEYOND(s->width));
+    }
 }
 
 /* Makes the matrix zero. */
 void fu_complex_system_clear(fu_complex_system *c, const fu_system *s)
 {
     const size_t n = (size_t)s->n, beside = (size_t)s->n_strip_rows;
-    memset(c->K, 0, sizeof(fu_complex) * (size_t)storage_rows(s) * n);
+    if (c->is_lower)
+        for (int part = 0; part < 2; ++part) memset(c->L[part], 0, sizeof(double) * FU_COMPLEX_STRIDE((size_t)s->width) * n);
+    else memset(c->K, 0, sizeof(fu_complex) * (size_t)storage_rows(s) * n);
     memset(c->B, 0, sizeof(fu_complex) * beside);
     memset(c->C, 0, sizeof(fu_complex) * beside);
     memset(c->D, 0, sizeof(fu_complex) * (size_t)s->fronts->size);
@@ -55,7 +62,9 @@ void fu_complex_system_clear(fu_complex_system *c, const fu_system *s)
 void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_complex factor)
 {
     const long band = (long)FU_BAND_ROWS(s->width) * s->n, corner = s->fronts->size;
-    for (long i = 0; i < band; ++i) fu_complex_add(&c->K[i], factor, s->K[i]);
+    if (c->is_lower) fu_complex_band_add(s->n, s->width, s->K, factor, c->L[0], c->L[1]);
+    else
+        for (long i = 0; i < band; ++i) fu_complex_add(&c->K[i], factor, s->K[i]);
     for (int strip = 0; strip < s->n_strips; ++strip)
         for (int half = FU_HALVES * strip; half < FU_HALVES * (strip + 1); ++half) {
             const fu_span right = s->span_B[half], below = s->span_C[half];
@@ -66,13 +75,61 @@ void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_c
     for (long i = 0; i < corner; ++i) fu_complex_add(&c->D[i], factor, s->D[i]);
 }
 
+/* Makes the lower half of the band as complex_band.c wants it. */
+static void pack(fu_complex_system *c, const fu_system *s)
+{
+    const int n = s->n, width = s->width, stride = FU_COMPLEX_STRIDE(width);
+    for (int j = 0; j < n; ++j) {
+        const fu_complex *below = c->K + storage_rows(s) * j + FU_BAND_DIAGONAL(width);
+        double *re = c->L[0] + (long)j * stride, *im = c->L[1] + (long)j * stride;
+        const int most = n - 1 - j < width ? n - 1 - j : width;
+        for (int i = 0; i <= most; ++i) {
+            re[i] = below[i].re;
+            im[i] = below[i].im;
+        }
+        for (int i = most + 1; i < stride; ++i) re[i] = im[i] = 0.0;
+    }
+}
+
+/* Factors the band: without pivots where the real one was definite, as the complex one is then; else all of it must be there.
+ * Returns 0, or not 0 where it is singular. */
+static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack)
+{
+    int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
+    c->definite = s->definite;
+    if (c->definite) {
+        if (!c->is_lower) pack(c, s);
+        fu_complex_band_factor(s->n, width, c->L[0], c->L[1]); /* nothing lies between chains */
+        return 0;
+    }
+    for (int chain = 0; chain < s->n_chains; ++chain) {
+        int first = s->chains[chain], n = s->chains[chain + 1] - first;
+        if (n)
+            lapack->zgbtrf(&n, &n, &width, &width, c->K + first * storage_rows(s), &rows, c->pivot_band + first, &info);
+        if (info) return first + info;
+    }
+    return 0;
+}
+
 /* Makes x = K^-1 x in a chain. */
 static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int chain, fu_complex *x)
 {
     int first = s->chains[chain], n = s->chains[chain + 1] - first, width = s->width, rows = FU_BAND_ROWS(width);
     int one = 1, info;
-    lapack->zgbtrs("N", &n, &width, &width, &one, c->K + first * storage_rows(s), &rows, c->pivot_band + first,
-                   x + first, &n, &info);
+    if (!n) return;
+    if (!c->definite) {
+        lapack->zgbtrs("N", &n, &width, &width, &one, c->K + first * storage_rows(s), &rows, c->pivot_band + first,
+                       x + first, &n, &info);
+        return;
+    }
+    const long at = (long)first * FU_COMPLEX_STRIDE(width);
+    double *re = c->right[0], *im = c->right[1];
+    for (int i = 0; i < n + FU_COMPLEX_BEYOND(width); ++i) {
+        re[i] = i < n ? x[first + i].re : 0.0;
+        im[i] = i < n ? x[first + i].im : 0.0;
+    }
+    fu_complex_band_solve(n, width, c->L[0] + at, c->L[1] + at, re, im);
+    for (int i = 0; i < n; ++i) x[first + i] = (fu_complex){re[i], im[i]};
 }
 
 /* Makes a column of X in a chain and finds the rows of it that count, unless B has none; returns how many pieces they
@@ -108,14 +165,8 @@ static void subtract(fu_complex_system *c, const fu_system *s, int chain)
  * doubles as the band has columns. Returns 0, or not 0 where it is singular. */
 int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, double *size)
 {
-    int m = s->m, width = s->width, rows = FU_BAND_ROWS(width), info = 0;
-    for (int chain = 0; chain < s->n_chains; ++chain) {
-        int first = s->chains[chain], n = s->chains[chain + 1] - first;
-        if (n)
-            lapack->zgbtrf(&n, &n, &width, &width, c->K + first * storage_rows(s), &rows, c->pivot_band + first, &info);
-        if (info) return first + info;
-    }
-    if (!m) return 0;
+    int m = s->m, info = factor_band(c, s, lapack);
+    if (info || !m) return info;
     for (int chain = 0; chain < s->n_chains; ++chain) {
         fu_piece *columns = c->columns + FU_HALVES * s->chain_start[chain];
         c->n_columns[chain] = 0;

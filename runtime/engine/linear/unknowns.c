@@ -112,6 +112,25 @@ void fu_add_body(const fu_model *model, fu_system *s, int dof, int n, const doub
         for (int i = 0; i < n; ++i) to[(long)j * stride + i] += values[i * n + j];
 }
 
+/* Adds a row of the border and the column that is its transpose: a factor times n values over the dofs `at`. row: as fu_extra
+ * numbers it. */
+void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, int n, const int *at, const double *value,
+                           double factor)
+{
+    const int own = model->n_band + model->n_border_dof - model->n_dof + row;
+    for (int i = 0; i < n; ++i) {
+        const int unknown = model->unknown_of_dof[at[i]];
+        const double added = factor * value[i];
+        if (unknown >= 0) {
+            add(system, own, unknown, added);
+            add(system, unknown, own, added);
+        } else if (unknown != FU_FIXED) {
+            fu_add(model, system, row, at[i], added);
+            fu_add(model, system, at[i], row, added);
+        }
+    }
+}
+
 /* Returns the largest of what the dofs, times their weights, move points by, as a length, m; not a number where one is none. */
 double fu_weighted_size(const fu_model *model, const double *weight, const double *dofs)
 {

@@ -37,7 +37,9 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, s);
     fu_bodies_mass(model, model->zero, 1, s);
     memcpy(work->corner, s->D, sizeof(double) * (size_t)s->fronts->size);
+    s->inverted = 0;
     if (fu_system_factor_band(s, model->lapack)) return 1;
+    fu_system_invert_band(s);
     fu_system_keep_border(s, model->lapack, model->n_border_dof);
     return !s->definite; /* else it would be in K, which the Newton matrix takes */
 }
@@ -62,11 +64,8 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
             const int row = fu_extra(model, rows->first + c);
             if (c >= rows->rows || rows->redundant_rows >> c & 1)
                 fu_add(model, s, row, row, rows->scale[c]); /* not in use: its multiplier is nil */
-            else
-                for (int k = 0; k < rows->n; ++k) { /* rows in kg, so that the border is of one scale */
-                    fu_add(model, s, row, rows->at[k], rows->scale[c] * rows->H[c * rows->n + k]);
-                    fu_add(model, s, rows->at[k], row, rows->scale[c] * rows->H[c * rows->n + k]);
-                }
+            else /* rows in kg, so that the border is of one scale */
+                fu_add_row_and_column(model, s, row, rows->n, rows->at, rows->H + c * rows->n, rows->scale[c]);
         }
     }
     return fu_system_factor_border(s, model->lapack);

@@ -1,0 +1,31 @@
+/* Several numbers at a time, with AVX2 where compiler and machine have it: the same operations on each as one by one, so
+ * that without contraction the bits are the same. */
+#ifndef FUNICULAR_LANES_H
+#define FUNICULAR_LANES_H
+
+#define FU_LANES 4
+typedef double fu_lanes __attribute__((vector_size(FU_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+
+/* Returns n, made up to whole groups of `group`. */
+#define FU_WHOLE(n, group) (((n) + (group) - 1) / (group) * (group))
+
+#define FU_INLINE static inline __attribute__((always_inline))
+#if defined(__x86_64__) && defined(__GNUC__)
+#define FU_AVX2 __attribute__((target("avx2")))
+#define FU_HAS_AVX2 __builtin_cpu_supports("avx2")
+#else
+#define FU_AVX2
+#define FU_HAS_AVX2 0
+#endif
+
+/* Defines a function without result, and a second one for AVX2, by a body that is inlined in both. */
+#define FU_IN_LANES(name, body, parameters, arguments)                                                                 \
+    FU_AVX2 static void name##_avx2 parameters { body arguments; }                                                     \
+    static void name##_plain parameters { body arguments; }                                                            \
+    void name parameters                                                                                               \
+    {                                                                                                                  \
+        if (FU_HAS_AVX2) name##_avx2 arguments;                                                                        \
+        else name##_plain arguments;                                                                                   \
+    }
+
+#endif

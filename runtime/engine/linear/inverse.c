@@ -1,0 +1,33 @@
+/* The inverse of a short band matrix that is factored once and solved with at every evaluation, as the mass is. A product with it
+ * has more terms than a substitution, but none of them waits for another: it takes a fifth of the time for 42 unknowns. */
+#include "engine.h"
+
+#include "lanes.h"
+
+/* Makes the inverse, FU_INVERSE_ROWS a column, of a matrix that is factored in L (band.c). */
+void fu_inverse_make(int n, int width, const double *L, double *inverse)
+{
+    const int rows = FU_INVERSE_ROWS(n);
+    double x[FU_BAND_LENGTH(FU_INVERSE_MOST, FU_INVERSE_MOST)];
+    for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < FU_BAND_LENGTH(n, width); ++i) x[i] = i == j;
+        fu_band_solve(n, width, L, j, x);
+        for (int i = 0; i < rows; ++i) inverse[(long)j * rows + i] = i < n ? x[i] : 0.0;
+    }
+}
+
+FU_INLINE void times(int rows, const double *inverse, int first, int end, const double *b, double *x)
+{
+    for (int i = 0; i < rows; i += FU_INVERSE_GROUP) {
+        const double *column = inverse + (long)first * rows + i;
+        fu_lanes sum[FU_INVERSE_GROUP / FU_LANES] = {{0.0}};
+        for (int j = first; j < end; ++j, column += rows)
+            for (int k = 0; k < FU_INVERSE_GROUP / FU_LANES; ++k)
+                sum[k] += *(const fu_lanes *)(column + k * FU_LANES) * b[j];
+        for (int k = 0; k < FU_INVERSE_GROUP / FU_LANES; ++k) *(fu_lanes *)(x + i + k * FU_LANES) = sum[k];
+    }
+}
+
+/* Makes x, FU_INVERSE_ROWS numbers, the inverse times b, which is zero outside of [first, end). */
+FU_IN_LANES(fu_inverse_times, times, (int rows, const double *inverse, int first, int end, const double *b, double *x),
+            (rows, inverse, first, end, b, x))

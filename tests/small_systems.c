@@ -1,0 +1,109 @@
+/* Random systems of the engine's own linear algebra: complex bands, inverses of bands, small matrices. Prints the largest
+ * residual of each, of 400, in units of rounding; tests/test_small_systems.py.
+ */
+#include "complex_system.h"
+
+#include <float.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { CASES = 400, MOST = FU_INVERSE_MOST, WIDEST = 32 };
+
+static double A[MOST * MOST], x[4 * MOST], y[4 * MOST], bx[MOST], by[MOST];
+
+static double number(void)
+{
+    return rand() / (double)RAND_MAX - 0.5;
+}
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* A complex band, factored and solved with: what is left of its equations. */
+static double complex_band(int n, int width)
+{
+    static double K[FU_BAND_ROWS(WIDEST) * MOST], re[FU_COMPLEX_STRIDE(WIDEST) * MOST], im[FU_COMPLEX_STRIDE(WIDEST) * MOST];
+    const fu_complex factor = {0.3, -0.8};
+    double worst = 0.0;
+    for (int i = 0; i < n * n; ++i) A[i] = 0.0;
+    for (int i = 0; i < FU_BAND_ROWS(width) * n; ++i) K[i] = 0.0;
+    for (int i = 0; i < FU_COMPLEX_STRIDE(width) * n; ++i) re[i] = im[i] = 0.0;
+    for (int j = 0; j < n; ++j)
+        for (int i = j; i < n && i - j <= width; ++i)
+            K[j * FU_BAND_ROWS(width) + FU_BAND_DIAGONAL(width) + i - j] = A[i * n + j] = A[j * n + i] =
+                i == j ? width + 3.0 : number();
+    for (int i = 0; i < 4 * MOST; ++i) x[i] = y[i] = 0.0;
+    for (int i = 0; i < n; ++i) {
+        bx[i] = x[i] = number();
+        by[i] = y[i] = number();
+    }
+    fu_complex_band_add(n, width, K, factor, re, im);
+    fu_complex_band_factor(n, width, re, im);
+    fu_complex_band_solve(n, width, re, im, x, y);
+    for (int i = 0; i < n; ++i) {
+        fu_complex left = {-bx[i], -by[i]};
+        for (int j = 0; j < n; ++j) {
+            const fu_complex product = fu_complex_product(factor, (fu_complex){x[j], y[j]});
+            left.re += A[i * n + j] * product.re;
+            left.im += A[i * n + j] * product.im;
+        }
+        worst = larger(worst, larger(fabs(left.re), fabs(left.im)));
+    }
+    return worst;
+}
+
+/* The inverse of a band that is factored already, times a part of a column: how far it is from the substitution. */
+static double inverse(int n, int width)
+{
+    static double L[(WIDEST + 1) * (MOST + FU_BAND_GROUP)], made[FU_INVERSE_ROWS(MOST) * MOST], out[FU_INVERSE_ROWS(MOST)];
+    const int stride = width + 1, first = rand() % n, end = first + rand() % (n - first + 1);
+    double worst = 0.0;
+    for (int j = 0; j < n + FU_BAND_GROUP; ++j)
+        for (int i = 0; i < stride; ++i) {
+            const double inside = i ? 0.2 * number() : 1.0 / (2.0 + number());
+            L[j * stride + i] = i + j < n ? inside : j >= n && i == 0;
+        }
+    for (int i = 0; i < 4 * MOST; ++i) x[i] = 0.0;
+    for (int i = 0; i < n; ++i) bx[i] = x[i] = i >= first && i < end ? number() : 0.0;
+    fu_inverse_make(n, width, L, made);
+    fu_inverse_times(FU_INVERSE_ROWS(n), made, first, end, bx, out);
+    fu_band_solve(n, width, L, 0, x);
+    for (int i = 0; i < n; ++i) worst = larger(worst, fabs(out[i] - x[i]));
+    return worst;
+}
+
+/* A small full matrix: what is left of its equations, over the size of the solution. */
+static double small_matrix(int n)
+{
+    static double LU[FU_SMALL_MOST * FU_SMALL_MOST];
+    int pivot[FU_SMALL_MOST];
+    double worst = 0.0, size = 1.0;
+    for (int i = 0; i < n * n; ++i) LU[i] = A[i] = number();
+    for (int i = 0; i < n; ++i) bx[i] = x[i] = number();
+    if (fu_small_factor(n, LU, pivot)) return INFINITY;
+    fu_small_solve(n, LU, pivot, x);
+    for (int i = 0; i < n; ++i) size = larger(size, fabs(x[i]));
+    for (int i = 0; i < n; ++i) {
+        double left = -bx[i];
+        for (int j = 0; j < n; ++j) left += A[j * n + i] * x[j];
+        worst = larger(worst, fabs(left) / size);
+    }
+    return worst;
+}
+
+int main(void)
+{
+    double band = 0.0, inverted = 0.0, small = 0.0;
+    int pivot[2];
+    double singular[4] = {1.0, 2.0, 2.0, 4.0};
+    for (int k = 0; k < CASES; ++k) {
+        const int n = 1 + rand() % MOST, width = FU_BAND_GROUP - 1 + rand() % (WIDEST - FU_BAND_GROUP);
+        band = larger(band, complex_band(n, width));
+        inverted = larger(inverted, inverse(n, width));
+        small = larger(small, small_matrix(1 + rand() % FU_SMALL_MOST));
+    }
+    printf("%g %g %g %d\n", band / DBL_EPSILON, inverted / DBL_EPSILON, small / DBL_EPSILON, fu_small_factor(2, singular, pivot));
+    return 0;
+}

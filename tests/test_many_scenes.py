@@ -1,0 +1,185 @@
+"""fu.run_many: the bits of scene.run, for one shape and several, on any number of threads; failures alone."""
+
+import threading
+import weakref
+from functools import partial
+
+import difficult_scenes
+import funicular as fu
+import numpy as np
+import pytest
+from choice_scenes import SCENES
+from funicular import many_scenes
+from shared_scenes import cable_scene, one_rider
+
+DURATION = 0.05
+SETTINGS = {"duration": DURATION, "tol": 1e-3, "output_step": 0.01}
+
+
+def variants(make, n: int = 3) -> list[fu.Scene]:
+    """Return scenes of one shape whose gravity differs."""
+    made = []
+    for k in range(n):
+        scene = make()
+        scene.gravity = tuple(np.array(scene.gravity) * (1 + 0.1 * k))
+        made.append(scene)
+    return made
+
+
+def assert_same_bits(run: fu.Run, alone: fu.Run):
+    assert run.status == alone.status
+    assert list(run.keys()) == list(alone.keys())
+    for name, values in alone.items():
+        assert run[name].tobytes() == values.tobytes(), name
+    assert run.time.tobytes() == alone.time.tobytes()
+    for count in ("steps", "rejected_steps", "evaluations", "newton_iterations", "factorisations", "integrator",
+                  "integrator_reason", "messages", "events"):
+        assert run.report[count] == alone.report[count], count
+
+
+SHAPES = {
+    "rider": partial(one_rider, elements=2),
+    "planar": difficult_scenes.planar,
+    "tied": difficult_scenes.tied,
+    "joints": difficult_scenes.jointed,
+    "modal body": difficult_scenes.modal,
+    "modal joints": difficult_scenes.modal_in_joints,
+    "friction": difficult_scenes.resisted,
+    "stick": SCENES["stick"].make,
+    "hard stop": SCENES["hard stop"].make,
+    "buffer": SCENES["buffer"].make,
+}
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize("shape", SHAPES)
+def test_bits_of_each_by_itself(shape):
+    alone = [scene.run(**SETTINGS) for scene in variants(SHAPES[shape])]
+    assert alone[0].time[-1] == DURATION
+    together = list(fu.run_many(variants(SHAPES[shape]), threads=3, **SETTINGS))
+    for run, expected in zip(together, alone, strict=True):
+        assert_same_bits(run, expected)
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize("threads", [1, 2, 7, None])
+def test_mixed_shapes_in_order(threads):
+    makers = [make for name in ("rider", "joints", "planar", "rider", "stick") for make in [SHAPES[name]]] * 2
+    alone = [make().run(**SETTINGS) for make in makers]
+    together = list(fu.run_many(makers, threads=threads, **SETTINGS))  # functions that return a scene
+    for run, expected in zip(together, alone, strict=True):
+        assert_same_bits(run, expected)
+
+
+def falling_off() -> fu.Scene:
+    return one_rider(s=1.49, speed=5.0, elements=2)
+
+
+def misplaced() -> fu.Scene:
+    return one_rider(s=7.0, elements=2)
+
+
+def test_failures_are_alone():
+    good = partial(one_rider, elements=2)
+    results = list(fu.run_many([good, misplaced, good, falling_off, good], threads=2, **SETTINGS))
+    alone = good().run(**SETTINGS)
+    for k in (0, 2, 4):
+        assert_same_bits(results[k], alone)
+    assert isinstance(results[1], fu.SceneError)
+    assert "7" in str(results[1])
+    assert isinstance(results[3], fu.EndOfCableError)
+    with pytest.raises(fu.EndOfCableError) as alone_error:
+        falling_off().run(**SETTINGS)
+    assert str(results[3]) == str(alone_error.value)
+    assert results[3].run["A.position"].tobytes() == alone_error.value.run["A.position"].tobytes()
+    assert results[3].__traceback__ is None
+
+
+def test_kept_arrays_alone():
+    run = one_rider(elements=2).run(**SETTINGS)
+    (kept,) = fu.run_many([one_rider(elements=2)], keep=["A.position", "trolley.s"], **SETTINGS)
+    assert set(kept) == {"time", "A.position", "trolley.s"}
+    for name in ("A.position", "trolley.s"):
+        assert kept[name].tobytes() == run[name].tobytes()
+    (error,) = fu.run_many([one_rider(elements=2)], keep=["B.position"], **SETTINGS)
+    assert isinstance(error, fu.UnknownResultError)
+
+
+def test_memory_does_not_grow_with_their_number():
+    """Scenes are taken as results are asked for, and none is kept behind them."""
+    taken, alive = 0, weakref.WeakSet()
+
+    def endless():
+        nonlocal taken
+        while True:
+            taken += 1
+            scene = cable_scene(pins=(0,), elements=1, element="cable12")
+            alive.add(scene)
+            yield scene
+
+    results = fu.run_many(endless(), threads=2, keep=["wire.position"], duration=0.01, output_step=0.005)
+    assert taken == 0
+    for k, kept in zip(range(40), results, strict=False):
+        assert kept["wire.position"].shape == (3, 2, 3)
+        assert taken <= k + 1 + 2 * many_scenes.AHEAD
+        assert len(alive) <= 2 * many_scenes.AHEAD + 4
+    results.close()
+    assert not [t for t in threading.enumerate() if t.name.startswith("funicular")]
+
+
+def test_what_is_left_is_given_up_at_once():
+    """A run of days ends when nobody waits for it."""
+    def pendulum(duration: float) -> fu.Scene:
+        scene = cable_scene(pins=(0,), elements=1, element="cable12")
+        scene.run_settings = {"duration": duration, "step": 1e-3, "output_step": duration / 10}
+        return scene
+
+    durations = [0.01, 1e6, 1e6, 1e6, 1e6, 1e6]
+    for run in fu.run_many([partial(pendulum, duration) for duration in durations], threads=1):
+        assert run.time[-1] == 0.01
+        break
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("funicular")]
+
+
+def test_other_errors_end_the_iteration():
+    def broken():
+        raise ZeroDivisionError
+
+    results = fu.run_many([partial(one_rider, elements=2), broken, partial(one_rider, elements=2)], threads=2,
+                          **SETTINGS)
+    assert isinstance(next(results), fu.Run)
+    with pytest.raises(ZeroDivisionError):
+        next(results)
+    assert list(results) == []
+
+
+@pytest.mark.parametrize(("given", "message"), [
+    ({"save": "many.nc"}, "save"), ({"resume": True}, "resume"), ({"progress": True}, "progress"),
+    ({"tol": -1.0}, "tol"), ({"tolerance": 1e-3}, "tolerance"), ({"threads": 0}, "threads"),
+    ({"threads": 1.5}, "threads"), ({"keep": "A.position"}, "keep")])
+def test_settings_that_no_scene_takes_are_refused_at_once(given, message):
+    with pytest.raises(fu.SceneError, match=message):
+        fu.run_many([one_rider(elements=2)], duration=0.1, **given)
+
+
+def test_what_is_no_scene():
+    with pytest.raises(fu.SceneError, match="many scenes"):
+        fu.run_many(one_rider(elements=2), duration=0.1)
+    (error,) = fu.run_many([3], duration=0.1)
+    assert isinstance(error, fu.SceneError)
+    assert "not a scene" in str(error)
+
+
+def test_a_file_of_one_run():
+    scene = one_rider(elements=2)
+    scene.run_settings = {"duration": 0.1, "save": "one.nc"}
+    (error,) = fu.run_many([scene])
+    assert isinstance(error, fu.SceneError)
+    assert "save" in str(error)
+
+
+def test_cpu_time_is_that_of_one_scene(monkeypatch):
+    """The clock of the process counts the other threads."""
+    monkeypatch.setattr("funicular.solve.run.time.process_time", lambda: pytest.fail("the clock of the process"))
+    (run,) = fu.run_many([partial(one_rider, elements=2)], **SETTINGS)
+    assert 0.0 < run.report["time_s"]["solve_cpu"] < run.report["time_s"]["total"]

@@ -1,0 +1,23 @@
+"""The engine's own linear algebra for small scenes, from C: residuals of random systems are rounding."""
+
+import subprocess
+from pathlib import Path
+
+from funicular.derive.codegen import drift
+from funicular.derive.verify.compiled import compiler
+
+PROGRAM = Path(__file__).with_name("small_systems.c")
+ENGINE = Path(__file__).parents[1] / "runtime" / "engine"
+SOURCES = [ENGINE / "linear" / f"{name}.c" for name in ("complex_band", "inverse", "small", "band")]
+
+
+def test_residuals_are_rounding(tmp_path):
+    program = tmp_path / "small_systems"
+    subprocess.run([*compiler(), "-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{drift.folder()}",
+                    f"-I{ENGINE / 'include'}", PROGRAM, *SOURCES, "-lm", "-o", program], check=True)
+    done = subprocess.run([program], capture_output=True, text=True, check=True)
+    band, inverse, small, singular = map(float, done.stdout.split())
+    assert 0 < band < 10
+    assert 0 < inverse < 10
+    assert 0 < small < 50
+    assert singular == 2, "the second pivot of a matrix of rank 1 is zero"
