@@ -3,6 +3,7 @@
 #define FUNICULAR_LINEAR_H
 
 #include "common.h"
+#include "threads.h"
 
 /* The functions of LAPACK that the engine calls, with their arguments; linear/lapack.c. */
 #define FU_LAPACK_FUNCTIONS(LAPACK)                                                                                    \
@@ -29,6 +30,12 @@ void fu_lapack_attach(fu_lapack *lapack, int k, const void *function);
 #define FU_BAND_GROUP 4
 #define FU_BAND_BEYOND(width) ((width) + FU_BAND_GROUP)
 #define FU_BAND_LENGTH(n, width) ((long)(n) + FU_BAND_BEYOND(width))
+
+/* Chains of so many unknowns and more are eliminated from both ends towards their middle (twisted.c), by two threads where
+ * there are: shorter ones take too little time to share. The columns of a factored chain beyond its unknowns: groups, and
+ * the middle's. */
+#define FU_TWISTED_FROM 1024
+#define FU_BAND_MORE(width) ((width) + 3 * FU_BAND_GROUP)
 
 /* LAPACK's band storage for a factorisation with pivots: rows of it, and the row of the diagonal. Above the 2 width + 1 rows of
  * the band there are width more, which pivots fill. */
@@ -60,7 +67,8 @@ typedef struct {
     const int *chains; /* n_chains + 1: the first row of each, and n */
     const int *half;   /* of each row of the band: 2 chain, and 1 more from the middle on */
     double *K;         /* LAPACK's band storage, FU_BAND_ROWS x n; of all systems of a run the same */
-    double *L;         /* (width + 1) x n, and a group more for each chain */
+    double *L;         /* (width + 1) x n, and FU_BAND_MORE for each chain */
+    double *mirror;    /* n: right sides from the ends of chains backwards */
     double *B;         /* n x m, column by column */
     double *C;         /* the border's rows, transposed: n x m */
     double *D;         /* m x m, column by column */
@@ -68,12 +76,22 @@ typedef struct {
     fu_span *span_B, *span_C; /* 2 n_chains x m: rows of each half that are not zero; end 0 where none is */
     fu_piece *columns, *rows; /* of X and C */
     int *pivot_band, *pivot_border;
+    fu_threads *threads; /* null for one */
 } fu_system;
 
 int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A);
+void fu_band_scale(int n, int width, double *A);
+void fu_band_forward(int n, int width, const double *A, int first, double *x);
+void fu_band_backward(int n, int width, const double *A, double *x);
 void fu_band_solve(int n, int width, const double *A, int first, double *x);
 
+int fu_is_twisted(const fu_system *system, int chain);
+int fu_twisted_factor(fu_system *system, const fu_lapack *lapack, int chain);
+void fu_twisted_solve(const fu_system *system, int chain, fu_span rows, double *x);
+
 void fu_system_clear(fu_system *system);
+double *fu_factor_of(const fu_system *system, int chain);
+int fu_pack(const fu_system *system, fu_span rows, int backwards, double *L);
 void fu_system_clear_border(fu_system *system);
 fu_span fu_common(fu_span one, fu_span other);
 int fu_pieces(const fu_system *system, int k, int chain, const double *x, fu_piece *pieces);

@@ -16,7 +16,9 @@
 
 #include <string.h>
 
+#define PER_DOF 10.0 /* multiply-adds of kinematics */
 #define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
+
 
 typedef struct {
     double alpha_m, alpha_f, beta, gamma;
@@ -45,10 +47,20 @@ static double sigma(const parameters *g, double h)
     return g->beta * h * h * (1.0 - g->alpha_f) / (1.0 - g->alpha_m);
 }
 
-/* Makes q, v and q'' of `next` from its a. */
-static void kinematics(fu_run *run, double h)
+/* Kinematics that threads share. */
+typedef struct {
+    fu_run *run;
+    double h;
+} share;
+
+/* Makes psi, v and q'' of a part of the dofs, and q before it is moved. */
+static void kinematics_part(const void *what, int part, int parts)
 {
-    const fu_model *model = run->model;
+    const share *job = what;
+    fu_run *run = job->run;
+    const double h = job->h;
+    const fu_range range = fu_part_of(run->model->n_dof, FU_DOFS_APART, part, parts);
+    const int end = part + 1 < parts ? range.end : run->model->n_q; /* coordinates of cables are dofs, and come first */
     const parameters *g = scheme_of(run);
     const fu_state *now = &run->now;
     fu_state *next = &run->next;
@@ -58,12 +70,21 @@ static void kinematics(fu_run *run, double h)
     const double rate_now = h * (1.0 - g->gamma), rate_next = h * g->gamma;
     const double *v = now->v, *a = now->a, *before = now->acceleration, *change = next->a;
     double *restrict psi = run->psi, *restrict velocity = next->v, *restrict acceleration = next->acceleration;
-    for (int i = 0; i < model->n_dof; ++i) {
+    for (int i = range.first; i < range.end; ++i) {
         psi[i] = h * v[i] + by_now * a[i] + by_next * change[i];
         velocity[i] = v[i] + rate_now * a[i] + rate_next * change[i];
         acceleration[i] = slope * change[i] + slope_now * a[i] - share_before * before[i];
     }
-    memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
+    memcpy(next->q + range.first, now->q + range.first, sizeof(double) * (size_t)(end - range.first));
+}
+
+/* Makes q, v and q'' of `next` from its a. */
+static void kinematics(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    fu_state *next = &run->next;
+    const share job = {run, h};
+    fu_share(model->threads, PER_DOF * model->n_dof, kinematics_part, &job);
     fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
 }

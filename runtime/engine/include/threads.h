@@ -1,0 +1,24 @@
+/* Threads that share the work of a run: run/threads.c. */
+#ifndef FUNICULAR_THREADS_H
+#define FUNICULAR_THREADS_H
+
+#define FU_DOFS_APART 64 /* dofs, or unknowns, that one thread takes at least: not those of one line of the cache */
+
+typedef struct fu_threads fu_threads;
+
+/* Does one of so many parts of a work. Together they must write the same numbers, whatever the number of parts. */
+typedef void (*fu_work)(const void *what, int part, int parts);
+
+/* What lies in [first, end). */
+typedef struct {
+    int first, end;
+} fu_range;
+
+int fu_has_threads(void);
+long fu_threads_size(int n);
+int fu_threads_start(fu_threads *threads, int n);
+void fu_threads_end(fu_threads *threads);
+int fu_share(fu_threads *threads, double operations, fu_work work, const void *what);
+fu_range fu_part_of(int n, int unit, int part, int parts);
+
+#endif
