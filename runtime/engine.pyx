@@ -124,8 +124,9 @@ cdef class Engine(Report):
             times[[m.combination_unknown[k] for k in range(m.combination_start[dof], m.combination_start[dof + 1])]] += 2
         times[m.n_band:] += 2
         shared = (unknown < -1) | ((unknown >= 0) & (times[unknown] > 1))
-        numbers = np.flatnonzero(shared)
-        m.is_shared, m.shared_dofs, m.n_shared_dofs = self._ints(shared), self._ints(numbers), len(numbers)
+        dofs, unknowns = np.flatnonzero(shared), np.flatnonzero(times > 1)
+        m.is_shared, m.shared_dofs, m.shared_unknowns = self._ints(shared), self._ints(dofs), self._ints(unknowns)
+        m.n_shared_dofs, m.n_shared_unknowns = len(dofs), len(unknowns)
 
     def watch(self, watcher):
         """Watch for the events of a `Watcher`; call it before `start`."""

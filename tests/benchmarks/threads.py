@@ -25,7 +25,7 @@ from linear_cost import STEP, scene
 from table import parser, show
 
 NAMES = ("pendulum", "three riders", "three cables", "ladder")
-STEPS, DURATION, TOL = 60, 2e-2, 1e-3
+STEPS, DURATION, TOL = 600, 2e-2, 1e-3
 CASES = {"20 µs": {"duration": STEPS * STEP, "step": STEP}, "tol 1e-3": {"duration": DURATION, "step": 0.0}}
 
 

@@ -4,8 +4,6 @@
 #include <string.h>
 
 #define CHUNK 16 /* elements whose forces are made before they are added: few enough to stay in the first cache */
-#define PER_FORCE 100.0 /* multiply-adds of an element's forces, about */
-#define PER_ENTRY 5.0   /* and of an entry of its tangent */
 
 /* Returns the elements of a cable from the k-th on, as block kernels take them. */
 static fu_elements elements_from(const fu_cable *cable, const double *q, const double *v, int k)
@@ -125,7 +123,7 @@ static void add_part(const void *what, int part, int parts)
 static void add_sum(const sum *job)
 {
     const fu_cable *cable = job->cable;
-    const int parts = fu_share(job->model->threads, (double)cable->n_elements * PER_FORCE, add_part, job);
+    const int parts = fu_share(job->model->threads, cable->n_elements * cable->per_node, add_part, job);
     for (int part = 1; part < parts; ++part) {
         const fu_range range = fu_part_of(cable->n_elements, CHUNK, part, parts);
         double *at = job->f + cable->first + (long)range.first * cable->per_node;
@@ -283,7 +281,7 @@ static void add_matrix_of(const matrix *job)
     const fu_model *model = job->model;
     const fu_cable *cable = job->cable;
     const int size = cable->coordinates * cable->coordinates;
-    const int parts = fu_share(model->threads, (double)cable->n_elements * size * PER_ENTRY, add_matrix_part, job);
+    const int parts = fu_share(model->threads, cable->n_elements * cable->per_node, add_matrix_part, job);
     for (int part = 0; part < parts && parts > 1; ++part) {
         const fu_range range = fu_part_of(cable->n_elements, FU_BLOCK_ELEMENTS, part, parts);
         for (int k = range.first; k < range.end; ++k)

@@ -183,7 +183,8 @@ cdef extern from "engine.h" nogil:
         double *thread_work
         const int *is_shared
         const int *shared_dofs
-        int n_shared_dofs
+        const int *shared_unknowns
+        int n_shared_dofs, n_shared_unknowns
     ctypedef struct fu_array:
         const char *name
         void *data

@@ -89,6 +89,10 @@ int fu_is_twisted(const fu_system *system, int chain);
 int fu_twisted_factor(fu_system *system, const fu_lapack *lapack, int chain);
 void fu_twisted_solve(const fu_system *system, int chain, fu_span rows, double *x);
 
+void fu_set_times(fu_threads *threads, int n, double factor, const double *y, double *x);
+void fu_add_times(fu_threads *threads, int n, double factor, const double *y, double *x);
+void fu_set_difference(fu_threads *threads, int n, double factor, const double *y, const double *z, double *x);
+
 void fu_system_clear(fu_system *system);
 double *fu_factor_of(const fu_system *system, int chain);
 int fu_pack(const fu_system *system, fu_span rows, int backwards, double *L);

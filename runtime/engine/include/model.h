@@ -36,8 +36,8 @@ struct fu_model {
     fu_threads *threads; /* null for one alone, for which the rest is not needed */
     double *thread_work; /* n_coordinates^2 for each element of the longest cable: what threads leave to be added afterwards */
     const int *is_shared;   /* of each dof: others are the same unknown, it is a combination, or its unknown is in the border */
-    const int *shared_dofs; /* the numbers of these */
-    int n_shared_dofs;
+    const int *shared_dofs, *shared_unknowns; /* the numbers of these, and of their unknowns */
+    int n_shared_dofs, n_shared_unknowns;
 };
 
 #endif

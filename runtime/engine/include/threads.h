@@ -18,7 +18,7 @@ int fu_has_threads(void);
 long fu_threads_size(int n);
 int fu_threads_start(fu_threads *threads, int n);
 void fu_threads_end(fu_threads *threads);
-int fu_share(fu_threads *threads, double operations, fu_work work, const void *what);
+int fu_share(fu_threads *threads, int dofs, fu_work work, const void *what);
 fu_range fu_part_of(int n, int unit, int part, int parts);
 
 #endif

@@ -6,26 +6,12 @@ double *fu_own(fu_run *run)
     return run->rhs + run->model->n_band + run->model->n_border_dof;
 }
 
-/* Numbers that threads scale. */
-typedef struct {
-    double *x, scale;
-    int n;
-} scaling;
-
-static void scale_part(const void *what, int part, int parts)
-{
-    const scaling *job = what;
-    const fu_range range = fu_part_of(job->n, FU_DOFS_APART, part, parts);
-    for (int i = range.first; i < range.end; ++i) job->x[i] *= job->scale;
-}
-
 /* Makes run->rhs of the dofs: minus the scaled sum in run->force. */
 void fu_scale_residual(fu_run *run, double scale)
 {
     const fu_model *model = run->model;
     fu_gather(model, run->force, run->rhs);
-    const scaling job = {run->rhs, -scale, model->n_band + model->n_border_dof};
-    fu_share(model->threads, job.n, scale_part, &job);
+    fu_set_times(model->threads, model->n_band + model->n_border_dof, -scale, run->rhs, run->rhs);
 }
 
 /* Makes run->rhs, minus the scaled residual over the unknowns; run->force keeps the unscaled sum over the dofs. */

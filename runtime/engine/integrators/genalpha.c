@@ -16,7 +16,6 @@
 
 #include <string.h>
 
-#define PER_DOF 10.0 /* multiply-adds of kinematics */
 #define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
 
 
@@ -84,7 +83,7 @@ static void kinematics(fu_run *run, double h)
     const fu_model *model = run->model;
     fu_state *next = &run->next;
     const share job = {run, h};
-    fu_share(model->threads, PER_DOF * model->n_dof, kinematics_part, &job);
+    fu_share(model->threads, model->n_dof, kinematics_part, &job);
     fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
 }
@@ -106,7 +105,7 @@ static void matrix(fu_run *run, double h)
 static double apply(fu_run *run, double h)
 {
     const double per_psi = 1.0 / (scheme_of(run)->beta * h * h), size = fu_spread_size(run);
-    for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] += per_psi * run->work[i];
+    fu_add_times(run->model->threads, run->model->n_dof, per_psi, run->work, run->next.a);
     fu_add_solution(run, 1.0, sigma(scheme_of(run), h));
     fu_choose_pieces(run);
     return size;
@@ -116,7 +115,7 @@ static double apply(fu_run *run, double h)
 static void predict(fu_run *run, double h)
 {
     const double kept = 1.0 - 0.5 / scheme_of(run)->beta;
-    for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] = kept * run->now.a[i];
+    fu_set_times(run->model->threads, run->model->n_dof, kept, run->now.a, run->next.a);
     fu_predict_own(run, h);
     fu_choose_pieces(run);
 }
@@ -142,8 +141,7 @@ static double error(fu_run *run, double h)
     const parameters *g = scheme_of(run);
     const double smooth = fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
     const double factor = h * h * (fu_count_changes(run) ? JUMP : smooth);
-    for (int i = 0; i < run->model->n_dof; ++i)
-        run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
+    fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration, run->work);
     return fu_is_short(run, h) ? fu_size(run->model, run->work) : fu_filtered_size(run);
 }
 

@@ -9,8 +9,6 @@
  * A - U1 - U2 = L1 L1' + L2 L2' - A. */
 #include "engine.h"
 
-#define PER_UNKNOWN 2.0 /* a column's entries are multiplied so many times in a substitution, its width times in a factorisation */
-
 /* A chain in halves. L: columns of either half, those of the first one with the middle's. */
 typedef struct {
     int start, n, count, middle;
@@ -81,7 +79,7 @@ int fu_twisted_factor(fu_system *s, const fu_lapack *lapack, int chain)
     const job job = {s, lapack, in_halves(s, chain), {0, 0}, 0};
     const chain_in_halves *c = &job.chain;
     const int width = s->width, stride = width + 1, last = c->middle - 1;
-    fu_share(s->threads, (double)c->n * width * width, eliminate_part, &job);
+    fu_share(s->threads, c->n, eliminate_part, &job);
     if (s->pivot_band[c->start] || s->pivot_band[c->start + 1]) return 1;
     double *first = c->L[0] + (long)c->count * stride;
     const double *second = c->L[1] + (long)c->count * stride;
@@ -141,10 +139,9 @@ void fu_twisted_solve(const fu_system *s, int chain, fu_span rows, double *x)
 {
     const job job = {s, 0, in_halves(s, chain), rows, x};
     const chain_in_halves *c = &job.chain;
-    const double operations = PER_UNKNOWN * c->n * s->width;
     double *middle = x + c->start + c->count;
-    fu_share(s->threads, operations, forward_part, &job);
+    fu_share(s->threads, c->n, forward_part, &job);
     for (int i = 0; i < c->middle; ++i) middle[i] += s->mirror[c->start + c->count + c->middle - 1 - i];
     fu_band_solve(c->middle, s->width, c->L[0] + (long)c->count * (s->width + 1), 0, middle);
-    fu_share(s->threads, operations, backward_part, &job);
+    fu_share(s->threads, c->n, backward_part, &job);
 }

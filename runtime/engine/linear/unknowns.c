@@ -27,13 +27,6 @@ typedef struct {
     double *to;
 } transfer;
 
-static void clear_part(const void *what, int part, int parts)
-{
-    const transfer *job = what;
-    const fu_range range = fu_part_of(job->model->n_band + job->model->n_border_dof, FU_DOFS_APART, part, parts);
-    for (int i = range.first; i < range.end; ++i) job->to[i] = 0.0;
-}
-
 /* Adds a dof's part of T' from. */
 static void gather(const transfer *job, int dof)
 {
@@ -45,22 +38,28 @@ static void gather(const transfer *job, int dof)
     }
 }
 
-/* Gathers what is on a part of the dofs; unknowns of several dofs are for `fu_gather` where threads share the work. */
+/* Makes the unknowns of a part of the dofs, but those of several dofs. */
 static void gather_part(const void *what, int part, int parts)
 {
     const transfer *job = what;
+    const int *unknown = job->model->unknown_of_dof, *is_shared = job->model->is_shared;
     const fu_range range = fu_part_of(job->model->n_dof, FU_DOFS_APART, part, parts);
     for (int i = range.first; i < range.end; ++i)
-        if (parts == 1 || !job->model->is_shared[i]) gather(job, i);
+        if (unknown[i] >= 0 && !is_shared[i]) job->to[unknown[i]] = 0.0 + job->from[i];
 }
 
 /* Makes x = T' force, over the band and the border's dofs. */
 void fu_gather(const fu_model *model, const double *force, double *x)
 {
     const transfer job = {model, force, x};
-    fu_share(model->threads, model->n_dof, clear_part, &job);
-    if (fu_share(model->threads, model->n_dof, gather_part, &job) > 1)
-        for (int k = 0; k < model->n_shared_dofs; ++k) gather(&job, model->shared_dofs[k]);
+    if (!model->threads) {
+        for (int i = 0; i < model->n_band + model->n_border_dof; ++i) x[i] = 0.0;
+        for (int i = 0; i < model->n_dof; ++i) gather(&job, i);
+        return;
+    }
+    for (int k = 0; k < model->n_shared_unknowns; ++k) x[model->shared_unknowns[k]] = 0.0;
+    fu_share(model->threads, model->n_dof, gather_part, &job);
+    for (int k = 0; k < model->n_shared_dofs; ++k) gather(&job, model->shared_dofs[k]);
 }
 
 static void spread_part(const void *what, int part, int parts)

@@ -11,7 +11,7 @@
 #endif
 #include "engine.h"
 
-#define WORTH_WHILE 3e3 /* multiply-adds: less than that takes as long to share as to do */
+#define WORTH_WHILE 1500 /* dofs: work on fewer takes as long to share as to do */
 
 /* Returns the part of n things, in whole units but for the last. */
 fu_range fu_part_of(int n, int unit, int part, int parts)
@@ -45,9 +45,9 @@ void fu_threads_end(fu_threads *threads)
     (void)threads;
 }
 
-int fu_share(fu_threads *threads, double operations, fu_work work, const void *what)
+int fu_share(fu_threads *threads, int dofs, fu_work work, const void *what)
 {
-    (void)threads, (void)operations;
+    (void)threads, (void)dofs;
     work(what, 0, 1);
     return 1;
 }
@@ -205,10 +205,10 @@ void fu_threads_end(fu_threads *all)
     pthread_mutex_destroy(&all->mutex);
 }
 
-/* Has a work of so many multiply-adds done, by all threads where that is worth while; returns the number of its parts. */
-int fu_share(fu_threads *all, double operations, fu_work function, const void *what)
+/* Has a work on so many dofs done, by all threads where that is worth while; returns the number of its parts. */
+int fu_share(fu_threads *all, int dofs, fu_work function, const void *what)
 {
-    if (!all || all->n == 1 || operations < WORTH_WHILE || all->forks != forks) {
+    if (!all || all->n == 1 || dofs < WORTH_WHILE || all->forks != forks) {
         function(what, 0, 1);
         return 1;
     }
