@@ -77,11 +77,11 @@ typedef struct {
 struct fu_threads {
     int n;
     unsigned forks;     /* when they were started */
-    atomic_uint work;   /* the number of the last one */
+    atomic_uint work;   /* the number of the last one; with what it is beside it, on one line of the cache */
     atomic_int sleeping, ending;
-    char apart[CACHE_LINES];
     fu_work function;
     const void *what;
+    char apart[CACHE_LINES];
     pthread_mutex_t mutex;
     pthread_cond_t wake;
     member members[];
@@ -114,15 +114,16 @@ static void relax(void)
 static void take(fu_threads *all, member *owner, unsigned work)
 {
     unsigned before = work - 1;
-    if (!atomic_compare_exchange_strong(&owner->taken, &before, work)) return;
+    if (atomic_load(&owner->taken) != before || !atomic_compare_exchange_strong(&owner->taken, &before, work)) return;
     all->function(all->what, owner->number, all->n); /* until this is done there is no other work */
     atomic_store(&owner->done, work);
 }
 
-/* Does a member's own part of a work, then the parts that nobody has taken. */
+/* Does the part of a member, and then those that nobody has taken. The first part is that of the thread that shares. */
 static void take_parts(fu_threads *all, int own, unsigned work)
 {
-    for (int k = 0; k < all->n; ++k) take(all, &all->members[(own + k) % all->n], work);
+    for (int k = own; k < all->n; ++k) take(all, &all->members[k], work);
+    for (int k = 1; k < own; ++k) take(all, &all->members[k], work);
 }
 
 /* Returns the number of a work other than the last one, or the same where the threads shall end. */
@@ -217,8 +218,9 @@ int fu_share(fu_threads *all, int dofs, fu_work function, const void *what)
     all->what = what;
     atomic_store(&all->work, work);
     wake_all(all);
-    take_parts(all, 0, work);
-    for (int k = 0, looked = 0; k < all->n; ++k) /* another thread may have been the first to take the own part */
+    function(what, 0, all->n);
+    take_parts(all, 1, work);
+    for (int k = 1, looked = 0; k < all->n; ++k)
         while (atomic_load(&all->members[k].done) != work) {
             if (++looked < LOOKS) relax();
             else sched_yield();
