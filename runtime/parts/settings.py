@@ -45,7 +45,7 @@ class RunSettings(Part):
     spectral_radius of genalpha (0.9 if not given) and energy (1) at infinity: 1 keeps and 0 removes the fastest
     vibrations, energy's of the cables, counted as dissipated with what their algorithmic stresses hold at the time;
     initial: "drawn", "equilibrium" (static, under the loads at t = 0), or "state", one that `Scene.run` is given; save:
-    the file to write, or None; threads over the elements of cables, for some thousand of them or more, at most as many
+    the file to write, or None; threads that share the work on cables of some hundred elements or more, at most as many
     as there are processors.
     """
 
