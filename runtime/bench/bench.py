@@ -85,7 +85,7 @@ class Mesh:
                 part = Cable(**{keyword: value for keyword, value in given.items() if value is not None}
                              | {"elements": self.elements(part)})
             made.add(part)
-        made.equilibrium_settings = scene.equilibrium_settings
+        made.equilibrium_settings, made.relax_settings = scene.equilibrium_settings, scene.relax_settings
         made.run_settings = {name: value for name, value in scene.run_settings.items() if name not in GRID_SETS}
         return made
 
