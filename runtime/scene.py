@@ -161,9 +161,9 @@ class Scene(Viewable, SceneMethods):
         """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
 
         Settings not given here are the scene file's, if it gave them. initial: "drawn", "equilibrium" or "relaxed"
-        (found first), a state that `equilibrium` or `relax` returned, at the velocities drawn, a state ``run.at(time)`` of another run, or arrays
-        by the names of results such as ``{"wire.nodal_vectors": ...}``, see `InitialState`. save: a netCDF file,
-        written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
+        (found first), a state that `equilibrium` or `relax` returned, at the velocities drawn, a state
+        ``run.at(time)`` of another run, or arrays by the names of results such as ``{"wire.nodal_vectors": ...}``, see
+        `InitialState`. save: a netCDF file, written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
         killed or interrupted; results are read from the file when they are asked for. resume: go on from there, to the
         same numbers. progress: a bar (True), none (False), a bar if a terminal watches (None), or a function of the
         time reached.
@@ -260,7 +260,7 @@ class Scene(Viewable, SceneMethods):
         lowest point of a cable or that friction holds, buckled rods, mechanisms that hang. Velocities drawn are left
         out. The state is one that `equilibrium` returns, with ``relaxation``, which says how it came to rest. Settings
         not given here are the scene file's, if it gave them. Raises SceneError for loads and drives that change with
-        time, and for friction that creeps; EquilibriumError, which says what is farthest from rest, and keeps the state.
+        time, and for friction that creeps; EquilibriumError, which says what is farthest from rest and keeps the state.
         """
         _refuse_unknown("relax", unknown, RelaxationSettings.keywords())
         given = {"tol": tol, "max_steps": max_steps}

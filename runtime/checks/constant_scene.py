@@ -19,7 +19,7 @@ def check_comes_to_rest(scene: SceneData) -> None:
                                  "take the value at which it shall rest, with scene.replace")
     for slide in scene.slides.values():
         if slide.friction is not None and not slide.friction.sticks and slide.friction.sliding > 0:
-            raise SceneError(slide.where, "its friction is regularised: a rider at rest creeps, and never comes to rest",
+            raise SceneError(slide.where, "its friction is regularised, so that a rider creeps and never comes to rest",
                              'take model="stick", which holds it, or leave friction out')
 
 

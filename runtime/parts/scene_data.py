@@ -29,7 +29,8 @@ class SceneData:
 
     ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
     else a list. ``messages`` lists what was adjusted; ``run_settings``, ``equilibrium_settings`` and ``relax_settings``
-    hold the settings that a scene file gives; ``title`` is what pictures are called, the name of its file without the ending.
+    hold the settings that a scene file gives; ``title`` is what pictures are called, the name of its file without the
+    ending.
     """
 
     cables: dict[str, Cable]

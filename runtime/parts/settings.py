@@ -44,10 +44,9 @@ class RunSettings(Part):
     or "auto": the cheaper of the first two for this scene and tol, genalpha where step or spectral_radius is given;
     spectral_radius of genalpha (0.9 if not given) and energy (1) at infinity: 1 keeps and 0 removes the fastest
     vibrations, energy's of the cables, counted as dissipated with what their algorithmic stresses hold at the time;
-    initial: "drawn", "equilibrium" (static, under the loads at t = 0), "relaxed" (by a damped motion, see `Scene.relax`),
-    or "state", one that `Scene.run` is given; save:
-    the file to write, or None; threads that share the work on cables of some hundred elements or more, at most as many
-    as there are processors.
+    initial: "drawn", "equilibrium" (static, under the loads at t = 0), "relaxed" (at rest after a damped motion, see
+    `Scene.relax`), or "state", one that `Scene.run` is given; save: the file to write, or None; threads that
+    share the work on cables of some hundred elements or more, at most as many as there are processors.
     """
 
     kind: ClassVar[str] = "run"

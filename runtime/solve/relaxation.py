@@ -53,11 +53,11 @@ REJECTED, FAILED = 0.25, 0.125
 ROUNDED = 1e-12
 """Of an energy: what rounding may add."""
 NEAR = 1e-2
-"""Of the largest load: the force left over from which on Newton's method is tried; a third of that each time it fails."""
+"""Of the largest load: the force left over at which Newton's method is tried; a third of it after each failure."""
 VERY_NEAR = 1e-6
 """Of the largest load: the same where the scene is still close to an unstable state that it was pushed off."""
 LEFT = 10.0
-"""Times the push: how far a scene goes from an unstable state before Newton's method, which would lead back, is tried."""
+"""Times the push: how far a scene goes from an unstable state before Newton's method, which leads back, is tried."""
 TAKEN = 0.1
 """Of the scene's size: farther than that Newton's method finds another state of rest."""
 PUSH = 1e-3
@@ -67,7 +67,7 @@ G = 9.81
 """m/s²: of scenes without gravity, for the time above."""
 
 
-class _Passed(Exception):
+class _PassedError(Exception):
     """The kinetic energy has passed a maximum."""
 
 
@@ -152,12 +152,12 @@ class _Motion:
             now = self.kinetic_energy(engine.now()[2])
             largest = max(largest, now)
             if now < PASSED * largest:
-                raise _Passed
+                raise _PassedError
 
         if status is None:
             try:
                 status = engine.advance(seen, interval=0.0)
-            except _Passed:
+            except _PassedError:
                 status = "passed"
         if status == "interrupted":
             raise KeyboardInterrupt
@@ -265,19 +265,22 @@ def _held(problem: StaticProblem, motion: _Motion, here: _Place, sticking: list[
     free = stability(problem)
     names = " and ".join(f'"{name}"' for name in sticking)
     problem.messages.append(f"friction of {names} has part in this state, which is one of many: where it stops depends "
-                            "on how the motion is damped; forces of slides and joints are those that leave the least")
+                            "on how the motion is damped")
     state = _told(problem, motion, Stability(0, 0, known=False) if free.unstable else free, made)
     state.residual = motion.report.residuals[-1]
     return state
 
 
 def _share_forces(problem: StaticProblem) -> None:
-    """Give slides, joints and springs the forces that leave the least, in the least squares, at this configuration."""
-    tangent = problem.tangent()
+    """Give slides, joints and springs the forces that leave the least on nodes and bodies, in the least squares; that
+    slides bear nothing along their cables is not asked for: friction does.
+    """
+    tangent, residual = problem.tangent().tocsr(), problem.residual()
     forces = np.setdiff1d(np.arange(tangent.shape[0]), problem.coordinates)
+    rows = problem.coordinates[problem.coordinates < problem.model.n_band + problem.model.n_border_dof]
     change = np.zeros(tangent.shape[0])
     if len(forces):
-        change[forces] = np.linalg.lstsq(tangent[:, forces].toarray(), -problem.residual(), rcond=None)[0]
+        change[forces] = np.linalg.lstsq(tangent[rows][:, forces].toarray(), -residual[rows], rcond=None)[0]
         problem.engine.move(change)
 
 
@@ -307,6 +310,6 @@ def _not_at_rest(problem: StaticProblem, motion: _Motion, force: np.ndarray, las
         where = f"; {describe_dof(motion.model, dof)} is farthest from rest, {force[most]:.3g} N are left over there"
     why = (f"after {motion.report.steps} steps" if motion.report.steps >= settings.max_steps else
            "where steps that are shorter do not help either")
-    return EquilibriumError(f"the scene did not come to rest, {why}{where}: something may be free to move away or to run "
-                            "off its cable; take more max_steps, or a larger tol; the state there is kept in .state",
+    return EquilibriumError(f"the scene did not come to rest, {why}{where}: something may be free to move away or to "
+                            "run off its cable; take more max_steps, or a larger tol; the state is kept in .state",
                             state, 1.0)
