@@ -163,10 +163,10 @@ class Scene(Viewable, SceneMethods):
         Settings not given here are the scene file's, if it gave them. initial: "drawn", "equilibrium" or "relaxed"
         (found first), a state that `equilibrium` or `relax` returned, at the velocities drawn, a state
         ``run.at(time)`` of another run, or arrays by the names of results such as ``{"wire.nodal_vectors": ...}``, see
-        `InitialState`. save: a netCDF file, written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
-        killed or interrupted; results are read from the file when they are asked for. resume: go on from there, to the
-        same numbers. progress: a bar (True), none (False), a bar if a terminal watches (None), or a function of the
-        time reached.
+        `InitialState`. save: a netCDF file, written while the run goes on, with a checkpoint (the same name and
+        ``.state``) that stays when the run is killed or interrupted; results are read from the file when they are asked
+        for. resume: go on from there, to the same numbers. progress: a bar (True), none (False), a bar if a terminal
+        watches (None), or a function of the time reached.
 
         While it goes on the BLAS of NumPy and SciPy has one thread, in the whole process: what other threads of it
         compute meanwhile with large matrices takes longer.

@@ -53,8 +53,8 @@ def seen(file: str, wanted: Wanted, libraries: Iterable[str | os.PathLike]) -> V
     """Return what a file of results, or a scene, shows. Raises FunicularError."""
     if Path(file).suffix == ".nc":
         if wanted.of_scenes:
-            raise FunicularError(f"{file}: --equilibrium, --relaxed, --path and --modes are for scenes, not for results "
-                                 "of runs")
+            raise FunicularError(f"{file}: --equilibrium, --relaxed, --path and --modes are for scenes, not for "
+                                 "results of runs")
         return load_run(file, libraries)
     scene = load_scene(file, libraries)
     if not (wanted.equilibrium or wanted.relaxed or wanted.path):

@@ -4,49 +4,9 @@ import funicular as fu
 import numpy as np
 import pytest
 from catenary import end_forces
+from relaxation import links, rope, strut, thin_rope, with_rider
 from scipy.optimize import brentq
 from scipy.special import ellipk
-
-ROPE = fu.Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1000)
-THICK, THIN = fu.Circle(radius=0.005), fu.Circle(radius=0.001)
-
-
-def rope(length=1.3, span=1.0, elements=20, density=1000.0, section=THICK, youngs_modulus=1e8) -> fu.Scene:
-    """A slack cable, drawn straight, that is: pressed together."""
-    made = fu.Scene()
-    made.cable("rope", start=(0, 0, 0), end=(span, 0, 0), rest_length=length, elements=elements, element="cable12",
-               section=section,
-               material=ROPE.model_copy(update={"density": density, "youngs_modulus": youngs_modulus}))
-    made.pin("rope", s=0)
-    made.pin("rope", s=length)
-    return made
-
-
-def with_rider(s=0.3, friction=None, **cable) -> fu.Scene:
-    made = rope(length=2.1, span=2.0, elements=15, **cable)
-    made.rigid_body("A", mass=1, inertia=(1e-3, 1e-3, 1e-3), position=(s / 2.1 * 2.0, 0, 0))
-    made.slide("A", along="rope", s=s, name="trolley", friction=friction)
-    return made
-
-
-def strut(factor: float) -> fu.Scene:
-    """A rod clamped at one end, under so many times Euler's load."""
-    made = fu.Scene(gravity=(0, 0, 0))
-    made.cable("rod", start=(0, 0, 0), end=(1, 0, 0), elements=10, element="cable8p",
-               section=fu.Rectangle(height=0.01, width=0.01),
-               material=fu.Material(youngs_modulus=1e9, poisson_ratio=0.0, density=1000))
-    made.clamp("rod", s=0)
-    made.force("rod", s=1.0, value=(-factor * np.pi**2 / 4 * 1e9 * 0.01**4 / 12, 0, 0))
-    return made
-
-
-def links(number=5) -> fu.Scene:
-    """A chain of bodies that is let go level."""
-    made = fu.Scene()
-    for k in range(number):
-        made.rigid_body(f"b{k}", mass=1, inertia=(1e-2, 1e-2, 1e-2), position=(0.2 * k + 0.1, 0, 0))
-        made.joint("spherical", (f"b{k}", (-0.1, 0, 0)), (f"b{k - 1}", (0.1, 0, 0)) if k else (0, 0, 0))
-    return made
 
 
 def energies_never_rise(state) -> bool:
@@ -55,7 +15,7 @@ def energies_never_rise(state) -> bool:
 
 
 def test_a_slack_cable_falls_into_its_catenary():
-    state = rope(elements=40, density=7800, section=THIN, youngs_modulus=1e7).relax()
+    state = thin_rope().relax()
     weight, axial = 7800 * np.pi * 0.001**2 * 9.81, 1e7 * np.pi * 0.001**2
     horizontal, vertical = end_forces(1.0, 0.0, 1.3, weight, axial)
     assert state.stable
@@ -103,10 +63,11 @@ def test_friction_holds_a_rider_on_a_slope_that_it_can_bear():
     assert ends == pytest.approx([0, (1 + 1000 * np.pi * 0.005**2 * 2.1) * 9.81, 0], abs=1e-3)
 
 
-def test_a_chain_of_links_hangs_straight_down():
-    state = links().relax()
+@pytest.mark.parametrize("number", [5, 20])
+def test_a_chain_of_links_hangs_straight_down(number):
+    state = links(number).relax()
     assert state.stable
-    for k in range(5):
+    for k in range(number):
         assert state[f"b{k}.position"] == pytest.approx([0, -0.2 * k - 0.1, 0], abs=1e-8)
 
 

@@ -105,8 +105,8 @@ class EquilibriumSettings(Part):
 class RelaxationSettings(Part):
     """How a scene is brought to rest by a damped motion.
 
-    tol: the largest force that may be left over, relative to the largest load, where friction has part in the state;
-    else Newton's method ends the motion, at rounding; max_steps of the motion.
+    tol: the largest force that may be left over, relative to the largest load, where Newton's method does not find the
+    state to rounding, and where friction has part in it; max_steps of the motion.
     """
 
     kind: ClassVar[str] = "relax"

@@ -211,6 +211,8 @@ def relax(scene: SceneData, settings: RelaxationSettings, made: type[S]) -> S:
                     motion.put(pushed["q"], pushed["s"])
                     last = None
                     continue
+                if left <= settings.tol:
+                    return _unpolished(problem, motion, here, made)
                 near /= 3.0
         _go_on(motion, leg, last)
     raise _not_at_rest(problem, motion, force, last, settings, made)
@@ -242,6 +244,7 @@ def _is_away(problem: StaticProblem, here: _Place, branch: dict | None) -> bool:
 def _polished(problem: StaticProblem, here: _Place) -> Stability | None:
     """Bring a state near rest to rest by Newton's method; None where that fails, or leads away."""
     problem.engine.set_state(0.0, q=here.q, s=here.s)
+    _share_forces(problem)
     kept = problem.keep()
     if problem.newton() and problem.distance(kept) <= TAKEN * problem.size:
         return stability(problem)
@@ -256,6 +259,18 @@ def _finished(problem: StaticProblem, motion: _Motion, found: Stability, pushes:
     if found.unstable or not found.known:
         problem.messages.append(f"the state is {found}")
     return _told(problem, motion, found, made)
+
+
+def _unpolished(problem: StaticProblem, motion: _Motion, here: _Place, made: type[S]) -> S:
+    """Return a state of rest to the tolerance, which Newton's method does not find."""
+    problem.engine.set_state(0.0, q=here.q, s=here.s)
+    _share_forces(problem)
+    found = stability(problem)
+    doubt = f"; it is {found}" if found.unstable or not found.known else ""
+    problem.messages.append(f"Newton's method does not find this state to rounding: forces are left over{doubt}")
+    state = _told(problem, motion, found, made)
+    state.residual = motion.report.residuals[-1]
+    return state
 
 
 def _held(problem: StaticProblem, motion: _Motion, here: _Place, sticking: list[str], made: type[S]) -> S:
