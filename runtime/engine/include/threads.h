@@ -18,7 +18,21 @@ int fu_has_threads(void);
 long fu_threads_size(int n);
 int fu_threads_start(fu_threads *threads, int n);
 void fu_threads_end(fu_threads *threads);
-int fu_share(fu_threads *threads, int dofs, fu_work work, const void *what);
-fu_range fu_part_of(int n, int unit, int part, int parts);
+int fu_share_among(fu_threads *threads, int dofs, fu_work work, const void *what);
+fu_range fu_one_of_parts(int n, int unit, int part, int parts);
+
+/* Has a work on so many dofs done, by all threads where that is worth while; returns the number of its parts. */
+static inline int fu_share(fu_threads *threads, int dofs, fu_work work, const void *what)
+{
+    if (threads) return fu_share_among(threads, dofs, work, what);
+    work(what, 0, 1);
+    return 1;
+}
+
+/* Returns the part of n things, in whole units but for the last. */
+static inline fu_range fu_part_of(int n, int unit, int part, int parts)
+{
+    return parts == 1 ? (fu_range){0, n} : fu_one_of_parts(n, unit, part, parts);
+}
 
 #endif

@@ -13,8 +13,8 @@
 
 #define WORTH_WHILE 1500 /* dofs: work on fewer takes as long to share as to do */
 
-/* Returns the part of n things, in whole units but for the last. */
-fu_range fu_part_of(int n, int unit, int part, int parts)
+/* Does what fu_part_of does, for several parts. */
+fu_range fu_one_of_parts(int n, int unit, int part, int parts)
 {
     const long units = ((long)n + unit - 1) / unit;
     const long first = units * part / parts * unit, end = units * (part + 1L) / parts * unit;
@@ -45,7 +45,7 @@ void fu_threads_end(fu_threads *threads)
     (void)threads;
 }
 
-int fu_share(fu_threads *threads, int dofs, fu_work work, const void *what)
+int fu_share_among(fu_threads *threads, int dofs, fu_work work, const void *what)
 {
     (void)threads, (void)dofs;
     work(what, 0, 1);
@@ -206,10 +206,10 @@ void fu_threads_end(fu_threads *all)
     pthread_mutex_destroy(&all->mutex);
 }
 
-/* Has a work on so many dofs done, by all threads where that is worth while; returns the number of its parts. */
-int fu_share(fu_threads *all, int dofs, fu_work function, const void *what)
+/* Does what fu_share does, where there are threads. */
+int fu_share_among(fu_threads *all, int dofs, fu_work function, const void *what)
 {
-    if (!all || all->n == 1 || dofs < WORTH_WHILE || all->forks != forks) {
+    if (all->n == 1 || dofs < WORTH_WHILE || all->forks != forks) {
         function(what, 0, 1);
         return 1;
     }
