@@ -166,6 +166,7 @@ def view(
                       ] = None,
     open_it: Annotated[bool, typer.Option("--open", help="open the page in the browser")] = False,
     equilibrium: Annotated[bool, typer.Option("--equilibrium", help="of a scene, its state of rest")] = False,
+    relaxed: Annotated[bool, typer.Option("--relaxed", help="of a scene, where a damped motion comes to rest")] = False,
     path: Annotated[bool, typer.Option("--path", help="of a scene, the load path to its state of rest")] = False,
     modes: Annotated[int | None, typer.Option(help="of a scene, so many modes; about its rest with --equilibrium")
                      ] = None,
@@ -183,7 +184,7 @@ def view(
 
     outputs = Outputs(output, png, [film for film in (gif, mp4) if film], vtk, speed, colour)
     with _reported_without_traceback():
-        written = write(files, Wanted(equilibrium, path, modes), outputs, open_it, library or ())
+        written = write(files, Wanted(equilibrium, relaxed, path, modes), outputs, open_it, library or ())
     for file in written:
         print(f"written: {file}")
 

@@ -101,15 +101,32 @@ cdef class Engine(Report):
         run.scratch = self._zeros(run.integrator.n_scratch(run))
 
     def use_threads(self, int threads):
-        """Let so many threads share the elements; whether that is possible: OpenMP was there when this was built."""
+        """Let so many threads share the work; how many there are, one where the system has none to give. Call it once."""
         cdef int i
-        if not fu_has_threads():
-            return False
-        self.model.threads = threads
-        if threads > 1:
-            self.model.parts = self._zeros(max([1] + [self.cables[i].n_elements * self.cables[i].coordinates ** 2
-                                                      for i in range(self.model.n_cables)]))
-        return True
+        m = &self.model
+        if threads < 2 or not fu_has_threads():
+            return 1
+        largest = [self.cables[i].n_elements * self.cables[i].coordinates ** 2 for i in range(m.n_cables)]
+        m.thread_work = self._zeros(max([2 * threads * FU_MAX_COORDINATES] + largest))
+        self._shared_dofs()
+        m.threads = <fu_threads *>PyMem_Calloc(1, fu_threads_size(threads))
+        if not m.threads:
+            raise MemoryError
+        self.run.newton.threads = self.run.accelerator.mass.threads = m.threads
+        return fu_threads_start(m.threads, threads)
+
+    def _shared_dofs(self):
+        """Note which dofs have their unknown with others, in a combination, or in the border: one thread adds to these."""
+        m = &self.model
+        unknown = np.asarray(<int[:m.n_dof]><int *>m.unknown_of_dof) if m.n_dof else np.zeros(0, dtype=np.intc)
+        times = np.bincount(unknown[unknown >= 0], minlength=m.n_band + m.n_border_dof)
+        for dof in -2 - unknown[unknown < -1]:
+            times[[m.combination_unknown[k] for k in range(m.combination_start[dof], m.combination_start[dof + 1])]] += 2
+        times[m.n_band:] += 2
+        shared = (unknown < -1) | ((unknown >= 0) & (times[unknown] > 1))
+        dofs, unknowns = np.flatnonzero(shared), np.flatnonzero(times > 1)
+        m.is_shared, m.shared_dofs, m.shared_unknowns = self._ints(shared), self._ints(dofs), self._ints(unknowns)
+        m.n_shared_dofs, m.n_shared_unknowns = len(dofs), len(unknowns)
 
     def watch(self, watcher):
         """Watch for the events of a `Watcher`; call it before `start`."""

@@ -20,7 +20,7 @@ from .errors import (
 from .parts.modal_body import ModalBody
 from .parts.part import Part
 from .parts.scene_text import dumps, read
-from .parts.settings import EquilibriumSettings, ModeSettings, RunSettings
+from .parts.settings import EquilibriumSettings, ModeSettings, RelaxationSettings, RunSettings
 from .parts.validation import show, shown
 from .results.run import Run
 from .results.viewable import Viewable
@@ -57,8 +57,8 @@ class Scene(Viewable, SceneMethods):
 
     ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``point_forces``,
     ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` lists what was adjusted;
-    ``run_settings`` and ``equilibrium_settings`` hold the settings that a scene file gives; ``title`` is what pictures
-    are called: the name of the scene's file without the ending, or what you set.
+    ``run_settings``, ``equilibrium_settings`` and ``relax_settings`` hold the settings that a scene file gives;
+    ``title`` is what pictures are called: the name of the scene's file without the ending, or what you set.
     """
 
     def add(self, part: P) -> P:
@@ -112,6 +112,7 @@ class Scene(Viewable, SceneMethods):
         scene = type(self)(gravity=self.gravity if gravity is None else gravity)
         scene.title = self.title
         scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
+        scene.relax_settings = dict(self.relax_settings)
         for part in parts:
             scene.add(part)
         return scene
@@ -176,14 +177,14 @@ class Scene(Viewable, SceneMethods):
     ) -> Run:
         """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
 
-        Settings not given here are the scene file's, if it gave them. initial: "drawn", "equilibrium" (found first),
-        a state that `equilibrium` returned, at the velocities drawn, a state ``run.at(time)`` of another run, or arrays
-        by the names of results such as ``{"wire.nodal_vectors": ...}``, see `InitialState`. save: a netCDF file,
-        written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
-        killed or interrupted; results are read from the file when they are asked for. resume: go on from there, to the
-        same numbers. progress: a bar (True), none (False), a bar if a terminal watches (None), or a function of the
-        time reached. estimate: whether two more runs, one of smaller steps and one of elements half as long, tell how
-        far the run is off, in ``run.report["errors"]``.
+        Settings not given here are the scene file's, if it gave them. initial: "drawn", "equilibrium" or "relaxed"
+        (found first), a state that `equilibrium` or `relax` returned, at the velocities drawn, a state
+        ``run.at(time)`` of another run, or arrays by the names of results such as ``{"wire.nodal_vectors": ...}``, see
+        `InitialState`. save: a netCDF file, written while the run goes on, with a checkpoint (the same name and
+        ``.state``) that stays when the run is killed or interrupted; results are read from the file when they are asked
+        for. resume: go on from there, to the same numbers. progress: a bar (True), none (False), a bar if a terminal
+        watches (None), or a function of the time reached. estimate: whether two more runs, one of smaller steps and one
+        of elements half as long, tell how far the run is off, in ``run.report["errors"]``.
 
         While it goes on the BLAS of NumPy and SciPy has one thread, in the whole process: what other threads of it
         compute meanwhile with large matrices takes longer.
@@ -226,6 +227,8 @@ class Scene(Viewable, SceneMethods):
         with saving as stream, one_blas_thread, enough_memory():
             if settings.initial == "equilibrium" and state is None:
                 state = self.equilibrium()
+            if settings.initial == "relaxed" and state is None:
+                state = self.relax()
             from .results.recording import recorded  # likewise
             from .solve.run import simulate
 
@@ -290,6 +293,29 @@ class Scene(Viewable, SceneMethods):
 
         with one_blas_thread, enough_memory():
             return equilibrium(self, settings, begin, Equilibrium)
+
+    def relax(self, *, tol: float | None = None, max_steps: int | None = None, **unknown: Never) -> Equilibrium:
+        """Bring the scene to rest by dynamic relaxation: a motion from the place drawn, damped until it ends; see
+        `RelaxationSettings` for the defaults.
+
+        For what a path of equilibria does not lead to: slack cables that fall into their shape, riders that run to the
+        lowest point of a cable or that friction holds, buckled rods, mechanisms that hang. Velocities drawn are left
+        out. The state is one that `equilibrium` returns, with ``relaxation``, which says how it came to rest. Settings
+        not given here are the scene file's, if it gave them. Raises SceneError for loads and drives that change with
+        time, and for friction that creeps; EquilibriumError, which says what is farthest from rest and keeps the state.
+        """
+        _refuse_unknown("relax", unknown, RelaxationSettings.keywords())
+        given = {"tol": tol, "max_steps": max_steps}
+        settings = RelaxationSettings(**self.relax_settings | {k: v for k, v in given.items() if v is not None})
+        self.check()
+
+        from .checks.constant_scene import check_comes_to_rest
+        from .results.equilibrium import Equilibrium  # brings SciPy
+        from .solve.relaxation import relax
+
+        check_comes_to_rest(self)
+        with one_blas_thread, enough_memory():
+            return relax(self, settings, Equilibrium)
 
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
         """Return the ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from

@@ -24,16 +24,17 @@ LOAD_STEPS = 10
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is shown of a scene: as drawn, its state of rest, the load path to that, or so many modes."""
+    """What is shown of a scene: as drawn, its state of rest or the one that it relaxes to, the load path, or modes."""
 
     equilibrium: bool = False
+    relaxed: bool = False
     path: bool = False
     modes: int | None = None
 
     @property
     def of_scenes(self) -> bool:
         """Return whether it is something that results of a run have not."""
-        return self.equilibrium or self.path or self.modes is not None
+        return self.equilibrium or self.relaxed or self.path or self.modes is not None
 
 
 @dataclass(frozen=True)
@@ -52,13 +53,14 @@ def seen(file: str, wanted: Wanted, libraries: Iterable[str | os.PathLike]) -> V
     """Return what a file of results, or a scene, shows. Raises FunicularError."""
     if Path(file).suffix == ".nc":
         if wanted.of_scenes:
-            raise FunicularError(f"{file}: --equilibrium, --path and --modes are for scenes, not for results of runs")
+            raise FunicularError(f"{file}: --equilibrium, --relaxed, --path and --modes are for scenes, not for "
+                                 "results of runs")
         return load_run(file, libraries)
     scene = load_scene(file, libraries)
-    if not (wanted.equilibrium or wanted.path):
+    if not (wanted.equilibrium or wanted.relaxed or wanted.path):
         return scene if wanted.modes is None else scene.modes(wanted.modes)
     steps = LOAD_STEPS if wanted.path and not {"method", "load_steps"} & set(scene.equilibrium_settings) else None
-    rest = scene.equilibrium(load_steps=steps)
+    rest = scene.relax() if wanted.relaxed else scene.equilibrium(load_steps=steps)
     if wanted.modes is not None:
         return scene.modes(wanted.modes, about=rest)
     return rest.load_path if wanted.path else rest

@@ -98,7 +98,7 @@ def test_modes(solvers):
     (lambda s: s.modes(0), "modes: n must be a whole number, 1 or more, got 0"),
     (lambda s: s.modes(1, about=3), "scene: the state to start from must be one that equilibrium() returned, got 3"),
     (lambda s: s.run(initial=3), "scene: the state to start from must be one that equilibrium() returned, got 3"),
-    (lambda s: s.run(initial="rest"), 'run: initial "rest" is not known; known: drawn, equilibrium, state'),
+    (lambda s: s.run(initial="rest"), 'run: initial "rest" is not known; known: drawn, equilibrium, relaxed, state'),
 ])
 def test_refused(solvers, call, complaint):
     with refused(complaint):

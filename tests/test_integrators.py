@@ -164,8 +164,7 @@ def test_threads_change_no_bit(integrator, monkeypatch):
     assert runs[0].report["messages"] == []
     for run in runs[1:]:
         assert run["rope.nodal_vectors"].tobytes() == runs[0]["rope.nodal_vectors"].tobytes()
-        assert run.report["messages"] in ([], [f"threads = {run.report['settings']['threads']} came to 1: the compiler "
-                                              "that built this had no OpenMP"])
+        assert run.report["messages"] == []
 
 
 @pytest.mark.parametrize("name", INTEGRATORS)

@@ -58,6 +58,38 @@ def test_band_is_factored_as_it_allows(made, size, definite):
     assert error < 1e-9
 
 
+LONG = 1024
+"""Unknowns of a chain from which on it is eliminated from both ends (FU_TWISTED_FROM)."""
+
+
+@pytest.mark.parametrize(("name", "elements"), [
+    *(("pendulum", n) for n in range(171, 175)),  # unknowns beyond multiples of eight: 0, 6, 4, 2
+    ("three riders", 180), ("three cables", 186), ("ring", 186), ("ladder", 200)])
+def test_long_chains_are_solved_from_both_ends(name, elements):
+    engine = started(scene(name, elements))
+    assert engine.band[0] >= LONG
+    error, definite = solution_error(engine, 1e-4, 1e-6)
+    assert definite
+    assert error < 1e-9
+
+
+@pytest.mark.parametrize("half", [0.25, 0.75])
+def test_long_chains_that_are_not_definite_are_factored_with_pivots(half):
+    """The half of the chain that is crumpled may be either, or its middle alone."""
+    made = scene("pendulum", 180)
+    engine = started(made)
+    rng = np.random.default_rng(3)
+    change = np.zeros(engine.unknowns)
+    at = int(half * len(change))
+    change[at - 60:at + 60] = 1e-2 * rng.standard_normal(120)
+    _, matrix = engine.linearise(1e-1, change)
+    right = rng.standard_normal(engine.unknowns)
+    expected = np.linalg.solve(matrix, right)
+    found, definite = engine.solve(right)
+    assert not definite
+    assert np.abs(found - expected).max() < 1e-7 * np.abs(expected).max()
+
+
 @pytest.mark.parametrize(("name", "shared"), [("three cables", 3), ("ring", 3), ("ladder", 9)])
 def test_joins_leave_the_band_as_narrow_as_one_cable(name, shared):
     """Only positions where more than two elements meet are in the border, and of a ring one."""

@@ -101,6 +101,12 @@ def force_law(space):
     assert list(space["LAW"].parameters) == [name for name in space["Magnet"].model_fields if name not in "name a b"]
 
 
+def held_by_friction(space):
+    state, run = space["rest"], space["run"]
+    assert 0.315 < float(state["trolley.s"]) < 0.9
+    assert abs(run["A.position"] - run["A.position"][0]).max() < 1e-5
+
+
 AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "Scenes"): first_scene,
               ("runtime/README.md", "Joints and springs"): trolley,
@@ -109,6 +115,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "See it"): pages_and_pictures,
               ("runtime/README.md", "Many scenes"): many_scenes,
               ("runtime/README.md", "Statics, modes and section forces"): rest,
+              ("runtime/README.md", "Rest by a damped motion"): held_by_friction,
               ("derive/README.md", "Kernels from Python"): middle_of_an_element,
               ("derive/README.md", "Your own element"): own_element,
               ("derive/README.md", "A force between two points"): force_law}

@@ -213,7 +213,7 @@ def test_a_file_is_named_by_its_path(tmp_path):
         ("[run]\nduration = 1\ntoll = 1e-3", 'x.toml, line 3: run: "toll" is not known here; did you mean "tol"?'),
         ("run = 3", "x.toml, line 1: [run]: must be a table"),
         ('[run]\nduration = 1\ninitial = "rest"',
-         'x.toml, line 3: run: initial "rest" is not known; known: drawn, equilibrium, state'),
+         'x.toml, line 3: run: initial "rest" is not known; known: drawn, equilibrium, relaxed, state'),
         ("equilibrium = 3", "x.toml, line 1: [equilibrium]: must be a table"),
         ("[equilibrium]\nload_step = 3",
          'x.toml, line 2: equilibrium: "load_step" is not known here; did you mean "load_steps"?'),

@@ -244,5 +244,6 @@ def test_view_writes_other_pictures_instead(funicular, tmp_path):
 def test_view_refuses(funicular, tmp_path):
     found = funicular(stored(tmp_path, "a.nc"), "--modes", 3)
     assert found.exit_code == 1
-    assert found.stderr == "error: a.nc: --equilibrium, --path and --modes are for scenes, not for results of runs\n"
+    assert found.stderr == ("error: a.nc: --equilibrium, --relaxed, --path and --modes are for scenes, not for results "
+                            "of runs\n")
     assert "error: nowhere.nc: there is no such file" in funicular("nowhere.nc").stderr

@@ -1,22 +1,19 @@
 """Build of the extension modules: their C files are found and compiled side by side, since setuptools compiles those
-of one module in turn; OpenMP for those that take it, where the compiler has it. MSVC has options of its own for the
-same.
+of one module in turn; threads for those that take them. MSVC has options of its own, and no threads.
 """
 
 from __future__ import annotations
 
 import os
-import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 from setuptools.command.build_ext import build_ext
-from setuptools.errors import CompileError, LinkError
 
 THREADED = ("funicular.engine",)
-OPENMP = "-fopenmp"
-MSVC, MSVC_OPENMP = ["/std:c11", "/O2"], "/openmp"
+THREADS = "-pthread"
+MSVC = ["/std:c11", "/O2"]
 SOURCES = {"funicular.generated.kernels": ["generated/*.c"],
            "funicular.engine": ["runtime/engine/**/*.c", "generated/blocks.c"]}
 """Patterns of the C files of a module; blocks.c is compiled into the engine, with the options of its hot loops."""
@@ -50,16 +47,13 @@ class ParallelBuild(build_ext):
 
     def build_extensions(self) -> None:
         """Build all modules; files in a pool of as many threads as there are cores, each calling the compiler."""
-        openmp = OPENMP
-        if self.compiler.compiler_type == "msvc":
-            openmp = MSVC_OPENMP
-            for module in self.extensions:
+        is_msvc = self.compiler.compiler_type == "msvc"
+        for module in self.extensions:
+            if is_msvc:
                 module.extra_compile_args = [*MSVC]
-        if self._has_openmp(openmp):
-            for module in self.extensions:
-                if module.name in THREADED:
-                    module.extra_compile_args.append(openmp)
-                    module.extra_link_args.append(openmp)
+            elif module.name in THREADED:
+                module.extra_compile_args.append(THREADS)
+                module.extra_link_args.append(THREADS)
         compile_in_turn = self.compiler.compile
         with ThreadPoolExecutor(os.cpu_count()) as pool:
 
@@ -71,15 +65,3 @@ class ParallelBuild(build_ext):
 
             self.compiler.compile = compile_side_by_side
             super().build_extensions()
-
-    def _has_openmp(self, option: str) -> bool:
-        """Return whether a program with it compiles and links."""
-        with tempfile.TemporaryDirectory() as folder:
-            source = Path(folder) / "openmp.c"
-            source.write_text("#include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n")
-            try:
-                objects = self.compiler.compile([str(source)], output_dir=folder, extra_postargs=[option])
-                self.compiler.link_executable(objects, str(Path(folder) / "openmp"), extra_postargs=[option])
-            except (CompileError, LinkError):
-                return False
-        return True

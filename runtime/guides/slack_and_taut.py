@@ -95,3 +95,19 @@ print(f"largest tension {1e-3 * float(forces.tension[worst]):.2f} kN at s = {flo
 left, right = rest["rope@0.force"], rest["rope@50.2.force"]
 print(f"the anchors carry {left[1] + right[1]:.1f} N upwards, weight and load are {WEIGHT * 50.2 + 2000:.1f} N")
 assert abs(left[1] + right[1] - WEIGHT * 50.2 - 2000) < 1e-3
+
+# %%
+# A pulley that friction holds
+# ----------------------------
+#
+# Equilibrium leaves friction out: a pulley rolls to the lowest point. `relax` lets the scene move, and damps the motion
+# until it rests. With friction the pulley stays on any slope below its coefficient; which one it comes to depends on
+# how it got there, so that this is one state of many.
+
+held = rope_of(51.0)
+held.rigid_body("pulley", mass=100, inertia=(1, 1, 1), position=(5, 0, 0))
+held.slide("pulley", along="rope", s=5.1, friction=fu.Friction(coefficient=0.1, model="stick"), name="wheel")
+rest = held.relax()
+print(rest.messages[0])
+print(f"the pulley stays at s = {float(rest['wheel.s']):.2f} m of 51, {rest['pulley.position'][1]:.3f} m high")
+assert rest.residual < 2e-6 * 100 * 9.81

@@ -29,8 +29,9 @@ class SceneData:
     """What a scene is, as checks, model, solvers and results take it; `funicular.Scene` adds what can be done with it.
 
     ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
-    else a list. ``messages`` lists what was adjusted; ``run_settings`` and ``equilibrium_settings`` hold the settings
-    that a scene file gives; ``title`` is what pictures are called, the name of its file without the ending.
+    else a list. ``messages`` lists what was adjusted; ``run_settings``, ``equilibrium_settings`` and ``relax_settings``
+    hold the settings that a scene file gives; ``title`` is what pictures are called, the name of its file without the
+    ending.
     """
 
     cables: dict[str, Cable]
@@ -57,6 +58,7 @@ class SceneData:
         self.title = ""
         self.run_settings: dict[str, Any] = {}
         self.equilibrium_settings: dict[str, Any] = {}
+        self.relax_settings: dict[str, Any] = {}
 
     def __getattr__(self, name: str) -> Any:
         """Refuse an attribute that there is not; of an older version's, say what it is called now."""

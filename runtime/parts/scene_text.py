@@ -1,7 +1,7 @@
 """Scenes as text, and back: TOML tables with the names of the Python API.
 
-``gravity``, one array of tables for each kind of part (``[[cable]]``, ``[[pin]]``, ...), ``[equilibrium]`` and
-``[run]``. All checks are those of the parts, the settings and `funicular.Scene`.
+``gravity``, one array of tables for each kind of part (``[[cable]]``, ``[[pin]]``, ...), ``[equilibrium]``,
+``[relax]`` and ``[run]``. All checks are those of the parts, the settings and `funicular.Scene`.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from .part import Part
 from .scene_data import SceneData
 from .scene_lines import line_of
 from .section import Section
-from .settings import EquilibriumSettings, RunSettings
+from .settings import EquilibriumSettings, RelaxationSettings, RunSettings
 from .signal import Signal
 from .solids import Solid
 
-SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings}
+SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings, "relax": RelaxationSettings}
 
 TAGS = {Section: "shape", Signal: "form", Stop: "stop", Solid: "kind"}
 """The word in a table that says which of several parts it is."""

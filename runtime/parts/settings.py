@@ -1,4 +1,4 @@
-"""The settings of a run, of a search for equilibrium, and of an analysis of modes."""
+"""The settings of a run, of searches for rest, and of an analysis of modes."""
 
 from __future__ import annotations
 
@@ -46,10 +46,11 @@ class RunSettings(Part):
     or "auto": the cheaper of the first two for this scene and tol, genalpha where step or spectral_radius is given;
     spectral_radius of genalpha (0.9 if not given) and energy (1) at infinity: 1 keeps and 0 removes the fastest
     vibrations, energy's of the cables, counted as dissipated with what their algorithmic stresses hold at the time;
-    initial: "drawn", "equilibrium" (static, under the loads at t = 0), or "state", one that `Scene.run` is given; save:
-    the file to write, or None; threads over the elements of cables, for some thousand of them or more, at most as many
-    as there are processors; estimate: whether two more runs tell the error of the run, of its steps and of its mesh
-    apart, in ``report["errors"]``, see `ErrorEstimate`.
+    initial: "drawn", "equilibrium" (static, under the loads at t = 0), "relaxed" (at rest after a damped motion, see
+    `Scene.relax`), or "state", one that `Scene.run` is given; save: the file to write, or None; threads that
+    share the work on cables of some hundred elements or more, at most as many as there are processors; estimate:
+    whether two more runs tell the error of the run, of its steps and of its mesh apart, in ``report["errors"]``, see
+    `ErrorEstimate`.
     """
 
     kind: ClassVar[str] = "run"
@@ -62,7 +63,7 @@ class RunSettings(Part):
     integrator: Annotated[str, one_of((AUTO, *INTEGRATORS))] = AUTO
     spectral_radius: Annotated[float, within(0, 1, ends=True)] = Field(
         default_factory=lambda data: default_spectral_radius(data.get("integrator", AUTO)))
-    initial: Annotated[str, one_of(("drawn", "equilibrium", "state"))] = "drawn"
+    initial: Annotated[str, one_of(("drawn", "equilibrium", "relaxed", "state"))] = "drawn"
     save: Annotated[str | None, BeforeValidator(_text_of_path)] = None
     threads: Count = 1
     estimate: Flag = False
@@ -106,6 +107,18 @@ class EquilibriumSettings(Part):
     largest_step: Annotated[float, within(0, 1, ends=False)] = 0.1
     seek_stable: Flag = True
     scale_gravity: Flag = True
+
+
+class RelaxationSettings(Part):
+    """How a scene is brought to rest by a damped motion.
+
+    tol: the largest force that may be left over, relative to the largest load, where Newton's method does not find the
+    state to rounding, and where friction has part in it; max_steps of the motion.
+    """
+
+    kind: ClassVar[str] = "relax"
+    tol: Annotated[float, within(0, 1, ends=False)] = 1e-6
+    max_steps: Count = 20_000
 
 
 class ModeSettings(Part):

@@ -47,6 +47,31 @@ class CriticalPoint:
     state: RestState = field(repr=False)
 
 
+@dataclass
+class Relaxation:
+    """How a scene came to rest by a damped motion.
+
+    steps: of the motion; resets: how often all velocities were set to zero; energies: elastic, of weight and of loads,
+    at the resets, J, which never rise but where the scene was pushed off an unstable branch, or where loads turn with
+    what they act on; residuals: the largest forces left over there, N.
+    """
+
+    steps: int = 0
+    resets: int = 0
+    energies: list[float] = field(default_factory=list, repr=False)
+    residuals: list[float] = field(default_factory=list, repr=False)
+
+    def note(self, energy: float, residual: float) -> None:
+        """Add a state with all velocities zero."""
+        self.energies.append(energy)
+        self.residuals.append(residual)
+
+    def __str__(self) -> str:
+        """Return it in words, as messages do."""
+        return (f"came to rest by {self.steps} steps of a damped motion, whose velocities were set to zero "
+                f"{self.resets} times; {self.residuals[-1]:.3g} N were left over")
+
+
 @dataclass(repr=False)
 class RestState(NamedArrays):
     """A state of rest of a scene.
@@ -57,7 +82,7 @@ class RestState(NamedArrays):
     the largest force left over, in N; stability: see `Stability`; path: the states of rest on the way, each under its
     load_fraction of all loads, in their order, this one last: what a curve of load and displacement is drawn from;
     critical_points of that path; gravity_fraction: how much of gravity is on, all of it where scale_gravity is off;
-    messages: what the search passed, adjusted or left out.
+    messages: what the search passed, adjusted or left out; relaxation: how `Scene.relax` came to the state, else None.
     """
 
     scene: SceneData
@@ -76,6 +101,7 @@ class RestState(NamedArrays):
     critical_points: list[CriticalPoint] = field(default_factory=list)
     messages: list[str] = field(default_factory=list)
     layout: dict[str, list] = field(default_factory=dict, repr=False)
+    relaxation: Relaxation | None = None
 
     @classmethod
     def of(cls, problem: StaticProblem, stability: Stability, heading: np.ndarray | None = None) -> Self:

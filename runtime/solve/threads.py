@@ -1,4 +1,4 @@
-"""Threads: how many share the elements of a run, and that linear algebra on small matrices has one."""
+"""Threads: how many share the work of a run, and that linear algebra on small matrices has one."""
 
 from __future__ import annotations
 
@@ -12,32 +12,21 @@ if TYPE_CHECKING:
 
     from ..engine import Engine
 
-_used_in: int | None = None
-"""The process that shared elements among threads first; of a forked process that is one of its parents."""
-
-
 def available() -> int:
     """Return the processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def share_elements(engine: Engine, asked: int) -> list[str]:
-    """Let as many threads as are asked for share the elements of cables; says where fewer do.
-
-    Never more than there are processors. One alone in a process that was forked from one which had used threads: GNU's
-    OpenMP keeps them for the next time, and in the forked process, which has none of them, it would wait for ever.
+    """Let as many threads as are asked for share the work of a run, never more than there are processors; says where
+    fewer do.
     """
-    global _used_in
     threads, why = asked, ""
     if asked > available():
         threads, why = available(), f"there are {available()} processors for this process"
-    if threads > 1 and _used_in not in (None, os.getpid()):
-        threads, why = 1, ("this process was forked from one that had used threads; start it anew instead, with the "
-                           'method "spawn" of multiprocessing')
-    if threads > 1 and not engine.use_threads(threads):
-        threads, why = 1, "the compiler that built this had no OpenMP"
-    if threads > 1:
-        _used_in = os.getpid()
+    started = engine.use_threads(threads)
+    if started < threads:
+        threads, why = started, "the system gave no more threads"
     return [f"threads = {asked} came to {threads}: {why}"] if why else []
 
 

@@ -25,6 +25,9 @@ static int chunk(const fu_cable *cable, int k)
     return cable->n_elements - k < CHUNK ? cable->n_elements - k : CHUNK;
 }
 
+/* Makes what n elements give, one behind the other. */
+typedef void (*work_on)(const fu_cable *cable, int n, const fu_elements *of, double *out);
+
 static void elastic_forces(const fu_cable *cable, int n, const fu_elements *of, double *f)
 {
     const fu_block block = cable->blocks ? cable->blocks->elastic_force : 0;
@@ -45,6 +48,19 @@ static void damping_forces(const fu_cable *cable, int n, const fu_elements *of, 
                                   of->A + (long)k * of->A_stride, of->tau, f + k * cable->coordinates);
 }
 
+/* Makes M v. */
+static void inertia_forces(const fu_cable *cable, int n, const fu_elements *of, double *f)
+{
+    for (int k = 0; k < n; ++k)
+        cable->kernel->inertia_force(cable->m, of->v + k * of->per_node, f + k * cable->coordinates);
+}
+
+static void mass_damping_forces(const fu_cable *cable, int n, const fu_elements *of, double *f)
+{
+    inertia_forces(cable, n, of, f);
+    for (int i = 0; i < n * cable->coordinates; ++i) f[i] *= cable->mass_damping;
+}
+
 static void elastic_tangents(const fu_cable *cable, int n, const fu_elements *of, double *K)
 {
     const fu_block block = cable->blocks ? cable->blocks->elastic_tangent : 0;
@@ -55,52 +71,82 @@ static void elastic_tangents(const fu_cable *cable, int n, const fu_elements *of
                                     K + k * cable->coordinates * cable->coordinates);
 }
 
-typedef void (*work_on)(const fu_cable *cable, int n, const fu_elements *of, double *out);
+/* A sum of forces that threads share: of a cable's elements, to f; one or two forces of each group of elements. */
+typedef struct {
+    const fu_model *model;
+    const fu_cable *cable;
+    const double *q, *v;
+    work_on forces[2];
+    double *f;
+} sum;
 
-/* Lets a cable's elements write what they give, `size` numbers each, to model->parts: groups of them on as many threads as the
- * model has. The groups are those of one thread and each has its place, so that the bits do not depend on the number. */
-static void on_threads(const fu_model *model, const fu_cable *cable, const double *q, int group, int size, work_on work)
+/* Adds what a part's elements give, n from the k-th on. */
+static void add_group(const sum *job, int k, int n, const double *from, double *first)
 {
-    const int groups = (cable->n_elements + group - 1) / group;
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(model->threads) schedule(static)
-#endif
-    for (int g = 0; g < groups; ++g) {
-        const int k = g * group, left = cable->n_elements - k;
-        const fu_elements of = elements_from(cable, q, 0, k);
-        work(cable, left < group ? left : group, &of, model->parts + (long)k * size);
+    const fu_cable *cable = job->cable;
+    double *at = job->f + cable->first + (long)k * cable->per_node;
+    const int left = first ? cable->per_node : 0;
+    for (int i = 0; i < left; ++i) first[i] = from[i];
+    for (int i = left; i < cable->coordinates; ++i) at[i] += from[i];
+    for (int j = 1; j < n; ++j) {
+        at += cable->per_node;
+        from += cable->coordinates;
+        for (int i = 0; i < cable->coordinates; ++i) at[i] += from[i];
     }
 }
 
-/* Returns whether the compiler had OpenMP. */
-int fu_has_threads(void)
+/* Returns what one of the forces is on the first node of a part. */
+static double *on_first_node(const sum *job, int part, int which)
 {
-#ifdef _OPENMP
-    return 1;
-#else
-    return 0;
-#endif
+    return job->model->thread_work + (2 * part + which) * job->cable->per_node;
 }
 
-/* Adds what n elements from the k-th on give, one after the other, to the forces f on the dofs. */
-static void add_forces(const fu_cable *cable, int k, int n, const double *part, double *f)
+/* Adds a part of the elements, in the groups of one thread. What is on the first node of all parts but the first is for
+ * `add_sum` to add, since another thread adds to that node. */
+static void add_part(const void *what, int part, int parts)
 {
-    double *at = f + cable->first + (long)k * cable->per_node;
-    for (int j = 0; j < n; ++j, at += cable->per_node, part += cable->coordinates)
-        for (int i = 0; i < cable->coordinates; ++i) at[i] += part[i];
+    const sum *job = what;
+    const fu_range range = fu_part_of(job->cable->n_elements, CHUNK, part, parts);
+    double out[CHUNK * FU_MAX_COORDINATES];
+    for (int k = range.first, n; k < range.end; k += n) {
+        n = chunk(job->cable, k);
+        const fu_elements of = elements_from(job->cable, job->q, job->v, k);
+        for (int which = 0; which < 2 && job->forces[which]; ++which) {
+            job->forces[which](job->cable, n, &of, out);
+            add_group(job, k, n, out, part && k == range.first ? on_first_node(job, part, which) : 0);
+        }
+    }
+}
+
+/* Adds the forces to those on the dofs: on each node those of the element before it, then those of the element behind it,
+ * whatever the number of threads. */
+static void add_sum(const sum *job)
+{
+    const fu_cable *cable = job->cable;
+    const int parts = fu_share(job->model->threads, cable->n_elements * cable->per_node, add_part, job);
+    for (int part = 1; part < parts; ++part) {
+        const fu_range range = fu_part_of(cable->n_elements, CHUNK, part, parts);
+        double *at = job->f + cable->first + (long)range.first * cable->per_node;
+        for (int which = 0; which < 2 && job->forces[which] && range.first < range.end; ++which)
+            for (int i = 0; i < cable->per_node; ++i) at[i] += on_first_node(job, part, which)[i];
+    }
+}
+
+static void clear_part(const void *what, int part, int parts)
+{
+    const sum *job = what;
+    const fu_range range = fu_part_of(job->model->n_dof, CHUNK, part, parts);
+    for (int i = range.first; i < range.end; ++i) job->f[i] = 0.0;
 }
 
 /* Makes f = M a. */
 void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
-    double part[FU_MAX_COORDINATES];
-    for (int i = 0; i < model->n_dof; ++i) f[i] = 0.0;
+    const sum job = {.model = model, .f = f};
+    fu_share(model->threads, model->n_dof, clear_part, &job);
     for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
-        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            cable->kernel->inertia_force(cable->m, a + at, part);
-            for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
-        }
+        const sum inertia = {model, &model->cables[c], q, a, {inertia_forces}, f};
+        add_sum(&inertia);
     }
     fu_bodies_mass_times(model, q, a, f);
 }
@@ -108,20 +154,9 @@ void fu_mass_times(const fu_model *model, const double *q, const double *a, doub
 /* Adds elastic, damping and bodies' forces, as they stand on the left of the equations of motion; not those of couplings. */
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
-    double part[CHUNK * FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
-        if (model->threads > 1) {
-            on_threads(model, cable, q, CHUNK, cable->coordinates, elastic_forces);
-            add_forces(cable, 0, cable->n_elements, model->parts, f);
-            continue;
-        }
-        for (int k = 0, n; k < cable->n_elements; k += n) {
-            n = chunk(cable, k);
-            const fu_elements of = elements_from(cable, q, v, k);
-            elastic_forces(cable, n, &of, part);
-            add_forces(cable, k, n, part, f);
-        }
+        const sum elastic = {model, &model->cables[c], q, v, {elastic_forces}, f};
+        add_sum(&elastic);
     }
     fu_rate_forces(model, q, v, f);
 }
@@ -142,26 +177,12 @@ void fu_discrete_forces(const fu_model *model, const double *q, const double *q_
 /* Adds damping and bodies' forces. */
 void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
-    double part[CHUNK * FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
-        if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;
-        for (int k = 0, n; k < cable->n_elements; k += n) {
-            n = chunk(cable, k);
-            const fu_elements of = elements_from(cable, q, v, k);
-            if (cable->tau > 0.0) {
-                damping_forces(cable, n, &of, part);
-                add_forces(cable, k, n, part, f);
-            }
-            if (cable->mass_damping > 0.0) {
-                for (int j = 0; j < n; ++j) {
-                    double *of_element = part + j * cable->coordinates;
-                    cable->kernel->inertia_force(cable->m, of.v + j * of.per_node, of_element);
-                    for (int i = 0; i < cable->coordinates; ++i) of_element[i] *= cable->mass_damping;
-                }
-                add_forces(cable, k, n, part, f);
-            }
-        }
+        const work_on by_mass = cable->mass_damping > 0.0 ? mass_damping_forces : 0;
+        const work_on first = cable->tau > 0.0 ? damping_forces : by_mass;
+        const sum rates = {model, cable, q, v, {first, first == by_mass ? 0 : by_mass}, f};
+        if (first) add_sum(&rates);
     }
     fu_bodies_forces(model, q, v, f);
 }
@@ -194,36 +215,90 @@ static void add_matrix(const fu_model *model, int first, int n, const double *K,
     }
 }
 
+/* A matrix of a cable that threads share. */
+typedef struct {
+    const fu_model *model;
+    const fu_cable *cable;
+    const double *q, *v;
+    double mass, rate, stiffness;
+    fu_system *system;
+} matrix;
+
+/* Returns whether an element has dofs whose unknowns other elements have at other nodes. */
+static int is_shared(const fu_model *model, const fu_cable *cable, int k)
+{
+    const int *dofs = model->is_shared + cable->first + (long)k * cable->per_node;
+    for (int i = 0; i < cable->coordinates; ++i)
+        if (dofs[i]) return 1;
+    return 0;
+}
+
+/* Makes the matrix of an element, from K with the elastic tangent in it where there is one. */
+static void complete(const matrix *job, int k, double *K)
+{
+    double Q[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    const fu_cable *cable = job->cable;
+    const int size = cable->coordinates * cable->coordinates;
+    const fu_elements of = elements_from(cable, job->q, job->v, k);
+    if (job->stiffness == 0.0)
+        for (int i = 0; i < size; ++i) K[i] = 0.0;
+    else {
+        if (cable->tau > 0.0) {
+            cable->law->damping_tangent(of.l, of.e, of.v, of.A, of.tau, job->rate, Q);
+            for (int i = 0; i < size; ++i) K[i] += Q[i];
+        }
+        for (int i = 0; i < size; ++i) K[i] *= job->stiffness;
+    }
+    add_mass(cable, job->mass, K);
+}
+
+/* Adds a part of the elements. Where threads share the work, the first of each part, which another thread's has a node with,
+ * and those with shared unknowns are for `add_matrix_of` to add: afterwards, in their order. An entry of two neighbours
+ * alone is the same in either order. */
+static void add_matrix_part(const void *what, int part, int parts)
+{
+    const matrix *job = what;
+    const fu_model *model = job->model;
+    const fu_cable *cable = job->cable;
+    const int size = cable->coordinates * cable->coordinates;
+    const fu_range range = fu_part_of(cable->n_elements, FU_BLOCK_ELEMENTS, part, parts);
+    double every[FU_BLOCK_ELEMENTS * FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    for (int k = range.first; k < range.end; ++k) {
+        const int j = k % FU_BLOCK_ELEMENTS, left = cable->n_elements - k;
+        const fu_elements of = elements_from(cable, job->q, job->v, k);
+        double *K = every + j * size;
+        if (job->stiffness != 0.0 && j == 0)
+            elastic_tangents(cable, left < FU_BLOCK_ELEMENTS ? left : FU_BLOCK_ELEMENTS, &of, every);
+        complete(job, k, K);
+        if (parts > 1 && (k == range.first || is_shared(model, cable, k)))
+            memcpy(model->thread_work + (long)k * size, K, sizeof(double) * (size_t)size);
+        else add_matrix(model, cable->first + k * cable->per_node, cable->coordinates, K, job->system);
+    }
+}
+
+static void add_matrix_of(const matrix *job)
+{
+    const fu_model *model = job->model;
+    const fu_cable *cable = job->cable;
+    const int size = cable->coordinates * cable->coordinates;
+    const int parts = fu_share(model->threads, cable->n_elements * cable->per_node, add_matrix_part, job);
+    for (int part = 0; part < parts && parts > 1; ++part) {
+        const fu_range range = fu_part_of(cable->n_elements, FU_BLOCK_ELEMENTS, part, parts);
+        for (int k = range.first; k < range.end; ++k)
+            if (k == range.first || is_shared(model, cable, k))
+                add_matrix(model, cable->first + k * cable->per_node, cable->coordinates, model->thread_work + (long)k * size,
+                           job->system);
+    }
+}
+
 /* Adds inertia M + stiffness d(forces)/dq + stiffness rate d(forces)/dv of the cables to a cleared system. */
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system)
 {
-    double every[FU_BLOCK_ELEMENTS * FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    double Q[FU_MAX_COORDINATES * FU_MAX_COORDINATES], *K = every;
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
-        const int size = cable->coordinates * cable->coordinates;
-        const double mass = inertia + stiffness * rate * cable->mass_damping;
-        const int threaded = model->threads > 1 && stiffness != 0.0;
-        if (threaded) on_threads(model, cable, q, FU_BLOCK_ELEMENTS, size, elastic_tangents);
-        for (int k = 0; k < cable->n_elements; ++k) {
-            const int j = k % FU_BLOCK_ELEMENTS, left = cable->n_elements - k;
-            const fu_elements of = elements_from(cable, q, v, k);
-            K = every + j * size;
-            if (stiffness != 0.0) {
-                if (threaded) memcpy(K, model->parts + (long)k * size, sizeof(double) * (size_t)size);
-                else if (j == 0) elastic_tangents(cable, left < FU_BLOCK_ELEMENTS ? left : FU_BLOCK_ELEMENTS, &of, every);
-                if (cable->tau > 0.0) {
-                    cable->law->damping_tangent(of.l, of.e, of.v, of.A, of.tau, rate, Q);
-                    for (int i = 0; i < size; ++i) K[i] += Q[i];
-                }
-                for (int i = 0; i < size; ++i) K[i] *= stiffness;
-            } else {
-                for (int i = 0; i < size; ++i) K[i] = 0.0;
-            }
-            add_mass(cable, mass, K);
-            add_matrix(model, cable->first + k * cable->per_node, cable->coordinates, K, system);
-        }
+        const matrix job = {model, cable, q, v, inertia + stiffness * rate * cable->mass_damping, rate, stiffness, system};
+        add_matrix_of(&job);
     }
 }
 

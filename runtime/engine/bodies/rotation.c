@@ -4,11 +4,27 @@
 
 #include <string.h>
 
+
+/* A configuration that threads move. */
+typedef struct {
+    double *q;
+    const double *step;
+    int n;
+} move;
+
+static void move_part(const void *what, int part, int parts)
+{
+    const move *job = what;
+    const fu_range range = fu_part_of(job->n, FU_DOFS_APART, part, parts);
+    for (int i = range.first; i < range.end; ++i) job->q[i] += job->step[i];
+}
+
 /* Moves a configuration by a step of the dofs; `cayley`: by Cayley vectors, otherwise by rotation vectors. */
 static void move_all(const fu_model *model, double *q, const double *step, int cayley)
 {
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
-    for (int i = 0; i < n_flexible; ++i) q[i] += step[i];
+    const move job = {q, step, n_flexible};
+    fu_share(model->threads, n_flexible, move_part, &job);
     for (int k = 0; k < model->n_bodies; ++k) {
         const fu_body *body = &model->bodies[k];
         const fu_body_kernels *kernel = body->kernel;

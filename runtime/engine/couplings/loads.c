@@ -132,6 +132,6 @@ const fu_coupling_type fu_load_type = {
 /* Subtracts gravity and loads from f. */
 void fu_external_forces(const fu_model *model, double t, const double *q, double *f)
 {
-    for (int i = 0; i < model->n_dof; ++i) f[i] -= model->gravity[i];
+    fu_add_times(model->threads, model->n_dof, -1.0, model->gravity, f);
     fu_coupling_external_forces(model, t, q, f);
 }

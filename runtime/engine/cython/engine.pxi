@@ -39,6 +39,7 @@ cdef extern from "engine.h" nogil:
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_OUTPUT, FU_WATCH_CALL, FU_ACTED
     int FU_INTEGER, FU_REAL, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_MODAL_POINT, FU_INTEGERS, FU_REALS
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
+    int FU_BAND_MORE(int width)
     long FU_BAND_BEYOND(int width)
     long FU_BAND_LENGTH(int n, int width)
     ctypedef struct fu_cable:
@@ -131,6 +132,12 @@ cdef extern from "engine.h" nogil:
         pass
     const char *fu_lapack_name(int k)
     void fu_lapack_attach(fu_lapack *lapack, int k, const void *function)
+    ctypedef struct fu_threads:
+        pass
+    int fu_has_threads()
+    long fu_threads_size(int n)
+    int fu_threads_start(fu_threads *threads, int n)
+    void fu_threads_end(fu_threads *threads)
     ctypedef struct fu_span:
         int first, end
     ctypedef struct fu_strip:
@@ -189,6 +196,8 @@ cdef extern from "engine.h" nogil:
         int *pivot_band
         int *pivot_border
         double *inverse
+        double *mirror
+        fu_threads *threads
     int FU_INVERSE_MOST
     long FU_INVERSE_ROWS(long n)
     ctypedef struct fu_model:
@@ -209,8 +218,12 @@ cdef extern from "engine.h" nogil:
         const double *zero
         double load_fraction
         const fu_lapack *lapack
-        int threads
-        double *parts
+        fu_threads *threads
+        double *thread_work
+        const int *is_shared
+        const int *shared_dofs
+        const int *shared_unknowns
+        int n_shared_dofs, n_shared_unknowns
     ctypedef struct fu_array:
         const char *name
         void *data
@@ -301,7 +314,6 @@ cdef extern from "engine.h" nogil:
         long (*n_scratch)(const fu_run *run) noexcept nogil
         long (*n_dissipation_state)(const fu_run *run) noexcept nogil
     const fu_integrator *fu_integrator_of(const char *name)
-    int fu_has_threads()
     void fu_linearise(fu_run *run, double h, const double *change)
     int fu_system_factor_band(fu_system *system, const fu_lapack *lapack)
     int fu_system_factor_border(fu_system *system, const fu_lapack *lapack)

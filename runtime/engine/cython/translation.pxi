@@ -41,6 +41,8 @@ cdef class Translation(Arrays):
             raise MemoryError
 
     def __dealloc__(self):
+        fu_threads_end(self.model.threads)
+        PyMem_Free(self.model.threads)
         for pointer in (<size_t>self.cables, <size_t>self.bodies, <size_t>self.shapes, <size_t>self.motions,
                         <size_t>self.signals, <size_t>self.knots, <size_t>self.couplings,
                         <size_t>self.coupling_memory, <size_t>self.watches):
@@ -60,7 +62,7 @@ cdef class Translation(Arrays):
         m.combination_start = self._ints(model.combinations.indptr)
         m.combination_unknown = self._ints(model.combinations.indices)
         m.combination_value = self._doubles(model.combinations.data)
-        m.threads, m.parts = 1, NULL
+        m.threads = NULL
         m.gravity, m.zero = self._doubles(model.gravity), self._doubles(np.zeros(model.n_dof))
         self._work_space(model)
 
@@ -306,7 +308,8 @@ cdef class Translation(Arrays):
         system.fronts, system.chains = fronts, self._ints(model.chains)
         middles = (model.chains[:-1] + model.chains[1:]) // 2
         system.half = self._ints(np.searchsorted(np.sort([*model.chains[:-1], *middles]), np.arange(n), "right") - 1)
-        system.D, system.L = self._zeros(elimination.size + 1.0), self._zeros((width + 1.0) * (n + FU_BAND_GROUP * chains))
+        system.D, system.mirror = self._zeros(elimination.size + 1.0), self._zeros(n)
+        system.L = self._zeros((width + 1.0) * (n + <double>FU_BAND_MORE(width) * chains))
         system.pivot_band, system.pivot_border = self._ints(np.zeros(n)), self._ints(np.zeros(m))
 
     cdef _state(self, fu_state *state, model):

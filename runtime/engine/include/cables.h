@@ -21,7 +21,6 @@ typedef struct {
     int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 
-int fu_has_threads(void);
 void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f);
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f);

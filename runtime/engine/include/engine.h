@@ -47,6 +47,7 @@
 #include "run.h"
 #include "slides.h"
 #include "state.h"
+#include "threads.h"
 #include "unknowns.h"
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "common.h"
 #include "fronts.h"
+#include "threads.h"
 
 /* The functions of LAPACK that the engine calls, with their arguments; linear/lapack.c. */
 #define FU_LAPACK_FUNCTIONS(LAPACK)                                                                                    \
@@ -39,6 +40,12 @@ void fu_lapack_attach(fu_lapack *lapack, int k, const void *function);
 
 /* small.c: the largest matrix that is factored there. */
 #define FU_SMALL_MOST 24
+
+/* Chains of so many unknowns and more are eliminated from both ends towards their middle (twisted.c), by two threads where
+ * there are: shorter ones take too little time to share. The columns of a factored chain beyond its unknowns: groups, and
+ * the middle's. */
+#define FU_TWISTED_FROM 1024
+#define FU_BAND_MORE(width) ((width) + 3 * FU_BAND_GROUP)
 
 /* LAPACK's band storage for a factorisation with pivots: rows of it, and the row of the diagonal. Above the 2 width + 1 rows of
  * the band there are width more, which pivots fill. */
@@ -79,7 +86,8 @@ typedef struct {
     const int *chains; /* n_chains + 1: the first row of each, and n */
     const int *half;   /* of each row of the band: 2 chain, and 1 more from the middle on */
     double *K;         /* LAPACK's band storage, FU_BAND_ROWS x n; of all systems of a run the same */
-    double *L;         /* (width + 1) x n, and a group more for each chain */
+    double *L;         /* (width + 1) x n, and FU_BAND_MORE for each chain */
+    double *mirror;    /* n: right sides from the ends of chains backwards */
     double *B;         /* strip by strip */
     double *C;         /* the border's rows, likewise */
     double *D;         /* as `fronts` stores it, and one number more, which stays zero */
@@ -92,9 +100,13 @@ typedef struct {
     int *pivot_band, *pivot_border;
     double *inverse;   /* null, or that of the band, FU_INVERSE_ROWS a column, where `inverted` */
     int inverted;
+    fu_threads *threads; /* null for one */
 } fu_system;
 
 int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A);
+void fu_band_scale(int n, int width, double *A);
+void fu_band_forward(int n, int width, const double *A, int first, double *x);
+void fu_band_backward(int n, int width, const double *A, double *x);
 void fu_band_solve(int n, int width, const double *A, int first, double *x);
 
 int fu_fronts_at(const fu_fronts *fronts, int row, int column);
@@ -108,7 +120,17 @@ void fu_inverse_times(int rows, const double *inverse, int first, int end, const
 int fu_small_factor(int n, double *A, int *pivot);
 void fu_small_solve(int n, const double *A, const int *pivot, double *x);
 
+int fu_is_twisted(const fu_system *system, int chain);
+int fu_twisted_factor(fu_system *system, const fu_lapack *lapack, int chain);
+void fu_twisted_solve(const fu_system *system, int chain, fu_span rows, double *x);
+
+void fu_set_times(fu_threads *threads, int n, double factor, const double *y, double *x);
+void fu_add_times(fu_threads *threads, int n, double factor, const double *y, double *x);
+void fu_set_difference(fu_threads *threads, int n, double factor, const double *y, const double *z, double *x);
+
 void fu_system_clear(fu_system *system);
+double *fu_factor_of(const fu_system *system, int chain);
+int fu_pack(const fu_system *system, fu_span rows, int backwards, double *L);
 void fu_system_clear_border(fu_system *system);
 fu_span fu_common(fu_span one, fu_span other);
 int fu_strip_of(const fu_system *system, int k, int chain);

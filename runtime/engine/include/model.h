@@ -33,8 +33,11 @@ struct fu_model {
     const double *zero;    /* n_dof zeros: a velocity at rest */
     double load_fraction;  /* of all loads but gravity that acts: 1, or less on a path of loads of statics */
     const fu_lapack *lapack;
-    int threads;   /* over elements */
-    double *parts; /* what a cable's elements give, with more than one: forces or tangents */
+    fu_threads *threads; /* null for one alone, for which the rest is not needed */
+    double *thread_work; /* n_coordinates^2 for each element of the longest cable: what threads leave to be added afterwards */
+    const int *is_shared;   /* of each dof: others are the same unknown, it is a combination, or its unknown is in the border */
+    const int *shared_dofs, *shared_unknowns; /* the numbers of these, and of their unknowns */
+    int n_shared_dofs, n_shared_unknowns;
 };
 
 #endif

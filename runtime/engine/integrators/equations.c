@@ -11,7 +11,7 @@ void fu_scale_residual(fu_run *run, double scale)
 {
     const fu_model *model = run->model;
     fu_gather(model, run->force, run->rhs);
-    for (int i = 0; i < model->n_band + model->n_border_dof; ++i) run->rhs[i] *= -scale;
+    fu_set_times(model->threads, model->n_band + model->n_border_dof, -scale, run->rhs, run->rhs);
 }
 
 /* Makes run->rhs, minus the scaled residual over the unknowns; run->force keeps the unscaled sum over the dofs. */

@@ -20,6 +20,7 @@
 
 #define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
 
+
 typedef struct {
     double alpha_m, alpha_f, beta, gamma;
 } parameters;
@@ -69,10 +70,20 @@ static double sigma(const parameters *g, double h)
     return g->beta * h * h * (1.0 - g->alpha_f) / (1.0 - g->alpha_m);
 }
 
-/* Makes q, v and q'' of `next` from its a. */
-static void kinematics(fu_run *run, double h)
+/* Kinematics that threads share. */
+typedef struct {
+    fu_run *run;
+    double h;
+} share;
+
+/* Makes psi, v and q'' of a part of the dofs, and q before it is moved. */
+static void kinematics_part(const void *what, int part, int parts)
 {
-    const fu_model *model = run->model;
+    const share *job = what;
+    fu_run *run = job->run;
+    const double h = job->h;
+    const fu_range range = fu_part_of(run->model->n_dof, FU_DOFS_APART, part, parts);
+    const int end = part + 1 < parts ? range.end : run->model->n_q; /* coordinates of cables are dofs, and come first */
     const parameters *g = scheme_of(run);
     const fu_state *now = &run->now;
     fu_state *next = &run->next;
@@ -82,12 +93,21 @@ static void kinematics(fu_run *run, double h)
     const double rate_now = h * (1.0 - g->gamma), rate_next = h * g->gamma;
     const double *v = now->v, *a = now->a, *before = now->acceleration, *change = next->a;
     double *restrict psi = run->psi, *restrict velocity = next->v, *restrict acceleration = next->acceleration;
-    for (int i = 0; i < model->n_dof; ++i) {
+    for (int i = range.first; i < range.end; ++i) {
         psi[i] = h * v[i] + by_now * a[i] + by_next * change[i];
         velocity[i] = v[i] + rate_now * a[i] + rate_next * change[i];
         acceleration[i] = slope * change[i] + slope_now * a[i] - share_before * before[i];
     }
-    memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
+    memcpy(next->q + range.first, now->q + range.first, sizeof(double) * (size_t)(end - range.first));
+}
+
+/* Makes q, v and q'' of `next` from its a. */
+static void kinematics(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    fu_state *next = &run->next;
+    const share job = {run, h};
+    fu_share(model->threads, model->n_dof, kinematics_part, &job);
     fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
 }
@@ -109,7 +129,7 @@ static void matrix(fu_run *run, double h)
 static double apply(fu_run *run, double h)
 {
     const double per_psi = 1.0 / (scheme_of(run)->beta * h * h), size = fu_spread_size(run);
-    for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] += per_psi * run->work[i];
+    fu_add_times(run->model->threads, run->model->n_dof, per_psi, run->work, run->next.a);
     fu_add_solution(run, 1.0, sigma(scheme_of(run), h));
     fu_choose_pieces(run);
     return size;
@@ -159,8 +179,7 @@ static double error(fu_run *run, double h)
     const parameters *g = scheme_of(run);
     const double smooth = fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
     const double factor = h * h * (fu_count_changes(run) ? JUMP : smooth);
-    for (int i = 0; i < run->model->n_dof; ++i)
-        run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
+    fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration, run->work);
     return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run);
 }
 

@@ -6,28 +6,32 @@
  * number of groups: the columns of a group are eliminated at once. */
 #include "engine.h"
 
+/* Makes Cholesky's columns those of L D L': L below the diagonal, 1/D on it. */
+void fu_band_scale(int n, int width, double *A)
+{
+    for (int j = 0; j < n; ++j) {
+        double *column = A + (long)j * (width + 1);
+        const double scale = 1.0 / column[0];
+        for (int i = 1; i <= width; ++i) column[i] *= scale;
+        column[0] = scale * scale;
+    }
+}
+
 /* Factors A = L D L': L below the diagonal, 1/D on it; returns not zero where A is not positive definite. */
 int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A)
 {
     int stride = width + 1, info = 0;
     if (n) lapack->dpbtrf("L", &n, &width, A, &stride, &info);
-    for (int j = 0; j < n && !info; ++j) {
-        double *column = A + (long)j * stride;
-        const double scale = 1.0 / column[0];
-        for (int i = 1; i <= width; ++i) column[i] *= scale;
-        column[0] = scale * scale;
-    }
+    if (!info) fu_band_scale(n, width, A);
     for (int j = n; j % FU_BAND_GROUP; ++j) A[(long)j * stride] = 1.0;
     return info;
 }
 
-/* Makes x = A^-1 x, where x is zero before `first`. Entries of x beyond n are read and left as they are: there must be
- * FU_BAND_BEYOND(width) of them, all finite. */
-void fu_band_solve(int n, int width, const double *A, int first, double *x)
+/* Makes x = L^-1 x, where x is zero before `first`: the groups of columns that begin before n. */
+void fu_band_forward(int n, int width, const double *A, int first, double *x)
 {
     const int stride = width + 1;
-    int j = first - first % FU_BAND_GROUP;
-    for (; j < n; j += FU_BAND_GROUP) {
+    for (int j = first - first % FU_BAND_GROUP; j < n; j += FU_BAND_GROUP) {
         /* columns j ... j + 3 from row j on: entry k is that of row j + k */
         const double *a = A + (long)j * stride, *b = a + width, *c = b + width, *d = c + width;
         double *restrict y = x + j;
@@ -41,7 +45,13 @@ void fu_band_solve(int n, int width, const double *A, int first, double *x)
         y[2] = x2;
         y[3] = x3;
     }
-    for (j -= FU_BAND_GROUP; j >= 0; j -= FU_BAND_GROUP) {
+}
+
+/* Makes x = L'^-1 D^-1 x: of the same groups. */
+void fu_band_backward(int n, int width, const double *A, double *x)
+{
+    const int stride = width + 1;
+    for (int j = (n - 1) / FU_BAND_GROUP * FU_BAND_GROUP; j >= 0; j -= FU_BAND_GROUP) {
         const double *a = A + (long)j * stride, *b = a + width, *c = b + width, *d = c + width;
         double *y = x + j, x0 = y[0] * a[0], x1 = y[1] * b[1], x2 = y[2] * c[2], x3 = y[3] * d[3];
         x1 -= b[stride] * y[stride];
@@ -60,4 +70,12 @@ void fu_band_solve(int n, int width, const double *A, int first, double *x)
         y[2] = x2;
         y[3] = x3;
     }
+}
+
+/* Makes x = A^-1 x, where x is zero before `first`. Entries of x beyond n are read and left as they are: there must be
+ * FU_BAND_BEYOND(width) of them, all finite. */
+void fu_band_solve(int n, int width, const double *A, int first, double *x)
+{
+    fu_band_forward(n, width, A, first, x);
+    if (n) fu_band_backward(n, width, A, x);
 }

@@ -37,25 +37,27 @@ static int size_of(const fu_system *s, int chain)
 }
 
 /* Returns a chain's columns of L. */
-static double *factor_of(const fu_system *s, int chain)
+double *fu_factor_of(const fu_system *s, int chain)
 {
-    return s->L + (s->width + 1) * ((long)s->chains[chain] + FU_BAND_GROUP * chain);
+    return s->L + (s->width + 1) * ((long)s->chains[chain] + FU_BAND_MORE(s->width) * (long)chain);
 }
 
-/* Makes the lower half of a chain's K as band.c wants it; returns zero where K is not symmetric or its diagonal not positive. */
-static int pack(fu_system *s, int chain)
+/* Makes, of K between these rows, the lower half in L as band.c wants it, backwards with the last row first; returns zero where
+ * K is not symmetric or its diagonal not positive. */
+int fu_pack(const fu_system *s, fu_span of, int backwards, double *L)
 {
-    const int n = size_of(s, chain), width = s->width, rows = FU_BAND_ROWS(width), stride = width + 1;
+    const int n = of.end - of.first, width = s->width, rows = FU_BAND_ROWS(width), stride = width + 1;
     for (int j = 0; j < n; ++j) {
-        const double *below = s->K + (long)(s->chains[chain] + j) * rows + FU_BAND_DIAGONAL(width), diagonal = below[0];
-        const int most = n - 1 - j < width ? n - 1 - j : width;
-        double *column = factor_of(s, chain) + (long)j * stride;
+        const int row = backwards ? of.end - 1 - j : of.first + j;
+        const double *at = s->K + (long)row * rows + FU_BAND_DIAGONAL(width), diagonal = at[0];
+        const int most = n - 1 - j < width ? n - 1 - j : width, next = backwards ? -1 : 1;
+        double *column = L + (long)j * stride;
         column[0] = diagonal;
         for (int i = 1; i <= most; ++i) {
-            const double *beside = below + (long)i * (rows - 1); /* row j of column j + i */
-            const double gap = below[i] - *beside;
-            if (!(gap * gap <= SYMMETRIC * SYMMETRIC * diagonal * beside[i])) return 0;
-            column[i] = below[i];
+            const double *other = at + (long)next * i * rows; /* the diagonal of the column i further on */
+            const double below = backwards ? other[i] : at[i], above = backwards ? at[-i] : other[-i], gap = below - above;
+            if (!(gap * gap <= SYMMETRIC * SYMMETRIC * diagonal * other[0])) return 0;
+            column[i] = below;
         }
         for (int i = most + 1; i < stride; ++i) column[i] = 0.0;
     }
@@ -67,7 +69,9 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
     int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     s->definite = 1;
     for (int c = 0; c < s->n_chains && s->definite; ++c)
-        s->definite = pack(s, c) && !fu_band_factor(lapack, size_of(s, c), width, factor_of(s, c));
+        s->definite = fu_is_twisted(s, c) ? !fu_twisted_factor(s, lapack, c)
+                                          : fu_pack(s, (fu_span){s->chains[c], s->chains[c + 1]}, 0, fu_factor_of(s, c)) &&
+                                                !fu_band_factor(lapack, size_of(s, c), width, fu_factor_of(s, c));
     for (int c = 0; c < s->n_chains && !s->definite; ++c) {
         int n = size_of(s, c), first = s->chains[c];
         lapack->dgbtrf(&n, &n, &width, &width, s->K + (long)first * rows, &rows, s->pivot_band + first, &info);
@@ -83,30 +87,30 @@ void fu_system_invert_band(fu_system *s)
     double *inverse = s->inverse;
     for (int c = 0; c < s->n_chains && s->inverted; ++c) {
         const int n = size_of(s, c);
-        fu_inverse_make(n, s->width, factor_of(s, c), inverse);
+        fu_inverse_make(n, s->width, fu_factor_of(s, c), inverse);
         inverse += (long)n * FU_INVERSE_ROWS(n);
     }
 }
 
-/* Makes x = K^-1 x in a chain by the inverse of the band, where x is zero before the row `first` */
-static void multiply_chain(const fu_system *s, int chain, int first, double *x)
+/* Makes x = K^-1 x in a chain by the inverse of the band, where x is zero but in these rows of it. */
+static void multiply_chain(const fu_system *s, int chain, fu_span of, double *x)
 {
     const int n = size_of(s, chain);
     const double *inverse = s->inverse;
     double solution[FU_INVERSE_ROWS(FU_INVERSE_MOST)];
-    int end = n;
     for (int c = 0; c < chain; ++c) inverse += (long)size_of(s, c) * FU_INVERSE_ROWS(size_of(s, c));
-    while (end > first && x[end - 1] == 0.0) --end;
-    fu_inverse_times(FU_INVERSE_ROWS(n), inverse, first, end, x, solution);
+    while (of.end > of.first && x[of.end - 1] == 0.0) --of.end;
+    fu_inverse_times(FU_INVERSE_ROWS(n), inverse, of.first, of.end, x, solution);
     for (int i = 0; i < n; ++i) x[i] = solution[i];
 }
 
-/* Makes x = K^-1 x in a chain, where x is zero before the row `first` */
-static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, int first, double *x)
+/* Makes x = K^-1 x in a chain, where x is zero but in these rows. */
+static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, fu_span of, double *x)
 {
     int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
-    if (s->inverted) multiply_chain(s, chain, first - start, x + start);
-    else if (s->definite) fu_band_solve(n, width, factor_of(s, chain), first - start, x + start);
+    if (s->inverted) multiply_chain(s, chain, (fu_span){of.first - start, of.end - start}, x + start);
+    else if (s->definite && fu_is_twisted(s, chain)) fu_twisted_solve(s, chain, of, x);
+    else if (s->definite) fu_band_solve(n, width, fu_factor_of(s, chain), of.first - start, x + start);
     else
         lapack->dgbtrs("N", &n, &width, &width, &one, s->K + (long)start * rows, &rows, s->pivot_band + start,
                        x + start, &n, &info);
@@ -159,7 +163,7 @@ static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_pie
     for (int i = begin; i < end + FU_BAND_BEYOND(s->width); ++i) x[i] = 0.0;
     for (int half = 0; half < FU_HALVES; ++half)
         for (int i = of[half].first; i < of[half].end; ++i) x[i] = B[i];
-    solve_chain(s, lapack, chain, of[of[0].end == 0].first, x);
+    solve_chain(s, lapack, chain, (fu_span){of[of[0].end == 0].first, of[of[1].end != 0].end}, x);
     return fu_pieces(s, strip, x, pieces);
 }
 
@@ -231,7 +235,7 @@ void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
     int m = s->m, one = 1, info;
     double *y = x + s->n;
     for (int i = m; i < m + FU_BAND_BEYOND(s->width); ++i) y[i] = 0.0;
-    for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, s->chains[c], x);
+    for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, (fu_span){s->chains[c], s->chains[c + 1]}, x);
     if (!m) return;
     for (int c = 0; c < s->n_chains; ++c) {
         const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[c];

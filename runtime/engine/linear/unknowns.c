@@ -20,24 +20,56 @@ static row row_of(const fu_model *model, const int *unknown)
     return (row){start[1] - start[0], model->combination_unknown + start[0], model->combination_value + start[0]};
 }
 
-/* Makes x = T' force, over the band and the border's dofs. */
-void fu_gather(const fu_model *model, const double *force, double *x)
+/* Numbers of dofs, or of unknowns, made from others by threads. */
+typedef struct {
+    const fu_model *model;
+    const double *from;
+    double *to;
+} transfer;
+
+/* Adds a dof's part of T' from. */
+static void gather(const transfer *job, int dof)
 {
-    for (int i = 0; i < model->n_band + model->n_border_dof; ++i) x[i] = 0.0;
-    for (int i = 0; i < model->n_dof; ++i) {
-        const int unknown = model->unknown_of_dof[i];
-        if (unknown >= 0) x[unknown] += force[i];
-        else if (unknown <= FU_COMBINED) {
-            const row r = row_of(model, &unknown);
-            for (int k = 0; k < r.n; ++k) x[r.unknown[k]] += r.value[k] * force[i];
-        }
+    const int unknown = job->model->unknown_of_dof[dof];
+    if (unknown >= 0) job->to[unknown] += job->from[dof];
+    else if (unknown <= FU_COMBINED) {
+        const row r = row_of(job->model, &unknown);
+        for (int k = 0; k < r.n; ++k) job->to[r.unknown[k]] += r.value[k] * job->from[dof];
     }
 }
 
-/* Makes dofs = T x. */
-void fu_spread(const fu_model *model, const double *x, double *dofs)
+/* Makes the unknowns of a part of the dofs, but those of several dofs. */
+static void gather_part(const void *what, int part, int parts)
 {
-    for (int i = 0; i < model->n_dof; ++i) {
+    const transfer *job = what;
+    const int *unknown = job->model->unknown_of_dof, *is_shared = job->model->is_shared;
+    const fu_range range = fu_part_of(job->model->n_dof, FU_DOFS_APART, part, parts);
+    for (int i = range.first; i < range.end; ++i)
+        if (unknown[i] >= 0 && !is_shared[i]) job->to[unknown[i]] = 0.0 + job->from[i];
+}
+
+/* Makes x = T' force, over the band and the border's dofs. */
+void fu_gather(const fu_model *model, const double *force, double *x)
+{
+    const transfer job = {model, force, x};
+    if (!model->threads) {
+        for (int i = 0; i < model->n_band + model->n_border_dof; ++i) x[i] = 0.0;
+        for (int i = 0; i < model->n_dof; ++i) gather(&job, i);
+        return;
+    }
+    for (int k = 0; k < model->n_shared_unknowns; ++k) x[model->shared_unknowns[k]] = 0.0;
+    fu_share(model->threads, model->n_dof, gather_part, &job);
+    for (int k = 0; k < model->n_shared_dofs; ++k) gather(&job, model->shared_dofs[k]);
+}
+
+static void spread_part(const void *what, int part, int parts)
+{
+    const transfer *job = what;
+    const fu_model *model = job->model;
+    const double *x = job->from;
+    double *dofs = job->to;
+    const fu_range range = fu_part_of(model->n_dof, FU_DOFS_APART, part, parts);
+    for (int i = range.first; i < range.end; ++i) {
         const int unknown = model->unknown_of_dof[i];
         dofs[i] = unknown >= 0 ? x[unknown] : 0.0;
         if (unknown <= FU_COMBINED) {
@@ -45,6 +77,13 @@ void fu_spread(const fu_model *model, const double *x, double *dofs)
             for (int k = 0; k < r.n; ++k) dofs[i] += r.value[k] * x[r.unknown[k]];
         }
     }
+}
+
+/* Makes dofs = T x. */
+void fu_spread(const fu_model *model, const double *x, double *dofs)
+{
+    const transfer job = {model, x, dofs};
+    fu_share(model->threads, model->n_dof, spread_part, &job);
 }
 
 /* Returns the number under which `fu_add` knows the k-th unknown beyond the dofs. */
@@ -131,23 +170,44 @@ void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, in
     }
 }
 
-/* Returns the largest of what the dofs, times their weights, move points by, as a length, m; not a number where one is none. */
-double fu_weighted_size(const fu_model *model, const double *weight, const double *dofs)
+/* The size of dofs: the largest of n, times their weights, of each part that threads have. */
+typedef struct {
+    int n;
+    const double *weight, *dofs;
+    double *largest;
+} measure;
+
+/* Makes the size of a part of the dofs. */
+static void size_part(const void *what, int part, int parts)
 {
+    const measure *job = what;
+    const double *weight = job->weight, *dofs = job->dofs;
+    const fu_range range = fu_part_of(job->n, FU_DOFS_APART, part, parts);
     double largest[MAXIMA] = {0.0}, check = 0.0; /* a maximum does not see a NaN */
-    int i = 0;
-    for (; i + MAXIMA <= model->n_dof; i += MAXIMA)
+    int i = range.first;
+    for (; i + MAXIMA <= range.end; i += MAXIMA)
         for (int k = 0; k < MAXIMA; ++k) {
             const double size = fabs(dofs[i + k]) * weight[i + k];
             largest[k] = size > largest[k] ? size : largest[k];
             check += 0.0 * size;
         }
-    for (; i < model->n_dof; ++i) {
+    for (; i < range.end; ++i) {
         const double size = fabs(dofs[i]) * weight[i];
         largest[0] = size > largest[0] ? size : largest[0];
         check += 0.0 * size;
     }
-    return check + fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
+    job->largest[part] = check + fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
+}
+
+/* Returns the largest of what the dofs, times their weights, move points by, as a length, m; not a number where one is none. */
+double fu_weighted_size(const fu_model *model, const double *weight, const double *dofs)
+{
+    double alone;
+    const measure job = {model->n_dof, weight, dofs, model->threads ? model->thread_work : &alone};
+    const int parts = fu_share(model->threads, model->n_dof, size_part, &job);
+    double size = job.largest[0];
+    for (int part = 1; part < parts; ++part) size = job.largest[part] > size || isnan(job.largest[part]) ? job.largest[part] : size;
+    return size;
 }
 
 /* Returns the largest of what the dofs move points by, as a length, m; not a number where one is none. */

@@ -1,0 +1,38 @@
+/* Threads that share the work of a run: run/threads.c. */
+#ifndef FUNICULAR_THREADS_H
+#define FUNICULAR_THREADS_H
+
+#define FU_DOFS_APART 64 /* dofs, or unknowns, that one thread takes at least: not those of one line of the cache */
+
+typedef struct fu_threads fu_threads;
+
+/* Does one of so many parts of a work. Together they must write the same numbers, whatever the number of parts. */
+typedef void (*fu_work)(const void *what, int part, int parts);
+
+/* What lies in [first, end). */
+typedef struct {
+    int first, end;
+} fu_range;
+
+int fu_has_threads(void);
+long fu_threads_size(int n);
+int fu_threads_start(fu_threads *threads, int n);
+void fu_threads_end(fu_threads *threads);
+int fu_share_among(fu_threads *threads, int dofs, fu_work work, const void *what);
+fu_range fu_one_of_parts(int n, int unit, int part, int parts);
+
+/* Has a work on so many dofs done, by all threads where that is worth while; returns the number of its parts. */
+static inline int fu_share(fu_threads *threads, int dofs, fu_work work, const void *what)
+{
+    if (threads) return fu_share_among(threads, dofs, work, what);
+    work(what, 0, 1);
+    return 1;
+}
+
+/* Returns the part of n things, in whole units but for the last. */
+static inline fu_range fu_part_of(int n, int unit, int part, int parts)
+{
+    return parts == 1 ? (fu_range){0, n} : fu_one_of_parts(n, unit, part, parts);
+}
+
+#endif

@@ -1,0 +1,147 @@
+/* Long chains: eliminated from both ends towards their middle, which is a twisted factorisation (van der Vorst 1987, "Analysis
+ * of a parallel solution method for tridiagonal linear systems"; for bands Lang 1992). There is no fill beyond the middle,
+ * operations are as many as from one end, and both halves are independent of each other: in the factorisation, and in
+ * either half of a substitution. The order is the same for any number of threads, and so are the bits.
+ *
+ * A chain of n unknowns has n = count + middle + count. Each half is a banded matrix of count + middle columns, the second
+ * one backwards, from the chain's end on. Cholesky's factors of both, L1 and L2, have in their last columns what is left of
+ * the middle block A once one half is eliminated: A - U1 = L1 L1' and A - U2 = L2 L2'. Without both halves that is
+ * A - U1 - U2 = L1 L1' + L2 L2' - A. */
+#include "engine.h"
+
+/* A chain in halves. L: columns of either half, those of the first one with the middle's. */
+typedef struct {
+    int start, n, count, middle;
+    double *L[2];
+} chain_in_halves;
+
+/* What a thread does a half of. */
+typedef struct {
+    const fu_system *system;
+    const fu_lapack *lapack;
+    chain_in_halves chain;
+    fu_span rows; /* of x that are not zero */
+    double *x;
+} job;
+
+int fu_is_twisted(const fu_system *s, int chain)
+{
+    const int n = s->chains[chain + 1] - s->chains[chain];
+    return n >= FU_TWISTED_FROM && n >= 4 * (s->width + FU_BAND_GROUP);
+}
+
+static chain_in_halves in_halves(const fu_system *s, int chain)
+{
+    const int start = s->chains[chain], n = s->chains[chain + 1] - start;
+    const int count = (n - s->width) / 2 / FU_BAND_GROUP * FU_BAND_GROUP, middle = n - 2 * count;
+    double *L = fu_factor_of(s, chain);
+    return (chain_in_halves){start, n, count, middle, {L, L + (long)(count + middle + FU_BAND_GROUP) * (s->width + 1)}};
+}
+
+/* Makes A = L L' in place of L, a banded Cholesky factor. */
+static void multiply(int n, int width, double *L)
+{
+    const int stride = width + 1;
+    for (int j = n - 1; j >= 0; --j)
+        for (int i = n - 1 - j < width ? n - 1 : j + width; i >= j; --i) {
+            double sum = 0.0;
+            for (int k = i > width ? i - width : 0; k <= j; ++k)
+                sum += L[(long)k * stride + i - k] * L[(long)k * stride + j - k];
+            L[(long)j * stride + i - j] = sum;
+        }
+}
+
+/* Eliminates half a chain; what is left of the middle is in the last columns. The half's entry of pivot_band, which only
+ * factorisations with pivots have use for, becomes not zero where the half is not symmetric or not positive definite. */
+static void eliminate(const job *job, int half)
+{
+    const fu_system *s = job->system;
+    const chain_in_halves *c = &job->chain;
+    int columns = c->count + c->middle, width = s->width, stride = width + 1, info = 1;
+    double *L = c->L[half];
+    const fu_span rows = half ? (fu_span){c->start + c->count, c->start + c->n} : (fu_span){c->start, c->start + columns};
+    if (fu_pack(s, rows, half, L)) job->lapack->dpbtrf("L", &columns, &width, L, &stride, &info);
+    if (!info) {
+        multiply(c->middle, width, L + (long)c->count * stride);
+        fu_band_scale(c->count, width, L);
+    }
+    s->pivot_band[c->start + half] = info;
+}
+
+static void eliminate_part(const void *what, int part, int parts)
+{
+    for (int half = part; half < 2; half += parts) eliminate(what, half);
+}
+
+/* Factors a chain of K; returns not zero where it is not symmetric or not positive definite. */
+int fu_twisted_factor(fu_system *s, const fu_lapack *lapack, int chain)
+{
+    const job job = {s, lapack, in_halves(s, chain), {0, 0}, 0};
+    const chain_in_halves *c = &job.chain;
+    const int width = s->width, stride = width + 1, last = c->middle - 1;
+    fu_share(s->threads, c->n, eliminate_part, &job);
+    if (s->pivot_band[c->start] || s->pivot_band[c->start + 1]) return 1;
+    double *first = c->L[0] + (long)c->count * stride;
+    const double *second = c->L[1] + (long)c->count * stride;
+    for (int j = 0; j <= last; ++j) {
+        const double *below = s->K + (long)(c->start + c->count + j) * FU_BAND_ROWS(width) + FU_BAND_DIAGONAL(width);
+        for (int i = j; i <= last && i <= j + width; ++i)
+            first[(long)j * stride + i - j] += second[(long)(last - i) * stride + i - j] - below[i - j];
+    }
+    return fu_band_factor(lapack, c->middle, width, first);
+}
+
+/* Makes x = L^-1 x in half a chain; of the second one in the mirror, with what that changes in the middle. */
+static void forward(const job *job, int half)
+{
+    const fu_system *s = job->system;
+    const chain_in_halves *c = &job->chain;
+    const int end = c->start + c->n;
+    double *x = job->x + c->start;
+    if (half == 0) {
+        fu_band_forward(c->count, s->width, c->L[0], job->rows.first > c->start ? job->rows.first - c->start : 0, x);
+        return;
+    }
+    double *mirror = s->mirror + c->start;
+    for (int i = 0; i < c->count; ++i) mirror[i] = x[c->n - 1 - i];
+    for (int i = c->count; i < c->count + c->middle; ++i) mirror[i] = 0.0;
+    fu_band_forward(c->count, s->width, c->L[1], job->rows.end < end ? end - job->rows.end : 0, mirror);
+}
+
+/* Makes x = L'^-1 D^-1 x in half a chain, where the middle is solved. */
+static void backward(const job *job, int half)
+{
+    const fu_system *s = job->system;
+    const chain_in_halves *c = &job->chain;
+    double *x = job->x + c->start;
+    if (half == 0) {
+        fu_band_backward(c->count, s->width, c->L[0], x);
+        return;
+    }
+    double *mirror = s->mirror + c->start;
+    for (int i = c->count; i < c->count + c->middle; ++i) mirror[i] = x[c->n - 1 - i];
+    fu_band_backward(c->count, s->width, c->L[1], mirror);
+    for (int i = 0; i < c->count; ++i) x[c->n - 1 - i] = mirror[i];
+}
+
+static void forward_part(const void *what, int part, int parts)
+{
+    for (int half = part; half < 2; half += parts) forward(what, half);
+}
+
+static void backward_part(const void *what, int part, int parts)
+{
+    for (int half = part; half < 2; half += parts) backward(what, half);
+}
+
+/* Makes x = K^-1 x in a chain, where x is zero but in these rows. */
+void fu_twisted_solve(const fu_system *s, int chain, fu_span rows, double *x)
+{
+    const job job = {s, 0, in_halves(s, chain), rows, x};
+    const chain_in_halves *c = &job.chain;
+    double *middle = x + c->start + c->count;
+    fu_share(s->threads, c->n, forward_part, &job);
+    for (int i = 0; i < c->middle; ++i) middle[i] += s->mirror[c->start + c->count + c->middle - 1 - i];
+    fu_band_solve(c->middle, s->width, c->L[0] + (long)c->count * (s->width + 1), 0, middle);
+    fu_share(s->threads, c->n, backward_part, &job);
+}

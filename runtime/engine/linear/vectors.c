@@ -1,0 +1,46 @@
+/* Sums of vectors that threads share. These are small against what is made of the vectors, but done by one thread they would
+ * take half of each vector from the cache of the other. */
+#include "engine.h"
+
+/* x = factor (y - z), or y alone where z is null; `adds`: to what x is. */
+typedef struct {
+    int n, adds;
+    double factor;
+    const double *y, *z;
+    double *x;
+} sum;
+
+static void sum_part(const void *what, int part, int parts)
+{
+    const sum *job = what;
+    const fu_range of = fu_part_of(job->n, FU_DOFS_APART, part, parts);
+    const double factor = job->factor, *y = job->y, *z = job->z;
+    double *x = job->x;
+    if (job->adds)
+        for (int i = of.first; i < of.end; ++i) x[i] += factor * y[i];
+    else if (z)
+        for (int i = of.first; i < of.end; ++i) x[i] = factor * (y[i] - z[i]);
+    else
+        for (int i = of.first; i < of.end; ++i) x[i] = factor * y[i];
+}
+
+/* Makes x = factor y. */
+void fu_set_times(fu_threads *threads, int n, double factor, const double *y, double *x)
+{
+    const sum job = {n, 0, factor, y, 0, x};
+    fu_share(threads, n, sum_part, &job);
+}
+
+/* Adds factor y to x. */
+void fu_add_times(fu_threads *threads, int n, double factor, const double *y, double *x)
+{
+    const sum job = {n, 1, factor, y, 0, x};
+    fu_share(threads, n, sum_part, &job);
+}
+
+/* Makes x = factor (y - z). */
+void fu_set_difference(fu_threads *threads, int n, double factor, const double *y, const double *z, double *x)
+{
+    const sum job = {n, 0, factor, y, z, x};
+    fu_share(threads, n, sum_part, &job);
+}
