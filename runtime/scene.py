@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any, Never, Self, TypeVar
 
 from .errors import (
     ConvergenceError,
     EndOfCableError,
+    FunicularError,
     FunicularWarning,
     ResultFileError,
     SceneError,
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     # a tenth of it. So they are imported by the methods that need them, here and below.
     from numpy.typing import ArrayLike
 
+    from .choice.choice import Choice
     from .parts.body_shape import Shape
     from .results.equilibrium import Equilibrium
     from .results.modes import Modes
@@ -150,6 +152,7 @@ class Scene(Viewable, SceneMethods):
         output_step: float | None = None,
         integrator: str | None = None,
         spectral_radius: float | None = None,
+        model: str | None = None,
         initial: str | Equilibrium | Mapping[str, ArrayLike] | None = None,
         threads: int | None = None,
         save: str | os.PathLike | None = None,
@@ -159,7 +162,10 @@ class Scene(Viewable, SceneMethods):
     ) -> Run:
         """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
 
-        Settings not given here are the scene file's, if it gave them. initial: "drawn", "equilibrium" (found first),
+        Settings not given here are the scene file's, if it gave them. model: "auto" chooses what of the cables was not
+        given, elements, laws and meshes, and the integrator, so that the error of all stays below tol, see `choose`;
+        cables without elements are always chosen so. ``run.report["choice"]`` says what was chosen and why,
+        ``run.scene`` is the chosen scene. initial: "drawn", "equilibrium" (found first),
         a state that `equilibrium` returned, at the velocities drawn, a state ``run.at(time)`` of another run, or arrays
         by the names of results such as ``{"wire.nodal_vectors": ...}``, see `InitialState`. save: a netCDF file,
         written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
@@ -176,17 +182,22 @@ class Scene(Viewable, SceneMethods):
         _refuse_unknown("run", unknown, (*RunSettings.keywords(), "resume", "progress"))
         state = None if initial is None or isinstance(initial, str) else _state(self, initial)
         given = {"duration": duration, "tol": tol, "step": step, "output_step": output_step, "integrator": integrator,
-                 "spectral_radius": spectral_radius, "threads": threads, "save": save,
+                 "spectral_radius": spectral_radius, "threads": threads, "save": save, "model": model,
                  "initial": initial if state is None else "state" if isinstance(initial, Mapping) else "equilibrium"}
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
         if settings.initial == "state" and state is None:
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
-        self._check_for(settings)
+        chosen = None
+        if settings.model == "auto" or any(cable.is_open for cable in self.cables.values()):
+            chosen = self._choose(settings, (), "unset")
+            settings = chosen.settings_of(settings)
+        scene = self if chosen is None else chosen.scene
+        scene._check_for(settings)
         if not isinstance(resume, bool):
             raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
         if resume and settings.save is None:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
-        run = self._simulated(settings, state, resume, progress)
+        run = scene._simulated(settings, state, resume, progress, chosen)
         match run.status:
             case "end_of_cable":
                 raise EndOfCableError(run.report["message"], run)
@@ -196,8 +207,41 @@ class Scene(Viewable, SceneMethods):
                 warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
         return run
 
+    def choose(self, tol: float | None = None, *, duration: float | None = None, quantities: Sequence[str] = (),
+               free: str = "unset", initial: str | None = None, integrator: str | None = None) -> Choice[Self]:
+        """Choose element, law and mesh of each cable, and the integrator, so that a run errs by less than ``tol``.
+
+        tol: of the error of model and mesh, against the finest model at hand, with that of time, over the largest
+        change; 1e-3 if neither this nor the scene's file gives one. quantities: names of results that count, such as
+        "A.position" or "trolley.force"; the motion of all cables and bodies if none is named. free: "unset" chooses
+        what was not given: the number of elements of cables without ``elements``, element and law of those without
+        ``element``; "all" chooses all. duration in s, initial and integrator are those of the run, by default the scene
+        file's.
+
+        It is decided by short runs on coarse meshes and by what they indicate. The choice has the chosen ``scene``,
+        ``reasons`` and ``table``, the alternatives with their estimated errors and costs; print it. Raises SceneError.
+        """
+        given = {"tol": tol, "duration": duration, "initial": initial, "integrator": integrator}
+        settings = RunSettings(**{"tol": 1e-3} | self.run_settings | {k: v for k, v in given.items() if v is not None})
+        return self._choose(settings, quantities, free)
+
+    def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str) -> Choice[Self]:
+        """Return the choice for a run with these settings."""
+        from .choice.choosing import choose  # runs, which bring SciPy
+
+        def simulate(scene: Self, settings: RunSettings) -> Run:
+            scene._check_for(settings)
+            run = scene._simulated(settings, None, False, False)
+            if run.status in ("end_of_cable", "no_convergence"):
+                raise FunicularError(run.report["message"])
+            if run.status == "interrupted":
+                raise KeyboardInterrupt
+            return run
+
+        return choose(self, settings, quantities, free, simulate)
+
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
-                   progress: bool | Callable[[float], None] | None) -> Run:
+                   progress: bool | Callable[[float], None] | None, chosen: Choice | None = None) -> Run:
         """Return the run with these settings, however it ended, from a state or as the settings say."""
         from .results.streaming import Stream  # brings SciPy and the engine
 
@@ -212,6 +256,9 @@ class Scene(Viewable, SceneMethods):
             with progress_bar(settings.duration, progress) as on_progress:
                 simulation = simulate(self, settings, on_progress, initial=state, stream=stream)
             recording = recorded(simulation, self, settings)
+            if chosen is not None:
+                recording.report["choice"] = chosen.facts()
+                recording.report["messages"] = [*chosen.messages(), *recording.report["messages"]]
             return (stream.finish(recording) if stream
                     else Run.from_recording(recording, self, settings, self.from_toml))
 
