@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Never, Self, TypeVar
 from .errors import (
     ConvergenceError,
     EndOfCableError,
-    FunicularError,
     FunicularWarning,
     ResultFileError,
     SceneError,
@@ -198,13 +197,9 @@ class Scene(Viewable, SceneMethods):
         if resume and settings.save is None:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
         run = scene._simulated(settings, state, resume, progress, chosen)
-        match run.status:
-            case "end_of_cable":
-                raise EndOfCableError(run.report["message"], run)
-            case "no_convergence":
-                raise ConvergenceError(run.report["message"], run)
-            case "interrupted":
-                warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
+        _raise_where_stopped(run)
+        if run.status == "interrupted":
+            warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
         return run
 
     def choose(self, tol: float | None = None, *, duration: float | None = None, quantities: Sequence[str] = (),
@@ -232,8 +227,7 @@ class Scene(Viewable, SceneMethods):
         def simulate(scene: Self, settings: RunSettings) -> Run:
             scene._check_for(settings)
             run = scene._simulated(settings, None, False, False)
-            if run.status in ("end_of_cable", "no_convergence"):
-                raise FunicularError(run.report["message"])
+            _raise_where_stopped(run)
             if run.status == "interrupted":
                 raise KeyboardInterrupt
             return run
@@ -360,6 +354,14 @@ def _refuse_unknown(method: str, unknown: Iterable[str], known: Collection[str])
         meant = SYNONYMS.get(name)
         raise SceneError(method, f'"{name}" is not known here',
                          f'did you mean "{meant}"?' if meant in known else near(name, known))
+
+
+def _raise_where_stopped(run: Run) -> None:
+    """Raise EndOfCableError or ConvergenceError where the run ended so."""
+    if run.status == "end_of_cable":
+        raise EndOfCableError(run.report["message"], run)
+    if run.status == "no_convergence":
+        raise ConvergenceError(run.report["message"], run)
 
 
 def _state(scene: Scene, given: Equilibrium | Mapping[str, ArrayLike]) -> Start:

@@ -33,8 +33,11 @@ from .motion import motion, size
 from .probes import Probe, Prober, S, Simulate
 from .remaking import remade
 
-MODEL_SHARE, TIME_SHARE = 0.4, 0.5
+MODEL_SHARE, TIME_SHARE = 0.6, 0.5
 """Of the tolerance, at most, for what the elements leave out and for the integrator; the mesh gets what they leave."""
+
+LEAST = 0.2
+"""Of the tolerance, for the mesh at least."""
 
 ASSUMED = 0.2
 """Of the tolerance: the error in time of the automatic choice, which is seldom more (tests/benchmarks/README.md)."""
@@ -187,7 +190,8 @@ class Chooser(Generic[S]):
             errors[name] = SHEAR_SAFETY * softer * moved
             self.reasons.append(f"{each.cable.where}: shear and rotary inertia soften its bending by {softer:.1e}, "
                                 f"which changes the result by about {errors[name]:.1e}")
-        while errors and sum(errors[name] for name in errors if not self.kinds[name].is_beam) > MODEL_SHARE * self.tol:
+        most = min(MODEL_SHARE * self.tol, (1 - LEAST) * self.tol - self.time_error)
+        while sum(errors[name] for name in errors if not self.kinds[name].is_beam) > most:
             worst = max((name for name in errors if not self.kinds[name].is_beam), key=errors.__getitem__)
             self.kinds[worst] = next(each.kinds.finest for each in self.free if each.cable.name == worst)
         self.model_error = sum(errors[name] for name in errors if not self.kinds[name].is_beam)

@@ -38,7 +38,7 @@ def robot() -> fu.Scene:
         scene.cable(name, start=at, end=(0, 2, 0), elements=4, element="cable12", strain="engineering",
                     section=fu.GeneralSection(area=1.3e-5, second_moment_about_z=2e-12),
                     material=fu.Material(youngs_modulus=2e10, poisson_ratio=0.3, density=4000, damping_time=2e-3))
-        scene.motion(name, s=0.0, displacement=(0, fu.Ramp(start=0.1, end=0.9, after=(0.5, -0.3, 0.2)[k]), 0))
+        scene.motion(name, s=0.0, displacement=(0, fu.Ramp(start=0.0, end=0.4, after=(0.1, -0.06, 0.04)[k]), 0))
         scene.joint("spherical", (name, 8.0), "camera", name=f"eye_{k}")
     return scene
 
@@ -132,7 +132,7 @@ SCENES = {
     "cable car": Subject(lambda: fu.load_scene("cable_car"), 2.0, "equilibrium"),
     "crane": Subject(crane, 2.0, "equilibrium"),
     "zip line": Subject(lambda: fu.load_scene("zip_line"), 0.5),
-    "cable robot": Subject(robot, 1.0, "equilibrium"),
+    "cable robot": Subject(robot, 0.4, "equilibrium"),
     "slackline": Subject(slackline, 0.6, "equilibrium"),
     "pendulum, E 2e6": Subject(lambda: pendulum(8, 2e6, 7200), 0.5),
     "pendulum, E 7e8": Subject(lambda: pendulum(8, 7e8, 7200), 0.3),
