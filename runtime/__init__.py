@@ -85,7 +85,8 @@ __all__ = [
 ]
 
 
-LAZY = {"Equilibrium": "results.equilibrium", "InitialState": "model.initial_state", "Modes": "solve.modes"}
+LAZY = {"Choice": "choice.choice", "Equilibrium": "results.equilibrium", "InitialState": "model.initial_state",
+        "Modes": "solve.modes"}
 """What brings SciPy along, which takes as long as all the rest: imported when it is asked for."""
 
 

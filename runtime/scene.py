@@ -189,6 +189,8 @@ class Scene(Viewable, SceneMethods):
         chosen = None
         if settings.model == "auto" or any(cable.is_open for cable in self.cables.values()):
             chosen = self._choose(settings, (), "unset")
+            if settings.model != "auto":  # which nobody has asked for
+                warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=2)
             settings = chosen.settings_of(settings)
         scene = self if chosen is None else chosen.scene
         scene._check_for(settings)

@@ -23,12 +23,9 @@ is another law of material at large strain, and the continuum needs finer meshes
 TURNING = ("weld", "revolute", "universal", "prismatic", "cylindrical")
 """Kinds of joints that hold a section, or its tangent, and may bear a torque along the cable."""
 
-WORK = {"cable8p": 1.0, "cable12": 1.6, "cable18": 4.5, "beam12p": 2.5, "beam24": 12.0}
-"""CPU time of a step and an element, in that of cable8p: tests/benchmarks/README.md, Kernels and Cost against elements.
-"""
-
-WORK_OF_SECTIONS = {"cable8p": 1.0, "cable12": 1.0, "cable18": 1.5, "beam12p": 1.5, "beam24": 2.0}
-"""Steps in those of cable8p, about: what beams know beside bending vibrates fast."""
+WORK = {"cable8p": 1.0, "cable12": 1.6, "cable18": 3.0, "beam12p": 2.0, "beam24": 6.0}
+"""CPU time of an element over a run, in that of cable8p, about: tests/benchmarks/README.md, Kernels, and the runs by
+brute force of Model for a tolerance."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +42,7 @@ class Kind:
     @property
     def work(self) -> float:
         """Return the CPU time of an element over a run, about, in that of cable8p."""
-        return WORK.get(self.element, 12.0) * WORK_OF_SECTIONS.get(self.element, 2.0)
+        return WORK.get(self.element, 6.0)
 
     @property
     def is_beam(self) -> bool:
