@@ -19,6 +19,7 @@ from __future__ import annotations
 import time
 from collections.abc import Collection, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Generic
 
 import numpy as np
@@ -49,8 +50,8 @@ NEGLIGIBLE = 0.03
 """Of the tolerance: a change of the bending stiffness by that much has no effect that counts, however it is magnified.
 """
 
-EXTRAPOLATED = 2.0
-"""How many times as fine as the finest probe a mesh may be whose error is extrapolated."""
+STOUT = 0.03
+"""Of its bending stiffness: where shear takes more of it, the ladder is run with beams."""
 
 LOOSEST = 3e-3
 """Tolerance of a probe's time integration at most."""
@@ -90,25 +91,39 @@ class Chooser(Generic[S]):
     def choose(self) -> Choice[S]:
         """Return the choice. Raises SceneError where no probe runs."""
         begin = time.process_time()
-        levels, probes = [self._first_level()], []
-        probes.append(self._first_probe(levels[0]))
-        differences: list[float] = []
-        while self._needs_finer(levels, differences):
-            levels.append(2 * levels[-1])
-            probes.append(self.probe(levels[-1]))
-            differences.append(self.prober.difference(probes[-2], probes[-1]))
+        level = self._first_level()
+        self._compare_integrators(2 * level if self._base else level)
+        shear = self._model_errors(2 * level if self._base else level)
+        levels, probes = self._ladder(level)
         if probes[-1].run is None:
             raise SceneError("choose", f"no short run of the scene ends: {probes[-1].failed}",
                              "run it with elements of your own choice")
-        mesh = mesh_error(levels, differences) if self._base else MeshError(levels[-1], 0.0, 1.0)
-        estimate = Estimate(mesh, self._shares(mesh, levels[-1]), self._model_errors(levels[min(1, len(levels) - 1)]),
-                            self.time_error, probes, self.free)
+        mesh = self._mesh_error(levels, probes)
+        estimate = Estimate(mesh, self._shares(mesh, levels[-1]), shear, self.time_error, probes, self.free)
         return self._result(estimate, time.process_time() - begin)
+
+    def _ladder(self, level: int) -> tuple[list[int], list[Probe[S]]]:
+        """Return the levels that were run, from coarse to fine, until the mesh that is needed can be extrapolated."""
+        levels, probes = [level], [self.probe(level)]
+        while self._base and 2 * levels[-1] * self._base <= MOST_ELEMENTS:
+            mesh = self._mesh_error(levels, probes)
+            if len(levels) > 1 and mesh.level_for(self.wanted) <= mesh.trusted * mesh.level:
+                break
+            levels.append(2 * levels[-1])
+            probes.append(self.probe(levels[-1]))
+        return levels, probes
+
+    def _mesh_error(self, levels: Sequence[int], probes: Sequence[Probe[S]]) -> MeshError:
+        """Return the error of the last mesh; none where all meshes are fixed."""
+        if not self._base:
+            return MeshError(levels[-1], 0.0, 1.0)
+        return mesh_error(levels, [self.prober.difference(*pair) for pair in pairwise(probes)])
 
     @property
     def wanted(self) -> float:
         """Return the error that the mesh may have, as long as that of the model is not known."""
-        return (1 - ASSUMED) * self.tol - self.time_error
+        could_shear = any(each.kinds.slender not in (None, each.kinds.finest) for each in self.free)
+        return (1 - ASSUMED * could_shear) * self.tol - self.time_error
 
     def _first_level(self) -> int:
         """Return the level of the coarsest mesh to start from: two elements at least, and able to follow a curve."""
@@ -129,40 +144,33 @@ class Chooser(Generic[S]):
         """Return the largest number of elements of a coarsest mesh that is not fixed; 0 where all are."""
         return max((each.base for each in self.free if each.fixed is None), default=0)
 
-    def _first_probe(self, level: int) -> Probe[S]:
-        """Return the probe of the coarsest mesh, by the cheaper integrator of those that agree on it."""
+    def _compare_integrators(self, level: int) -> None:
+        """Take generalised-alpha where it agrees with the automatic choice, if need be with a smaller tolerance, for
+        less work.
+        """
         if self.settings.integrator != AUTO:
             self.reasons.append(f"integrator {self.settings.integrator}: as asked for")
-            return self.probe(level)
+            return
         found, other = self.probe(level, AUTO), self.probe(level, DAMPING)
         apart = self.prober.difference(other, found)
         allowed = min(TIME_SHARE * self.tol * self.probe_tol / max(apart, 1e-300), self.tol)
         work = other.work * np.sqrt(max(self.probe_tol / allowed, 1.0))  # of second order
         if found.run is None or allowed < TIGHTEST * self.tol or work >= found.work:
             why = "is no cheaper" if np.isfinite(apart) else "fails"
-            self.reasons.append(f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on the "
-                                f"coarsest mesh is {apart:.1e}, {why}")
-            return found
+            self.reasons.append(f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on a coarse "
+                                f"mesh is {apart:.1e}, {why}")
+            return
         self.integrator, self.time_tol = DAMPING, allowed
         self.time_error = apart * allowed / self.probe_tol
-        self.reasons.append(f"integrator {DAMPING} with tol {allowed:.2g}: on the coarsest mesh within {apart:.1e} of "
-                            f"the automatic choice ({found.run.report['integrator']}), for {work / found.work:.2g} of "
-                            "its work")
-        if allowed >= self.probe_tol:
-            return other
-        self.probe_tol = allowed
-        return self.probe(level)
-
-    def _needs_finer(self, levels: Sequence[int], differences: Sequence[float]) -> bool:
-        """Return whether a finer mesh has to be run: the one that is needed cannot be extrapolated yet."""
-        if not self._base or 2 * levels[-1] * self._base > MOST_ELEMENTS:
-            return False
-        mesh = mesh_error(levels, differences)
-        return not differences or mesh.level_for(self.wanted) > EXTRAPOLATED * mesh.level
+        self.probe_tol = min(self.probe_tol, allowed)
+        self.reasons.append(f"integrator {DAMPING} with tol {allowed:.2g}: on a coarse mesh within {apart:.1e} of the "
+                            f"automatic choice ({found.run.report['integrator']}), for {work / found.work:.2g} of its "
+                            "work")
 
     def _model_errors(self, level: int) -> dict[str, float]:
         """Return what cable elements leave out of each cable that could be a beam, over the largest change."""
-        errors = {}
+        errors: dict[str, float] = {}
+        stout: list[Free] = []
         for each in self.free:
             name, kinds = each.cable.name, each.kinds
             self.reasons += [f"{each.cable.where}: {why}" for why in kinds.why]
@@ -178,8 +186,11 @@ class Chooser(Generic[S]):
                 continue
             moved = self.prober.difference(self.probe(level, soft=name), probe) / (1 - SOFTER)
             errors[name] = SHEAR_SAFETY * softer * moved
+            if softer > STOUT and errors[name] > self.tol:
+                stout.append(each)
             self.reasons.append(f"{each.cable.where}: shear and rotary inertia soften its bending by {softer:.1e}, "
                                 f"which changes the result by about {errors[name]:.1e}")
+        self.kinds |= {each.cable.name: each.kinds.finest for each in stout}  # whose meshes err in another way
         return errors
 
     def _shares(self, mesh: MeshError, level: int) -> dict[str, float]:

@@ -14,13 +14,24 @@ ORDERS = 0.7, 4.0
 """Bounds of the order that is observed: below, meshes do not yet converge; above, differences cancel by chance."""
 
 
+NEAR, FAR = 2.0, 4.0
+"""How many times as fine a mesh may be whose error is extrapolated: by an order that is seen once, and twice."""
+
+SAME = 0.7
+"""Two orders that differ by less are the same."""
+
+
 @dataclass(frozen=True)
 class MeshError:
-    """The error of a mesh of ``level`` times the coarsest number of elements, ~ level to the power of -order."""
+    """The error of a mesh of ``level`` times the coarsest number of elements, ~ level to the power of -order.
+
+    trusted: how many times as fine a mesh may be for that to hold.
+    """
 
     level: int
     error: float
     order: float
+    trusted: float = NEAR
 
     def at(self, level: float) -> float:
         """Return the error at another level."""
@@ -39,7 +50,8 @@ def mesh_error(levels: Sequence[int], differences: Sequence[float]) -> MeshError
     finite = [difference for difference in differences if np.isfinite(difference)]
     if not finite:
         return MeshError(levels[-1], np.inf, FIRST_ORDER)
-    last, order = finite[-1], FIRST_ORDER
-    if len(finite) > 1 and last > 0:
-        order = float(np.clip(np.log2(finite[-2] / last), *ORDERS)) if finite[-2] > 0 else ORDERS[0]
-    return MeshError(levels[-1], last / (2**order - 1), order)
+    ratios = np.log2(np.divide(finite[:-1], np.maximum(finite[1:], 1e-300)))
+    orders = np.clip(ratios, *ORDERS)[-2:]
+    order = float(orders[-1]) if len(orders) else FIRST_ORDER
+    steady = len(orders) > 1 and float(np.ptp(orders)) < SAME
+    return MeshError(levels[-1], finite[-1] / (2**order - 1), order, FAR if steady else NEAR)

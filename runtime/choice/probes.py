@@ -22,7 +22,7 @@ S = TypeVar("S", bound=SceneMethods)
 Simulate = Callable[[S, RunSettings], Run]
 """Runs a scene; a run that stops early raises."""
 
-RADAU, IMPLICIT = 9.0, 1.5
+RADAU, IMPLICIT = 12.0, 1.5
 """Work of an iteration of radau, and of the other implicit methods, in evaluations of accelerations, as measured on
 pendulums and riders: three stages and a complex system, and one."""
 
