@@ -186,13 +186,8 @@ class Scene(Viewable, SceneMethods):
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
         if settings.initial == "state" and state is None:
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
-        chosen = None
-        if settings.model == "auto" or any(cable.is_open for cable in self.cables.values()):
-            chosen = self._choose(settings, (), "unset")
-            if settings.model != "auto":  # which nobody has asked for
-                warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=2)
-            settings = chosen.settings_of(settings)
-        scene = self if chosen is None else chosen.scene
+        chosen = self._chosen_for(settings)
+        scene, settings = (self, settings) if chosen is None else (chosen.scene, chosen.settings_of(settings))
         scene._check_for(settings)
         if not isinstance(resume, bool):
             raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
@@ -221,6 +216,16 @@ class Scene(Viewable, SceneMethods):
         given = {"tol": tol, "duration": duration, "initial": initial, "integrator": integrator}
         settings = RunSettings(**{"tol": 1e-3} | self.run_settings | {k: v for k, v in given.items() if v is not None})
         return self._choose(settings, quantities, free)
+
+    def _chosen_for(self, settings: RunSettings) -> Choice[Self] | None:
+        """Return the choice where a run needs one: where that is asked for, or elements were left out; else None."""
+        if settings.model == "auto":
+            return self._choose(settings, (), "unset")
+        if not any(cable.is_open for cable in self.cables.values()):
+            return None
+        chosen = self._choose(settings, (), "unset")
+        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=3)  # which nobody has asked for
+        return chosen
 
     def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str) -> Choice[Self]:
         """Return the choice for a run with these settings."""

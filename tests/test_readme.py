@@ -87,7 +87,13 @@ def force_law(space):
     assert list(space["LAW"].parameters) == [name for name in space["Magnet"].model_fields if name not in "name a b"]
 
 
+def chosen_model(space):
+    assert space["choice"].kept and space["run"].report["choice"]["kept"]
+    assert space["run"].scene.cables["strip"].elements == space["choice"].models["strip"].elements
+
+
 AFTERWARDS = {("README.md", "First scene"): saved,
+              ("runtime/README.md", "The model for a tolerance"): chosen_model,
               ("runtime/README.md", "Scenes"): first_scene,
               ("runtime/README.md", "Joints and springs"): trolley,
               ("runtime/README.md", "Events"): events,
