@@ -11,7 +11,7 @@ from funicular.choice.mesh_error import mesh_error
 from funicular.choice.motion import along, distance, motion, size
 from funicular.choice.remaking import CableModel, coarsest, remade
 from model_cells import models
-from model_choice import chosen, simulate
+from model_choice import chosen, simulate, true_error
 from model_scenes import SCENES
 from typer.testing import CliRunner
 
@@ -201,6 +201,28 @@ def test_errors_of_chosen_models(name, tol):
     run = simulate(name, choice)[0]
     assert choice.kept and choice.error <= 1.01 * tol
     assert distance(motion(run.scene, run), exact) <= 3 * tol * size(exact)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["rigid link", "stout cantilever", "mass crosses a beam", "rubber pendulum", "spin-up",
+                                  "taut cable, rider", "Princeton blade", "crane"])
+def test_errors_of_chosen_models_against_converged_ones(name, tmp_path):
+    for tol in (1e-2, 1e-3):
+        choice = chosen(name, tol)
+        assert choice.kept and choice.error <= 1.01 * tol
+        assert true_error(name, simulate(name, choice)[0], tmp_path) <= 3 * tol
+
+
+def test_what_shear_does_is_foreseen():
+    subject = SCENES["stout cantilever"]
+    runs = [remade(subject.make(), models(subject.make(), *kind, 12)).run(subject.duration, tol=1e-5)
+            for kind in (("cable8p", "engineering_exact"), ("beam12p", "structural"))]
+    slender, exact = (motion(run.scene, run) for run in runs)
+    left_out = distance(slender, exact) / size(exact)
+    choice = chosen("stout cantilever", 1e-2)
+    foreseen = next(row["error"] for row in choice.table if row["element"] == "cable8p")
+    assert 0.5 * left_out < foreseen < 4 * left_out
+    assert choice.models["beam"].element == "beam12p"
 
 
 def test_the_same_is_chosen_each_time():

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import time
 import warnings
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -70,7 +71,7 @@ def simulate(name: str, chosen: dict[str, CableModel] | None, **settings) -> fu.
         warnings.simplefilter("ignore", fu.FunicularWarning)
         scene = scene if chosen is None else remade(scene, chosen)
         return scene.run(subject.duration, output_step=subject.duration / TIMES, initial=subject.initial,
-                         progress=False, **settings)
+                         **{"progress": False} | settings)
 
 
 def kinds(name: str, wanted: dict) -> list[tuple[str, str]]:
@@ -112,16 +113,21 @@ def _reference(name: str) -> tuple[np.ndarray, float, str]:
     return exact, converged, f"{mesh} {element}, {law}"
 
 
+def known_cells(name: str, cache: Path = CACHE) -> dict[tuple, Cell]:
+    """The runs by brute force that the cache has, by their model, integrator and tolerance."""
+    path = cache / f"{name}.jsonl"
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    cells = [Cell(**json.loads(line)) for line in lines]
+    return {(cell.element, cell.law, cell.mesh, cell.integrator, cell.tol): cell for cell in cells}
+
+
 def brute_force(name: str, cache: Path = CACHE) -> Iterator[Cell]:
     """Models at every tolerance, from the cache or computed: meshes from coarse to fine, until one keeps the tolerance
     or costs more than the cheapest that does.
     """
     exact = reference(name, cache)[0]
     path = cache / f"{name}.jsonl"
-    known = {}
-    if path.exists():
-        cells = [Cell(**json.loads(line)) for line in path.read_text(encoding="utf-8").splitlines()]
-        known = {(cell.element, cell.law, cell.mesh, cell.integrator, cell.tol): cell for cell in cells}
+    known = known_cells(name, cache)
     for tol in TOLS:
         cheapest = np.inf
         for element, law in kinds(name, KINDS):
@@ -141,16 +147,30 @@ def brute_force(name: str, cache: Path = CACHE) -> Iterator[Cell]:
                         break
 
 
+class Stopwatch:
+    """Ends a run that takes more than twice `MOST_SECONDS`."""
+
+    def __init__(self):
+        self.begin = time.process_time()
+
+    def __call__(self, reached: float) -> None:
+        if time.process_time() - self.begin > 2 * MOST_SECONDS:
+            raise TimeoutError(f"more than {2 * MOST_SECONDS:g} s")
+
+
 def measured(name: str, exact: np.ndarray, element: str, law: str, mesh: int, integrator: str, tol: float) -> Cell:
     """One run by brute force; a short one is repeated, and the shortest time counts."""
     cost = set_up = np.inf
     try:
         for _ in range(3):
-            run = simulate(name, models(SCENES[name].make(), element, law, mesh), tol=tol, integrator=integrator)
+            run = simulate(name, models(SCENES[name].make(), element, law, mesh), tol=tol, integrator=integrator,
+                           progress=Stopwatch())
             cost = min(cost, run.report["time_s"]["solve_cpu"])
             set_up = min(set_up, run.report["time_s"]["set_up"])
             if cost > 0.1:
                 break
+    except TimeoutError as error:
+        return Cell(element, law, mesh, integrator, tol, float("nan"), 2 * MOST_SECONDS, 0.0, str(error))
     except fu.FunicularError as error:
         return Cell(element, law, mesh, integrator, tol, float("nan"), 0.0, 0.0, str(error)[:200])
     error = distance(motion(run.scene, run), exact) / size(exact)

@@ -1,6 +1,7 @@
 """How true the choice of a model is to its tolerance, and what it costs: every scene of model_scenes.py with every tol.
 
-    python tests/benchmarks/model_choice.py [--only WORDS] [--cache DIR] [--no-brute-force] [--out FILE.csv]
+    python tests/benchmarks/model_choice.py [--only WORDS] [--cache DIR] [--brute-force none|cached|all]
+        [--out FILE.csv]
 
 ``error/tol`` is the largest error of a motion, of stations along cables and of bodies at 20 output times, against the
 converged motion of the finest model at hand, over the largest motion and over tol; ``estimate`` is what the choice
@@ -19,7 +20,7 @@ from pathlib import Path
 
 import funicular as fu
 from funicular.choice.motion import distance, motion, size
-from model_cells import CACHE, TIMES, TOLS, brute_force, reference
+from model_cells import CACHE, TIMES, TOLS, brute_force, known_cells, reference
 from model_scenes import SCENES
 from table import parser, show
 
@@ -57,11 +58,13 @@ def true_error(name: str, run: fu.Run, cache: Path = CACHE) -> float:
     return distance(motion(run.scene, run), exact) / size(exact)
 
 
-def row(name: str, tol: float, cache: Path, brute: bool) -> dict:
-    """One line of the table."""
+def row(name: str, tol: float, cache: Path, brute: str) -> dict:
+    """One line of the table; brute: "none", "cached" or "all" runs by brute force."""
     choice = chosen(name, tol)
     run, solve, total = simulate(name, choice)
-    keeping = [cell for cell in (brute_force(name, cache) if brute else ()) if cell.tol == tol and cell.error <= tol]
+    found = {"none": lambda: (), "cached": lambda: known_cells(name, cache).values(),
+             "all": lambda: brute_force(name, cache)}[brute]()
+    keeping = [cell for cell in found if cell.tol == tol and cell.error <= tol]
     best = min(keeping, key=lambda cell: cell.cpu, default=None)
     models = "; ".join(dict.fromkeys(map(str, choice.models.values())))
     return {"scene": name, "tol": tol, "error/tol": true_error(name, run, cache) / tol, "estimate": choice.error / tol,
@@ -88,12 +91,13 @@ def main() -> None:
     options = parser(__doc__)
     options.add_argument("--only", default="", help="scenes whose name holds this")
     options.add_argument("--cache", type=Path, default=CACHE, help="folder of references and runs by brute force")
-    options.add_argument("--no-brute-force", action="store_true", help="leave out the cheapest model")
+    options.add_argument("--brute-force", choices=("none", "cached", "all"), default="all",
+                         help="runs of the cheapest model: none, those in the cache, all")
     options = options.parse_args()
     rows = []
     for name in SCENES:
         for tol in TOLS if options.only in name else ():
-            rows.append(row(name, tol, options.cache, not options.no_brute_force))
+            rows.append(row(name, tol, options.cache, options.brute_force))
             print(f"{name}, {tol:g}: {rows[-1]['error/tol']:.2f} tol", flush=True)
     show(rows, options.out)
     print("\n".join(summary(rows)))
