@@ -35,7 +35,7 @@ from .indicators import SOFTER, deformation, shear_compliance, softened
 from .mesh_error import MeshError, mesh_error
 from .motion import motion, size
 from .probes import Probe, Prober, S, Simulate
-from .remaking import remade
+from .remaking import remade, with_model
 
 TIME_SHARE = 0.5
 """Of the tolerance, at most, for the error of generalised-alpha in time; model and mesh get what it leaves."""
@@ -130,8 +130,8 @@ class Chooser(Generic[S]):
         level = 1 if all(each.base > 1 or each.fixed for each in self.free) else 2
         while True:
             try:
-                remade(self.scene, {each.cable.name: each.model(self.kinds[each.cable.name], level)
-                                    for each in self.free})
+                for each in self.free:
+                    with_model(each.cable, each.model(self.kinds[each.cable.name], level))
             except SceneError:
                 if 2 * level * self._base > MOST_ELEMENTS:
                     raise

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -50,13 +51,22 @@ def along(cable: Cable, nodal_vectors: np.ndarray, parts: int = STATIONS, deriva
 
     nodal_vectors: (time, node, vector, 3); derivative: 0, 1 or 2.
     """
-    length, times = cable.length / cable.elements, len(nodal_vectors)
-    kernel = getattr(kernels_of(cable.library), f"{cable.element}_on_axis")
-    at = np.arange(parts + 1) / parts * cable.elements
-    element = np.minimum((at * (1 + 1e-12)).astype(int), cable.elements - 1)
-    N = np.array([_shapes(kernel, length, x, derivative) for x in length * (at - element)])
+    element, N = _stations(cable.library, cable.element, cable.elements, cable.length / cable.elements, parts,
+                           derivative)
     vectors = np.concatenate([nodal_vectors[:, element], nodal_vectors[:, element + 1]], axis=2)
-    return np.einsum("pk,tpkd->tpd", N, vectors.reshape(times, parts + 1, -1, 3))
+    return np.einsum("pk,tpkd->tpd", N, vectors.reshape(len(nodal_vectors), parts + 1, -1, 3))
+
+
+@lru_cache(maxsize=256)
+def _stations(library: str | None, kind: str, elements: int, length: float, parts: int,
+              derivative: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return (parts + 1,) the elements at equal distances and (parts + 1, shapes) their shape functions there, or a
+    derivative of them; length: of an element.
+    """
+    kernel = getattr(kernels_of(library), f"{kind}_on_axis")
+    at = np.arange(parts + 1) / parts * elements
+    element = np.minimum((at * (1 + 1e-12)).astype(int), elements - 1)
+    return element, np.array([_shapes(kernel, length, x, derivative) for x in length * (at - element)])
 
 
 def _shapes(kernel: Callable, length: float, x: float, derivative: int) -> np.ndarray:
