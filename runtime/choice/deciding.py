@@ -13,15 +13,21 @@ from .remaking import CableModel
 LEAST = 0.15
 """Of the tolerance: what is left for the mesh at least."""
 
+NEARLY = 1.1
+"""Of the least error: where none keeps the tolerance, what is no worse than this is as good."""
+
 ROUNDED = 0.01
 """Of the tolerance: what an estimate may exceed it by, since numbers of elements are whole."""
 
 
 def decide(estimate: Estimate, tol: float, most: int) -> dict[str, CableModel]:
-    """Return the models of the cables, of at most so many elements each; the finest where none keeps the tolerance."""
+    """Return the models of the cables, of at most so many elements each; those of the least error where none keeps the
+    tolerance.
+    """
     options = [_meshed(estimate, kinds, tol, most) for kinds in _assignments(estimate)]
     keeping = [models for models in options if estimate.error(models) <= tol * (1 + ROUNDED)]
-    return min(keeping, key=estimate.cost) if keeping else min(options, key=estimate.error)
+    least = min(map(estimate.error, options))
+    return min(keeping or [models for models in options if estimate.error(models) <= NEARLY * least], key=estimate.cost)
 
 
 def _assignments(estimate: Estimate) -> Iterator[dict[str, Kind]]:

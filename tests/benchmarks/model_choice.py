@@ -78,7 +78,7 @@ def summary(rows: list[dict]) -> list[str]:
     """How many cells meet each goal."""
     true = [one for one in rows if one["resolved"] <= 1]
     within = sum(one["error/tol"] <= 3 or (not one["kept"] and one["best"] == "none") for one in true)
-    priced = [one for one in rows if one["best"] != "none"]
+    priced = [one for one in true if one["best"] != "none"]
     cheap = sum(one["ratio"] <= 2 for one in priced)
     quick = sum(one["choice"] <= 0.2 for one in rows)
     return [f"{within} of {len(true)} cells whose reference is converged within 3 tol, or said that no model keeps it",
