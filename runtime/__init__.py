@@ -87,9 +87,9 @@ __all__ = [
 ]
 
 
-LAZY = {"Equilibrium": "results.equilibrium", "InitialState": "model.initial_state", "Modes": "solve.modes",
-        "LogUniform": "sweeps.distributions", "Uniform": "sweeps.distributions", "load_sweep": "sweeps.dataset",
-        "sweep": "sweeps.sweep", "sweep_cost": "sweeps.sweep"}
+LAZY = {"Choice": "choice.choice", "Equilibrium": "results.equilibrium", "InitialState": "model.initial_state",
+        "LogUniform": "sweeps.distributions", "Modes": "solve.modes", "Uniform": "sweeps.distributions",
+        "load_sweep": "sweeps.dataset", "sweep": "sweeps.sweep", "sweep_cost": "sweeps.sweep"}
 """What brings SciPy or xarray along, which take as long as all the rest: imported when it is asked for."""
 
 

@@ -98,6 +98,7 @@ def run(
     spectral_radius: Annotated[
         float | None, typer.Option(help="of genalpha and energy, instead of the scene's: 1 keeps all vibrations")
     ] = None,
+    model: Annotated[str | None, typer.Option(help="auto: choose elements that the scene leaves out, for tol")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="go on with a run that was killed or interrupted")] = False,
     estimate: Annotated[
         bool, typer.Option("--estimate", help="tell the errors of steps and mesh, by two more runs")
@@ -122,8 +123,8 @@ def run(
         stopped = None
         try:
             result = described.run(duration, tol=tol, absolute_tol=absolute_tol, quantities=_listed(quantities),
-                                   step=step, integrator=integrator, spectral_radius=spectral_radius, save=path,
-                                   resume=resume, estimate=estimate or None)
+                                   step=step, integrator=integrator, spectral_radius=spectral_radius, model=model,
+                                   save=path, resume=resume, estimate=estimate or None)
         except (EndOfCableError, ConvergenceError) as error:
             result, stopped = error.run, error
         _report(result, path, pictures, forces)
@@ -131,6 +132,31 @@ def run(
             raise stopped
     if result.status == "interrupted":
         raise typer.Exit(EXIT_INTERRUPTED)
+
+
+@app.command()
+def choose(
+    scene: SceneName,
+    tol: Annotated[float | None, typer.Option(help="error of model, mesh and time, instead of the scene's")] = None,
+    duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
+    quantities: Annotated[str | None, typer.Option(help="results that count, such as A.position,trolley.force "
+                                                   "(default: the motion)")] = None,
+    free: Annotated[str, typer.Option(help="unset: choose what the scene leaves out; all: choose all")] = "unset",
+    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE.toml",
+                                                help="scene file to write, with the chosen models")] = None,
+    library: Libraries = None,
+) -> None:
+    """Choose element, law and mesh of each cable, and the integrator, for a tolerance, and say why."""
+    from .scene_file import load_scene
+
+    with _reported_without_traceback():
+        described = load_scene(scene, library or ())
+        chosen = described.choose(tol, duration=duration, quantities=quantities.split(",") if quantities else (),
+                                  free=free)
+        print(chosen)
+        if output is not None:
+            output.write_text(chosen.scene.to_toml(), encoding="utf-8")
+            print(f"written: {output}")
 
 
 def _existing(directory: Path) -> Path:

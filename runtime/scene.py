@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     # a tenth of it. So they are imported by the methods that need them, here and below.
     from numpy.typing import ArrayLike
 
+    from .choice.choice import Choice
     from .parts.body_shape import Shape
     from .results.equilibrium import Equilibrium
     from .results.modes import Modes
@@ -103,20 +104,6 @@ class Scene(Viewable, SceneMethods):
         return self.with_parts((type(each)(**{**each.entries(), **values[id(each)]}) if id(each) in values else each
                                 for each in self.parts()), gravity)
 
-    def with_parts(self, parts: Iterable[Part], gravity: Any = None) -> Self:
-        """Return a scene of these parts, checked as any scene is, with the settings and the title of this one.
-
-        parts: in an order in which they can be added, as `parts` yields them; gravity: in m/s², None to keep this
-        one's. Raises SceneError.
-        """
-        scene = type(self)(gravity=self.gravity if gravity is None else gravity)
-        scene.title = self.title
-        scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
-        scene.relax_settings = dict(self.relax_settings)
-        for part in parts:
-            scene.add(part)
-        return scene
-
     def _part(self, part: Part | str) -> Part:
         """Return the part of a name, or this part where it is the scene's. Raises SceneError."""
         parts = list(self.parts())
@@ -167,6 +154,7 @@ class Scene(Viewable, SceneMethods):
         output_step: float | None = None,
         integrator: str | None = None,
         spectral_radius: float | None = None,
+        model: str | None = None,
         initial: str | Equilibrium | Mapping[str, ArrayLike] | None = None,
         threads: int | None = None,
         save: str | os.PathLike | None = None,
@@ -177,14 +165,17 @@ class Scene(Viewable, SceneMethods):
     ) -> Run:
         """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
 
-        Settings not given here are the scene file's, if it gave them. initial: "drawn", "equilibrium" or "relaxed"
-        (found first), a state that `equilibrium` or `relax` returned, at the velocities drawn, a state
-        ``run.at(time)`` of another run, or arrays by the names of results such as ``{"wire.nodal_vectors": ...}``, see
-        `InitialState`. save: a netCDF file, written while the run goes on, with a checkpoint (the same name and
-        ``.state``) that stays when the run is killed or interrupted; results are read from the file when they are asked
-        for. resume: go on from there, to the same numbers. progress: a bar (True), none (False), a bar if a terminal
-        watches (None), or a function of the time reached. estimate: whether two more runs, one of smaller steps and one
-        of elements half as long, tell how far the run is off, in ``run.report["errors"]``.
+        Settings not given here are the scene file's, if it gave them. model: "auto" chooses what of the cables was not
+        given, elements, laws and meshes, and the integrator, so that the error of all stays below tol, see `choose`;
+        cables without elements are always chosen so. ``run.report["choice"]`` says what was chosen and why,
+        ``run.scene`` is the chosen scene. initial: "drawn", "equilibrium" or "relaxed" (found first), a state that
+        `equilibrium` or `relax` returned, at the velocities drawn, a state ``run.at(time)`` of another run, or arrays
+        by the names of results such as ``{"wire.nodal_vectors": ...}``, see `InitialState`. save: a netCDF file,
+        written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
+        killed or interrupted; results are read from the file when they are asked for. resume: go on from there, to the
+        same numbers. progress: a bar (True), none (False), a bar if a terminal watches (None), or a function of the
+        time reached. estimate: whether two more runs, one of smaller steps and one of elements half as long, tell how
+        far the run is off, in ``run.report["errors"]``.
 
         While it goes on the BLAS of NumPy and SciPy has one thread, in the whole process: what other threads of it
         compute meanwhile with large matrices takes longer.
@@ -196,28 +187,68 @@ class Scene(Viewable, SceneMethods):
         state = None if initial is None or isinstance(initial, str) else _state(self, initial)
         given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
                  "output_step": output_step, "integrator": integrator, "spectral_radius": spectral_radius,
-                 "threads": threads, "save": save, "estimate": estimate,
+                 "threads": threads, "save": save, "estimate": estimate, "model": model,
                  "initial": initial if state is None else "state" if isinstance(initial, Mapping) else "equilibrium"}
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
         if settings.initial == "state" and state is None:
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
-        self._check_for(settings)
+        chosen = self._chosen_for(settings)
+        scene, settings = (self, settings) if chosen is None else (chosen.scene, chosen.settings_of(settings))
+        scene._check_for(settings)
         if not isinstance(resume, bool):
             raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
         if resume and settings.save is None:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
-        run = self._simulated(settings, state, resume, progress)
-        match run.status:
-            case "end_of_cable":
-                raise EndOfCableError(run.report["message"], run)
-            case "no_convergence":
-                raise ConvergenceError(run.report["message"], run)
-            case "interrupted":
-                warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
+        run = scene._simulated(settings, state, resume, progress, chosen)
+        _raise_where_stopped(run)
+        if run.status == "interrupted":
+            warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
         return run
 
+    def choose(self, tol: float | None = None, *, duration: float | None = None, quantities: Sequence[str] = (),
+               free: str = "unset", initial: str | None = None, integrator: str | None = None) -> Choice[Self]:
+        """Choose element, law and mesh of each cable, and the integrator, so that a run errs by less than ``tol``.
+
+        tol: of the error of model and mesh, against the finest model at hand, with that of time, over the largest
+        change; 1e-3 if neither this nor the scene's file gives one. quantities: names of results that count, such as
+        "A.position" or "trolley.force"; the motion of all cables and bodies if none is named. free: "unset" chooses
+        what was not given: the number of elements of cables without ``elements``, element and law of those without
+        ``element``; "all" chooses all. duration in s, initial and integrator are those of the run, by default the scene
+        file's.
+
+        It is decided by short runs on coarse meshes and by what they indicate. The choice has the chosen ``scene``,
+        ``reasons`` and ``table``, the alternatives with their estimated errors and costs; print it. Raises SceneError.
+        """
+        given = {"tol": tol, "duration": duration, "initial": initial, "integrator": integrator}
+        settings = RunSettings(**{"tol": 1e-3} | self.run_settings | {k: v for k, v in given.items() if v is not None})
+        return self._choose(settings, quantities, free)
+
+    def _chosen_for(self, settings: RunSettings) -> Choice[Self] | None:
+        """Return the choice where a run needs one: where that is asked for, or elements were left out; else None."""
+        if settings.model == "auto":
+            return self._choose(settings, (), "unset")
+        if not any(cable.is_open for cable in self.cables.values()):
+            return None
+        chosen = self._choose(settings, (), "unset")
+        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=3)  # which nobody has asked for
+        return chosen
+
+    def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str) -> Choice[Self]:
+        """Return the choice for a run with these settings."""
+        from .choice.choosing import choose  # runs, which bring SciPy
+
+        def simulate(scene: Self, settings: RunSettings) -> Run:
+            scene._check_for(settings)
+            run = scene._simulated(settings, None, False, False)
+            _raise_where_stopped(run)
+            if run.status == "interrupted":
+                raise KeyboardInterrupt
+            return run
+
+        return choose(self, settings, quantities, free, simulate)
+
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
-                   progress: bool | Callable[[float], None] | None) -> Run:
+                   progress: bool | Callable[[float], None] | None, chosen: Choice | None = None) -> Run:
         """Return the run with these settings, however it ended, from a state or as the settings say."""
         from .results.streaming import Stream  # brings SciPy and the engine
 
@@ -235,6 +266,9 @@ class Scene(Viewable, SceneMethods):
             with progress_bar(settings.duration, progress) as on_progress:
                 simulation = simulate(self, settings, on_progress, initial=state, stream=stream)
             recording = recorded(simulation, self, settings)
+            if chosen is not None:
+                recording.report["choice"] = chosen.facts()
+                recording.report["messages"] = [*chosen.messages(), *recording.report["messages"]]
             run = (stream.finish(recording) if stream
                    else Run.from_recording(recording, self, settings, self.from_toml))
             if settings.estimate:
@@ -381,6 +415,14 @@ def _refuse_unknown(method: str, unknown: Iterable[str], known: Collection[str])
         meant = SYNONYMS.get(name)
         raise SceneError(method, f'"{name}" is not known here',
                          f'did you mean "{meant}"?' if meant in known else near(name, known))
+
+
+def _raise_where_stopped(run: Run) -> None:
+    """Raise EndOfCableError or ConvergenceError where the run ended so."""
+    if run.status == "end_of_cable":
+        raise EndOfCableError(run.report["message"], run)
+    if run.status == "no_convergence":
+        raise ConvergenceError(run.report["message"], run)
 
 
 def _state(scene: Scene, given: Equilibrium | Mapping[str, ArrayLike]) -> Start:

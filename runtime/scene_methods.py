@@ -18,10 +18,6 @@ from .parts.scene_data import SceneData
 class SceneMethods(SceneData):
     """A scene with a method for each kind of part, such as `cable` and `rigid_body`."""
 
-    def add(self, part: Part) -> Part:
-        """Add a part; `funicular.Scene` says how."""
-        raise NotImplementedError
-
 
 def signature(kind: type[Part]) -> inspect.Signature:
     """Return the signature of the method that adds such parts; None stands for what is not given."""

@@ -170,6 +170,7 @@ def test_settings_and_defaults_reach_the_engine(engine):
         "output_step": 0.02,
         "integrator": "auto",
         "spectral_radius": 0.5,
+        "model": "given",
         "initial": "drawn",
         "save": None,
         "threads": 1,

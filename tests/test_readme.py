@@ -106,8 +106,13 @@ def held_by_friction(space):
     assert 0.315 < float(state["trolley.s"]) < 0.9
     assert abs(run["A.position"] - run["A.position"][0]).max() < 1e-5
 
+def chosen_model(space):
+    assert space["choice"].kept and space["run"].report["choice"]["kept"]
+    assert space["run"].scene.cables["strip"].elements == space["choice"].models["strip"].elements
+
 
 AFTERWARDS = {("README.md", "First scene"): saved,
+              ("runtime/README.md", "The model for a tolerance"): chosen_model,
               ("runtime/README.md", "Scenes"): first_scene,
               ("runtime/README.md", "Joints and springs"): trolley,
               ("runtime/README.md", "Events"): events,

@@ -1,1 +1,1 @@
-"""The model of a scene: what can be left out of it, and what a tolerance needs."""
+"""The model for a tolerance: the element, law, mesh and integrator of each cable, chosen by estimates."""

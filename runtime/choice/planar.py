@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Generic
 
 import numpy as np
 
@@ -17,24 +18,25 @@ from ..kernels.libraries import of_library
 from ..parts.cable import Cable
 from ..parts.part import Part
 from ..parts.rigid_body import RigidBody
+from ..parts.scene_data import SceneData
 from ..parts.section import GeneralSection, Rectangle, Section
 from ..parts.support import Tie
 from ..parts.validation import show
-from ..scene import Scene
+from .remaking import S
 
 ALONG = 1e-9
 """Sine of the angle up to which directions count as parallel."""
 
 
 @dataclass(frozen=True)
-class Planar:
+class Planar(Generic[S]):
     """A scene of planar elements with the motion of a spatial one, or why there is none.
 
     scene: of planar elements, None where the spatial one has another motion or leaves the plane; reasons: what leaves
     the plane, or differs there, a line each; elements: of each cable, the planar element in place of its own.
     """
 
-    scene: Scene | None
+    scene: S | None
     reasons: tuple[str, ...] = ()
     elements: tuple[tuple[str, str], ...] = ()
 
@@ -47,7 +49,7 @@ class Planar:
                 "is not in it")
 
 
-def planar_of(scene: Scene) -> Planar:
+def planar_of(scene: S) -> Planar[S]:
     """Return the scene with planar elements in place of spatial ones, where that has the same motion.
 
     The motion of a scene in the plane z = 0 is the same, but for rounding, for cable elements, for beams with the
@@ -98,7 +100,7 @@ def _height_is_in_plane(cable: Cable) -> bool:
     return not np.any(cable.axes_at(cable.node_s)[:, 1, 2])
 
 
-def _reasons(scene: Scene, part: Part) -> Iterator[str]:
+def _reasons(scene: SceneData, part: Part) -> Iterator[str]:
     """Yield what of a part leaves the plane, or is another thing in planar elements."""
     for what in part.off_plane():
         yield f"{what} leaves the plane z = 0"
@@ -133,7 +135,7 @@ def _reasons_of_cable(cable: Cable) -> Iterator[str]:
             yield "up lies across the plane z = 0, where the section's width bends: draw its height in the plane"
 
 
-def _is_in_line(scene: Scene, tie: Tie) -> bool:
+def _is_in_line(scene: SceneData, tie: Tie) -> bool:
     """Return whether the cables of a tie have the same element, and one tangent at it."""
     one, other = scene.cables[tie.cable], scene.cables[tie.to]
     a, b = one.axes_at(tie.s)[0], other.axes_at(tie.at)[0]

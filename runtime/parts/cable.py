@@ -7,9 +7,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import ValidationInfo, model_validator
+from pydantic import Field, ValidationInfo, model_validator
 
-from ..errors import near
+from ..errors import SceneError, near
 from ..kernels.element_line import ElementLine
 from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.libraries import of_library, resolved
@@ -55,6 +55,9 @@ def _points(value: Any) -> tuple[tuple[float, ...], ...]:
 class Cable(Part):
     """A cable of equal elements, drawn straight, through points or along a curve.
 
+    ``elements`` may be left out: `Scene.choose`, or a run with ``model="auto"``, then chooses them for a tolerance, and
+    element and law where no ``element`` is given.
+
     Drawn, which is how a run starts: from ``start`` to ``end``; or smoothly through ``points`` (x, y, z); or along
     ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m. The tangent
     must be continuous, the curvature need not: straight, arc, straight will do.
@@ -89,7 +92,7 @@ class Cable(Part):
     end: Annotated[Vector | None, xyz("m")] = None
     points: Annotated[tuple[tuple[float, ...], ...] | None, checked(_points, list_of_lists("m"))] = None
     curve: Annotated[Callable | None, GivenAs(ONLY_PYTHON)] = None  # kept as points, see `_settled`
-    elements: Count
+    given_elements: Annotated[Count | None, Field(alias="elements")] = None
     library: Annotated[str | None, checked(_library, {"type": "string"})] = None
     element: Annotated[str, checked(_element, {"type": "string"})] = "beam24"
     law: str = None  # type: ignore[assignment]  # `_with_a_law` chooses one where none is given
@@ -111,7 +114,7 @@ class Cable(Part):
         if not isinstance(data, dict):
             return data
         optional = ("start", "end", "points", "curve", "law", "library", "strain", "curvature", "membrane",
-                    "rest_length")
+                    "rest_length", "elements")
         data = {name: value for name, value in data.items() if value is not None or name not in optional}
         if "curve" in data:
             if "points" in data:
@@ -147,7 +150,8 @@ class Cable(Part):
                                       self.angular_velocity, self.up)
         else:
             cable_drawing.check_height(self._drawn_through, self.up, self._is_round)
-        cable_drawing.check_elements(self._shape, self.elements)
+        if self.given_elements is not None:
+            cable_drawing.check_elements(self._shape, self.given_elements)
         return self
 
     @property
@@ -165,8 +169,29 @@ class Cable(Part):
 
     @model_validator(mode="after")
     def _law_suits(self) -> Cable:
-        cable_laws.check(self)
+        if not self.is_open or "element" in self.model_fields_set:
+            cable_laws.check(self)
         return self
+
+    @property
+    def is_open(self) -> bool:
+        """Return whether its elements were left out, so that they have to be chosen before it can be simulated."""
+        return self.given_elements is None
+
+    @property
+    def elements(self) -> int:
+        """Return the number of its elements. Raises SceneError where they were left out."""
+        if self.given_elements is None:
+            raise SceneError(self.where, "has no elements yet",
+                             "give elements=, or let them be chosen: scene.choose(tol).scene")
+        return self.given_elements
+
+    def entries(self) -> dict[str, Any]:
+        """Return what it could be made with; of an open one without the element and the law that nobody gave."""
+        entries = super().entries()
+        if self.is_open and "element" not in self.model_fields_set:
+            return {name: value for name, value in entries.items() if name not in ("element", "law")}
+        return entries
 
     @property
     def kind_of_element(self) -> ElementKind:
@@ -233,21 +258,21 @@ class Cable(Part):
 
         Between nodes that is not quite the curve that they are drawn along; a rider has to start on the elements.
         """
-        if self._shape.straight:
+        if self._shape.straight or self.is_open:
             return self._shape.point(s * self.stretch)
         return self._as_drawn.point(s)
 
     def slope(self, s: float) -> np.ndarray:
         """Return (3,): r_x at arc-length ``s``, as the elements draw it."""
-        if self._shape.straight:
-            return self.stretch * self._shape.tangent(0.0)
+        if self._shape.straight or self.is_open:
+            return self.stretch * self._shape.tangent(s * self.stretch)
         return self._as_drawn.slope(s)
 
     def height(self, s: float) -> np.ndarray:
         """Return (3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have
         none.
         """
-        if self._shape.straight or not self.kind_of_element.director:
+        if self._shape.straight or self.is_open or not self.kind_of_element.director:
             return self.axes_at(s)[1]
         return self._as_drawn.point(s, y=1.0) - self._as_drawn.point(s)
 
@@ -255,7 +280,7 @@ class Cable(Part):
         """Return (3,): along the section's width at ``s``: r_z as the elements draw it, the axis there if they have
         none.
         """
-        if self._shape.straight or "r_z" not in self.kind_of_element.nodal_vectors:
+        if self._shape.straight or self.is_open or "r_z" not in self.kind_of_element.nodal_vectors:
             return self.axes_at(s)[2]
         return self._as_drawn.point(s, z=1.0) - self._as_drawn.point(s)
 
@@ -341,7 +366,11 @@ class Cable(Part):
         return node
 
     def node_at(self, s: float) -> int | None:
-        """Return the node at arc-length ``s``, None if there is none."""
+        """Return the node at arc-length ``s``, None if there is none; an open cable will have one wherever one is
+        asked for.
+        """
+        if self.is_open:
+            return round(s / (EXACT * self.length))
         node = round(s / self.length * self.elements)
         on_node = 0 <= node <= self.elements and abs(self.node_s[node] - s) <= EXACT * self.length
         return node if on_node else None

@@ -112,6 +112,24 @@ class SceneData:
         named = (getattr(self, each) for each in groups)
         return next((parts[name] for parts in named if isinstance(parts, dict) and name in parts), None)
 
+    def add(self, part: Part) -> Part:
+        """Add a part; `funicular.Scene` says how."""
+        raise NotImplementedError
+
+    def with_parts(self, parts: Iterable[Part], gravity: Any = None) -> Self:
+        """Return a scene of these parts, checked as any scene is, with the settings and the title of this one.
+
+        parts: in an order in which they can be added, as `parts` yields them; gravity: in m/s², None to keep this
+        one's. Raises SceneError.
+        """
+        scene = type(self)(gravity=self.gravity if gravity is None else gravity)
+        scene.title = self.title
+        scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
+        scene.relax_settings = dict(self.relax_settings)
+        for part in parts:
+            scene.add(part)
+        return scene
+
     def copied(self) -> Self:
         """Return a scene of the same parts, to which parts can be added while this one stays as it is."""
         made = copy(self)

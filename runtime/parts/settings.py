@@ -46,6 +46,8 @@ class RunSettings(Part):
     or "auto": the cheaper of the first two for this scene and tol, genalpha where step or spectral_radius is given;
     spectral_radius of genalpha (0.9 if not given) and energy (1) at infinity: 1 keeps and 0 removes the fastest
     vibrations, energy's of the cables, counted as dissipated with what their algorithmic stresses hold at the time;
+    model: "given", the cables' elements as they are, or "auto": those that were not given, and the integrator, are
+    chosen so that the error of model, mesh and time stays below tol, as `Scene.choose` does;
     initial: "drawn", "equilibrium" (static, under the loads at t = 0), "relaxed" (at rest after a damped motion, see
     `Scene.relax`), or "state", one that `Scene.run` is given; save: the file to write, or None; threads that
     share the work on cables of some hundred elements or more, at most as many as there are processors; estimate:
@@ -63,6 +65,7 @@ class RunSettings(Part):
     integrator: Annotated[str, one_of((AUTO, *INTEGRATORS))] = AUTO
     spectral_radius: Annotated[float, within(0, 1, ends=True)] = Field(
         default_factory=lambda data: default_spectral_radius(data.get("integrator", AUTO)))
+    model: Annotated[str, one_of(("given", "auto"))] = "given"
     initial: Annotated[str, one_of(("drawn", "equilibrium", "relaxed", "state"))] = "drawn"
     save: Annotated[str | None, BeforeValidator(_text_of_path)] = None
     threads: Count = 1

@@ -1,0 +1,94 @@
+"""The result of a choice: the scene, what was chosen and why, and what the alternatives would cost and err."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Generic
+
+from ..parts.settings import RunSettings
+from .remaking import CableModel, S
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """A model of a cable that was considered: its error over the largest change, and CPU seconds, both estimates."""
+
+    cable: str
+    model: CableModel
+    error: float
+    cost: float
+    chosen: bool
+    why: str
+
+    def row(self) -> dict[str, Any]:
+        """Return it as a row of a table."""
+        return {"cable": self.cable, "element": self.model.element, "law": self.model.law,
+                "elements": self.model.elements, "error": self.error, "cost_s": self.cost, "chosen": self.chosen,
+                "why": self.why}
+
+
+@dataclass
+class Choice(Generic[S]):
+    """What was chosen for a tolerance.
+
+    scene: an ordinary scene with the chosen models, whose run settings have the integrator and its tolerance; tol: the
+    tolerance asked for; time_tol: that of the integrator; models: by cable; kept: whether the
+    estimate says that the tolerance is kept; error: the estimate, over the largest change of a quantity; cost: the CPU
+    seconds that a run is estimated to take; reasons: why, in sentences; table: the alternatives; probes: how many short
+    runs that took, seconds: their CPU time with all else.
+    """
+
+    scene: S
+    tol: float
+    time_tol: float
+    integrator: str
+    models: dict[str, CableModel]
+    error: float
+    cost: float
+    kept: bool
+    reasons: list[str]
+    alternatives: list[Alternative] = field(default_factory=list)
+    probes: int = 0
+    seconds: float = 0.0
+
+    @property
+    def table(self) -> list[dict[str, Any]]:
+        """Return the alternatives as rows, those of a cable together, the chosen one marked."""
+        return [alternative.row() for alternative in self.alternatives]
+
+    def settings_of(self, settings: RunSettings) -> RunSettings:
+        """Return the settings of a run of the chosen scene."""
+        return settings.model_copy(update={"tol": self.time_tol, "integrator": self.integrator, "model": "given"})
+
+    def messages(self) -> list[str]:
+        """Return what the messages of a run say of the choice."""
+        kept = "" if self.kept else f"; no model at hand keeps it, the estimate is {self.error:.1e}"
+        return [f"model chosen {self.heading}{kept}"]
+
+    def facts(self) -> dict[str, Any]:
+        """Return what the report of a run says of the choice."""
+        return {"tol": self.tol, "integrator": self.integrator, "error": self.error, "cost_s": self.cost,
+                "kept": self.kept, "models": {name: str(model) for name, model in self.models.items()},
+                "reasons": list(self.reasons), "alternatives": self.table, "probes": self.probes,
+                "seconds": self.seconds}
+
+    @property
+    def heading(self) -> str:
+        """Return what was chosen, in a line."""
+        models = "; ".join(f"{name}: {model}" for name, model in self.models.items())
+        time = f"integrator {self.integrator}, its tol {self.time_tol:.2g}"
+        return f"for tol = {self.tol:g}: {models or 'no cables'}; {time}"
+
+    def __str__(self) -> str:
+        """Return what was chosen, why, and the table of alternatives."""
+        lines = [f"Chosen {self.heading}", *(f"- {reason}" for reason in self.reasons), ""]
+        header = ("", "cable", "model", "error", "CPU s", "why")
+        rows = [("*" * each.chosen, each.cable, str(each.model), f"{each.error:.1e}", f"{each.cost:.2g}", each.why)
+                for each in self.alternatives]
+        widths = [max(len(row[k]) for row in (header, *rows)) for k in range(len(header))]
+        lines += ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+                  for row in (header, *rows)]
+        lines.append(f"Errors and times are estimates, from {self.probes} short runs in {self.seconds:.2g} s of CPU.")
+        return "\n".join(lines)
+
+

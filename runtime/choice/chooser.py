@@ -1,0 +1,238 @@
+"""The choice of a model for a tolerance, from short runs on coarse meshes and what they indicate.
+
+The error of a run has three parts, which share the tolerance: that of the model (what the elements leave out), that of
+the mesh, and that of time, which the integrator bounds by the tolerance that it is given.
+
+1. Each cable gets the elements that know what the scene asks of it (`candidates`): those of a cable, or of a beam.
+2. A ladder of meshes, each of half the element length, is run until the error of the next one can be extrapolated
+   (`mesh_error`). On its second mesh two integrators are compared: generalised-alpha is the cheapest at loose
+   tolerances, but estimates its error by positions alone.
+3. With more than one cable, each is run on half of its elements, the others as they are: that tells whose mesh matters.
+4. What cable elements leave out is estimated on the second mesh, from the energy of shear and the dependence of the
+   motion on the bending stiffness (`indicators`).
+5. Of the models whose estimated error keeps the tolerance the one with the least work is taken (`deciding`): cables, or
+   beams on coarser meshes.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection, Sequence
+from functools import partial
+from itertools import pairwise
+from typing import Generic
+
+import numpy as np
+
+from ..errors import SceneError
+from ..integrators import AUTO
+from ..parts.cable import Cable
+from ..parts.settings import RunSettings
+from .choice import Choice
+from .deciding import ROUNDED, decide
+from .estimate import Estimate, Free
+from .indicators import SOFTER, deformation, shear_compliance, softened
+from .mesh_error import MeshError, mesh_error
+from .motion import motion, size
+from .probes import Probe, Prober, S, Simulate
+from .remaking import remade, with_model
+
+TIME_SHARE = 0.5
+"""Of the tolerance, at most, for the error of generalised-alpha in time; model and mesh get what it leaves."""
+
+ASSUMED = 0.2
+"""Of the tolerance: the error in time of the automatic choice, which is seldom more (tests/benchmarks/README.md)."""
+
+SHEAR_SAFETY = 2.0
+"""The estimate of what shear does is low by up to that."""
+
+NEGLIGIBLE = 0.03
+"""Of the tolerance: a change of the bending stiffness by that much has no effect that counts, however it is magnified.
+"""
+
+STOUT = 0.03
+"""Of its bending stiffness: where shear takes more of it, the ladder is run with beams."""
+
+LOOSEST = 3e-3
+"""Tolerance of a probe's time integration at most."""
+
+MOST_ELEMENTS = 256
+"""Of a cable that is chosen; a finer mesh is seldom what is wanted."""
+
+TIGHTEST = 0.05
+"""Of the tolerance: where generalised-alpha needs a smaller one, what it errs by does not follow its tolerance."""
+
+DAMPING = "genalpha"
+"""The integrator that is compared with the automatic choice."""
+
+
+class Chooser(Generic[S]):
+    """Chooses for one scene; `choose` is its one method."""
+
+    def __init__(self, scene: S, settings: RunSettings, quantities: Sequence[str], simulate: Simulate,
+                 free: Sequence[Free]):
+        """free: the cables of the scene, with what is to be chosen of them."""
+        self.scene, self.settings, self.tol, self.free = scene, settings, settings.tol, list(free)
+        self.prober: Prober[S] = Prober(scene, settings, quantities, simulate)
+        self.probe_tol = min(settings.tol, LOOSEST)
+        self.reasons: list[str] = []
+        self.kinds = {each.cable.name: each.kinds.slender or each.kinds.finest for each in free}
+        self.integrator, self.time_tol = settings.integrator, settings.tol
+        self.time_error = ASSUMED * self.tol
+
+    def probe(self, level: float, integrator: str | None = None, coarse: Collection[str] = (),
+              soft: str | None = None) -> Probe[S]:
+        """Return the probe of a level; coarse: cables that have half of it, soft: one that is `softened`."""
+        models = {each.cable.name: each.model(self.kinds[each.cable.name],
+                                              level / 2 if each.cable.name in coarse else level) for each in self.free}
+        change = None if soft is None else partial(softened, name=soft)
+        return self.prober.probe(models, self.probe_tol, integrator or self.integrator, change, soft or "")
+
+    def choose(self) -> Choice[S]:
+        """Return the choice. Raises SceneError where no probe runs."""
+        begin = time.process_time()
+        level = self._first_level()
+        self._compare_integrators(2 * level if self._base else level)
+        shear = self._model_errors(2 * level if self._base else level)
+        levels, probes = self._ladder(level)
+        if probes[-1].run is None:
+            raise SceneError("choose", f"no short run of the scene ends: {probes[-1].failed}",
+                             "run it with elements of your own choice")
+        mesh = self._mesh_error(levels, probes)
+        estimate = Estimate(mesh, self._shares(mesh, levels[-1]), shear, self.time_error, probes, self.free)
+        return self._result(estimate, time.process_time() - begin)
+
+    def _ladder(self, level: int) -> tuple[list[int], list[Probe[S]]]:
+        """Return the levels that were run, from coarse to fine, until the mesh that is needed can be extrapolated."""
+        levels, probes = [level], [self.probe(level)]
+        while self._base and 2 * levels[-1] * self._base <= MOST_ELEMENTS:
+            mesh = self._mesh_error(levels, probes)
+            if len(levels) > 1 and mesh.level_for(self.wanted) <= mesh.trusted * mesh.level:
+                break
+            levels.append(2 * levels[-1])
+            probes.append(self.probe(levels[-1]))
+        return levels, probes
+
+    def _mesh_error(self, levels: Sequence[int], probes: Sequence[Probe[S]]) -> MeshError:
+        """Return the error of the last mesh; none where all meshes are fixed."""
+        if not self._base:
+            return MeshError(levels[-1], 0.0, 1.0)
+        return mesh_error(levels, [self.prober.difference(*pair) for pair in pairwise(probes)])
+
+    @property
+    def wanted(self) -> float:
+        """Return the error that the mesh may have, as long as that of the model is not known."""
+        could_shear = any(each.kinds.slender not in (None, each.kinds.finest) for each in self.free)
+        return (1 - ASSUMED * could_shear) * self.tol - self.time_error
+
+    def _first_level(self) -> int:
+        """Return the level of the coarsest mesh to start from: two elements at least, and able to follow a curve."""
+        level = 1 if all(each.base > 1 or each.fixed for each in self.free) else 2
+        while True:
+            try:
+                for each in self.free:
+                    with_model(each.cable, each.model(self.kinds[each.cable.name], level))
+            except SceneError:
+                if 2 * level * self._base > MOST_ELEMENTS:
+                    raise
+                level *= 2
+            else:
+                return level
+
+    @property
+    def _base(self) -> int:
+        """Return the largest number of elements of a coarsest mesh that is not fixed; 0 where all are."""
+        return max((each.base for each in self.free if each.fixed is None), default=0)
+
+    def _compare_integrators(self, level: int) -> None:
+        """Take generalised-alpha where it agrees with the automatic choice, if need be with a smaller tolerance, for
+        less work.
+        """
+        if self.settings.integrator != AUTO:
+            self.reasons.append(f"integrator {self.settings.integrator}: as asked for")
+            return
+        found, other = self.probe(level, AUTO), self.probe(level, DAMPING)
+        apart = self.prober.difference(other, found)
+        allowed = min(TIME_SHARE * self.tol * self.probe_tol / max(apart, 1e-300), self.tol)
+        work = other.work * np.sqrt(max(self.probe_tol / allowed, 1.0))  # of second order
+        if found.run is None or allowed < TIGHTEST * self.tol or work >= found.work:
+            why = "is no cheaper" if np.isfinite(apart) else "fails"
+            self.reasons.append(f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on a coarse "
+                                f"mesh is {apart:.1e}, {why}")
+            return
+        self.integrator, self.time_tol = DAMPING, allowed
+        self.time_error = apart * allowed / self.probe_tol
+        self.probe_tol = min(self.probe_tol, allowed)
+        self.reasons.append(f"integrator {DAMPING} with tol {allowed:.2g}: on a coarse mesh within {apart:.1e} of the "
+                            f"automatic choice ({found.run.report['integrator']}), for {work / found.work:.2g} of its "
+                            "work")
+
+    def _model_errors(self, level: int) -> dict[str, float]:
+        """Return what cable elements leave out of each cable that could be a beam, over the largest change."""
+        errors: dict[str, float] = {}
+        stout: list[Free] = []
+        for each in self.free:
+            name, kinds = each.cable.name, each.kinds
+            self.reasons += [f"{each.cable.where}: {why}" for why in kinds.why]
+            if kinds.slender is None or kinds.slender == kinds.finest:
+                continue
+            probe = self.probe(level)
+            if probe.run is None:
+                continue
+            softer = shear_compliance(probe.scene.cables[name], probe.run)
+            if softer < NEGLIGIBLE * self.tol:
+                errors[name] = softer
+                self.reasons.append(f"{each.cable.where}: shear softens its bending by {softer:.1e} alone")
+                continue
+            moved = self.prober.difference(self.probe(level, soft=name), probe) / (1 - SOFTER)
+            errors[name] = SHEAR_SAFETY * softer * moved
+            if softer > STOUT and errors[name] > self.tol:
+                stout.append(each)
+            self.reasons.append(f"{each.cable.where}: shear and rotary inertia soften its bending by {softer:.1e}, "
+                                f"which changes the result by about {errors[name]:.1e}")
+        self.kinds |= {each.cable.name: each.kinds.finest for each in stout}  # whose meshes err in another way
+        return errors
+
+    def _shares(self, mesh: MeshError, level: int) -> dict[str, float]:
+        """Return what of the error of the finest probe's mesh comes from each cable: those that are alike share it."""
+        groups: dict[tuple, list[str]] = {}
+        for each in self.free:
+            if each.fixed is None:
+                alike = each.base, each.cable.length, each.cable.section, each.cable.material
+                groups.setdefault(alike, []).append(each.cable.name)
+        shares, fine = dict.fromkeys(self.kinds, 0.0), self.probe(level)
+        for names in groups.values():
+            apart = mesh.error
+            if len(groups) > 1:
+                coarse = self.prober.difference(self.probe(level, coarse=tuple(names)), fine)
+                apart = min(coarse / (2**mesh.order - 1), mesh.error)
+                self.reasons.append(f"{', '.join(names)}: adds {apart:.1e} to the error of the mesh")
+            shares |= dict.fromkeys(names, apart / len(names))
+        return shares
+
+    def _result(self, estimate: Estimate, seconds: float) -> Choice[S]:
+        """Return the choice, with what it and its alternatives are estimated to err and to cost."""
+        models, mesh = decide(estimate, self.tol, MOST_ELEMENTS), estimate.mesh
+        error = estimate.error(models)
+        kept = error <= self.tol * (1 + ROUNDED)
+        if self._base:
+            self.reasons.append(f"the error of {mesh.level} times the coarsest meshes is about {mesh.error:.1e}, of "
+                                f"order {mesh.order:.1f} in the length of an element")
+        stiff = [each.cable.where for each in self.free if self._is_stiff(each.cable, estimate.probes[-1])]
+        if stiff:
+            self.reasons.append(f"{', '.join(stiff)}: deforms by less than tol; a rigid or a modal body may do")
+        if not kept:
+            self.reasons.append(f"no model at hand keeps tol = {self.tol:g}: the finest is taken, which errs by about "
+                                f"{error:.1e}")
+        scene = remade(self.scene, models)
+        scene.run_settings = scene.run_settings | {"duration": self.settings.duration, "tol": self.time_tol,
+                                                   "integrator": self.integrator}
+        return Choice(scene, self.tol, self.time_tol, self.integrator, models, error, estimate.cost(models), kept,
+                      self.reasons, estimate.alternatives(models, self.tol), len(self.prober.made), seconds)
+
+    def _is_stiff(self, cable: Cable, probe: Probe[S]) -> bool:
+        """Return whether a cable moves as a rigid body does, but for a part of the tolerance."""
+        if probe.run is None or any(slide.along == cable.name for slide in self.scene.slides.values()):
+            return False
+        return deformation(probe.scene.cables[cable.name], probe.run) < self.wanted * size(
+            motion(probe.scene, probe.run))

@@ -1,0 +1,74 @@
+"""What of a scene is chosen, and what stays as it was given."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..errors import SceneError
+from ..parts.cable import Cable
+from ..parts.scene_data import SceneData
+from ..parts.settings import RunSettings
+from .candidates import Kind, Kinds, kinds_of
+from .choice import Choice
+from .chooser import Chooser
+from .estimate import Free
+from .planar import Planar, planar_of
+from .probes import S, Simulate
+from .remaking import MOST_PARTS, coarsest, remade
+
+FREE = ("unset", "all")
+"""What is chosen: what was not given, or all."""
+
+
+def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str, simulate: Simulate) -> Choice[S]:
+    """Return the models of a scene's cables for the tolerance of the settings.
+
+    quantities: names of results that count, none for the motion; free: see `FREE`; simulate: runs a scene. Raises
+    SceneError.
+    """
+    if free not in FREE:
+        raise SceneError("choose", f'free must be one of "unset" and "all", got {free!r}')
+    if settings.initial == "state":
+        raise SceneError("choose", "a state to start from fits one mesh alone", 'take initial="drawn" or "equilibrium"')
+    planar = _planar(scene, free)
+    taken = scene if planar is None or planar.scene is None else planar.scene
+    choice = Chooser(taken, settings, quantities, simulate,
+                     [_free(taken, name, scene.cables[name], free) for name in scene.cables]).choose()
+    if planar is not None:
+        choice.reasons.insert(0, str(planar))
+    return choice
+
+
+def _planar(scene: S, free: str) -> Planar[S] | None:
+    """Return the planar form of a spatial scene, or why it has none; None where elements of cables are not free.
+
+    Cables that are free are taken as beams of the structural law: which law they get is chosen later.
+    """
+    if scene.dim == 2 or not scene.cables or any(_keeps(cable, free) for cable in scene.cables.values()):
+        return None
+    models = {}
+    for name, cable in scene.cables.items():
+        kinds, elements = kinds_of(scene, cable, scene.dim), cable.given_elements or coarsest(scene, cable) or 1
+        models[name] = kinds.finest.with_elements(elements)
+    try:
+        return planar_of(remade(scene, models))
+    except SceneError as error:
+        return Planar(None, (str(error),))
+
+
+def _keeps(cable: Cable, free: str) -> bool:
+    """Return whether the element and law of a cable stay as they were given."""
+    return cable.library is not None or (free == "unset" and "element" in cable.model_fields_set)
+
+
+def _free(scene: SceneData, name: str, asked: Cable, free: str) -> Free:
+    """Return what is to be chosen of a cable of a scene; asked: the cable as the user gave it."""
+    cable = scene.cables[name]
+    given = asked.given_elements if free == "unset" else None
+    base = coarsest(scene, cable)
+    if not base and given is None:
+        raise SceneError(cable.where, f"no mesh of up to {MOST_PARTS} equal elements has nodes at all its supports",
+                         "give elements, or move a support")
+    kept = Kinds(None, Kind(cable.element, cable.law))
+    kinds = kept if _keeps(asked, free) else kinds_of(scene, cable, scene.dim)
+    return Free(cable, kinds, base, given)

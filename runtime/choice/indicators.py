@@ -1,0 +1,82 @@
+"""What a coarse run of cable elements tells of what they leave out: shear, rotary inertia, compression, deformation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..parts.cable import Cable
+from ..parts.section import GeneralSection
+from ..results.run import Run
+from .motion import along
+from .probes import S
+
+PARTS = 24
+"""Equal parts of a cable between which its curvature is differenced."""
+
+SOFTER = 0.9
+"""Of the bending stiffness: what a scene is run with, to see how much its motion depends on it."""
+
+
+def curvatures(cable: Cable, run: Run) -> np.ndarray:
+    """Return (time, place, 3): the curvature vector in 1/m at equal distances, without that of the drawn shape at rest.
+    """
+    vectors = run[f"{cable.name}.nodal_vectors"]
+    r_x, r_xx = (along(cable, vectors, PARTS, derivative) for derivative in (1, 2))
+    found = np.cross(r_x, r_xx) / np.sum(r_x * r_x, axis=-1, keepdims=True)
+    return found - found[:1] if cable.is_curved else found
+
+
+def shear_compliance(cable: Cable, run: Run) -> float:
+    """Return by how much shear and rotary inertia soften the bending of a cable, as a part of its stiffness.
+
+    The energy of shear over that of bending, ∫V²/kGA over ∫M²/EI with V = dM/ds, is what shear takes from the
+    stiffness of that deflection; rotary inertia does kG/E as much to a vibration (Timoshenko, Phil. Mag. 41 (1921)).
+    """
+    kappa = curvatures(cable, run)
+    _, shear_modulus = cable.material.lame()
+    factor = min(cable.section.shear_factors(cable.material.poisson()))
+    bending = cable.material.youngs_modulus * cable.section.second_moment_about_z
+    shear = factor * shear_modulus * cable.section.moments()[0]
+    slope = np.diff(kappa, axis=1) / (cable.length / PARTS)
+    middle = (kappa[:, 1:] + kappa[:, :-1]) / 2
+    energy = float(np.sum(middle * middle))
+    if energy == 0.0:
+        return 0.0
+    rotary = factor * shear_modulus / cable.material.youngs_modulus
+    return bending / shear * float(np.sum(slope * slope)) / energy * (1 + rotary)
+
+
+def softened(scene: S, name: str) -> S:
+    """Return a scene in which one cable, of cable elements, has `SOFTER` times its bending stiffness."""
+    made = type(scene)(gravity=scene.gravity)
+    for part in scene.parts():
+        if isinstance(part, Cable) and part.name == name:
+            I = SOFTER * part.section.second_moment_about_z
+            section = GeneralSection(area=part.section.moments()[0], second_moment_about_z=I)
+            part = Cable(**part.entries() | {"section": section})
+        made.add(part)
+    made.run_settings, made.equilibrium_settings = dict(scene.run_settings), dict(scene.equilibrium_settings)
+    return made
+
+
+def strains(cable: Cable, run: Run) -> tuple[float, float]:
+    """Return the least and the largest axial strain of a cable over a run."""
+    r_x = along(cable, run[f"{cable.name}.nodal_vectors"], PARTS, 1)
+    found = np.linalg.norm(r_x, axis=-1) - 1
+    return float(found.min()), float(found.max())
+
+
+def deformation(cable: Cable, run: Run) -> float:
+    """Return how far, in m, a point of a cable is at most from where the best rigid motion of its drawn shape has it.
+    """
+    points = along(cable, run[f"{cable.name}.nodal_vectors"])
+    drawn = points[0] - points[0].mean(axis=0)
+    worst = 0.0
+    for now in points[1:]:
+        moved = now - now.mean(axis=0)
+        u, _, vt = np.linalg.svd(drawn.T @ moved)
+        u[:, -1] *= np.sign(np.linalg.det(u @ vt)) or 1.0
+        worst = max(worst, float(np.linalg.norm(drawn @ (u @ vt) - moved, axis=-1).max()))
+    return worst
+
+

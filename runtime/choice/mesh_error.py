@@ -1,0 +1,57 @@
+"""How far a mesh is from the converged one, from the differences of meshes, each of half the element length."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+FIRST_ORDER = 1.5
+"""Order assumed of two meshes: between that of a kink under a rider, 1, and that of a smooth shape, 4."""
+
+ORDERS = 0.7, 4.0
+"""Bounds of the order that is observed: below, meshes do not yet converge; above, differences cancel by chance."""
+
+
+NEAR, FAR = 2.0, 4.0
+"""How many times as fine a mesh may be whose error is extrapolated: by an order that is seen once, and twice."""
+
+SAME = 0.7
+"""Two orders that differ by less are the same."""
+
+
+@dataclass(frozen=True)
+class MeshError:
+    """The error of a mesh of ``level`` times the coarsest number of elements, ~ level to the power of -order.
+
+    trusted: how many times as fine a mesh may be for that to hold.
+    """
+
+    level: int
+    error: float
+    order: float
+    trusted: float = NEAR
+
+    def at(self, level: float) -> float:
+        """Return the error at another level."""
+        return self.error * (self.level / level) ** self.order
+
+    def level_for(self, error: float) -> float:
+        """Return the level that has an error."""
+        return self.level * (self.error / error) ** (1 / self.order) if self.error > 0 else 0.0
+
+
+def mesh_error(levels: Sequence[int], differences: Sequence[float]) -> MeshError:
+    """Return the error of the last of some levels, from the differences of neighbours, each twice the one before.
+
+    Richardson's extrapolation: of two differences the ratio is 2 to the power of the order.
+    """
+    finite = [difference for difference in differences if np.isfinite(difference)]
+    if not finite:
+        return MeshError(levels[-1], np.inf, FIRST_ORDER)
+    ratios = np.log2(np.divide(finite[:-1], np.maximum(finite[1:], 1e-300)))
+    orders = np.clip(ratios, *ORDERS)[-2:]
+    order = float(orders[-1]) if len(orders) else FIRST_ORDER
+    steady = len(orders) > 1 and float(np.ptp(orders)) < SAME
+    return MeshError(levels[-1], finite[-1] / (2**order - 1), order, FAR if steady else NEAR)

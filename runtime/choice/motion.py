@@ -1,0 +1,90 @@
+"""The motion of a run, and other quantities, sampled at points that do not depend on its mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from ..errors import SceneError, near
+from ..kernels.libraries import kernels_of
+from ..parts.cable import Cable
+from ..parts.scene_data import SceneData
+from ..results.run import Run
+
+STATIONS = 12
+"""Equal parts of a cable, at whose ends its motion is compared: what differs between two meshes shows there."""
+
+OF_NODES = (".nodal_vectors", ".nodal_velocity", ".position", ".velocity")
+"""Ends of the names of results of a cable that depend on its mesh: they are compared at the stations."""
+
+
+def samples(scene: SceneData, run: Run, quantities: Sequence[str]) -> dict[str, np.ndarray]:
+    """Return what is compared of a run, (time, point, components) by name: without quantities the motion.
+
+    Raises SceneError for a quantity that the run has not.
+    """
+    if not quantities:
+        return {"motion": motion(scene, run)}
+    return {name: _sampled(scene, run, name) for name in quantities}
+
+
+def _sampled(scene: SceneData, run: Run, name: str) -> np.ndarray:
+    cable = scene.cables.get(name.rpartition(".")[0])
+    if cable is not None and name.endswith(OF_NODES):
+        return along(cable, run[f"{cable.name}.nodal_vectors"])
+    if name not in run:
+        raise SceneError("choose", f'there is no quantity "{name}"', near(name, list(run)))
+    return run[name].reshape(len(run.time), 1, -1)
+
+
+def motion(scene: SceneData, run: Run) -> np.ndarray:
+    """Return (time, point, 3): the stations of all cables and the origins of all bodies, in m, in the scene's order."""
+    points = [along(cable, run[f"{cable.name}.nodal_vectors"]) for cable in scene.cables.values()]
+    points += [run[f"{name}.position"][:, None] for name in scene.bodies]
+    return np.concatenate(points, axis=1)
+
+
+def along(cable: Cable, nodal_vectors: np.ndarray, parts: int = STATIONS, derivative: int = 0) -> np.ndarray:
+    """Return (time, parts + 1, 3): the centreline of a cable at equal distances, or a derivative by arc-length.
+
+    nodal_vectors: (time, node, vector, 3); derivative: 0, 1 or 2.
+    """
+    element, N = _stations(cable.library, cable.element, cable.elements, cable.length / cable.elements, parts,
+                           derivative)
+    vectors = np.concatenate([nodal_vectors[:, element], nodal_vectors[:, element + 1]], axis=2)
+    return np.einsum("pk,tpkd->tpd", N, vectors.reshape(len(nodal_vectors), parts + 1, -1, 3))
+
+
+@lru_cache(maxsize=256)
+def _stations(library: str | None, kind: str, elements: int, length: float, parts: int,
+              derivative: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return (parts + 1,) the elements at equal distances and (parts + 1, shapes) their shape functions there, or a
+    derivative of them; length: of an element.
+    """
+    kernel = getattr(kernels_of(library), f"{kind}_on_axis")
+    at = np.arange(parts + 1) / parts * elements
+    element = np.minimum((at * (1 + 1e-12)).astype(int), elements - 1)
+    return element, np.array([_shapes(kernel, length, x, derivative) for x in length * (at - element)])
+
+
+def _shapes(kernel: Callable, length: float, x: float, derivative: int) -> np.ndarray:
+    """Return the shape functions on the axis at x in an element, or a derivative of them; the second by difference,
+    of the slopes, which are polynomials of low degree.
+    """
+    if derivative < 2:
+        return kernel(length, x)[derivative]
+    d = 1e-3 * length
+    low, high = max(x - d, 0.0), min(x + d, length)
+    return (kernel(length, high)[1] - kernel(length, low)[1]) / (high - low)
+
+
+def size(exact: np.ndarray) -> float:
+    """Return the largest way of a point from its start in m, which errors are relative to."""
+    return distance(exact, exact[:1])
+
+
+def distance(one: np.ndarray, other: np.ndarray) -> float:
+    """Return the largest distance in m of two motions (time, point, 3)."""
+    return float(np.linalg.norm(one - other, axis=-1).max())

@@ -1,0 +1,111 @@
+"""Short, cheap runs of a scene with coarse models of its cables, and how far apart they are."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from ..errors import FunicularError, FunicularWarning
+from ..parts.settings import RunSettings
+from ..results.run import Run
+from ..scene_methods import SceneMethods
+from .motion import samples
+from .remaking import CableModel, remade
+
+S = TypeVar("S", bound=SceneMethods)
+
+Simulate = Callable[[S, RunSettings], Run]
+"""Runs a scene; a run that stops early raises."""
+
+RADAU, IMPLICIT = 12.0, 1.5
+"""Work of an iteration of radau, and of the other implicit methods, in evaluations of accelerations, as measured on
+pendulums and riders: three stages and a complex system, and one."""
+
+INSTANTS = 24
+"""Output times of a probe, after the start."""
+
+
+@dataclass(frozen=True)
+class Probe(Generic[S]):
+    """A run with coarse models: the scene, what is compared (time, ...) by name, CPU seconds, and steps.
+
+    run: None where the run failed, which failed tells.
+    """
+
+    models: dict[str, CableModel]
+    scene: S
+    run: Run | None
+    sampled: dict[str, np.ndarray]
+    seconds: float
+    failed: str = ""
+
+    @property
+    def work(self) -> float:
+        """Return the work of its integration, in evaluations of accelerations; by counts, that are the same each time.
+        """
+        if self.run is None:
+            return np.inf
+        report = self.run.report
+        iterations = report.get("newton_iterations", 0)
+        if report["integrator"] == "explicit":
+            return float(report["evaluations"])
+        return (RADAU if report["integrator"] == "radau" else IMPLICIT) * iterations
+
+
+class Prober(Generic[S]):
+    """Makes probes of a scene, each once, and compares them."""
+
+    def __init__(self, scene: S, settings: RunSettings, quantities: Sequence[str], simulate: Simulate):
+        """quantities: names of results; none stands for the motion."""
+        self.scene, self.settings, self.quantities, self.simulate = scene, settings, tuple(quantities), simulate
+        self.made: dict[tuple, Probe[S]] = {}
+        self.seconds = 0.0
+
+    def probe(self, models: Mapping[str, CableModel], tol: float, integrator: str,
+              change: Callable[[S], S] | None = None, label: str = "") -> Probe[S]:
+        """Return the run with these models; change: makes another scene of it, label: the name of that."""
+        key = (*sorted((name, str(model)) for name, model in models.items()), tol, integrator, label)
+        if key not in self.made:
+            self.made[key] = self._probed(dict(models), tol, integrator, change)
+        return self.made[key]
+
+    def _probed(self, models: dict[str, CableModel], tol: float, integrator: str,
+                change: Callable[[S], S] | None) -> Probe[S]:
+        begin = time.process_time()
+        scene = remade(self.scene, models)
+        if change is not None:
+            scene = change(scene)
+        settings = RunSettings(duration=self.settings.duration, tol=tol, output_step=self.settings.duration / INSTANTS,
+                               initial=self.settings.initial, integrator=integrator)
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", FunicularWarning)
+                run = self.simulate(scene, settings)
+        except FunicularError as error:
+            self.seconds += time.process_time() - begin
+            return Probe(models, scene, None, {}, time.process_time() - begin, str(error))
+        sampled = samples(scene, run, self.quantities)
+        self.seconds += time.process_time() - begin
+        return Probe(models, scene, run, sampled, run.report["time_s"]["solve_cpu"])
+
+    def difference(self, one: Probe[S], other: Probe[S]) -> float:
+        """Return how far two probes are apart: the largest distance of a quantity over its own largest change.
+
+        The change is that of the second one; infinite where one of them failed.
+        """
+        if one.run is None or other.run is None:
+            return np.inf
+        worst = 0.0
+        for name, exact in other.sampled.items():
+            found = one.sampled[name]
+            if len(found) != len(exact):  # a run that an event ended early
+                return np.inf
+            change = float(np.linalg.norm(exact - exact[:1], axis=-1).max())
+            apart = float(np.linalg.norm(found - exact, axis=-1).max())
+            worst = max(worst, apart / change if change > 0 else 0.0)
+        return worst

@@ -1,0 +1,177 @@
+"""Runs of tests/benchmarks/model_choice.py, each made once: references, and every model by brute force, in a cache.
+
+The cache is a folder outside of the repository (--cache, by default under the user's cache folder): for each scene the
+converged motion of its finest model as .npz, and one line of JSON for each run by brute force.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+import warnings
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import funicular as fu
+import numpy as np
+from funicular.choice.motion import distance, motion, size
+from funicular.choice.remaking import CableModel, coarsest, remade
+from model_scenes import SCENES
+
+CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "funicular-benchmarks" / "model_choice"
+TIMES = 20
+TOLS = (1e-2, 1e-3, 1e-4)
+INTEGRATORS = ("genalpha", "radau", "explicit")
+MESHES = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
+"""Elements of each cable, in units of the coarsest mesh that has nodes at all supports."""
+
+KINDS = {3: (("cable12", "engineering_exact"), ("cable12", "engineering_exact_reduced"),
+             ("cable18", "engineering_exact"), ("beam24", "structural")),
+         2: (("cable8p", "engineering_exact"), ("cable8p", "engineering_exact_reduced"), ("beam12p", "structural"))}
+FINEST = {3: (("beam24", "structural"), ("cable12", "engineering_exact")),
+          2: (("beam12p", "structural"), ("cable8p", "engineering_exact"))}
+"""The finest model comes first; the others stand for sections that it does not take."""
+
+REFERENCE_MESHES = {"beam24": (16, 32, 64), "beam12p": (16, 32, 64, 128), "cable12": (32, 64, 128, 256),
+                    "cable8p": (32, 64, 128, 256)}
+CONVERGED = 1e-5
+"""Of the motion: where two meshes of a reference agree so well, no finer one is run."""
+
+MOST_SECONDS = 1.0
+"""CPU time of a run by brute force from which on no finer mesh of that model is tried."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One run by brute force: its model, its time tolerance, its error over the motion and its cost in s of CPU."""
+
+    element: str
+    law: str
+    mesh: int
+    integrator: str
+    tol: float
+    error: float
+    cpu: float
+    set_up: float
+    failed: str = ""
+
+
+def models(scene: fu.Scene, element: str, law: str, mesh: int) -> dict[str, CableModel]:
+    """One model for all cables of a scene."""
+    return {name: CableModel(element, law, mesh * coarsest(scene, cable)) for name, cable in scene.cables.items()}
+
+
+def simulate(name: str, chosen: dict[str, CableModel] | None, **settings) -> fu.Run:
+    """A run of a scene with these models of its cables."""
+    subject = SCENES[name]
+    scene = subject.make()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        scene = scene if chosen is None else remade(scene, chosen)
+        return scene.run(subject.duration, output_step=subject.duration / TIMES, initial=subject.initial,
+                         **{"progress": False} | settings)
+
+
+def kinds(name: str, wanted: dict) -> list[tuple[str, str]]:
+    """Those elements and laws that the cables of a scene can have."""
+    scene, able = SCENES[name].make(), []
+    for element, law in wanted[scene.dim]:
+        try:
+            remade(scene, models(scene, element, law, 4))
+        except fu.SceneError:
+            continue
+        able.append((element, law))
+    return able
+
+
+def reference(name: str, cache: Path = CACHE) -> tuple[np.ndarray, float, str]:
+    """The converged motion of the finest model, how far it is converged, and what model that is."""
+    path = cache / f"{name}.npz"
+    if not path.exists():
+        exact, converged, label = _reference(name)
+        cache.mkdir(parents=True, exist_ok=True)
+        np.savez_compressed(path, motion=exact, converged=converged, model=label)
+    held = np.load(path)
+    return held["motion"], float(held["converged"]), str(held["model"])
+
+
+def _reference(name: str) -> tuple[np.ndarray, float, str]:
+    element, law = kinds(name, FINEST)[0]
+    before, converged = None, np.inf
+    for mesh in REFERENCE_MESHES[element]:
+        made = models(SCENES[name].make(), element, law, mesh)
+        run = simulate(name, made, tol=1e-6)
+        exact = motion(run.scene, run)
+        if before is not None:
+            converged = distance(before, exact) / size(exact)
+        print(f"{name}: {mesh} {element} {law}: {converged:.1e}, {run.report['time_s']['total']:.1f} s", flush=True)
+        if converged < CONVERGED or run.report["time_s"]["total"] > 60:
+            break
+        before = exact
+    return exact, converged, f"{mesh} {element}, {law}"
+
+
+def known_cells(name: str, cache: Path = CACHE) -> dict[tuple, Cell]:
+    """The runs by brute force that the cache has, by their model, integrator and tolerance."""
+    path = cache / f"{name}.jsonl"
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    cells = [Cell(**json.loads(line)) for line in lines]
+    return {(cell.element, cell.law, cell.mesh, cell.integrator, cell.tol): cell for cell in cells}
+
+
+def brute_force(name: str, cache: Path = CACHE) -> Iterator[Cell]:
+    """Models at every tolerance, from the cache or computed: meshes from coarse to fine, until one keeps the tolerance
+    or costs more than the cheapest that does.
+    """
+    exact = reference(name, cache)[0]
+    path = cache / f"{name}.jsonl"
+    known = known_cells(name, cache)
+    for tol in TOLS:
+        cheapest = np.inf
+        for element, law in kinds(name, KINDS):
+            for integrator in INTEGRATORS:
+                for mesh in MESHES:
+                    key = element, law, mesh, integrator, tol
+                    if key not in known:
+                        known[key] = measured(name, exact, *key)
+                        with path.open("a", encoding="utf-8") as file:
+                            file.write(json.dumps(asdict(known[key])) + "\n")
+                    cell = known[key]
+                    yield cell
+                    if cell.error <= tol:
+                        cheapest = min(cheapest, cell.cpu)
+                        break
+                    if cell.cpu > min(1.5 * cheapest, MOST_SECONDS):  # times of short runs scatter
+                        break
+
+
+class Stopwatch:
+    """Ends a run that takes more than twice `MOST_SECONDS`."""
+
+    def __init__(self):
+        self.begin = time.process_time()
+
+    def __call__(self, reached: float) -> None:
+        if time.process_time() - self.begin > 2 * MOST_SECONDS:
+            raise TimeoutError(f"more than {2 * MOST_SECONDS:g} s")
+
+
+def measured(name: str, exact: np.ndarray, element: str, law: str, mesh: int, integrator: str, tol: float) -> Cell:
+    """One run by brute force; a short one is repeated, and the shortest time counts."""
+    cost = set_up = np.inf
+    try:
+        for _ in range(3):
+            run = simulate(name, models(SCENES[name].make(), element, law, mesh), tol=tol, integrator=integrator,
+                           progress=Stopwatch())
+            cost = min(cost, run.report["time_s"]["solve_cpu"])
+            set_up = min(set_up, run.report["time_s"]["set_up"])
+            if cost > 0.1:
+                break
+    except TimeoutError as error:
+        return Cell(element, law, mesh, integrator, tol, float("nan"), 2 * MOST_SECONDS, 0.0, str(error))
+    except fu.FunicularError as error:
+        return Cell(element, law, mesh, integrator, tol, float("nan"), 0.0, 0.0, str(error)[:200])
+    error = distance(motion(run.scene, run), exact) / size(exact)
+    return Cell(element, law, mesh, integrator, tol, error, cost, set_up)

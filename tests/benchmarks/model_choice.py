@@ -1,0 +1,107 @@
+"""How true the choice of a model is to its tolerance, and what it costs: every scene of model_scenes.py with every tol.
+
+    python tests/benchmarks/model_choice.py [--only WORDS] [--cache DIR] [--brute-force none|cached|all]
+        [--out FILE.csv]
+
+``error/tol`` is the largest error of a motion, of stations along cables and of bodies at 20 output times, against the
+converged motion of the finest model at hand, over the largest motion and over tol; ``estimate`` is what the choice
+says of it. ``resolved`` is how far the reference itself is converged, over tol: beyond 1 the error says nothing.
+``ms`` is the CPU time of the integration, ``cheapest`` that of the cheapest model that keeps tol, found by brute force
+over elements, laws, meshes and integrators. ``choice`` is the CPU time of the choice over that of the run, set-up
+included. References and brute force are computed once and kept in the cache; the choice is made anew.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+import warnings
+from pathlib import Path
+
+import funicular as fu
+from funicular.choice.motion import distance, motion, size
+from model_cells import CACHE, TIMES, TOLS, brute_force, known_cells, reference
+from model_scenes import SCENES
+from table import parser, show
+
+REPETITIONS = 3
+LONG = 0.2
+"""CPU seconds from which on a run is not repeated."""
+
+
+def chosen(name: str, tol: float) -> fu.Choice:
+    """The choice for a scene, free in all."""
+    subject = SCENES[name]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        return subject.make().choose(tol, duration=subject.duration, initial=subject.initial, free="all")
+
+
+def simulate(name: str, choice: fu.Choice) -> tuple[fu.Run, float, float]:
+    """A run of the chosen scene, with medians of the CPU time of its integration, and of all of it."""
+    subject, solve, total = SCENES[name], [], []
+    for _ in range(REPETITIONS):
+        begin = time.process_time()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", fu.FunicularWarning)
+            run = choice.scene.run(output_step=subject.duration / TIMES, initial=subject.initial, progress=False)
+        total.append(time.process_time() - begin)
+        solve.append(run.report["time_s"]["solve_cpu"])
+        if total[-1] > LONG:
+            break
+    return run, statistics.median(solve), statistics.median(total)
+
+
+def true_error(name: str, run: fu.Run, cache: Path = CACHE) -> float:
+    """The largest error of a run over the largest motion."""
+    exact = reference(name, cache)[0]
+    return distance(motion(run.scene, run), exact) / size(exact)
+
+
+def row(name: str, tol: float, cache: Path, brute: str) -> dict:
+    """One line of the table; brute: "none", "cached" or "all" runs by brute force."""
+    choice = chosen(name, tol)
+    run, solve, total = simulate(name, choice)
+    found = {"none": lambda: (), "cached": lambda: known_cells(name, cache).values(),
+             "all": lambda: brute_force(name, cache)}[brute]()
+    keeping = [cell for cell in found if cell.tol == tol and cell.error <= tol]
+    best = min(keeping, key=lambda cell: cell.cpu, default=None)
+    models = "; ".join(dict.fromkeys(map(str, choice.models.values())))
+    return {"scene": name, "tol": tol, "error/tol": true_error(name, run, cache) / tol, "estimate": choice.error / tol,
+            "kept": choice.kept, "resolved": reference(name, cache)[1] / tol, "ms": 1e3 * solve,
+            "cheapest": 1e3 * best.cpu if best else float("nan"), "ratio": solve / best.cpu if best else float("nan"),
+            "choice": choice.seconds / total, "probes": choice.probes, "model": f"{models}, {choice.integrator}",
+            "best": f"{best.mesh} {best.element}, {best.law}, {best.integrator}" if best else "none"}
+
+
+def summary(rows: list[dict]) -> list[str]:
+    """How many cells meet each goal."""
+    true = [one for one in rows if one["resolved"] <= 1]
+    within = sum(one["error/tol"] <= 3 or (not one["kept"] and one["best"] == "none") for one in true)
+    priced = [one for one in true if one["best"] != "none"]
+    cheap = sum(one["ratio"] <= 2 for one in priced)
+    quick = sum(one["choice"] <= 0.2 for one in rows)
+    return [f"{within} of {len(true)} cells whose reference is converged within 3 tol, or said that no model keeps it",
+            f"{cheap} of {len(priced)} cells at most twice as dear as the cheapest model by brute force",
+            f"{quick} of {len(rows)} choices in at most a fifth of the run's time"]
+
+
+def main() -> None:
+    """Measure and print."""
+    options = parser(__doc__)
+    options.add_argument("--only", default="", help="scenes whose name holds this")
+    options.add_argument("--cache", type=Path, default=CACHE, help="folder of references and runs by brute force")
+    options.add_argument("--brute-force", choices=("none", "cached", "all"), default="all",
+                         help="runs of the cheapest model: none, those in the cache, all")
+    options = options.parse_args()
+    rows = []
+    for name in SCENES:
+        for tol in TOLS if options.only in name else ():
+            rows.append(row(name, tol, options.cache, options.brute_force))
+            print(f"{name}, {tol:g}: {rows[-1]['error/tol']:.2f} tol", flush=True)
+    show(rows, options.out)
+    print("\n".join(summary(rows)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,275 @@
+"""The model for a tolerance: what is chosen of cables, by what indicators, and how true the estimate is."""
+
+import funicular as fu
+import numpy as np
+import pytest
+from funicular.choice import chooser
+from funicular.choice.candidates import Kind, kinds_of
+from funicular.choice.deciding import balanced
+from funicular.choice.indicators import deformation, shear_compliance, softened
+from funicular.choice.mesh_error import mesh_error
+from funicular.choice.motion import along, distance, motion, size
+from funicular.choice.remaking import CableModel, coarsest, remade
+from model_cells import models
+from model_choice import chosen, simulate, true_error
+from model_scenes import SCENES
+from typer.testing import CliRunner
+
+RUBBER = fu.Material(youngs_modulus=2e6, poisson_ratio=0.3, density=1000)
+SQUARE = fu.Rectangle(height=0.02, width=0.02)
+
+
+def strip(**changes) -> fu.Scene:
+    """A strip of 1 m, clamped and let go from the horizontal."""
+    scene = fu.Scene()
+    scene.cable("strip", **{"start": (0, 0, 0), "end": (1, 0, 0), "section": SQUARE, "material": RUBBER} | changes)
+    scene.clamp("strip", s=0.0)
+    return scene
+
+
+# What is left out
+
+
+def test_a_scene_without_elements_is_chosen_for_when_it_runs():
+    with pytest.warns(fu.FunicularWarning, match="chosen for tol = 0.01"):
+        run = strip().run(0.1, tol=1e-2)
+    cable = run.scene.cables["strip"]
+    assert run.report["choice"]["models"] == {"strip": f"{cable.elements} {cable.element}, {cable.law}"}
+    assert run.report["messages"][0].startswith("model chosen for tol = 0.01: strip: ")
+    assert len(run["strip.position"][0]) == cable.elements + 1
+
+
+@pytest.mark.parametrize("ask", [lambda scene: scene.equilibrium(), lambda scene: scene.modes(2),
+                                 lambda scene: scene.plot()])
+def test_what_needs_elements_says_so(ask):
+    with pytest.raises(fu.SceneError, match=r'cable "strip": has no elements yet; .*scene\.choose'):
+        ask(strip())
+
+
+def test_a_file_may_leave_out_elements():
+    scene = strip(section=fu.GeneralSection(area=4e-4, second_moment_about_z=1e-8))
+    text = scene.to_toml()
+    assert "elements" not in text and "element " not in text and "law" not in text
+    again = fu.Scene.from_toml(text)
+    assert again.to_toml() == text
+    assert again.choose(1e-2, duration=0.1).models == scene.choose(1e-2, duration=0.1).models
+
+
+def test_supports_of_open_cables_stand_where_they_are_put():
+    scene = strip()
+    scene.pin("strip", s=1 / 3)
+    scene.pin("strip", s=0.5)
+    with pytest.raises(fu.SceneError, match=r"the node at s = 0.5 m is already pinned"):
+        scene.pin("strip", s=0.5)
+    assert coarsest(scene, scene.cables["strip"]) == 6
+    assert scene.choose(1e-1, duration=0.02).models["strip"].elements % 6 == 0
+
+
+def test_a_place_that_no_mesh_reaches_is_refused():
+    scene = strip()
+    scene.pin("strip", s=1 / np.pi)
+    with pytest.raises(fu.SceneError, match="no mesh of up to 1000 equal elements has nodes at all its supports"):
+        scene.choose(1e-2, duration=0.1)
+
+
+def test_what_was_given_is_kept_unless_all_is_free():
+    scene = strip(elements=5, element="cable12", strain="green")
+    assert scene.choose(1e-2, duration=0.1).models == {"strip": CableModel("cable12", "green_exact", 5)}
+    kept = strip(element="beam24", law="structural").choose(1e-2, duration=0.1)
+    assert (kept.models["strip"].element, kept.models["strip"].law) == ("beam24", "structural")
+    assert scene.choose(3e-2, duration=0.1, free="all").models["strip"].law == "engineering_exact"
+
+
+# What is refused
+
+
+@pytest.mark.parametrize(("keywords", "message"), [
+    ({"quantities": ["strip.tensoin"]}, 'there is no quantity "strip.tensoin"'),
+    ({"free": "some"}, 'free must be one of "unset" and "all"'),
+    ({"initial": "state"}, "a state to start from fits one mesh alone"),
+])
+def test_what_cannot_be_chosen_for_is_refused(keywords, message):
+    with pytest.raises(fu.SceneError, match=message):
+        strip().choose(1e-2, duration=0.1, **keywords)
+
+
+def test_a_state_of_another_run_has_a_mesh_already():
+    scene = strip()
+    run = strip(elements=4).run(0.01, tol=1e-2)
+    with pytest.raises(fu.SceneError, match="a state to start from fits one mesh alone"):
+        scene.run(0.1, model="auto", initial={"strip.position": run["strip.position"][0]})
+
+
+# Indicators
+
+
+def test_errors_of_meshes_follow_from_their_differences():
+    for order in (1.0, 2.5, 4.0):
+        errors = [3.0 * level**-order for level in (2, 4, 8)]
+        found = mesh_error([2, 4, 8], [errors[0] - errors[1], errors[1] - errors[2]])
+        assert found.order == pytest.approx(order) and found.error == pytest.approx(errors[2])
+        assert found.level_for(1e-3) == pytest.approx((3.0 / 1e-3) ** (1 / order))
+    assert mesh_error([2, 4], [np.inf]).error == np.inf
+
+
+def test_meshes_share_their_error_for_the_least_work():
+    errors, work, order, wanted = np.array([1e-3, 3e-5]), np.array([1.0, 20.0]), 2.0, 1e-4
+    longer = balanced(errors, work, order, wanted)
+    assert np.sum(errors * longer**order) == pytest.approx(wanted)
+    least = np.sum(work / longer)
+    for part in np.linspace(0.01, 0.99, 99):  # any other way to share the error
+        other = (wanted * np.array([part, 1 - part]) / errors) ** (1 / order)
+        assert np.sum(work / other) >= least * (1 - 1e-9)
+
+
+def test_shear_of_a_cantilever_under_a_force_on_its_end():
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), elements=24, element="cable8p", strain="engineering",
+                section=SQUARE, material=RUBBER)
+    scene.clamp("beam", s=0.0)
+    scene.force("beam", s=1.0, value=(0, -1e-4, 0))
+    run = scene.run(1e-3, initial="equilibrium")
+    cable, (_, G) = scene.cables["beam"], RUBBER.lame()
+    shear = SQUARE.shear_factors(0.3)[0] * G * 4e-4
+    energies = 3 * 2e6 * SQUARE.second_moment_about_z / shear  # of shear over that of bending: 3 EI / (kGA L²)
+    rotary = SQUARE.shear_factors(0.3)[0] * G / 2e6
+    assert shear_compliance(cable, run) == pytest.approx(energies * (1 + rotary), rel=2e-2)
+    softer = softened(scene, "beam").run(1e-3, initial="equilibrium")
+    assert softer["beam.position"][0, -1, 1] == pytest.approx(run["beam.position"][0, -1, 1] / 0.9, rel=1e-4)
+
+
+def test_a_rigid_motion_is_no_deformation():
+    scene = fu.Scene(gravity=(0, 0, 0))
+    cable = scene.cable("rod", start=(0, 0, 0), end=(1, 0, 0), elements=2, element="cable12", section=SQUARE,
+                        material=RUBBER, velocity=(1, 2, 3), angular_velocity=(0, 0, 1e-3))
+    assert deformation(cable, scene.run(0.5)) < 1e-7
+    fallen = strip(elements=4, element="cable12")
+    assert deformation(fallen.cables["strip"], fallen.run(0.2)) > 0.01
+
+
+def test_motions_on_different_meshes_are_of_the_same_points():
+    scene = strip(elements=4, element="cable12", points=[(0, 0, 0), (0.5, 0.1, 0.05), (1, 0, 0)], rest="straight",
+                  start=None, end=None)
+    coarse, fine = scene.run(1e-6), remade(scene, {"strip": CableModel("cable12", "green_exact", 24)}).run(1e-6)
+    assert distance(motion(coarse.scene, coarse), motion(fine.scene, fine)) < 1e-4
+    s = np.linspace(0, scene.cables["strip"].length, 13)
+    points = [scene.cables["strip"].point(at) for at in s]
+    assert np.allclose(along(scene.cables["strip"], coarse["strip.nodal_vectors"])[0], points, atol=1e-12)
+
+
+# Elements
+
+
+def kinds(scene: fu.Scene):
+    cable = next(iter(scene.cables.values()))
+    return kinds_of(scene, cable, scene.dim)
+
+
+CABLE, BEAM = Kind("cable12", "engineering_exact"), Kind("beam24", "structural")
+
+
+def test_elements_know_what_the_scene_asks_for():
+    assert (kinds(strip()).slender, kinds(strip()).finest) == (CABLE, BEAM)
+    flat = kinds(strip(section=fu.Rectangle(height=0.02, width=0.01)))
+    assert flat.slender is None and "one bending stiffness" in flat.why[0]
+    wires = kinds(strip(section=fu.GeneralSection(area=4e-4, second_moment_about_z=1e-8)))
+    assert wires.finest == CABLE and "shear_factors" in wires.why[0]
+    planar = kinds(strip(elements=2, element="cable8p"))
+    assert (planar.slender.element, planar.finest.element) == ("cable8p", "beam12p")
+
+
+def test_what_may_twist_a_cable_makes_it_a_beam():
+    twisted = strip()
+    twisted.moment("strip", s=1.0, value=(1, 0, 0))
+    held = strip()
+    held.clamp("strip", s=1.0)
+    arc = strip(points=[(0, 0, 0), (0.5, 0.2, 0), (1, 0, 0)], start=None, end=None)
+    for scene in (twisted, held, arc):
+        assert kinds(scene).slender is None and kinds(scene).finest == BEAM
+
+
+# The choice
+
+
+@pytest.mark.parametrize("tol", [1e-2, 1e-3])
+@pytest.mark.parametrize("name", ["pendulum, E 2e6", "first scene"])
+def test_errors_of_chosen_models(name, tol):
+    subject = SCENES[name]
+    fine = remade(subject.make(), models(subject.make(), "beam24", "structural", 24))
+    exact = motion(fine, fine.run(subject.duration, tol=1e-5, output_step=subject.duration / 20))
+    choice = chosen(name, tol)
+    run = simulate(name, choice)[0]
+    assert choice.kept and choice.error <= 1.01 * tol
+    assert distance(motion(run.scene, run), exact) <= 3 * tol * size(exact)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["rigid link", "stout cantilever", "mass crosses a beam", "rubber pendulum", "spin-up",
+                                  "taut cable, rider", "Princeton blade", "crane"])
+def test_errors_of_chosen_models_against_converged_ones(name, tmp_path):
+    for tol in (1e-2, 1e-3):
+        choice = chosen(name, tol)
+        assert choice.kept and choice.error <= 1.01 * tol
+        assert true_error(name, simulate(name, choice)[0], tmp_path) <= 3 * tol
+
+
+def test_what_shear_does_is_foreseen():
+    subject = SCENES["stout cantilever"]
+    runs = [remade(subject.make(), models(subject.make(), *kind, 12)).run(subject.duration, tol=1e-5)
+            for kind in (("cable8p", "engineering_exact"), ("beam12p", "structural"))]
+    slender, exact = (motion(run.scene, run) for run in runs)
+    left_out = distance(slender, exact) / size(exact)
+    choice = chosen("stout cantilever", 1e-2)
+    foreseen = next(row["error"] for row in choice.table if row["element"] == "cable8p")
+    assert 0.5 * left_out < foreseen < 4 * left_out
+    assert choice.models["beam"].element == "beam12p"
+
+
+def test_the_same_is_chosen_each_time():
+    first, second = chosen("rubber pendulum", 1e-2), chosen("rubber pendulum", 1e-2)
+    assert (first.models, first.integrator, first.time_tol) == (second.models, second.integrator, second.time_tol)
+
+
+def test_a_finer_tolerance_takes_more():
+    coarse, fine = chosen("pendulum, E 2e6", 1e-2), chosen("pendulum, E 2e6", 1e-4)
+    assert fine.models["wire"].elements > coarse.models["wire"].elements
+    assert (coarse.models["wire"].element, fine.models["wire"].element) == ("cable12", "beam24")
+
+
+def test_where_no_model_keeps_tol_it_says_so(monkeypatch):
+    monkeypatch.setattr(chooser, "MOST_ELEMENTS", 8)
+    choice = strip().choose(1e-4, duration=0.3)
+    assert not choice.kept and choice.models["strip"].elements == 8 and choice.error > 1e-4
+    assert "no model at hand keeps tol = 0.0001" in choice.reasons[-1]
+    assert "no model at hand keeps it" in choice.messages()[0]
+
+
+def test_what_a_choice_says():
+    choice = strip().choose(1e-2, duration=0.1)
+    text = str(choice)
+    assert text.startswith("Chosen for tol = 0.01: strip: ") and "short runs" in text
+    assert sum(line.startswith("* ") for line in text.splitlines()) == 1
+    assert {"cable", "element", "law", "elements", "error", "cost_s", "chosen", "why"} == set(choice.table[0])
+    assert all(row["error"] > 1e-2 for row in choice.table if row["why"] == "errs by more than the tolerance")
+
+
+def test_quantities_of_two_units():
+    scene = fu.load_scene("paper51")
+    choice = scene.choose(5e-2, duration=0.2, free="all", quantities=["A.velocity", "trolley.s", "wire.position"])
+    assert choice.kept and choice.models["wire"].elements < 30
+
+
+def test_command_line(tmp_path):
+    out, text = tmp_path / "chosen.toml", tmp_path / "open.toml"
+    text.write_text(strip().to_toml() + "\n[run]\nduration = 0.1\n")
+    result = CliRunner().invoke(_app(), ["choose", str(text), "--tol", "1e-2", "-o", str(out)])
+    assert result.exit_code == 0 and "Chosen for tol = 0.01" in result.stdout
+    scene = fu.load_scene(out)
+    assert scene.cables["strip"].elements > 0 and scene.run_settings["duration"] == 0.1
+    scene.run()
+
+
+def _app():
+    from funicular.cli import app
+
+    return app
