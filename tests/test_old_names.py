@@ -99,6 +99,6 @@ def test_names_of_results():
 
 
 def test_the_package_completes_its_interface_alone():
-    lazy = {"Equilibrium", "InitialState", "Modes"}
+    lazy = {"Choice", "Equilibrium", "InitialState", "Modes"}
     assert {name for name in dir(fu) if not name.startswith("__")} == {*fu.__all__, *lazy} - {"__version__"}
     assert all(hasattr(fu, name) for name in dir(fu))
