@@ -74,7 +74,10 @@ def test_a_place_that_no_mesh_reaches_is_refused():
 
 def test_what_was_given_is_kept_unless_all_is_free():
     scene = strip(elements=5, element="cable12", strain="green")
-    assert scene.choose(1e-2, duration=0.1).models == {"strip": CableModel("cable12", "green_exact", 5)}
+    choice = scene.choose(1e-2, duration=0.1)
+    assert choice.models == {"strip": CableModel("cable12", "green_exact", 5)}
+    assert "its error not estimated" in choice.messages()[0] and choice.facts()["given"] == ["strip"]
+    assert any("the error of its mesh is not estimated" in reason for reason in choice.reasons)
     kept = strip(element="beam24", law="structural").choose(1e-2, duration=0.1)
     assert (kept.models["strip"].element, kept.models["strip"].law) == ("beam24", "structural")
     assert scene.choose(3e-2, duration=0.1, free="all").models["strip"].law == "engineering_exact"
@@ -257,6 +260,17 @@ def test_quantities_of_two_units():
     scene = fu.load_scene("paper51")
     choice = scene.choose(5e-2, duration=0.2, free="all", quantities=["A.velocity", "trolley.s", "wire.position"])
     assert choice.kept and choice.models["wire"].elements < 30
+
+
+def test_a_scene_without_cables_and_one_that_an_event_stops():
+    scene = fu.Scene()
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(0, 0, 0))
+    choice = scene.choose(1e-3, duration=0.1)
+    assert choice.kept and choice.models == {} and "no cables" in str(choice)
+    falling = strip()
+    falling.event("low", quantity="strip.position.y", s=1.0, value=-0.03, direction="falling", action="stop")
+    run = falling.run(0.3, tol=1e-2, model="auto")
+    assert run.status == "event" and run["strip.position"][-1, -1, 1] == pytest.approx(-0.03, abs=1e-3)
 
 
 def test_command_line(tmp_path):

@@ -41,5 +41,7 @@ def _free(scene: SceneData, cable: Cable, free: str) -> Free:
         raise SceneError(cable.where, f"no mesh of up to {MOST_PARTS} equal elements has nodes at all its supports",
                          "give elements, or move a support")
     keeps = cable.library is not None or (free == "unset" and "element" in cable.model_fields_set)
-    kinds = Kinds(None, Kind(cable.element, cable.law)) if keeps else kinds_of(scene, cable, scene.dim)
-    return Free(cable, kinds, base, given)
+    if keeps:
+        why = (f"{cable.element}, {cable.law} as given: what that leaves out is not estimated",)
+        return Free(cable, Kinds(None, Kind(cable.element, cable.law), why), base, given, keeps)
+    return Free(cable, kinds_of(scene, cable, scene.dim), base, given)
