@@ -226,10 +226,10 @@ class Scene(Viewable, SceneMethods):
     def _chosen_for(self, settings: RunSettings) -> Choice[Self] | None:
         """Return the choice where a run needs one: where that is asked for, or elements were left out; else None."""
         if settings.model == "auto":
-            return self._choose(settings, (), "unset")
+            return self._choose(settings, settings.quantities or (), "unset")
         if not any(cable.is_open for cable in self.cables.values()):
             return None
-        chosen = self._choose(settings, (), "unset")
+        chosen = self._choose(settings, settings.quantities or (), "unset")
         warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=3)  # which nobody has asked for
         return chosen
 

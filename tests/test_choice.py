@@ -30,6 +30,20 @@ def strip(**changes) -> fu.Scene:
 # What is left out
 
 
+def test_a_scene_that_stays_in_its_plane_is_chosen_planar():
+    choice = strip().choose(1e-2, duration=0.1)
+    assert choice.scene.dim == 2
+    said = "the scene stays in the plane z = 0"
+    assert choice.reasons[0].startswith(said) and choice.messages()[1].startswith(said)
+    pushed = strip()
+    pushed.force("strip", s=1.0, value=(0, 0, 0.01))
+    spatial = pushed.choose(1e-2, duration=0.1)
+    assert spatial.scene.dim == 3 and len(spatial.messages()) == 1
+    assert "leaves the plane z = 0" in spatial.reasons[0]
+    given = strip(element="cable12").choose(1e-2, duration=0.1)
+    assert given.models["strip"].element == "cable12"
+
+
 def test_a_scene_without_elements_is_chosen_for_when_it_runs():
     with pytest.warns(fu.FunicularWarning, match="chosen for tol = 0.01"):
         run = strip().run(0.1, tol=1e-2)
@@ -74,7 +88,10 @@ def test_a_place_that_no_mesh_reaches_is_refused():
 
 def test_what_was_given_is_kept_unless_all_is_free():
     scene = strip(elements=5, element="cable12", strain="green")
-    assert scene.choose(1e-2, duration=0.1).models == {"strip": CableModel("cable12", "green_exact", 5)}
+    choice = scene.choose(1e-2, duration=0.1)
+    assert choice.models == {"strip": CableModel("cable12", "green_exact", 5)}
+    assert "its error not estimated" in choice.messages()[0] and choice.facts()["given"] == ["strip"]
+    assert any("the error of its mesh is not estimated" in reason for reason in choice.reasons)
     kept = strip(element="beam24", law="structural").choose(1e-2, duration=0.1)
     assert (kept.models["strip"].element, kept.models["strip"].law) == ("beam24", "structural")
     assert scene.choose(3e-2, duration=0.1, free="all").models["strip"].law == "engineering_exact"
@@ -233,7 +250,7 @@ def test_the_same_is_chosen_each_time():
 def test_a_finer_tolerance_takes_more():
     coarse, fine = chosen("pendulum, E 2e6", 1e-2), chosen("pendulum, E 2e6", 1e-4)
     assert fine.models["wire"].elements > coarse.models["wire"].elements
-    assert (coarse.models["wire"].element, fine.models["wire"].element) == ("cable12", "beam24")
+    assert (coarse.models["wire"].element, fine.models["wire"].element) == ("cable8p", "beam12p")  # it stays in its plane
 
 
 def test_where_no_model_keeps_tol_it_says_so(monkeypatch):
@@ -257,6 +274,17 @@ def test_quantities_of_two_units():
     scene = fu.load_scene("paper51")
     choice = scene.choose(5e-2, duration=0.2, free="all", quantities=["A.velocity", "trolley.s", "wire.position"])
     assert choice.kept and choice.models["wire"].elements < 30
+
+
+def test_a_scene_without_cables_and_one_that_an_event_stops():
+    scene = fu.Scene()
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(0, 0, 0))
+    choice = scene.choose(1e-3, duration=0.1)
+    assert choice.kept and choice.models == {} and "no cables" in str(choice)
+    falling = strip()
+    falling.event("low", quantity="strip.position.y", s=1.0, value=-0.03, direction="falling", action="stop")
+    run = falling.run(0.3, tol=1e-2, model="auto")
+    assert run.status == "event" and run["strip.position"][-1, -1, 1] == pytest.approx(-0.03, abs=1e-3)
 
 
 def test_command_line(tmp_path):

@@ -99,6 +99,7 @@ def test_names_of_results():
 
 
 def test_the_package_completes_its_interface_alone():
-    lazy = {"Equilibrium", "InitialState", "LogUniform", "Modes", "Uniform", "load_sweep", "sweep", "sweep_cost"}
+    lazy = {"Choice", "Equilibrium", "InitialState", "LogUniform", "Modes", "Uniform", "load_sweep", "sweep",
+            "sweep_cost"}
     assert {name for name in dir(fu) if not name.startswith("__")} == {*fu.__all__, *lazy} - {"__version__"}
     assert all(hasattr(fu, name) for name in dir(fu))

@@ -35,7 +35,8 @@ class Choice(Generic[S]):
     tolerance asked for; time_tol: that of the integrator; models: by cable; kept: whether the
     estimate says that the tolerance is kept; error: the estimate, over the largest change of a quantity; cost: the CPU
     seconds that a run is estimated to take; reasons: why, in sentences; table: the alternatives; probes: how many short
-    runs that took, seconds: their CPU time with all else.
+    runs that took, seconds: their CPU time with all else; given: cables whose element or mesh was given: what these err
+    by is not in the estimate; planar: what is said of a spatial scene that was chosen planar, else empty.
     """
 
     scene: S
@@ -50,6 +51,8 @@ class Choice(Generic[S]):
     alternatives: list[Alternative] = field(default_factory=list)
     probes: int = 0
     seconds: float = 0.0
+    given: list[str] = field(default_factory=list)
+    planar: str = ""
 
     @property
     def table(self) -> list[dict[str, Any]]:
@@ -63,14 +66,15 @@ class Choice(Generic[S]):
     def messages(self) -> list[str]:
         """Return what the messages of a run say of the choice."""
         kept = "" if self.kept else f"; no model at hand keeps it, the estimate is {self.error:.1e}"
-        return [f"model chosen {self.heading}{kept}"]
+        given = f"; what was given of {', '.join(self.given)} is kept, its error not estimated" if self.given else ""
+        return [f"model chosen {self.heading}{kept}{given}", *([self.planar] if self.planar else [])]
 
     def facts(self) -> dict[str, Any]:
         """Return what the report of a run says of the choice."""
         return {"tol": self.tol, "integrator": self.integrator, "error": self.error, "cost_s": self.cost,
                 "kept": self.kept, "models": {name: str(model) for name, model in self.models.items()},
                 "reasons": list(self.reasons), "alternatives": self.table, "probes": self.probes,
-                "seconds": self.seconds}
+                "seconds": self.seconds, "given": list(self.given)}
 
     @property
     def heading(self) -> str:

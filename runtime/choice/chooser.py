@@ -174,6 +174,9 @@ class Chooser(Generic[S]):
         for each in self.free:
             name, kinds = each.cable.name, each.kinds
             self.reasons += [f"{each.cable.where}: {why}" for why in kinds.why]
+            if each.fixed is not None:
+                self.reasons.append(f"{each.cable.where}: {each.fixed} elements as given: the error of its mesh is not "
+                                    "estimated")
             if kinds.slender is None or kinds.slender == kinds.finest:
                 continue
             probe = self.probe(level)
@@ -228,7 +231,8 @@ class Chooser(Generic[S]):
         scene.run_settings = scene.run_settings | {"duration": self.settings.duration, "tol": self.time_tol,
                                                    "integrator": self.integrator}
         return Choice(scene, self.tol, self.time_tol, self.integrator, models, error, estimate.cost(models), kept,
-                      self.reasons, estimate.alternatives(models, self.tol), len(self.prober.made), seconds)
+                      self.reasons, estimate.alternatives(models, self.tol), len(self.prober.made), seconds,
+                      [each.cable.name for each in self.free if each.fixed is not None or each.keeps])
 
     def _is_stiff(self, cable: Cable, probe: Probe[S]) -> bool:
         """Return whether a cable moves as a rigid body does, but for a part of the tolerance."""

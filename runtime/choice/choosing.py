@@ -36,6 +36,7 @@ def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str
                      [_free(taken, name, scene.cables[name], free) for name in scene.cables]).choose()
     if planar is not None:
         choice.reasons.insert(0, str(planar))
+        choice.planar = str(planar) if planar.scene is not None else ""
     return choice
 
 
@@ -69,6 +70,7 @@ def _free(scene: SceneData, name: str, asked: Cable, free: str) -> Free:
     if not base and given is None:
         raise SceneError(cable.where, f"no mesh of up to {MOST_PARTS} equal elements has nodes at all its supports",
                          "give elements, or move a support")
-    kept = Kinds(None, Kind(cable.element, cable.law))
-    kinds = kept if _keeps(asked, free) else kinds_of(scene, cable, scene.dim)
-    return Free(cable, kinds, base, given)
+    if _keeps(asked, free):
+        why = (f"{cable.element}, {cable.law} as given: what that leaves out is not estimated",)
+        return Free(cable, Kinds(None, Kind(cable.element, cable.law), why), base, given, True)
+    return Free(cable, kinds_of(scene, cable, scene.dim), base, given)

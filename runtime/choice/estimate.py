@@ -17,13 +17,15 @@ from .remaking import CableModel
 
 @dataclass(frozen=True)
 class Free:
-    """A cable of which something is chosen. base: elements of its coarsest mesh; fixed: those that were given, or None.
+    """A cable of which something is chosen. base: elements of its coarsest mesh; fixed: those that were given, or None;
+    keeps: whether its element was given.
     """
 
     cable: Cable
     kinds: Kinds
     base: int
     fixed: int | None
+    keeps: bool = False
 
     def model(self, kind: Kind, level: float) -> CableModel:
         """Return its model at a level of the mesh, rounded up."""
@@ -60,6 +62,8 @@ class Estimate:
     def cost(self, models: Mapping[str, CableModel]) -> float:
         """Return the CPU seconds of a run: those of the finest probe, by its elements, their work, and its steps."""
         probe = self.probes[-1]
+        if not self.free:
+            return probe.seconds
         ratio = _work(models) / _work(probe.models)
         finer = sum(model.elements for model in models.values()) / sum(m.elements for m in probe.models.values())
         return probe.seconds * ratio * finer ** self._growth()
