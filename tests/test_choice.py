@@ -250,7 +250,7 @@ def test_the_same_is_chosen_each_time():
 def test_a_finer_tolerance_takes_more():
     coarse, fine = chosen("pendulum, E 2e6", 1e-2), chosen("pendulum, E 2e6", 1e-4)
     assert fine.models["wire"].elements > coarse.models["wire"].elements
-    assert (coarse.models["wire"].element, fine.models["wire"].element) == ("cable8p", "beam12p")  # it stays in its plane
+    assert (coarse.models["wire"].element, fine.models["wire"].element) == ("cable8p", "beam12p")  # it is planar
 
 
 def test_where_no_model_keeps_tol_it_says_so(monkeypatch):
