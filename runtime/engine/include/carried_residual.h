@@ -16,7 +16,7 @@ typedef struct {
 void fu_carried_residual_take(fu_carried_residual *carried, const fu_model *model, double *scratch, long *taken);
 void fu_carried_residual_start(const fu_carried_residual *carried, const fu_model *model);
 void fu_carried_residual_correct(const fu_carried_residual *carried, const fu_model *model, double h);
-void fu_carried_residual_suspend(const fu_carried_residual *carried, const fu_model *model);
+void fu_carried_residual_note_none(const fu_carried_residual *carried, const fu_model *model);
 void fu_carried_residual_add(const fu_carried_residual *carried, fu_run *run, double scale);
 void fu_carried_residual_note(const fu_carried_residual *carried, const fu_run *run, double scale);
 void fu_carried_residual_accept(const fu_carried_residual *carried, const fu_model *model, double h);

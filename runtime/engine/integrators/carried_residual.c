@@ -9,8 +9,9 @@
  * that brings both sums back in one step: r_n+1 = e_n+1 - 2 e_n + e_n-1 of what is left in each step, e, so that the motion
  * is off by e alone, however many steps are made. (The same is done to the noise of quantisation: Schreier & Temes 2005.)
  * Equations of motion are those of the dofs and of couplings' own coordinates: of a slide, the balance along the cable. What is
- * left of a constraint is a gap of `next` alone. T is not shorter than half of the one before, or a short step to an event would make up for a long one with a large
- * force; for T > h the sums go to zero in some steps, for any T.
+ * left of a constraint is a gap of `next` alone. T is not shorter than half of the one before, or a short step to an event would
+ * make up for a long one with a large force; for T > h the sums go to zero in some steps, for any T. Steps that are solved to
+ * rounding make up for those before as well: without the force c, the impulse would go on moving positions.
  */
 #include "engine.h"
 
@@ -49,18 +50,18 @@ static double span(const fu_carried_residual *carried, double h)
     return fmax(h, SHORTER * *carried->span);
 }
 
-/* Makes the force by which a step of size h makes up for the steps before. */
+/* Makes the force by which a step of size h makes up for the steps before: its residual, unless Newton leaves something. */
 void fu_carried_residual_correct(const fu_carried_residual *carried, const fu_model *model, double h)
 {
     const double per = 1.0 / span(carried, h);
     for (int i = 0; i < size(model); ++i)
-        carried->correction[i] = -(per * carried->moment[i] + carried->impulse[i]) * per;
+        carried->left[i] = carried->correction[i] = -(per * carried->moment[i] + carried->impulse[i]) * per;
 }
 
-/* Makes up for nothing in the step to come. */
-void fu_carried_residual_suspend(const fu_carried_residual *carried, const fu_model *model)
+/* Notes that the step just made satisfies the equations of motion, without that force. */
+void fu_carried_residual_note_none(const fu_carried_residual *carried, const fu_model *model)
 {
-    memset(carried->correction, 0, sizeof(double) * (size_t)size(model));
+    memset(carried->left, 0, sizeof(double) * (size_t)size(model));
 }
 
 /* Adds it to minus the residual in run->rhs, whose equations of motion are multiplied by `scale`. */

@@ -2,10 +2,15 @@
  * through the last steps predicts, and of vibrations that it does not, which none predicts. So the next step is predicted
  * by the polynomial, of degree 0 to 2, that would have predicted the last one best; or, where velocities alone would have
  * been better, by `rest` times the last acceleration, with which the integrator goes on with its velocities.
+ *
+ * A polynomial goes over unknowns alone: dofs that are tied to them follow, those that are prescribed have `rest` times the
+ * last. Newton's method does not mend what a prediction has besides, and rounding in that, continued by polynomials, would
+ * grow without bounds.
  */
 #include "engine.h"
 
 #include "extrapolation.h"
+#include "unknowns.h"
 #include "workspace.h"
 
 #include <math.h>
@@ -49,12 +54,26 @@ static double predicted(const fu_extrapolation *past, factors f, const double *a
     return f.now * a[i] + f.before * past->before[i] + f.earlier * past->earlier[i];
 }
 
+/* Makes the accelerations of a first `next`: `rest` times those at `now`, and what unknowns change by beyond that. */
+static void predict_accelerations(const fu_extrapolation *past, fu_run *run, factors f, double rest)
+{
+    const fu_model *model = run->model;
+    const double *a = run->now.a;
+    memset(run->rhs, 0, sizeof(double) * (size_t)(model->n_band + model->n_border_dof));
+    for (int i = 0; i < model->n_dof; ++i) {
+        const int unknown = model->unknown_of_dof[i];
+        if (unknown >= 0) run->rhs[unknown] = predicted(past, f, a, i) - rest * a[i];
+    }
+    fu_spread(model, run->rhs, run->work);
+    for (int i = 0; i < model->n_dof; ++i) run->next.a[i] = rest * a[i] + run->work[i];
+}
+
 /* Makes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola. */
 void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, double h)
 {
     const fu_last_steps *last = past->last;
     const factors f = factors_of(last, (int)last->degree, rest, h);
-    for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] = predicted(past, f, run->now.a, i);
+    predict_accelerations(past, run, f, rest);
     fu_predict_own(run, h);
     if (last->steps < 2) return;
     const double bend = h * (h + last->h) / (last->h + last->h_before);
@@ -62,12 +81,13 @@ void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, doub
         run->next.s[i] += bend * (past->slope[i] - past->slope_before[i]);
 }
 
-/* Returns the sum of squares of what the prediction of `next` was off by. */
+/* Returns the sum of squares of what the prediction of the unknowns' `next` was off by. */
 static double miss(const fu_extrapolation *past, const fu_run *run, factors f)
 {
     const double *weight = run->model->weight;
     double sum = 0.0;
     for (int i = 0; i < run->model->n_dof; ++i) {
+        if (run->model->unknown_of_dof[i] < 0) continue;
         const double d = weight[i] * (run->next.a[i] - predicted(past, f, run->now.a, i));
         sum += d * d;
     }

@@ -146,8 +146,7 @@ static void predict(fu_run *run, double h)
     const workspace w = space(run);
     fu_extrapolate(&w.past, run, of_velocities(run), h);
     fu_choose_pieces(run);
-    if (fu_carries_rest(run)) fu_carried_residual_correct(&w.carried, run->model, h);
-    else fu_carried_residual_suspend(&w.carried, run->model);
+    fu_carried_residual_correct(&w.carried, run->model, h);
 }
 
 static void residual(fu_run *run, double h)
@@ -168,7 +167,10 @@ static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 1
 
 static int step(fu_run *run, double h)
 {
-    return fu_is_short(run, h) ? fu_coast(run, h) : fu_newton_step(run, &newton, h);
+    if (!fu_is_short(run, h)) return fu_newton_step(run, &newton, h);
+    const workspace w = space(run);
+    fu_carried_residual_note_none(&w.carried, run->model);
+    return fu_coast(run, h);
 }
 
 /* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has changed its
@@ -186,11 +188,9 @@ static double error(fu_run *run, double h)
 static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
-    if (fu_carries_rest(run)) {
-        fu_carried_residual_accept(&w.carried, run->model, h);
-        fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
-    } else
-        fu_extrapolation_start(&w.past);
+    fu_carried_residual_accept(&w.carried, run->model, h);
+    if (fu_carries_rest(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
+    else fu_extrapolation_start(&w.past);
     fu_account_trapezoid(run, h);
 }
 

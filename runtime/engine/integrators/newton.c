@@ -39,6 +39,7 @@ static int factor(fu_run *run, const fu_newton *method, double h)
     }
     run->factored = !info;
     run->h_factored = h;
+    run->contraction = FIRST_CONTRACTION;
     run->matrix_cost = MATRIX_COST;
     run->matrix_steps = 0;
     ++run->statistics.factorisations;
@@ -99,10 +100,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
     for (int i = 0; i < method->most_iterations; ++i) {
         method->kinematics(run, h);
         method->residual(run, h);
-        if (!run->factored) {
-            if (factor(run, method, h)) return 1;
-            run->contraction = FIRST_CONTRACTION;
-        }
+        if (!run->factored && factor(run, method, h)) return 1;
         const double begin = fu_clock();
         fu_system_solve(&run->newton, run->model->lapack, run->rhs);
         run->statistics.time_solve += fu_clock() - begin;
