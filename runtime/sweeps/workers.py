@@ -19,6 +19,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -237,9 +238,7 @@ class DaskWorkers:
                 if self._client.nthreads():
                     seen = time.monotonic()
                 elif time.monotonic() - seen > PATIENCE:
-                    raise FunicularError(f"sweep: the scheduler at {self._address} has no workers any more; start "
-                                         "some, and repeat the sweep: points that are written are not computed again"
-                                         ) from None
+                    raise self._without_workers() from None
                 continue
             while not self._ended.empty():
                 found.append(self._ended.get())
@@ -250,9 +249,25 @@ class DaskWorkers:
         """Return the results of those that have one, all fetched at once."""
         whole = [future for future in futures if future.status == "finished"]
         try:
-            return dict(zip(whole, self._client.gather(whole), strict=True))
+            return dict(zip(whole, self._gathered(whole), strict=True))
         except self._distributed.scheduler.KilledWorker:  # some were lost with their worker, and killed others
             return {future: future.result() for future in whole if future.status == "finished"}
+
+    def _gathered(self, futures: list[Any]) -> list[Done]:
+        """Return the results of futures. Raises FunicularError where those that have them are gone, and no others come.
+        """
+        fetch = partial(self._client.gather, futures, asynchronous=True)
+        while True:
+            try:
+                return self._client.sync(fetch, callback_timeout=PATIENCE)
+            except TimeoutError:
+                if not self._client.nthreads():
+                    raise self._without_workers() from None
+
+    def _without_workers(self) -> FunicularError:
+        """Return the error of a scheduler that has lost its workers."""
+        return FunicularError(f"sweep: the scheduler at {self._address} has no workers any more; start some, and repeat "
+                              "the sweep: points that are written are not computed again")
 
     def _dead(self, future: Any, batch: Batch, batches: Batches,
               lost: Callable[[Batch, str], Done]) -> list[tuple[Batch, Done]]:
