@@ -2,7 +2,7 @@
 #include "radau.h"
 
 #define VIBRATION 0.5     /* times the estimate for vibrations is what counts: errors of one are not of one sign */
-#define EMBEDDED 0.02     /* times the embedded estimate is what counts, as its order is too low */
+#define EMBEDDED 0.08     /* times the embedded estimate is what counts, as its order is too low */
 #define FED_VIBRATION 4.0 /* the same where motions, drives or friction feed vibrations: there errors grow with them */
 #define FED_EMBEDDED 0.1
 #define TURNING_VIBRATION 2.0 /* the same where bodies turn: there what vibrations lose changes the turns for good */
