@@ -3,6 +3,7 @@
 import funicular as fu
 import numpy as np
 import pytest
+from choice import simulate
 from ringing import error_of, limit_of, run_of
 from ringing_scenes import SCENES
 
@@ -75,8 +76,8 @@ def angle(one: np.ndarray, other: np.ndarray) -> float:
 @pytest.mark.parametrize("beside", [True, False], ids=["a body beside it", "alone"])
 @pytest.mark.parametrize("spin", [(30, 1, 0), (0, 0, 30)])
 def test_vibrations_that_act_on_a_turn_are_followed(spin, beside, tol):
-    """A body turns at 30 rad/s and vibrates on its spring at 316 rad/s; what radau lost of that at first turned it up to
-    74 tol too far at the end. The angle may err by tol of 2 rad, the chord of the largest turn.
+    """A body turns at 30 rad/s and vibrates on its spring at 316 rad/s. What radau lost of the vibration turned
+    the body up to 74 tol too far at the end. The angle may err by tol of 2 rad, the chord of the largest turn.
     """
     def run(**settings):
         scene = fu.Scene(gravity=(0, 0, -9.81))
@@ -137,3 +138,10 @@ def test_slides_and_components_can_be_named():
     for name in ("trolley.s", "A.position.y"):
         run = scene.run(0.3, tol=1e-3, quantities=[name], progress=False)
         assert np.abs(run["trolley.s"] - exact["trolley.s"]).max() <= 1e-3 * np.ptp(exact["trolley.s"])
+
+
+@pytest.mark.parametrize("name", ["zip line", "stick", "friction, vibrating", "follower force", "pendulum, 8, steel"])
+def test_a_looser_tolerance_costs_radau_no_more(name):
+    """Newton iterations, which are what a step costs: fewer steps may take more each, but in all at most 20 %."""
+    cost = [simulate(name, integrator="radau", tol=tol).report["newton_iterations"] for tol in (1e-1, 1e-2, 1e-3, 1e-4)]
+    assert all(looser <= 1.2 * tighter for looser, tighter in zip(cost, cost[1:], strict=False))
