@@ -1,5 +1,7 @@
 """Steps follow what counts, and no vibrations beside it: errors and numbers of steps of tests/benchmarks/ringing.py."""
 
+from itertools import pairwise
+
 import funicular as fu
 import numpy as np
 import pytest
@@ -144,4 +146,4 @@ def test_slides_and_components_can_be_named():
 def test_a_looser_tolerance_costs_radau_no_more(name):
     """Newton iterations, which are what a step costs: fewer steps may take more each, but in all at most 20 %."""
     cost = [simulate(name, integrator="radau", tol=tol).report["newton_iterations"] for tol in (1e-1, 1e-2, 1e-3, 1e-4)]
-    assert all(looser <= 1.2 * tighter for looser, tighter in zip(cost, cost[1:], strict=False))
+    assert all(looser <= 1.2 * tighter for looser, tighter in pairwise(cost))
