@@ -101,7 +101,7 @@ def set_up(make: Callable[[], Scene], clock: Clock | None = None) -> Engine:
     implausible(scene)
     drop_redundant_rows(model, engine)
     clock.lap("redundant")
-    method: Integrator = choose(settings, scene, model, engine)[0]
+    method: Integrator = choose(settings, scene, model, engine, None)[0]
     clock.lap("choice")
     engine.start(duration=RUN, output_step=OUTPUT, tol=settings.tol, step=0.0, method=method, first_step=1e-3 * RUN,
                  knots=knots(model, RUN, settings.tol))

@@ -71,6 +71,18 @@ static double embedded(fu_run *run, fu_radau_workspace *w, double h)
     return filtered(run, w, w->w);
 }
 
+/* Returns whether a body turns within the step, as a length, by more than is allowed to err. */
+static int turns(const fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
+        for (int i = body->dof + body->kernel->dim; i < body->dof + body->kernel->velocity; ++i)
+            if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > run->allowed) return 1;
+    }
+    return 0;
+}
+
 /* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the stages say of
  * it for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the method. What the same
  * filter, applied to E, takes away, V, has the right order, and is 0.55 to 2.5 times the error for every z. A part of E counts
@@ -91,7 +103,7 @@ double fu_radau_error(fu_run *run, double h)
     const double vibration = fu_error_size(run, run->work, fu_allowed_elsewhere(run));
     if (run->fixed_step > 0.0) return fmax(REPORTED * vibration, FED_EMBEDDED * all);
     if (model->n_reacting) return fmax(fmax(FED_VIBRATION * vibration, FED_EMBEDDED * all), kink(run, w, h));
-    if (model->n_bodies) return fmax((fed ? FED_VIBRATION : TURNING_VIBRATION) * vibration, TURNING_EMBEDDED * all);
+    if (turns(run, h)) return fmax((fed ? FED_VIBRATION : TURNING_VIBRATION) * vibration, TURNING_EMBEDDED * all);
     for (int i = 0; i < model->n_dof; ++i) w->w[i] = run->work[i];
     const double adding_up = (fed ? FED_VIBRATION : VIBRATION) * filtered(run, w, w->w);
     const double by_embedded = fed ? FED_EMBEDDED : EMBEDDED;
