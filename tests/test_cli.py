@@ -166,6 +166,8 @@ def test_settings_and_defaults_reach_the_engine(engine):
     assert settings.model_dump() == {
         "duration": 2.0,
         "tol": 1e-4,
+        "absolute_tol": None,
+        "quantities": None,
         "step": None,
         "output_step": 0.02,
         "integrator": "auto",

@@ -62,6 +62,12 @@ def trolley(space):
     assert run["energy.dissipated"][-1] > 0
 
 
+def named_quantities(space):
+    run = space["run"]
+    assert run.status == "completed" and run.time[-1] == pytest.approx(0.3)
+    assert any("A.position" in message and "trolley.s" in message for message in run.report["messages"])
+
+
 def events(space):
     run = space["run"]
     assert {event["name"] for event in run.events} >= {"low"}
@@ -115,6 +121,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "The model for a tolerance"): chosen_model,
               ("runtime/README.md", "Scenes"): first_scene,
               ("runtime/README.md", "Joints and springs"): trolley,
+              ("runtime/README.md", "Running a scene"): named_quantities,
               ("runtime/README.md", "Events"): events,
               ("runtime/README.md", "Sweeps"): sweeps,
               ("runtime/README.md", "See it"): pages_and_pictures,

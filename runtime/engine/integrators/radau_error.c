@@ -2,10 +2,11 @@
 #include "radau.h"
 
 #define VIBRATION 0.5     /* times the estimate for vibrations is what counts: errors of one are not of one sign */
-#define EMBEDDED 0.02     /* times the embedded estimate is what counts, as its order is too low */
-#define TURNS_EMBEDDED 0.05 /* the same where bodies turn, of which the matrix has nothing */
+#define EMBEDDED 0.08     /* times the embedded estimate is what counts, as its order is too low */
 #define FED_VIBRATION 4.0 /* the same where motions, drives or friction feed vibrations: there errors grow with them */
 #define FED_EMBEDDED 0.1
+#define TURNING_VIBRATION 2.0 /* the same where bodies turn: there what vibrations lose changes the turns for good */
+#define TURNING_EMBEDDED 0.1  /* as the matrix has nothing of turns */
 #define REPORTED 2.0      /* times the estimate for vibrations is what is told of a fixed step */
 #define ONCE 0.1          /* of all that is allowed: the error of vibrations that a step does not resolve */
 #define KINK 0.15         /* of tol: the error that one kink of friction may make */
@@ -70,6 +71,18 @@ static double embedded(fu_run *run, fu_radau_workspace *w, double h)
     return filtered(run, w, w->w);
 }
 
+/* Returns whether a body turns within the step, as a length, by more than is allowed to err. */
+static int turns(const fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
+        for (int i = body->dof + body->kernel->dim; i < body->dof + body->kernel->velocity; ++i)
+            if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > run->allowed) return 1;
+    }
+    return 0;
+}
+
 /* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the stages say of
  * it for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the method. What the same
  * filter, applied to E, takes away, V, has the right order, and is 0.55 to 2.5 times the error for every z. A part of E counts
@@ -77,7 +90,9 @@ static double embedded(fu_run *run, fu_radau_workspace *w, double h)
  *
  * Errors of steps add up, those of vibrations that a step does not resolve do not: the method damps them, so that all that can be
  * lost is what there is, once. They may be a part of all that is allowed; what adds up, which the filter leaves of E and V, may be
- * the step's share of it. Friction has kinks, which show in what the filter takes away: there all counts as adding up.
+ * the step's share of it. Friction has kinks, which show in what the filter takes away: there all counts as adding up. So it does
+ * where bodies turn: a vibration acts on a turn with the square of its size, as a torque, and one that is lost makes an error that
+ * grows with the square of the time.
  */
 double fu_radau_error(fu_run *run, double h)
 {
@@ -88,9 +103,10 @@ double fu_radau_error(fu_run *run, double h)
     const double vibration = fu_error_size(run, run->work, fu_allowed_elsewhere(run));
     if (run->fixed_step > 0.0) return fmax(REPORTED * vibration, FED_EMBEDDED * all);
     if (model->n_reacting) return fmax(fmax(FED_VIBRATION * vibration, FED_EMBEDDED * all), kink(run, w, h));
+    if (turns(run, h)) return fmax((fed ? FED_VIBRATION : TURNING_VIBRATION) * vibration, TURNING_EMBEDDED * all);
     for (int i = 0; i < model->n_dof; ++i) w->w[i] = run->work[i];
     const double adding_up = (fed ? FED_VIBRATION : VIBRATION) * filtered(run, w, w->w);
-    const double by_embedded = fed ? FED_EMBEDDED : model->n_bodies ? TURNS_EMBEDDED : EMBEDDED;
+    const double by_embedded = fed ? FED_EMBEDDED : EMBEDDED;
     const double once = vibration * run->allowed / (ONCE * fu_allowed_error(run));
     return fmax(fmax(adding_up, by_embedded * slow), once);
 }

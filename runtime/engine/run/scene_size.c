@@ -35,8 +35,9 @@ static double square_moved(const double *weight, const double *from, const doubl
     return square;
 }
 
-/* Returns how far a body has turned, as a length, m: the chord between unit vectors for the weight of the turns. A quaternion
- * turns by half the angle, and is the same attitude with its sign turned. */
+/* Returns how far a body has turned, as a length, m: the chord 2 sin(angle/2) of unit vectors times the weight of the turns. A
+ * quaternion turns by half the angle, so that the product of its distances from the other and from the other's opposite, which
+ * is the same attitude, is this chord. */
 static double turned(const fu_body *body, const double *weight, const double *from, const double *to)
 {
     const fu_body_kernels *kernel = body->kernel;
@@ -47,7 +48,7 @@ static double turned(const fu_body *body, const double *weight, const double *fr
         there += (b - a) * (b - a);
         opposite += (b + a) * (b + a);
     }
-    return largest * (kernel->dim == 3 ? 2.0 * sqrt(fmin(there, opposite)) : sqrt(there));
+    return largest * (kernel->dim == 3 ? sqrt(there * opposite) : sqrt(there));
 }
 
 /* Returns the largest distance that what tol is the error of has moved since the start, m: nodes, bodies' centres, and where

@@ -75,8 +75,10 @@ double fu_allow(fu_run *run, double h)
     const double scale = fmax(run->motion, run->least_motion);
     /* Of what is allowed until t, relative to the motion until then, a step gets the part h/t: local errors then add up
      * to tol times the logarithm of the times at most. With h/duration the first instants, in which hardly anything has
-     * moved yet, would take most of the steps. */
-    const double share = SAFETY * h / fmax(run->now.t + h, FIRST_PART * run->duration);
+     * moved yet, would take most of the steps. Of named quantities that is so only where nothing turns: turns are as large as
+     * they become within a moment, and what a step then loses of a vibration goes on growing until the end. */
+    const int turns = run->controlled != run->model->weight && run->model->n_bodies;
+    const double share = SAFETY * h / (turns ? run->duration : fmax(run->now.t + h, FIRST_PART * run->duration));
     const double allowed = fmax(fu_allowed_error(run) * fmin(1.0, run->error_overestimate * share), run->round_off);
     run->newton_tolerance = newton_tolerance(run, h, allowed, fmax(run->extent, scale));
     return run->allowed = allowed;
