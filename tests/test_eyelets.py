@@ -24,8 +24,12 @@ def cable_through(eyelet, element="cable8p", frame="point", **given):
 @pytest.mark.parametrize(("element", "frame"), [("cable8p", "point"), ("cable12", "tangent"), ("beam24", "tangent"),
                                                 ("beam24", "section")])
 def test_as_a_body_welded_to_the_ground(integrator, element, frame):
+    """With tol genalpha leaves 1e-9 of the scene's size to the steps to come, which is another 1e-9 in another scene;
+    fixed steps of scenes with slides are solved to rounding.
+    """
+    steps = {"step": 1e-3} if integrator == "genalpha" else {"tol": 1e-6}
     runs = [cable_through(eyelet, element, frame, velocity=(0.3, 0, 0)).run(
-        duration=0.1, tol=1e-6, output_step=0.02, integrator=integrator) for eyelet in (True, False)]
+        duration=0.1, output_step=0.02, integrator=integrator, **steps) for eyelet in (True, False)]
     for name in ("eye.s", "wire.position", "eye.force"):
         one, other = (run[name] for run in runs)
         np.testing.assert_allclose(one, other, atol=1e-10 * np.abs(other).max())

@@ -266,8 +266,8 @@ class DaskWorkers:
 
     def _without_workers(self) -> FunicularError:
         """Return the error of a scheduler that has lost its workers."""
-        return FunicularError(f"sweep: the scheduler at {self._address} has no workers any more; start some, and repeat "
-                              "the sweep: points that are written are not computed again")
+        return FunicularError(f"sweep: the scheduler at {self._address} has no workers any more; start some, and "
+                              "repeat the sweep: points that are written are not computed again")
 
     def _dead(self, future: Any, batch: Batch, batches: Batches,
               lost: Callable[[Batch, str], Done]) -> list[tuple[Batch, Done]]:
