@@ -104,7 +104,8 @@ double fu_radau_error(fu_run *run, double h)
     const double vibration = fu_error_size(run, run->work, fu_allowed_elsewhere(run));
     if (run->fixed_step > 0.0) return fmax(REPORTED * vibration, FED_EMBEDDED * all);
     if (model->n_reacting) return fmax(fmax(FED_VIBRATION * vibration, FED_EMBEDDED * all), kink(run, w, h));
-    if ((fed && model->n_bodies) || turns(run, h)) return fmax((fed ? FED_VIBRATION : TURNING_VIBRATION) * vibration, TURNING_EMBEDDED * all);
+    if ((fed && model->n_bodies) || turns(run, h))
+        return fmax((fed ? FED_VIBRATION : TURNING_VIBRATION) * vibration, TURNING_EMBEDDED * all);
     for (int i = 0; i < model->n_dof; ++i) w->w[i] = run->work[i];
     const double adding_up = (fed ? FED_VIBRATION : VIBRATION) * filtered(run, w, w->w);
     const double by_embedded = fed ? FED_EMBEDDED : EMBEDDED;
