@@ -7,6 +7,7 @@
 #define FED_EMBEDDED 0.1
 #define TURNING_VIBRATION 2.0 /* the same where bodies turn: there what vibrations lose changes the turns for good */
 #define TURNING_EMBEDDED 0.1  /* as the matrix has nothing of turns */
+#define TURNED 0.01       /* of what is allowed: by how much a body, as a length, turns within a step where it turns */
 #define REPORTED 2.0      /* times the estimate for vibrations is what is told of a fixed step */
 #define ONCE 0.1          /* of all that is allowed: the error of vibrations that a step does not resolve */
 #define KINK 0.15         /* of tol: the error that one kink of friction may make */
@@ -71,14 +72,14 @@ static double embedded(fu_run *run, fu_radau_workspace *w, double h)
     return filtered(run, w, w->w);
 }
 
-/* Returns whether a body turns within the step, as a length, by more than is allowed to err. */
+/* Returns whether a body turns within the step. */
 static int turns(const fu_run *run, double h)
 {
     const fu_model *model = run->model;
     for (int b = 0; b < model->n_bodies; ++b) {
         const fu_body *body = &model->bodies[b];
         for (int i = body->dof + body->kernel->dim; i < body->dof + body->kernel->velocity; ++i)
-            if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > run->allowed) return 1;
+            if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > TURNED * run->allowed) return 1;
     }
     return 0;
 }
@@ -103,7 +104,8 @@ double fu_radau_error(fu_run *run, double h)
     const double vibration = fu_error_size(run, run->work, fu_allowed_elsewhere(run));
     if (run->fixed_step > 0.0) return fmax(REPORTED * vibration, FED_EMBEDDED * all);
     if (model->n_reacting) return fmax(fmax(FED_VIBRATION * vibration, FED_EMBEDDED * all), kink(run, w, h));
-    if (turns(run, h)) return fmax((fed ? FED_VIBRATION : TURNING_VIBRATION) * vibration, TURNING_EMBEDDED * all);
+    if ((fed && model->n_bodies) || turns(run, h))
+        return fmax((fed ? FED_VIBRATION : TURNING_VIBRATION) * vibration, TURNING_EMBEDDED * all);
     for (int i = 0; i < model->n_dof; ++i) w->w[i] = run->work[i];
     const double adding_up = (fed ? FED_VIBRATION : VIBRATION) * filtered(run, w, w->w);
     const double by_embedded = fed ? FED_EMBEDDED : EMBEDDED;
