@@ -174,8 +174,7 @@ class Scene(Viewable, SceneMethods):
         written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
         killed or interrupted; results are read from the file when they are asked for. resume: go on from there, to the
         same numbers. progress: a bar (True), none (False), a bar if a terminal watches (None), or a function of the
-        time reached. estimate: whether two more runs, one of smaller steps and one of elements half as long, tell how
-        far the run is off, in ``run.report["errors"]``.
+        time reached.
 
         While it goes on the BLAS of NumPy and SciPy has one thread, in the whole process: what other threads of it
         compute meanwhile with large matrices takes longer.
@@ -195,10 +194,7 @@ class Scene(Viewable, SceneMethods):
         chosen = self._chosen_for(settings)
         scene, settings = (self, settings) if chosen is None else (chosen.scene, chosen.settings_of(settings))
         scene._check_for(settings)
-        if not isinstance(resume, bool):
-            raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
-        if resume and settings.save is None:
-            raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
+        _check_resume(resume, settings)
         run = scene._simulated(settings, state, resume, progress, chosen)
         _raise_where_stopped(run)
         if run.status == "interrupted":
@@ -415,6 +411,14 @@ def _refuse_unknown(method: str, unknown: Iterable[str], known: Collection[str])
         meant = SYNONYMS.get(name)
         raise SceneError(method, f'"{name}" is not known here',
                          f'did you mean "{meant}"?' if meant in known else near(name, known))
+
+
+def _check_resume(resume: bool, settings: RunSettings) -> None:
+    """Raise SceneError where resume is no bool, and ResultFileError where there is no file to go on from."""
+    if not isinstance(resume, bool):
+        raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
+    if resume and settings.save is None:
+        raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
 
 
 def _raise_where_stopped(run: Run) -> None:

@@ -119,25 +119,24 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
              method.name, reason, set_up)
     capacity = None if stream is None else pace.capacity
     status, changed = _start(scene, settings, model, engine, method, capacity)
+    stopped = False
     if status is None and rival is not None:
         status, lost = on_trial(engine, rival, method, settings.duration, pace.every,
                                 LongRun(model, engine, settings, watcher, on_progress), discard=stream is not None)
         if lost:
             method, reason = rival.method, f"{reason}; {lost}"
-        if lost or (stream is not None and status != "interrupted"):
+        stopped = status == "interrupted"
+        if lost or stream is not None:  # whose rows were not kept
             model, engine, watcher, _ = _prepared(scene, settings, initial)
             status, changed = _start(scene, settings, model, engine, method, capacity)
-    messages += changed.gaps
-    warned = _broken_velocities(model, changed.velocities) + velocity_jumps(scene, settings.duration)
-    warned += unresolved(scene, settings)
-    for message in warned:
-        warnings.warn(message, FunicularWarning, stacklevel=4)
-    messages += warned
+    messages += changed.gaps + _warned(_broken_velocities(model, changed.velocities)
+                                       + velocity_jumps(scene, settings.duration) + unresolved(scene, settings))
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0)
     started = time.perf_counter() - begin - set_up
     long_run = LongRun(model, engine, settings, watcher, on_progress)
-    if stream is not None and status in (None, "interrupted"):
+    if stream is not None and status is None:
         stream.start(model, engine, pace, watcher.happened, row_notes)
+    status = "interrupted" if stopped else status
     if status in (None, "running"):
         status = engine.advance(long_run, pace.every, stream)
     messages += long_run.notes()
@@ -145,15 +144,20 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     row_notes.see(engine.rows())
     messages += _controlled_alone(engine, settings)
     if status == "completed":
-        for note in [*notes(engine, settings), *trapped(scene, engine), *row_notes.notes()]:
-            messages.append(note)
-            warnings.warn(note, FunicularWarning, stacklevel=4)
+        messages += _warned([*notes(engine, settings), *trapped(scene, engine), *row_notes.notes()])
     noted = time.perf_counter() - ended
     total = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
     for message in messages:
         LOG.info("run: %s", message)
     return Simulation(model, engine, watcher, status, messages, reason, set_up, started, noted, total, cpu)
+
+
+def _warned(messages: list[str]) -> list[str]:
+    """Return messages, each of them given as a warning, too."""
+    for message in messages:
+        warnings.warn(message, FunicularWarning, stacklevel=5)
+    return messages
 
 
 def _prepared(scene: SceneData, settings: RunSettings,
