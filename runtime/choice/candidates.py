@@ -114,13 +114,16 @@ def _torsion(scene: SceneData, cable: Cable) -> str | None:
     for slide in scene.slides.values():
         if slide.frame == "section" and cable.name in (slide.along, getattr(slide.body, "on", slide.body)):
             return f'the slide "{slide.name}" turns with its section'
-    held = [clamp for clamp in scene.clamps if clamp.cable == cable.name]
-    turned = [motion for motion in scene.motions if motion.cable == cable.name and motion.rotation is not None]
-    joints = [joint for joint in scene.joints.values() if joint.joint_kind in TURNING
-              and cable.name in (joint.a.on, joint.b.on)]
-    tied = [tie for tie in scene.ties.values() if tie.rotation == "rigid" and cable.name in (tie.cable, tie.to)]
-    if turned:
+    if any(motion.cable == cable.name and motion.rotation is not None for motion in scene.motions):
         return "a support turns its section"
-    if len(held) + len(joints) + len(tied) > 1:
+    if _holds(scene, cable) > 1:
         return "it is held against twist at more than one place"
     return None
+
+
+def _holds(scene: SceneData, cable: Cable) -> int:
+    """Return at how many places a cable is held against twist: by clamps, joints, and ties of frames."""
+    places: list[set[str | None]] = [{clamp.cable} for clamp in scene.clamps]
+    places += [{joint.a.on, joint.b.on} for joint in scene.joints.values() if joint.joint_kind in TURNING]
+    places += [{tie.cable, tie.to} for tie in scene.ties.values() if tie.rotation == "rigid"]
+    return sum(cable.name in place for place in places)

@@ -93,12 +93,7 @@ def dataset_of(file: File, facts: dict[str, Any], finished: np.ndarray) -> xarra
         return xarray.Variable(dims + (() if entry.dtype.kind == "S" else entry.dims[1:]),
                                indexing.LazilyIndexedArray(array), labels)
 
-    coords: dict[str, Any] = {}
-    for name, entry in file.entries.items():
-        if not entry.in_rows:
-            fixed = file.variable(name, file.read(name))
-            coords[name] = xarray.Variable(fixed.dims, fixed.values, {"units": fixed.units,
-                                                                      "long_name": fixed.long_name})
+    coords = _fixed(file)
     for each in parameters:
         name, labels = each["name"], {"units": each["units"] or "1", "long_name": "parameter"}
         if is_grid:
@@ -108,13 +103,24 @@ def dataset_of(file: File, facts: dict[str, Any], finished: np.ndarray) -> xarra
             whole = finished.all() or each["kind"] in ("float", "str")
             coords[name] = xarray.Variable((POINT,), values.astype(KINDS[each["kind"]]) if whole else values, labels)
     given = {each["name"] for each in parameters}
-    variables = {name: lazy(name) for name, entry in file.entries.items()
-                 if entry.in_rows and name not in given and name != ROW_CHECKSUM}
+    given.add(ROW_CHECKSUM)
+    variables = {name: lazy(name) for name, entry in file.entries.items() if entry.in_rows and name not in given}
     own = [name for name in (STATUS, MESSAGE, SECONDS) if name in variables]
     ordered = [name for name in variables if name not in own] + own
     attributes = {"scene": str(file.attributes["scene"]), "method": facts["method"], "seed": facts["seed"],
                   "finished": int(finished.sum()), "funicular_sweep": int(np.asarray(file.attributes[FORMAT]).item())}
     return xarray.Dataset({name: variables[name] for name in ordered}, coords, attributes)
+
+
+def _fixed(file: File) -> dict[str, xarray.Variable]:
+    """Return what a sweep's file has once, for all points: the coordinates of results."""
+    found = {}
+    for name, entry in file.entries.items():
+        if not entry.in_rows:
+            fixed = file.variable(name, file.read(name))
+            found[name] = xarray.Variable(fixed.dims, fixed.values, {"units": fixed.units,
+                                                                     "long_name": fixed.long_name})
+    return found
 
 
 def load_sweep(path: str | os.PathLike, salvage: bool = False) -> xarray.Dataset:

@@ -124,20 +124,8 @@ class Layout:
     def _complaint(self, kept: Kept) -> str | None:
         """Return why a point does not fit in a row, None where it does."""
         for name, each in self.variables.items():
-            if name == TIME:
-                continue
-            if name not in kept.variables:
-                return f'{SWEEP}: the point has no "{name}", which the first points had'
-            shape, room = kept.variables[name].values.shape, each.shape
-            over_rows = each.dims[:1] == (ROW,)
-            if kept.variables[name].dims != tuple(TIME if dim == ROW else dim for dim in each.dims):
-                return (f'{SWEEP}: "{name}" is over {", ".join(kept.variables[name].dims) or "nothing"} here, and over '
-                        f'{", ".join(each.dims) or "nothing"} at the first points')
-            if shape[over_rows:] != room[over_rows:] or len(shape) != len(room):
-                return (f'{SWEEP}: "{name}" has the shape {shape} here, and {room} at the first points; keep what has '
-                        "one shape, or sweep in parts")
-            if over_rows and shape[0] > room[0]:
-                return f"{SWEEP}: the point has {shape[0]} output times, and the first ones had at most {room[0]}"
+            if name != TIME and (complaint := self._complaint_of(name, each, kept)) is not None:
+                return complaint
         for name in kept.variables:
             if name not in self.variables:
                 return f'{SWEEP}: the point has "{name}", which the first points had not'
@@ -147,6 +135,23 @@ class Layout:
                 return f'{SWEEP}: the point has another "{name}" than the first points; sweep in parts'
         if self.times is not None and (kept.time is None or not np.array_equal(self.times, kept.time)):
             return f"{SWEEP}: the point has other output times than the first ones; give all the same"
+        return None
+
+    @staticmethod
+    def _complaint_of(name: str, each: Slot, kept: Kept) -> str | None:
+        """Return why a variable of a point does not fit in its place, None where it does."""
+        if name not in kept.variables:
+            return f'{SWEEP}: the point has no "{name}", which the first points had'
+        shape, room = kept.variables[name].values.shape, each.shape
+        over_rows = each.dims[:1] == (ROW,)
+        if kept.variables[name].dims != tuple(TIME if dim == ROW else dim for dim in each.dims):
+            return (f'{SWEEP}: "{name}" is over {", ".join(kept.variables[name].dims) or "nothing"} here, and over '
+                    f'{", ".join(each.dims) or "nothing"} at the first points')
+        if shape[over_rows:] != room[over_rows:] or len(shape) != len(room):
+            return (f'{SWEEP}: "{name}" has the shape {shape} here, and {room} at the first points; keep what has one '
+                    "shape, or sweep in parts")
+        if over_rows and shape[0] > room[0]:
+            return f"{SWEEP}: the point has {shape[0]} output times, and the first ones had at most {room[0]}"
         return None
 
     def _fitted(self, name: str, each: Slot, kept: Kept) -> np.ndarray:
