@@ -109,6 +109,15 @@ def test_the_report_has_a_part_for_all_that_takes_time():
         assert sum(seconds[part] for part in parts) <= seconds["total"]
 
 
+def test_no_time_is_counted_twice_where_an_integrator_is_on_trial():
+    """The steps of the trial are steps of the run, not of its start; what is thrown away is of the start."""
+    scene = load_scene("paper51")
+    run = scene.run(0.5, tol=1e-4, step=None, progress=False)
+    assert "on trial" in run.report["integrator_reason"] or run.report["integrator"] == "radau"
+    seconds = run.report["time_s"]
+    assert sum(each for part, each in seconds.items() if part not in ("total", "solve_cpu")) <= seconds["total"]
+
+
 def test_vector_products_are_those_of_numpy():
     one, other = np.random.default_rng(0).normal(size=(2, 7, 4, 3))
     one[0] = 0.0

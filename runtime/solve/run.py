@@ -119,20 +119,22 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
              method.name, reason, set_up)
     capacity = None if stream is None else pace.capacity
     status, changed = _start(scene, settings, model, engine, method, capacity)
-    stopped = False
+    stopped, kept = False, 0.0
     if status is None and rival is not None:
+        kept = time.perf_counter()
         status, lost = on_trial(engine, rival, method, settings.duration, pace.every,
                                 LongRun(model, engine, settings, watcher, on_progress), discard=stream is not None)
         if lost:
             method, reason = rival.method, f"{reason}; {lost}"
-        stopped = status == "interrupted"
-        if lost or stream is not None:  # whose rows were not kept
+        stopped, kept = status == "interrupted", time.perf_counter() - kept
+        if lost or stream is not None:  # whose rows were not kept: the trial is a part of the start
+            kept = 0.0
             model, engine, watcher, _ = _prepared(scene, settings, initial)
             status, changed = _start(scene, settings, model, engine, method, capacity)
     messages += changed.gaps + _warned(_broken_velocities(model, changed.velocities)
                                        + velocity_jumps(scene, settings.duration) + unresolved(scene, settings))
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0)
-    started = time.perf_counter() - begin - set_up
+    started = time.perf_counter() - begin - set_up - kept
     long_run = LongRun(model, engine, settings, watcher, on_progress)
     if stream is not None and status is None:
         stream.start(model, engine, pace, watcher.happened, row_notes)

@@ -31,7 +31,7 @@ import exudyn_models as peer
 import funicular as fu
 import numpy as np
 from exudyn.processing import ParameterVariation
-from funicular.bench.outputs import distance, largest_change
+from funicular.results.trajectories import distance, largest_change
 from sliding import sliding_mass
 from table import arguments, show
 
