@@ -277,8 +277,8 @@ class Scene(Viewable, SceneMethods):
         """Add the errors of a run, of its steps and of its mesh, to its report; state: what it was given to start."""
         from .results.error_estimate import error_estimate  # brings SciPy
 
-        def again(parts: Iterable[Part], changes: dict[str, Any]) -> Run:
-            other = self.with_parts(parts)
+        def again(scene: Self, changes: dict[str, Any]) -> Run:
+            other = scene.copied()
             kept = {name: getattr(settings, name) for name in settings.model_fields_set - {"estimate", "save"}}
             other.run_settings = {}
             return other.run(**kept | changes | ({} if state is None else {"initial": state}), progress=False)

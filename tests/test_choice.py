@@ -8,8 +8,9 @@ from funicular.choice.candidates import Kind, kinds_of
 from funicular.choice.deciding import balanced
 from funicular.choice.indicators import deformation, shear_compliance, softened
 from funicular.choice.mesh_error import mesh_error
-from funicular.choice.motion import along, distance, motion, size
+from funicular.choice.motion import along, motion
 from funicular.choice.remaking import CableModel, coarsest, remade
+from funicular.results.trajectories import distance, largest_change
 from model_cells import models
 from model_choice import chosen, simulate, true_error
 from model_scenes import SCENES
@@ -217,7 +218,7 @@ def test_errors_of_chosen_models(name, tol):
     choice = chosen(name, tol)
     run = simulate(name, choice)[0]
     assert choice.kept and choice.error <= 1.01 * tol
-    assert distance(motion(run.scene, run), exact) <= 3 * tol * size(exact)
+    assert distance(motion(run.scene, run), exact) <= 3 * tol * largest_change(exact)
 
 
 @pytest.mark.slow
@@ -235,7 +236,7 @@ def test_what_shear_does_is_foreseen():
     runs = [remade(subject.make(), models(subject.make(), *kind, 12)).run(subject.duration, tol=1e-5)
             for kind in (("cable8p", "engineering_exact"), ("beam12p", "structural"))]
     slender, exact = (motion(run.scene, run) for run in runs)
-    left_out = distance(slender, exact) / size(exact)
+    left_out = distance(slender, exact) / largest_change(exact)
     choice = chosen("stout cantilever", 1e-2)
     foreseen = next(row["error"] for row in choice.table if row["element"] == "cable8p")
     assert 0.5 * left_out < foreseen < 4 * left_out

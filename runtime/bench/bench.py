@@ -78,8 +78,7 @@ class Mesh:
 
     def scene(self, scene: Scene) -> Scene:
         """Return the scene on this mesh. Raises SceneError, also where a support then stands on no node."""
-        made = scene.with_parts(Cable(**part.entries() | {"elements": self.elements(part)})
-                                if isinstance(part, Cable) else part for part in scene.parts())
+        made = scene.remeshed(self.elements)
         made.run_settings = {name: value for name, value in scene.run_settings.items() if name not in GRID_SETS}
         return made
 

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ..errors import SceneError
 from ..parts.part import Part
 from ..parts.scene_data import SceneData
-from ..parts.signal import Signal
+from ..parts.signal import Signal, signals_of
 
 
 def check_comes_to_rest(scene: SceneData) -> None:
     """Raise SceneError for loads and drives that change with time, and for friction that lets riders creep."""
     for part in scene.parts():
-        for name, signal in _signals(part):
+        for name, signal in _given(part):
             if not _is_constant(signal):
                 raise SceneError(part.where, f"{name} changes with time, so that the scene does not come to rest",
                                  "take the value at which it shall rest, with scene.replace")
@@ -23,18 +25,12 @@ def check_comes_to_rest(scene: SceneData) -> None:
                              'take model="stick", which holds it, or leave friction out')
 
 
-def _signals(part: Part) -> list[tuple[str, Signal]]:
-    """Return all signals of a part with their names."""
-    found = []
-    for name in type(part).model_fields:
-        value = getattr(part, name)
-        for each in value if isinstance(value, tuple | list) else (value,):
-            if isinstance(each, Signal):
-                found.append((name, each))
-            elif isinstance(each, Part):
-                found += [(f"{name}.{inner}", signal) for inner, signal in _signals(each)]
+def _given(part: Part) -> Iterator[tuple[str, Signal]]:
+    """Yield all signals of a part with their names, and what a rate of it adds up to."""
+    yield from signals_of(part)
     prescribed = getattr(part, "prescribed", None)
-    return found + ([("its drive", prescribed)] if isinstance(prescribed, Signal) else [])
+    if isinstance(prescribed, Signal):
+        yield "its drive", prescribed
 
 
 def _is_constant(signal: Signal) -> bool:

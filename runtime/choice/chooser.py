@@ -28,12 +28,13 @@ from ..errors import SceneError
 from ..integrators import AUTO
 from ..parts.cable import Cable
 from ..parts.settings import RunSettings
+from ..results.trajectories import largest_change
 from .choice import Choice
 from .deciding import ROUNDED, decide
 from .estimate import Estimate, Free
 from .indicators import SOFTER, deformation, shear_compliance, softened
 from .mesh_error import MeshError, mesh_error
-from .motion import motion, size
+from .motion import motion
 from .probes import Probe, Prober, S, Simulate
 from .remaking import remade, with_model
 
@@ -238,5 +239,5 @@ class Chooser(Generic[S]):
         """Return whether a cable moves as a rigid body does, but for a part of the tolerance."""
         if probe.run is None or any(slide.along == cable.name for slide in self.scene.slides.values()):
             return False
-        return deformation(probe.scene.cables[cable.name], probe.run) < self.wanted * size(
+        return deformation(probe.scene.cables[cable.name], probe.run) < self.wanted * largest_change(
             motion(probe.scene, probe.run))

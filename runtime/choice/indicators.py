@@ -48,15 +48,11 @@ def shear_compliance(cable: Cable, run: Run) -> float:
 
 def softened(scene: S, name: str) -> S:
     """Return a scene in which one cable, of cable elements, has `SOFTER` times its bending stiffness."""
-    made = type(scene)(gravity=scene.gravity)
-    for part in scene.parts():
-        if isinstance(part, Cable) and part.name == name:
-            I = SOFTER * part.section.second_moment_about_z
-            section = GeneralSection(area=part.section.moments()[0], second_moment_about_z=I)
-            part = Cable(**part.entries() | {"section": section})
-        made.add(part)
-    made.run_settings, made.equilibrium_settings = dict(scene.run_settings), dict(scene.equilibrium_settings)
-    return made
+    cable = scene.cables[name]
+    section = GeneralSection(area=cable.section.moments()[0],
+                             second_moment_about_z=SOFTER * cable.section.second_moment_about_z)
+    return scene.with_parts(Cable(**cable.entries() | {"section": section}) if part is cable else part
+                            for part in scene.parts())
 
 
 def strains(cable: Cable, run: Run) -> tuple[float, float]:

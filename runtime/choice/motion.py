@@ -78,13 +78,3 @@ def _shapes(kernel: Callable, length: float, x: float, derivative: int) -> np.nd
     d = 1e-3 * length
     low, high = max(x - d, 0.0), min(x + d, length)
     return (kernel(length, high)[1] - kernel(length, low)[1]) / (high - low)
-
-
-def size(exact: np.ndarray) -> float:
-    """Return the largest way of a point from its start in m, which errors are relative to."""
-    return distance(exact, exact[:1])
-
-
-def distance(one: np.ndarray, other: np.ndarray) -> float:
-    """Return the largest distance in m of two motions (time, point, 3)."""
-    return float(np.linalg.norm(one - other, axis=-1).max())

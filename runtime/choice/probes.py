@@ -13,6 +13,7 @@ import numpy as np
 from ..errors import FunicularError, FunicularWarning
 from ..parts.settings import RunSettings
 from ..results.run import Run
+from ..results.trajectories import distance, largest_change
 from ..scene_methods import SceneMethods
 from .motion import samples
 from .remaking import CableModel, remade
@@ -105,7 +106,6 @@ class Prober(Generic[S]):
             found = one.sampled[name]
             if len(found) != len(exact):  # a run that an event ended early
                 return np.inf
-            change = float(np.linalg.norm(exact - exact[:1], axis=-1).max())
-            apart = float(np.linalg.norm(found - exact, axis=-1).max())
-            worst = max(worst, apart / change if change > 0 else 0.0)
+            change = largest_change(exact)
+            worst = max(worst, distance(found, exact) / change if change > 0 else 0.0)
         return worst

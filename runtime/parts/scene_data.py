@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from copy import copy
 from typing import Any, Self
 
@@ -129,6 +129,11 @@ class SceneData:
         for part in parts:
             scene.add(part)
         return scene
+
+    def remeshed(self, elements: Callable[[Cable], int]) -> Self:
+        """Return the scene with other numbers of elements of its cables, checked as any scene is. Raises SceneError."""
+        return self.with_parts(Cable(**part.entries() | {"elements": elements(part)}) if isinstance(part, Cable)
+                               else part for part in self.parts())
 
     def copied(self) -> Self:
         """Return a scene of the same parts, to which parts can be added while this one stays as it is."""

@@ -8,7 +8,7 @@ A further form is one class with ``pieces`` and one entry in `FORMS`.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from math import pi
 from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Protocol
@@ -317,6 +317,16 @@ def signal(value: Any) -> Signal:
     if isinstance(value, Real) and not isinstance(value, bool):
         return Constant.model_validate({"constant": value})
     return part_of_table(value, "a number or a signal such as Ramp(start=0, end=1)", "form", FORMS)
+
+
+def signals_of(part: Part) -> Iterator[tuple[str, Signal]]:
+    """Yield all signals that a part is made with, those of parts in it too, each with its name."""
+    for name, value in part:
+        for each in value if isinstance(value, tuple | list) else (value,):
+            if isinstance(each, Signal):
+                yield name, each
+            elif isinstance(each, Part):
+                yield from ((f"{name}.{inner}", signal) for inner, signal in signals_of(each))
 
 
 AnySignal = Annotated[Signal, checked(signal, {"anyOf": [{"type": "number"}, tagged("signal")]})]

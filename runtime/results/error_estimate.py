@@ -9,19 +9,19 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from ..errors import FunicularError, FunicularWarning
-from ..parts.cable import Cable
-from ..parts.part import Part
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from .run import Run
 from .trajectories import default_outputs, relative, trajectory
+
+S = TypeVar("S", bound=SceneData)
 
 TIGHTER = 0.1
 """Tolerance of the runs that are compared with, over that of the run."""
@@ -52,18 +52,18 @@ class ErrorEstimate:
                 "cpu_s": self.cpu_s}
 
 
-def error_estimate(scene: SceneData, run: Run, settings: RunSettings, from_a_state: bool,
-                   again: Callable[[Iterable[Part], dict[str, Any]], Run]) -> ErrorEstimate:
+def error_estimate(scene: S, run: Run, settings: RunSettings, from_a_state: bool,
+                   again: Callable[[S, dict[str, Any]], Run]) -> ErrorEstimate:
     """Return the errors of a completed run of a scene, by two more runs.
 
     settings: those of the run; from_a_state: whether it started from a state that was given to it; again: runs a scene
-    of these parts with other settings, by name, and the others as they were.
+    with other settings, by name, and the others as they were.
     """
     found = ErrorEstimate(outputs=tuple(default_outputs(scene)))
     begin = time.process_time()
     steps = {"tol": TIGHTER * settings.tol} if settings.step is None else {"step": SHORTER * settings.step}
     motion = _motion(scene, run, found.outputs)
-    tight = _try(found, "steps", lambda: again(scene.parts(), steps))
+    tight = _try(found, "steps", lambda: scene, lambda other: again(other, steps))
     if tight is not None:
         found.time = relative(scene, motion, tight)
     if not scene.cables:
@@ -72,29 +72,26 @@ def error_estimate(scene: SceneData, run: Run, settings: RunSettings, from_a_sta
         found.messages.append("the error of the mesh is not estimated: the state that the run starts from is of this "
                               "mesh alone")
     elif tight is not None:
-        finer = _try(found, "mesh", lambda: again(halved(scene.parts()), steps))
+        finer = _try(found, "mesh", lambda: scene.remeshed(lambda cable: 2 * cable.elements),
+                     lambda other: again(other, steps))
         if finer is not None:
             found.mesh, found.both = relative(scene, tight, finer), relative(scene, motion, finer)
     found.cpu_s = time.process_time() - begin
     return found
 
 
-def halved(parts: Iterable[Part]) -> Iterator[Part]:
-    """Yield the parts, cables with every element halved."""
-    for part in parts:
-        yield Cable(**part.entries() | {"elements": 2 * part.elements}) if isinstance(part, Cable) else part
-
-
-def _try(found: ErrorEstimate, what: str, again: Callable[[], Run]) -> dict[str, np.ndarray] | None:
-    """Return the motion of another run; None where that fails, with a message."""
+def _try(found: ErrorEstimate, what: str, make: Callable[[], S],
+         again: Callable[[S], Run]) -> dict[str, np.ndarray] | None:
+    """Return the motion of a run of the scene that `make` returns; None where either fails, with a message."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)  # the run itself gives these notes
-            run = again()
+            scene = make()
+            run = again(scene)
     except FunicularError as error:
         found.messages.append(f"the error of the {what} is not estimated: {error}")
         return None
-    return _motion(run.scene, run, found.outputs)
+    return _motion(scene, run, found.outputs)
 
 
 def _motion(scene: SceneData, run: Run, outputs: tuple[str, ...]) -> dict[str, np.ndarray]:

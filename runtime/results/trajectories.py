@@ -83,12 +83,12 @@ def trajectory(scene: SceneData, run: Run, name: str) -> np.ndarray:
 
 
 def distance(found: np.ndarray, exact: np.ndarray) -> float:
-    """Return the largest distance of two trajectories (time, components), over the output times."""
-    return float(np.linalg.norm(found - exact, axis=1).max())
+    """Return the largest distance of two trajectories (..., components), over the output times, and points if any."""
+    return float(np.linalg.norm(found - exact, axis=-1).max())
 
 
 def largest_change(exact: np.ndarray) -> float:
-    """Return what errors are relative to: the largest distance of a trajectory (time, components) from its start."""
+    """Return what errors are relative to: the largest distance of a trajectory (time, ...) from its start."""
     return distance(exact, exact[:1])
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.sparse import csc_array
 
@@ -20,10 +22,16 @@ def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
     n = model.n_band + model.n_border_dof
     own = [n + k for coupling in model.couplings for k in coupling.free_coordinates]
     forces = [n + k for coupling in model.couplings if not coupling.follows_law for k in coupling.force_unknowns]
-    between = [n + k for coupling in model.couplings if coupling.follows_law for k in coupling.force_unknowns]
     kept = np.concatenate([np.arange(n), np.array(own, dtype=int)])
     full = full.tocsr()
-    K = full[kept][:, kept]
-    if between:  # their rows are F - law(q): F = -C q
-        K = K - full[kept][:, between] @ full[between][:, kept]
+    K = without_forces(full, kept, model)
     return K.tocsc(), full[np.array(forces, dtype=int)][:, kept].tocsc()
+
+
+def without_forces(full: Any, kept: np.ndarray | slice, model: Model) -> Any:
+    """Return a matrix, sparse or an array, over the unknowns that are kept, forces between points eliminated."""
+    n = model.n_band + model.n_border_dof
+    between = [n + k for coupling in model.couplings if coupling.follows_law for k in coupling.force_unknowns]
+    own = full[kept][:, kept]
+    # their rows are F - law(q): F = -C q
+    return own - full[kept][:, between] @ full[between][:, kept] if between else own

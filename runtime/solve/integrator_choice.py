@@ -19,6 +19,7 @@ from ..model.model import Model
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..parts.slide import Slide
+from .condensation import without_forces
 
 ITERATIONS = 20
 """Of the power iteration."""
@@ -171,19 +172,12 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     matrix: Callable[[float, float, float], Any] = engine.dense_matrix if n <= DENSE else engine.matrix
     mass = matrix(1.0, 0.0, 0.0)[:n, :n]
     by_mass = np.linalg.inv(mass).dot if n <= DENSE else splu(mass.tocsc(), permc_spec="NATURAL").solve
-    stiffness = _without_forces(matrix(0.0, 0.0, 1.0), n, model)
+    stiffness = without_forces(matrix(0.0, 0.0, 1.0), slice(n), model)
     decay = 0.0
     if model.is_damped:
-        damping = _without_forces(matrix(0.0, 1.0, 1.0), n, model) - stiffness
+        damping = without_forces(matrix(0.0, 1.0, 1.0), slice(n), model) - stiffness
         decay = _largest(damping, mass, by_mass)
     return math.sqrt(_largest(stiffness, mass, by_mass)), decay
-
-
-def _without_forces(full: Any, n: int, model: Model) -> Any:
-    """Return a matrix over the first n unknowns, forces between points eliminated: their rows are F - law(q)."""
-    between = [n + k for coupling in model.couplings if coupling.follows_law for k in coupling.force_unknowns]
-    own = full[:n, :n]
-    return own - full[:n][:, between] @ full[between][:, :n] if between else own
 
 
 def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]) -> float:

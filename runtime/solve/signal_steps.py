@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
 from ..model.knots import of_pieces
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from ..parts.signal import Constant, Integral, Signal
-from ..parts.support import Rotation
+from ..parts.signal import Constant, Integral, Signal, signals_of
 from ..parts.validation import show
 
 STEPS_A_PERIOD = 8
@@ -44,20 +42,12 @@ def unresolved(scene: SceneData, settings: RunSettings) -> list[str]:
 def signals(scene: SceneData) -> Iterator[tuple[str, Signal]]:
     """Yield all signals of a scene that are not constant, each with the name of the part that it is of."""
     for part in scene.parts():
-        for _, value in part:
-            yield from ((part.where, signal) for signal in _in_field(value) if not isinstance(signal, Constant))
+        yield from ((part.where, signal) for _, signal in signals_of(part) if not isinstance(signal, Constant))
 
 
 def frequency(signal: Signal) -> float:
     """Return the frequency of the sine of a signal, Hz; 0 where it has none."""
     return signal.angular_frequency / (2 * np.pi) if signal.amplitude else 0.0
-
-
-def _in_field(value: Any) -> list[Signal]:
-    """Return the signals that a field of a part has."""
-    if isinstance(value, Rotation):
-        return [value.angle]
-    return [each for each in (value if isinstance(value, tuple) else (value,)) if isinstance(each, Signal)]
 
 
 def _error_of_integral(signal: Signal, step: float, settings: RunSettings) -> float:

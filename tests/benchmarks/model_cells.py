@@ -16,8 +16,9 @@ from pathlib import Path
 
 import funicular as fu
 import numpy as np
-from funicular.choice.motion import distance, motion, size
+from funicular.choice.motion import motion
 from funicular.choice.remaking import CableModel, coarsest, remade
+from funicular.results.trajectories import distance, largest_change
 from model_scenes import SCENES
 
 CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "funicular-benchmarks" / "model_choice"
@@ -105,7 +106,7 @@ def _reference(name: str) -> tuple[np.ndarray, float, str]:
         run = simulate(name, made, tol=1e-6)
         exact = motion(run.scene, run)
         if before is not None:
-            converged = distance(before, exact) / size(exact)
+            converged = distance(before, exact) / largest_change(exact)
         print(f"{name}: {mesh} {element} {law}: {converged:.1e}, {run.report['time_s']['total']:.1f} s", flush=True)
         if converged < CONVERGED or run.report["time_s"]["total"] > 60:
             break
@@ -173,5 +174,5 @@ def measured(name: str, exact: np.ndarray, element: str, law: str, mesh: int, in
         return Cell(element, law, mesh, integrator, tol, float("nan"), 2 * MOST_SECONDS, 0.0, str(error))
     except fu.FunicularError as error:
         return Cell(element, law, mesh, integrator, tol, float("nan"), 0.0, 0.0, str(error)[:200])
-    error = distance(motion(run.scene, run), exact) / size(exact)
+    error = distance(motion(run.scene, run), exact) / largest_change(exact)
     return Cell(element, law, mesh, integrator, tol, error, cost, set_up)

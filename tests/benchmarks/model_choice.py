@@ -19,7 +19,8 @@ import warnings
 from pathlib import Path
 
 import funicular as fu
-from funicular.choice.motion import distance, motion, size
+from funicular.choice.motion import motion
+from funicular.results.trajectories import distance, largest_change
 from model_cells import CACHE, TIMES, TOLS, brute_force, known_cells, reference
 from model_scenes import SCENES
 from table import parser, show
@@ -55,7 +56,7 @@ def simulate(name: str, choice: fu.Choice) -> tuple[fu.Run, float, float]:
 def true_error(name: str, run: fu.Run, cache: Path = CACHE) -> float:
     """The largest error of a run over the largest motion."""
     exact = reference(name, cache)[0]
-    return distance(motion(run.scene, run), exact) / size(exact)
+    return distance(motion(run.scene, run), exact) / largest_change(exact)
 
 
 def row(name: str, tol: float, cache: Path, brute: str) -> dict:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import funicular as fu
 import numpy as np
-from choice_scenes import Subject, rider, spin_up, taut
+from choice_scenes import Subject, mooring, rider, spin_up, taut
 from hard_cases import cables
 from pendulum import pendulum
 
@@ -113,17 +113,6 @@ def princeton() -> fu.Scene:
     return scene
 
 
-def hanging_chain() -> fu.Scene:
-    """A slack chain, drawn as an arc, is let go."""
-    scene = fu.Scene()
-    scene.cable("chain", curve=lambda u: (4 * u, -1.5 * np.sin(np.pi * u), 0), rest="straight", elements=10,
-                element="cable8p", section=fu.Circle(radius=0.01),
-                material=fu.Material(youngs_modulus=1e10, poisson_ratio=0.3, density=7850))
-    scene.pin("chain", s=0.0)
-    scene.pin("chain", s=scene.cables["chain"].length)
-    return scene
-
-
 SCENES = {
     "first scene": Subject(lambda: fu.load_scene("paper51"), 0.5),
     "rigid link": Subject(lambda: fu.load_scene("paper52_rigid"), 0.6),
@@ -144,6 +133,6 @@ SCENES = {
     "stout cantilever": Subject(stout, 0.1),
     "mass crosses a beam": Subject(crossing_force, 0.3),
     "Princeton blade": Subject(princeton, 0.1),
-    "chain let go": Subject(hanging_chain, 0.4),
+    "chain let go": Subject(mooring, 0.4),
     "steel and rubber": Subject(cables.steel_and_rubber, 0.4),
 }

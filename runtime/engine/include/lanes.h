@@ -6,9 +6,6 @@
 #define FU_LANES 4
 typedef double fu_lanes __attribute__((vector_size(FU_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-/* Returns n, made up to whole groups of `group`. */
-#define FU_WHOLE(n, group) (((n) + (group) - 1) / (group) * (group))
-
 #define FU_INLINE static inline __attribute__((always_inline))
 #if defined(__x86_64__) && defined(__GNUC__)
 #define FU_AVX2 __attribute__((target("avx2")))
