@@ -53,11 +53,12 @@ FU_HELPER void scatter(double *to, const fu_real *from, int n)
 
 FU_BLOCK_TARGET static void block_beam24_continuum_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real A[61];
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 61, of->A_stride);
         beam24_continuum_elastic_force(l, e, A, f);
@@ -67,13 +68,14 @@ FU_BLOCK_TARGET static void block_beam24_continuum_elastic_force(int n, const fu
 
 FU_BLOCK_TARGET static void block_beam24_continuum_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real v[24];
     fu_real A[61];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 61, of->A_stride);
@@ -84,11 +86,12 @@ FU_BLOCK_TARGET static void block_beam24_continuum_damping_force(int n, const fu
 
 FU_BLOCK_TARGET static void block_beam24_continuum_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real A[495];
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 495, of->A_stride);
         beam24_continuum_curved_elastic_force(l, e, A, f);
@@ -98,11 +101,12 @@ FU_BLOCK_TARGET static void block_beam24_continuum_curved_elastic_force(int n, c
 
 FU_BLOCK_TARGET static void block_beam24_structural_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real A[31];
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
         beam24_structural_elastic_force(l, e, A, f);
@@ -112,13 +116,14 @@ FU_BLOCK_TARGET static void block_beam24_structural_elastic_force(int n, const f
 
 FU_BLOCK_TARGET static void block_beam24_structural_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real v[24];
     fu_real A[31];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
@@ -129,11 +134,12 @@ FU_BLOCK_TARGET static void block_beam24_structural_damping_force(int n, const f
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_green_exact_elastic_force(l, e, A, f);
@@ -143,11 +149,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_green_exact_elastic_tangent(l, e, A, K);
@@ -157,13 +164,14 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_tangent(int n, con
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -174,11 +182,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_damping_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable12_green_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_green_linear_elastic_force(l, e, A, f);
@@ -188,11 +197,12 @@ FU_BLOCK_TARGET static void block_cable12_green_linear_elastic_force(int n, cons
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_engineering_exact_elastic_force(l, e, A, f);
@@ -202,11 +212,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_force(int n,
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_engineering_exact_elastic_tangent(l, e, A, K);
@@ -216,13 +227,14 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_tangent(int 
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -233,11 +245,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_damping_force(int n,
 
 FU_BLOCK_TARGET static void block_cable12_engineering_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_engineering_linear_elastic_force(l, e, A, f);
@@ -247,11 +260,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_linear_elastic_force(int n
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_green_exact_assumed_elastic_force(l, e, A, f);
@@ -261,11 +275,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_force(int 
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_green_exact_assumed_elastic_tangent(l, e, A, K);
@@ -275,11 +290,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_tangent(in
 
 FU_BLOCK_TARGET static void block_cable12_green_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_green_linear_assumed_elastic_force(l, e, A, f);
@@ -289,11 +305,12 @@ FU_BLOCK_TARGET static void block_cable12_green_linear_assumed_elastic_force(int
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_exact_assumed_elastic_force(l, e, A, f);
@@ -303,11 +320,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_forc
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_exact_assumed_elastic_tangent(l, e, A, K);
@@ -317,11 +335,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_tang
 
 FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_linear_assumed_elastic_force(l, e, A, f);
@@ -331,11 +350,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_for
 
 FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_linear_assumed_elastic_tangent(l, e, A, K);
@@ -345,11 +365,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_tan
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_green_exact_curved_elastic_force(l, e, A, f);
@@ -359,11 +380,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_force(int n
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_green_exact_curved_elastic_tangent(l, e, A, K);
@@ -373,11 +395,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_tangent(int
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_engineering_exact_curved_elastic_force(l, e, A, f);
@@ -387,11 +410,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_force
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_engineering_exact_curved_elastic_tangent(l, e, A, K);
@@ -401,11 +425,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_tange
 
 FU_BLOCK_TARGET static void block_cable18_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[2];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable18_green_exact_elastic_force(l, e, A, f);
@@ -415,13 +440,14 @@ FU_BLOCK_TARGET static void block_cable18_green_exact_elastic_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable18_green_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real v[18];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -432,11 +458,12 @@ FU_BLOCK_TARGET static void block_cable18_green_exact_damping_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable18_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[2];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable18_engineering_exact_elastic_force(l, e, A, f);
@@ -446,13 +473,14 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_elastic_force(int n,
 
 FU_BLOCK_TARGET static void block_cable18_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real v[18];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -463,11 +491,12 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_damping_force(int n,
 
 FU_BLOCK_TARGET static void block_cable18_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[3];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable18_green_exact_assumed_elastic_force(l, e, A, f);
@@ -477,11 +506,12 @@ FU_BLOCK_TARGET static void block_cable18_green_exact_assumed_elastic_force(int 
 
 FU_BLOCK_TARGET static void block_cable18_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[3];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable18_engineering_exact_assumed_elastic_force(l, e, A, f);
@@ -491,11 +521,12 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_assumed_elastic_forc
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[31];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
         beam12p_continuum_elastic_force(l, e, A, f);
@@ -505,11 +536,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_force(int n, const f
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[31];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
         beam12p_continuum_elastic_tangent(l, e, A, K);
@@ -519,13 +551,14 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_tangent(int n, const
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[31];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
@@ -536,11 +569,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_damping_force(int n, const f
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[166];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 166, of->A_stride);
         beam12p_continuum_curved_elastic_force(l, e, A, f);
@@ -550,11 +584,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_force(int n, 
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[166];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 166, of->A_stride);
         beam12p_continuum_curved_elastic_tangent(l, e, A, K);
@@ -564,11 +599,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_tangent(int n
 
 FU_BLOCK_TARGET static void block_beam12p_structural_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[15];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
         beam12p_structural_elastic_force(l, e, A, f);
@@ -578,11 +614,12 @@ FU_BLOCK_TARGET static void block_beam12p_structural_elastic_force(int n, const 
 
 FU_BLOCK_TARGET static void block_beam12p_structural_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[15];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
         beam12p_structural_elastic_tangent(l, e, A, K);
@@ -592,13 +629,14 @@ FU_BLOCK_TARGET static void block_beam12p_structural_elastic_tangent(int n, cons
 
 FU_BLOCK_TARGET static void block_beam12p_structural_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[15];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
@@ -609,11 +647,12 @@ FU_BLOCK_TARGET static void block_beam12p_structural_damping_force(int n, const 
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_green_exact_elastic_force(l, e, A, f);
@@ -623,11 +662,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_green_exact_elastic_tangent(l, e, A, K);
@@ -637,13 +677,14 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_tangent(int n, con
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real v[8];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -654,11 +695,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_damping_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable8p_green_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_green_linear_elastic_force(l, e, A, f);
@@ -668,11 +710,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_linear_elastic_force(int n, cons
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_exact_elastic_force(l, e, A, f);
@@ -682,11 +725,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_force(int n,
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_exact_elastic_tangent(l, e, A, K);
@@ -696,13 +740,14 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_tangent(int 
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real v[8];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -713,11 +758,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_damping_force(int n,
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_linear_elastic_force(l, e, A, f);
@@ -727,11 +773,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_force(int n
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_linear_elastic_tangent(l, e, A, K);
@@ -741,11 +788,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_tangent(int
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_exact_assumed_elastic_force(l, e, A, f);
@@ -755,11 +803,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_force(int 
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_exact_assumed_elastic_tangent(l, e, A, K);
@@ -769,11 +818,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_tangent(in
 
 FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_linear_assumed_elastic_force(l, e, A, f);
@@ -783,11 +833,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_force(int
 
 FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_linear_assumed_elastic_tangent(l, e, A, K);
@@ -797,11 +848,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_tangent(i
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_exact_assumed_elastic_force(l, e, A, f);
@@ -811,11 +863,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_forc
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_exact_assumed_elastic_tangent(l, e, A, K);
@@ -825,11 +878,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_tang
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_linear_assumed_elastic_force(l, e, A, f);
@@ -839,11 +893,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_for
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_linear_assumed_elastic_tangent(l, e, A, K);

@@ -101,7 +101,7 @@ class Scene(Viewable, SceneMethods):
         Raises SceneError.
         """
         values = {id(part): each for part, each in changes}
-        return self.with_parts((type(each)(**{**each.entries(), **values[id(each)]}) if id(each) in values else each
+        return self.with_parts((each.remade(values[id(each)]) if id(each) in values else each
                                 for each in self.parts()), gravity)
 
     def _part(self, part: Part | str) -> Part:

@@ -49,8 +49,8 @@ def _planar(scene: S, free: str) -> Planar[S] | None:
         return None
     models = {}
     for name, cable in scene.cables.items():
-        kinds, elements = kinds_of(scene, cable, scene.dim), cable.given_elements or coarsest(scene, cable) or 1
-        models[name] = kinds.finest.with_elements(elements)
+        elements = coarsest(scene, cable) or 1 if cable.is_open else cable.elements
+        models[name] = kinds_of(scene, cable, scene.dim).finest.with_elements(elements)
     try:
         return planar_of(remade(scene, models))
     except SceneError as error:
@@ -65,7 +65,7 @@ def _keeps(cable: Cable, free: str) -> bool:
 def _free(scene: SceneData, name: str, asked: Cable, free: str) -> Free:
     """Return what is to be chosen of a cable of a scene; asked: the cable as the user gave it."""
     cable = scene.cables[name]
-    given = asked.given_elements if free == "unset" else None
+    given = asked.elements if free == "unset" and not asked.is_open else None
     base = coarsest(scene, cable)
     if not base and given is None:
         raise SceneError(cable.where, f"no mesh of up to {MOST_PARTS} equal elements has nodes at all its supports",

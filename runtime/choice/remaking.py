@@ -48,8 +48,9 @@ def remade(scene: S, models: Mapping[str, CableModel]) -> S:
 
 def with_model(cable: Cable, model: CableModel) -> Cable:
     """Return a cable with another model. Raises SceneError where its section or shape do not suit that."""
-    given = {name: value for name, value in cable.entries().items() if name not in ("strain", "curvature", "membrane")}
-    return Cable(**given | {"element": model.element, "law": model.law, "elements": model.elements})
+    meshed = cable.with_elements(model.elements)
+    given = {name: value for name, value in meshed.entries().items() if name not in ("strain", "curvature", "membrane")}
+    return Cable(**given | {"element": model.element, "law": model.law})
 
 
 def coarsest(scene: SceneData, cable: Cable) -> int:

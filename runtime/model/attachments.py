@@ -55,8 +55,8 @@ class AttachmentBuilder:
     def element(self, cable: str, s: float) -> tuple[int, float]:
         """Return the element that s is in, and x in it."""
         model = self.cables[self.cable_index[cable]]
-        element = min(max(int(s // model.length), 0), model.n_elements - 1)
-        return element, s - element * model.length
+        element = int(model.mesh.element_at(s))
+        return element, s - model.mesh.start(element)
 
     def model(self, attachment: Attachment, axes: np.ndarray | None = None,
               up: tuple[float, ...] | np.ndarray | None = None) -> AttachmentModel:
@@ -80,9 +80,10 @@ class AttachmentBuilder:
                                draws_section(self.scene.cables[attachment.on]))
         found.element, x = self.element(attachment.on, attachment.arc_length)
         model = self.cables[found.cable]
-        found.N = model.kernel("on_axis")(model.length, x)[0]
+        length = model.mesh.length(found.element)
+        found.N = model.kernel("on_axis")(length, x)[0]
         if axes is not None:
-            slopes = model.kernel("slopes")(model.length, x)
+            slopes = model.kernel("slopes")(length, x)
             found.S = np.array([slopes[k, 0] if k >= 0 else 0 * found.N for k in found.slopes])
         return found
 
@@ -99,7 +100,7 @@ class AttachmentBuilder:
                   section: bool) -> AttachmentModel:
         """Return an attachment with the frame of the section, or of the tangent with the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
-        length = self.cables[index].length
+        length = self.cables[index].mesh.mean
         mass = cable.material.density * cable.section.area * length
         director = cable.kind_of_element.director
         if up is None and not director:  # any direction does where the tangent is all that is held

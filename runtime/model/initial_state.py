@@ -149,7 +149,7 @@ def _along_spline(points: np.ndarray, cable: CableModel, drawn: Cable, name: str
     if not set(cable.vectors) <= set(orders):
         raise SceneError("initial", f'"{name}" does not say how the sections of {drawn.where} are turned',
                          f'give "{cable.name}.nodal_vectors" or "{cable.name}.nodal_velocity"')
-    s = cable.length * np.arange(cable.shape[0])
+    s = cable.mesh.node_s
     ends = "not-a-knot" if len(s) > 2 else "natural"
     spline = CubicSpline(s, points, bc_type=ends)
     return np.stack([spline(s, orders[vector]) for vector in cable.vectors], axis=1)
@@ -178,7 +178,7 @@ def _check_supports(model: Model, change: np.ndarray, does: str, unit: str) -> N
     change = change[cables]
     expected = as_supports_leave(change, model.unknown_of_dof[cables], model.combinations)
     wrong = np.abs(change - expected) * model.weight[cables]
-    if np.any(wrong > EXACT * max(cable.length * cable.n_elements for cable in model.cables)):
+    if np.any(wrong > EXACT * max(cable.mesh.total for cable in model.cables)):
         dof = int(np.argmax(wrong))
         where, k = next((node.where, k) for nodes in model.nodes.values() for k, node in enumerate(nodes)
                         if node.first <= dof < node.first + node.vectors.size)

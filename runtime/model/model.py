@@ -12,6 +12,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..kernels.libraries import kernels_of
+from ..kernels.mesh import Mesh
 from ..parts.body_shape import Shape
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
@@ -35,14 +36,16 @@ class Kernel(Protocol):
 
 @dataclass
 class CableModel:
-    """One cable: constants of its elements and where its coordinates are; A (1 or elements, constants)."""
+    """One cable: constants of its elements and where its coordinates are.
+
+    m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements, constants).
+    """
 
     name: str
     element: str
     law: str
-    n_elements: int
+    mesh: Mesh
     first: int
-    length: float
     tau: float
     mass_damping: float
     m: np.ndarray
@@ -50,6 +53,11 @@ class CableModel:
     shape: tuple[int, int, int]
     vectors: tuple[str, ...]
     library: str | None
+
+    @property
+    def n_elements(self) -> int:
+        """Return the number of its elements."""
+        return self.mesh.n_elements
 
     @property
     def coordinates(self) -> slice:
@@ -132,9 +140,13 @@ class SlideModel(CouplingModel):
 
     def place_at(self, s: float, cable: CableModel) -> None:
         """Put the slide at arc-length s (m) of its cable, on the element there; at a node the one that it is on."""
-        self.s, at = s, s / cable.length
-        if not self.element <= at <= self.element + 1:
-            self.element = min(max(int(at), 0), cable.n_elements - 1)
+        mesh, self.s = cable.mesh, s
+        if mesh.is_even:
+            at = s / mesh.mean
+            if not self.element <= at <= self.element + 1:
+                self.element = min(max(int(at), 0), cable.n_elements - 1)
+        elif not mesh.start(self.element) <= s <= mesh.start(self.element) + mesh.length(self.element):
+            self.element = int(mesh.element_at(s))
 
 
 @dataclass

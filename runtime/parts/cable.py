@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
@@ -13,8 +14,9 @@ from ..errors import SceneError, near
 from ..kernels.element_line import ElementLine
 from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.libraries import of_library, resolved
+from ..kernels.mesh import Mesh
 from ..rotations import cross
-from . import cable_drawing, cable_laws, curves
+from . import cable_drawing, cable_laws, cable_mesh, curves
 from .material import Material
 from .part import Part
 from .schemas import ONLY_PYTHON, GivenAs, checked, list_of_lists
@@ -53,10 +55,11 @@ def _points(value: Any) -> tuple[tuple[float, ...], ...]:
 
 
 class Cable(Part):
-    """A cable of equal elements, drawn straight, through points or along a curve.
+    """A cable of elements, drawn straight, through points or along a curve.
 
-    ``elements`` may be left out: `Scene.choose`, or a run with ``model="auto"``, then chooses them for a tolerance, and
-    element and law where no ``element`` is given.
+    It has ``elements`` of equal lengths, or ``nodes`` at given arc-lengths in m, from 0 to its length: close where it
+    bends much, or where something is attached. Both may be left out: `Scene.choose`, or a run with ``model="auto"``,
+    then chooses equal elements for a tolerance, and element and law where no ``element`` is given.
 
     Drawn, which is how a run starts: from ``start`` to ``end``; or smoothly through ``points`` (x, y, z); or along
     ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m. The tangent
@@ -93,6 +96,7 @@ class Cable(Part):
     points: Annotated[tuple[tuple[float, ...], ...] | None, checked(_points, list_of_lists("m"))] = None
     curve: Annotated[Callable | None, GivenAs(ONLY_PYTHON)] = None  # kept as points, see `_settled`
     given_elements: Annotated[Count | None, Field(alias="elements")] = None
+    nodes: Annotated[tuple[float, ...] | None, cable_mesh.increasing()] = None
     library: Annotated[str | None, checked(_library, {"type": "string"})] = None
     element: Annotated[str, checked(_element, {"type": "string"})] = "beam24"
     law: str = None  # type: ignore[assignment]  # `_with_a_law` chooses one where none is given
@@ -114,12 +118,12 @@ class Cable(Part):
         if not isinstance(data, dict):
             return data
         optional = ("start", "end", "points", "curve", "law", "library", "strain", "curvature", "membrane",
-                    "rest_length", "elements")
+                    "rest_length", "elements", "nodes")
         data = {name: value for name, value in data.items() if value is not None or name not in optional}
         if "curve" in data:
             if "points" in data:
                 raise ValueError("has points and a curve", "give one of them")
-            curve, elements = data.pop("curve"), data.get("elements")
+            curve, elements = data.pop("curve"), data.get("elements", len(np.atleast_1d(data.get("nodes", 0))))
             if not callable(curve):
                 raise ValueError(f"curve must be a function of u from 0 to 1, got {shown(curve)}", "or give points")
             data["points"] = curves.sample(curve, min(elements, 1000) if isinstance(elements, int) else 1)
@@ -150,8 +154,13 @@ class Cable(Part):
                                       self.angular_velocity, self.up)
         else:
             cable_drawing.check_height(self._drawn_through, self.up, self._is_round)
-        if self.given_elements is not None:
-            cable_drawing.check_elements(self._shape, self.given_elements)
+        if self.nodes is not None:
+            if self.given_elements is not None:
+                raise ValueError(f"has {self.given_elements} elements and {len(self.nodes)} nodes",
+                                 "give elements of equal lengths, or the nodes")
+            cable_mesh.check_ends(self.nodes, self.length)
+        if not self.is_open:
+            cable_drawing.check_elements(self._shape, self.node_s * self.stretch)
         return self
 
     @property
@@ -176,15 +185,42 @@ class Cable(Part):
     @property
     def is_open(self) -> bool:
         """Return whether its elements were left out, so that they have to be chosen before it can be simulated."""
-        return self.given_elements is None
+        return self.given_elements is None and self.nodes is None
 
     @property
     def elements(self) -> int:
         """Return the number of its elements. Raises SceneError where they were left out."""
-        if self.given_elements is None:
-            raise SceneError(self.where, "has no elements yet",
-                             "give elements=, or let them be chosen: scene.choose(tol).scene")
-        return self.given_elements
+        if self.given_elements is not None:
+            return self.given_elements
+        if self.nodes is not None:
+            return len(self.nodes) - 1
+        raise SceneError(self.where, "has no elements yet",
+                         "give elements=, or let them be chosen: scene.choose(tol).scene")
+
+    def remade(self, values: Mapping[str, Any]) -> Cable:
+        """Return it with other values by keyword; elements take the place of nodes, and nodes that of elements."""
+        other = {"elements": "nodes", "nodes": "elements"}
+        replaced = [other[name] for name in other if values.get(name) is not None and other[name] not in values]
+        return Cable(**{name: value for name, value in self.entries().items() if name not in replaced} | dict(values))
+
+    def with_elements(self, elements: int) -> Cable:
+        """Return it with that many elements: unequal ones are divided or joined alike where the number is a multiple or
+        a divisor of theirs; else they are equal.
+        """
+        nodes = cable_mesh.refined(self.uneven_nodes, elements)
+        return self.remade({"nodes": nodes} if nodes else {"elements": elements})
+
+    @property
+    def uneven_nodes(self) -> tuple[float, ...]:
+        """Return the arc-lengths of its nodes in m where its elements are not equal, else ()."""
+        return () if self.mesh.is_even else tuple(self.mesh.node_s.tolist())
+
+    @property
+    def mesh(self) -> Mesh:
+        """Return where its nodes are. Raises SceneError where its elements were left out."""
+        if self.nodes is None:
+            return Mesh.even(self.length / self.elements, self.elements)
+        return cable_mesh.mesh_of(self.nodes, self.length)
 
     def entries(self) -> dict[str, Any]:
         """Return what it could be made with; of an open one without the element and the law that nobody gave."""
@@ -251,7 +287,13 @@ class Cable(Part):
     @property
     def node_s(self) -> np.ndarray:
         """Return (nodes,): arc-length of the nodes in m."""
-        return self.length * np.arange(self.elements + 1) / self.elements
+        mesh = self.mesh
+        return self.length * np.arange(self.elements + 1) / self.elements if mesh.is_even else mesh.node_s
+
+    def divided(self, parts: int) -> np.ndarray:
+        """Return (parts elements + 1,): arc-lengths of its nodes and of points that divide each element alike, in m."""
+        mesh = self.mesh
+        return np.linspace(0.0, self.length, parts * self.elements + 1) if mesh.is_even else mesh.divided(parts)
 
     def point(self, s: float) -> np.ndarray:
         """Return (3,): the point of the centreline at arc-length ``s``, in m, as the elements draw it.
@@ -287,8 +329,7 @@ class Cable(Part):
     @property
     def _as_drawn(self) -> ElementLine:
         """Return the elements at the start, which interpolate between the nodes."""
-        return ElementLine(self.library, self.element, self.length / self.elements,
-                           self.nodal_vectors[..., : self.dim])
+        return ElementLine(self.library, self.element, self.mesh, self.nodal_vectors[..., : self.dim])
 
     def axes_at(self, s: ArrayLike) -> np.ndarray:
         """Return (..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
@@ -371,6 +412,12 @@ class Cable(Part):
         """
         if self.is_open:
             return round(s / (EXACT * self.length))
-        node = round(s / self.length * self.elements)
-        on_node = 0 <= node <= self.elements and abs(self.node_s[node] - s) <= EXACT * self.length
+        mesh, node_s = self.mesh, self.node_s
+        node = round(s / self.length * self.elements) if mesh.is_even else int(mesh.nearest_node(s))
+        on_node = 0 <= node <= self.elements and abs(node_s[node] - s) <= EXACT * self.length
         return node if on_node else None
+
+    def element_at(self, s: float) -> int:
+        """Return the number of the element that holds ``s``."""
+        mesh = self.mesh
+        return math.floor(s / self.length * self.elements) if mesh.is_even else int(mesh.element_at(s))

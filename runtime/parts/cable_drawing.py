@@ -44,20 +44,21 @@ def check_height(points: tuple[tuple[float, ...], ...], up: Vector, is_round: bo
                          "give the direction of the section's height")
 
 
-def check_elements(shape: Line | Spline, elements: int) -> None:
+def check_elements(shape: Line | Spline, nodes: np.ndarray) -> None:
     """Raise ValueError(cause, remedy) where elements are too coarse to be drawn: the slope of one loses the direction
     of the curve.
+
+    nodes: (n,) their arc-lengths as drawn, in m.
     """
     if shape.straight:
         return
-    xi, length = np.linspace(0, 1, 17)[:, None, None], shape.length / elements
-    nodes = length * np.arange(elements + 1)
+    xi, length = np.linspace(0, 1, 17)[:, None, None], np.diff(nodes)[:, None]
     r, t = shape.point(nodes), shape.tangent(nodes)
     slope = (6 * xi * (1 - xi) * np.diff(r, axis=0) / length
              + (1 - 4 * xi + 3 * xi**2) * t[:-1] + (3 * xi**2 - 2 * xi) * t[1:])
-    onward = np.sum(slope * shape.tangent(nodes[:-1] + length * xi[..., 0]), axis=-1).min(axis=0)
+    onward = np.sum(slope * shape.tangent(nodes[:-1] + length[:, 0] * xi[..., 0]), axis=-1).min(axis=0)
     worst = int(np.argmin(onward))
     if onward[worst] < FOLLOWS:
-        raise ValueError(f"element {worst + 1} of {elements} cannot follow the curve from "
+        raise ValueError(f"element {worst + 1} of {len(length)} cannot follow the curve from "
                          f"{show(r[worst])} to {show(r[worst + 1], 'm')}: it bends too much there",
                          "take more elements")

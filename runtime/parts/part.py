@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
@@ -134,6 +134,10 @@ class Part(BaseModel, metaclass=_TranslatingType):
         """Return what it could be made with, by keyword: all that is set, defaults too."""
         given = {keyword: getattr(self, field) for keyword, field in self.keywords().items()}
         return {keyword: value for keyword, value in given.items() if value is not None}
+
+    def remade(self, values: Mapping[str, Any]) -> Self:
+        """Return a part like this one with other values by keyword."""
+        return type(self)(**{**self.entries(), **values})
 
     @property
     def given_name(self) -> str | None:

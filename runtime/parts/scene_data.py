@@ -131,9 +131,12 @@ class SceneData:
         return scene
 
     def remeshed(self, elements: Callable[[Cable], int]) -> Self:
-        """Return the scene with other numbers of elements of its cables, checked as any scene is. Raises SceneError."""
-        return self.with_parts(Cable(**part.entries() | {"elements": elements(part)}) if isinstance(part, Cable)
-                               else part for part in self.parts())
+        """Return the scene with other numbers of elements of its cables, checked as any scene is. Raises SceneError.
+
+        See `Cable.with_elements` for those with unequal ones.
+        """
+        return self.with_parts(part.with_elements(elements(part)) if isinstance(part, Cable) else part
+                               for part in self.parts())
 
     def copied(self) -> Self:
         """Return a scene of the same parts, to which parts can be added while this one stays as it is."""

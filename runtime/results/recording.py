@@ -59,7 +59,7 @@ def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
         cables[cable.name] = {
             "nodal_vectors": spatial(q[:, at].reshape(shape)),
             "nodal_velocity": spatial(v[:, at].reshape(shape)),
-            "node_s": cable.length * np.arange(cable.shape[0]),
+            "node_s": cable.mesh.node_s,
             "vector_names": cable.vectors,
         }
     bodies, modal = {}, {}
@@ -132,7 +132,7 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
         case "end_of_cable":
             slide = model.slides[engine.stopped_slide]
             cable = model.cables[slide.cable]
-            middle = 0.5 * cable.n_elements * cable.length
+            middle = 0.5 * cable.mesh.total
             end = "end" if engine.stopped_s > middle else "start"
             return (
                 f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; '

@@ -17,7 +17,7 @@ from ..parts.section_stiffness import section_stiffness
 from ..parts.slide import Slide
 from ..parts.validation import show
 from ..solve.rest_state import RestState
-from .cable_loads import CableLoads, Instants, rows
+from .cable_loads import CableLoads, Instants, lengths_of_rows, rows
 from .nodal_forces import element_forces
 from .section_balance import Cuts, balanced
 from .section_components import balanced_components, components, labels, taut_bending
@@ -74,7 +74,8 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[n
     instants = np.arange(shape[0])[:, None]
     e = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=2)[..., :dim]
     e0 = [] if reference is None else [reference[element].reshape(-1, *reference.shape[1:])]
-    found = rows(kernel, x.size, cable.length / cable.elements, x.ravel(), e.reshape(-1, *e.shape[2:]), S, *e0)
+    lengths = lengths_of_rows(cable.mesh, element, x.shape)
+    found = rows(kernel, x.size, lengths, x.ravel(), e.reshape(-1, *e.shape[2:]), S, *e0)
     return tuple(values.reshape(*shape, *values.shape[1:]) for values in found)
 
 
@@ -97,7 +98,7 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
     taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
         cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
-    return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain)
+    return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
 
 
 def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",
@@ -162,7 +163,7 @@ def jumps(scene: SceneData, name: str) -> np.ndarray:
 
 def even(cable: Cable) -> np.ndarray:
     """Return the places along all of a cable, its nodes among them."""
-    return np.linspace(0, cable.length, PLACES * cable.elements + 1)
+    return cable.divided(PLACES)
 
 
 def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:

@@ -99,7 +99,7 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
         return f'slide "{failed.name}" on cable "{model.cables[failed.cable].name}"'
     if (found := _node(model, dof)) is not None:
         cable, node = found
-        return f'cable "{cable.name}" at s = {node * cable.length:.6g} m'
+        return f'cable "{cable.name}" at s = {cable.mesh.node_s[node]:.6g} m'
     return [f'body "{body.name}"' for body in model.bodies if body.dof <= dof][-1]
 
 
@@ -120,7 +120,7 @@ def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str
         return speed, False
     cable, node = found
     r = q[cable.coordinates].reshape(cable.shape)[:, 0]
-    stretch = np.linalg.norm(np.diff(r, axis=0), axis=1)[max(node - 1, 0) : node + 1] / cable.length
+    stretch = (np.linalg.norm(np.diff(r, axis=0), axis=1) / cable.mesh.lengths)[max(node - 1, 0) : node + 1]
     worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
     fair = FOLDED < worst < STRETCHED
     notes = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "

@@ -28,7 +28,7 @@ def in_loads(fraction: float) -> str:
 
 def layout(scene: SceneData) -> dict[str, list]:
     """Return what must be the same in two scenes for a state of one to be a state of the other."""
-    return {"cables": [(c.name, c.element, c.elements, c.length) for c in scene.cables.values()],
+    return {"cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes) for c in scene.cables.values()],
             "bodies": list(scene.bodies), "slides": list(scene.slides),
             "joints": [(j.name, j.joint_kind) for j in scene.joints.values()], "point_forces": list(scene.point_forces)}
 

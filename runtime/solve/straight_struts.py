@@ -42,10 +42,10 @@ class StraightStruts:
             before, worst = self.found.get(cable.name, (False, None))
             at = np.flatnonzero(straight & np.append(before, straight[:-1]))  # else something bends it
             if len(at):
-                shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.length
+                shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.mesh.lengths
                 forces = part.material.youngs_modulus * part.section.moments()[0] * shortening.max(axis=1)
                 k, force = at[np.argmax(forces)], float(forces.max())
-                length = cable.length * cable.n_elements
+                length = cable.mesh.total
                 weakest = part.material.youngs_modulus * min(part.section.moments()[1:3])
                 least = weakest / length**2  # a cantilever, the weakest of struts, buckles at 2.47 times this
                 if force >= least and (worst is None or force > worst[0]):

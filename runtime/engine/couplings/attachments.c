@@ -36,7 +36,8 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     double every[9 * FU_MAX_COORDINATES];
     memset(w->rows, 0, sizeof(double) * 2 * (size_t)(dim * n_own));
     if (on_slide)
-        cable->kernel->slopes(cable->length, state->s[on->slide] - fu_element_start(model, on->slide, element), every);
+        cable->kernel->slopes(fu_element_length(cable, element),
+                              state->s[on->slide] - fu_element_start(model, on->slide, element), every);
     for (int k = 0; k < 2; ++k) {
         const double *fixed = on->slopes[k] == FU_CARRIED ? fu_slide_numbers_of(model, state, on->slide)->director : on->up;
         for (int d = 0; d < dim; ++d) {

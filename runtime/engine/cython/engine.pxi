@@ -46,8 +46,10 @@ cdef extern from "engine.h" nogil:
         const fu_element_kernels *kernel
         const fu_law_kernels *law
         const fu_law_blocks *blocks
-        int n_elements, first, coordinates, per_node, A_stride, dissipation_state
+        int n_elements, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state
         double length, tau, mass_damping
+        const double *lengths
+        const double *nodes
         const double *m
         const double *A
     ctypedef struct fu_matter:

@@ -73,7 +73,10 @@ cdef class Translation(Arrays):
             c.kernel = <const fu_element_kernels *>_found(tables, "element", cable.element)
             c.law = <const fu_law_kernels *>_found(tables, "law", f"{cable.element}_{cable.law}")
             c.blocks = fu_blocks_of(c.law.name) if blocks and cable.library is None else NULL
-            c.n_elements, c.first, c.length = cable.n_elements, cable.first, cable.length
+            mesh = cable.mesh
+            c.n_elements, c.first, c.length = mesh.n_elements, cable.first, mesh.mean
+            c.lengths, c.l_stride = self._doubles(mesh.lengths), 0 if mesh.is_even else 1
+            c.nodes = NULL if mesh.is_even else self._doubles(mesh.node_s)
             c.tau, c.mass_damping = cable.tau, cable.mass_damping
             c.per_node = c.kernel.vectors * c.kernel.dim
             c.coordinates = c.kernel.nodes * c.per_node
@@ -81,6 +84,7 @@ cdef class Translation(Arrays):
                 raise ValueError(f"{cable.element}: more coordinates than the engine's {FU_MAX_COORDINATES}")
             c.m, c.A = self._doubles(cable.m), self._doubles(cable.A)
             c.A_stride = cable.A.shape[1] if len(cable.A) > 1 else 0
+            c.m_stride = cable.m[0].size if len(cable.m) > 1 else 0
             if c.law.rates > FU_MAX_RATES:
                 raise ValueError(f"{cable.element}: more rates of strain than the engine's {FU_MAX_RATES}")
             c.dissipation_state, numbers = numbers, numbers + c.n_elements * (c.law.rates + 1)

@@ -23,7 +23,7 @@ LINE = 0.1
 def stations(cable: Cable) -> np.ndarray:
     """Return the arc-lengths (P,) in m at which a cable is drawn, its nodes among them."""
     of_each = int(np.clip(np.ceil(LEAST / cable.elements), FEWEST, MOST))
-    return np.linspace(0.0, cable.length, of_each * cable.elements + 1)
+    return cable.divided(of_each)
 
 
 def cable_shape(frames: Frames, name: str, notes: list[str]) -> CableShape:
