@@ -45,6 +45,7 @@ class SceneMethods(SceneData):
         points: Points | None = None,
         curve: Callable[..., Any] | None = None,
         elements: int | None = None,
+        nodes: Numbers | None = None,
         library: str | os.PathLike[str] | None = None,
         element: str = "beam24",
         law: str | None = None,

@@ -48,9 +48,8 @@ def remade(scene: S, models: Mapping[str, CableModel]) -> S:
 
 def with_model(cable: Cable, model: CableModel) -> Cable:
     """Return a cable with another model. Raises SceneError where its section or shape do not suit that."""
-    meshed = cable.with_elements(model.elements)
-    given = {name: value for name, value in meshed.entries().items() if name not in ("strain", "curvature", "membrane")}
-    return Cable(**given | {"element": model.element, "law": model.law})
+    given = {name: value for name, value in cable.entries().items() if name not in ("strain", "curvature", "membrane")}
+    return Cable(**given | {"element": model.element, "law": model.law} | cable.mesh_entries(model.elements))
 
 
 def coarsest(scene: SceneData, cable: Cable) -> int:

@@ -203,17 +203,17 @@ class Cable(Part):
         replaced = [other[name] for name in other if values.get(name) is not None and other[name] not in values]
         return Cable(**{name: value for name, value in self.entries().items() if name not in replaced} | dict(values))
 
-    def with_elements(self, elements: int) -> Cable:
-        """Return it with that many elements: unequal ones are divided or joined alike where the number is a multiple or
-        a divisor of theirs; else they are equal.
+    def mesh_entries(self, elements: int) -> dict[str, Any]:
+        """Return, by keyword, what makes it one of that many elements: unequal ones are divided or joined alike where
+        the number is a multiple or a divisor of theirs; else they are equal.
         """
         nodes = cable_mesh.refined(self.uneven_nodes, elements)
-        return self.remade({"nodes": nodes} if nodes else {"elements": elements})
+        return {"nodes": nodes, "elements": None} if nodes else {"elements": elements, "nodes": None}
 
     @property
     def uneven_nodes(self) -> tuple[float, ...]:
         """Return the arc-lengths of its nodes in m where its elements are not equal, else ()."""
-        return () if self.mesh.is_even else tuple(self.mesh.node_s.tolist())
+        return () if self.nodes is None or self.mesh.is_even else tuple(self.mesh.node_s.tolist())
 
     @property
     def mesh(self) -> Mesh:

@@ -133,9 +133,9 @@ class SceneData:
     def remeshed(self, elements: Callable[[Cable], int]) -> Self:
         """Return the scene with other numbers of elements of its cables, checked as any scene is. Raises SceneError.
 
-        See `Cable.with_elements` for those with unequal ones.
+        See `Cable.mesh_entries` for those with unequal ones.
         """
-        return self.with_parts(part.with_elements(elements(part)) if isinstance(part, Cable) else part
+        return self.with_parts(part.remade(part.mesh_entries(elements(part))) if isinstance(part, Cable) else part
                                for part in self.parts())
 
     def copied(self) -> Self:
