@@ -202,7 +202,8 @@ class Scene(Viewable, SceneMethods):
         return run
 
     def choose(self, tol: float | None = None, *, duration: float | None = None, quantities: Sequence[str] = (),
-               free: str = "unset", initial: str | None = None, integrator: str | None = None) -> Choice[Self]:
+               free: str = "unset", initial: str | None = None, integrator: str | None = None,
+               unequal: bool = False) -> Choice[Self]:
         """Choose element, law and mesh of each cable, and the integrator, so that a run errs by less than ``tol``.
 
         tol: of the error of model and mesh, against the finest model at hand, with that of time, over the largest
@@ -210,14 +211,14 @@ class Scene(Viewable, SceneMethods):
         "A.position" or "trolley.force"; the motion of all cables and bodies if none is named. free: "unset" chooses
         what was not given: the number of elements of cables without ``elements``, element and law of those without
         ``element``; "all" chooses all. duration in s, initial and integrator are those of the run, by default the scene
-        file's.
+        file's. unequal: elements of unequal lengths are tried, too, and taken where they save a third.
 
         It is decided by short runs on coarse meshes and by what they indicate. The choice has the chosen ``scene``,
         ``reasons`` and ``table``, the alternatives with their estimated errors and costs; print it. Raises SceneError.
         """
         given = {"tol": tol, "duration": duration, "initial": initial, "integrator": integrator}
         settings = RunSettings(**{"tol": 1e-3} | self.run_settings | {k: v for k, v in given.items() if v is not None})
-        return self._choose(settings, quantities, free)
+        return self._choose(settings, quantities, free, unequal)
 
     def _chosen_for(self, settings: RunSettings) -> Choice[Self] | None:
         """Return the choice where a run needs one: where that is asked for, or elements were left out; else None."""
@@ -229,7 +230,8 @@ class Scene(Viewable, SceneMethods):
         warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=3)  # which nobody has asked for
         return chosen
 
-    def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str) -> Choice[Self]:
+    def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str,
+                unequal: bool = False) -> Choice[Self]:
         """Return the choice for a run with these settings."""
         from .choice.choosing import choose  # runs, which bring SciPy
 
@@ -241,7 +243,7 @@ class Scene(Viewable, SceneMethods):
                 raise KeyboardInterrupt
             return run
 
-        return choose(self, settings, quantities, free, simulate)
+        return choose(self, settings, quantities, free, simulate, unequal)
 
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
                    progress: bool | Callable[[float], None] | None, chosen: Choice | None = None) -> Run:

@@ -36,7 +36,8 @@ class Choice(Generic[S]):
     estimate says that the tolerance is kept; error: the estimate, over the largest change of a quantity; cost: the CPU
     seconds that a run is estimated to take; reasons: why, in sentences; table: the alternatives; probes: how many short
     runs that took, seconds: their CPU time with all else; given: cables whose element or mesh was given: what these err
-    by is not in the estimate; planar: what is said of a spatial scene that was chosen planar, else empty.
+    by is not in the estimate; planar: what is said of a spatial scene that was chosen planar, else empty;
+    mesh_error: what of the error is that of the mesh.
     """
 
     scene: S
@@ -53,6 +54,7 @@ class Choice(Generic[S]):
     seconds: float = 0.0
     given: list[str] = field(default_factory=list)
     planar: str = ""
+    mesh_error: float = 0.0
 
     @property
     def table(self) -> list[dict[str, Any]]:

@@ -233,7 +233,8 @@ class Chooser(Generic[S]):
                                                    "integrator": self.integrator}
         return Choice(scene, self.tol, self.time_tol, self.integrator, models, error, estimate.cost(models), kept,
                       self.reasons, estimate.alternatives(models, self.tol), len(self.prober.made), seconds,
-                      [each.cable.name for each in self.free if each.fixed is not None or each.keeps])
+                      [each.cable.name for each in self.free if each.fixed is not None or each.keeps],
+                      mesh_error=estimate.mesh_error(models))
 
     def _is_stiff(self, cable: Cable, probe: Probe[S]) -> bool:
         """Return whether a cable moves as a rigid body does, but for a part of the tolerance."""

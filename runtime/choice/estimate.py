@@ -49,15 +49,15 @@ class Estimate:
 
     def error(self, models: Mapping[str, CableModel]) -> float:
         """Return the error of models of all cables."""
-        total = self.time
-        for each in self.free:
-            name, model = each.cable.name, models[each.cable.name]
-            if each.fixed is None:
-                level = model.elements / each.base
-                total += self.of_cable[name] * (self.mesh.level / level) ** self.mesh.order
-            if not Kind(model.element, model.law).is_beam:
-                total += self.shear.get(name, 0.0)
-        return total
+        left_out = [self.shear.get(name, 0.0) for name, model in models.items()
+                    if not Kind(model.element, model.law).is_beam]
+        return self.time + self.mesh_error(models) + sum(left_out)
+
+    def mesh_error(self, models: Mapping[str, CableModel]) -> float:
+        """Return what of the error of models comes from their meshes."""
+        levels = {each.cable.name: models[each.cable.name].elements / each.base for each in self.free
+                  if each.fixed is None}
+        return sum(self.of_cable[name] * (self.mesh.level / level) ** self.mesh.order for name, level in levels.items())
 
     def cost(self, models: Mapping[str, CableModel]) -> float:
         """Return the CPU seconds of a run: those of the finest probe, by its elements, their work, and its steps."""

@@ -76,11 +76,13 @@ def _stations(library: str | None, kind: str, elements: int, total: float, nodes
 
 
 def _shapes(kernel: Callable, length: float, x: float, derivative: int) -> np.ndarray:
-    """Return the shape functions on the axis at x in an element, or a derivative of them; the second by difference,
-    of the slopes, which are polynomials of low degree.
+    """Return the shape functions on the axis at x in an element, or a derivative of them."""
+    return kernel(length, x)[derivative] if derivative < 2 else second_derivative(kernel, length, x)
+
+
+def second_derivative(kernel: Callable, length: float, x: float) -> np.ndarray:
+    """Return the second derivative of the shape functions on the axis at x in an element, by difference of the first.
     """
-    if derivative < 2:
-        return kernel(length, x)[derivative]
     d = 1e-3 * length
     low, high = max(x - d, 0.0), min(x + d, length)
     return (kernel(length, high)[1] - kernel(length, low)[1]) / (high - low)

@@ -70,7 +70,7 @@ class Prober(Generic[S]):
     def probe(self, models: Mapping[str, CableModel], tol: float, integrator: str,
               change: Callable[[S], S] | None = None, label: str = "") -> Probe[S]:
         """Return the run with these models; change: makes another scene of it, label: the name of that."""
-        key = (*sorted((name, str(model)) for name, model in models.items()), tol, integrator, label)
+        key = (*((name, models[name]) for name in sorted(models)), tol, integrator, label)
         if key not in self.made:
             self.made[key] = self._probed(dict(models), tol, integrator, change)
         return self.made[key]
