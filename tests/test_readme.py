@@ -113,7 +113,7 @@ def held_by_friction(space):
     assert abs(run["A.position"] - run["A.position"][0]).max() < 1e-5
 
 def unequal_elements(space):
-    assert space["rope"].elements == 8 and space["equal"].cables["rope"].elements == 20
+    assert space["rope"].elements == 8 and space["equal"].cables["rope"].elements == 25
     assert space["halves"].cables["rope"].nodes[:5] == pytest.approx((0, 0.05, 0.1, 0.2, 0.3))
 
 
