@@ -81,6 +81,14 @@ class InitialState(Mapping[str, np.ndarray]):
 
     def start(self, model: Model, scene: SceneData) -> None:
         """Put a freshly built model of the scene into this state. Raises SceneError."""
+        if model.plane_axes is not None:
+            InitialState({name: model.as_in_model(name, values) for name, values in self.items()},
+                         self.time)._start(model, scene)
+        else:
+            self._start(model, scene)
+
+    def _start(self, model: Model, scene: SceneData) -> None:
+        """Put a model into this state, which is along its axes. Raises SceneError."""
         drawn, moving = model.q.copy(), model.v.copy()
         for cable in model.cables:
             self._place_cable(model, cable, scene.cables[cable.name])

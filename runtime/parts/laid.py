@@ -1,0 +1,227 @@
+"""Scenes in the axes of a plane, in which that is z = 0: every part is turned, none is left out."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from functools import singledispatch
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ..errors import FunicularWarning, SceneError
+from ..rotations import conjugate, product, quaternion, rotate
+from .attachment import Attachment
+from .cable import Cable
+from .combined_signal import combined
+from .event import Event
+from .load import DistributedForce, Force, Moment
+from .modal_body import ModalBody
+from .part import Part
+from .plane import FLAT, Plane, aligned, called, flattened
+from .plane_axes import PlaneAxes
+from .rigid_body import RigidBody
+from .scene_data import SceneData
+from .signal import Constant, Signal
+from .slide import Slide
+from .support import Motion, Rotation
+
+S = TypeVar("S", bound=SceneData)
+
+AXES = ("x", "y", "z")
+
+
+def laid(scene: S) -> S:
+    """Return the scene in the axes of the plane that its planar cables lie in; itself where that is z = 0, or spatial.
+
+    Raises SceneError for what cannot be turned.
+    """
+    plane = scene.plane
+    return scene if plane is None else laid_into(scene, plane)
+
+
+def laid_into(scene: S, plane: Plane) -> S:
+    """Return a scene, planar or spatial, in the axes of a plane. Raises SceneError for what cannot be turned."""
+    axes = _axes(scene, plane)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FunicularWarning)  # what was adjusted has been said of the scene itself
+        made = scene.with_parts((turned(part, axes, scene) for part in scene.parts()),
+                                tuple(aligned(plane.into(np.array(scene.gravity))).tolist()))
+    made.plane_axes, made.drawn = axes, scene
+    return made
+
+
+def turned_alone(scene: SceneData, plane: Plane, part: Part) -> Part:
+    """Return a part, of the scene or about to join it, in the axes of a plane, to look for what leaves that.
+
+    Cables and events are returned as they are: cables lie in planes of their own, events act on nothing. Raises
+    SceneError.
+    """
+    if isinstance(part, Cable | Event):
+        return part
+    axes = _axes(scene, plane)
+    if isinstance(part, RigidBody):
+        axes = replace(axes, bodies={**axes.bodies, part.name: _unturned(part, plane)})
+    return turned(part, axes, scene)
+
+
+def _axes(scene: SceneData, plane: Plane) -> PlaneAxes:
+    """Return what turns parts and results of a scene into the axes of a plane."""
+    return PlaneAxes(plane, {name: _unturned(body, plane) for name, body in scene.bodies.items()
+                             if isinstance(body, RigidBody)}, _size(scene))
+
+
+def _unturned(body: RigidBody, plane: Plane) -> np.ndarray:
+    """Return the unit quaternion (4,) that takes the axes in which a body starts unturned in a plane to its own."""
+    return product(conjugate(body.orientation), quaternion(plane.axes))
+
+
+def _size(scene: SceneData) -> float:
+    """Return the largest coordinate of cables and bodies, in m."""
+    points = [point for cable in scene.cables.values() for point in cable.drawn_through]
+    points += [tuple(body.frame[0]) for body in scene.bodies.values()]
+    return float(np.abs(points).max(initial=0.0))
+
+
+def _point(axes: PlaneAxes, point: Any) -> tuple[float, ...]:
+    return tuple(flattened(axes.plane.points_into(np.array(point)), axes.size).tolist())
+
+
+def _direction(axes: PlaneAxes, direction: Any) -> tuple[float, ...]:
+    return tuple(aligned(axes.plane.into(np.array(direction))).tolist())
+
+
+def _of_body(axes: PlaneAxes, body: str | None, vector: Any) -> tuple[float, ...]:
+    """Return a vector along a body's axes along those that it has in the plane; modal bodies keep theirs."""
+    if body is None or body not in axes.bodies:
+        return tuple(vector)
+    turned = rotate(conjugate(axes.bodies[body]), np.array(vector))
+    return tuple(aligned(turned).tolist())
+
+
+def _place(axes: PlaneAxes, on: str | None, at: Any) -> Any:
+    """Return a point of the ground or of a body, in its axes in the plane."""
+    if at is None:
+        return None
+    if on is None:
+        return _point(axes, at)
+    return tuple(flattened(np.array(_of_body(axes, on, at)), FLAT * axes.size).tolist())
+
+
+@singledispatch
+def turned(part: Part, axes: PlaneAxes, scene: SceneData) -> Part:
+    """Return a part of a scene in the axes of a plane; by default with its attachments there. Raises SceneError."""
+    changes: dict[str, Any] = {name: value.model_copy(update={"at": _place(axes, value.on, value.at)})
+                               for name, value in part if isinstance(value, Attachment)}
+    changes |= {name: _direction(axes, value) for name in ("axis", "second_axis", "up")
+                if (value := getattr(part, name, None) if name in type(part).model_fields else None) is not None}
+    return part.model_copy(update=changes) if changes else part
+
+
+@turned.register
+def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
+    changes: dict[str, Any] = {name: _point(axes, value) for name in ("start", "end")
+                               if (value := getattr(part, name)) is not None}
+    if part.points is not None:
+        changes["points"] = [_point(axes, point) for point in part.points]
+    return Cable(**part.entries() | changes | {name: _direction(axes, getattr(part, name))
+                                               for name in ("up", "velocity", "angular_velocity")})
+
+
+@turned.register
+def _rigid_body(part: RigidBody, axes: PlaneAxes, scene: SceneData) -> RigidBody:
+    own = rotate(axes.bodies[part.name], np.eye(3)).T  # columns: the axes in the plane along the body's own
+    inertia = own.T @ np.array(part.inertia) @ own
+    inertia[np.abs(inertia) <= FLAT * np.abs(inertia).max()] = 0.0
+    return part.model_copy(update={
+        "position": _point(axes, part.position), "orientation": (1.0, 0.0, 0.0, 0.0),
+        "inertia": tuple(map(tuple, ((inertia + inertia.T) / 2).tolist())),
+        "centre": _place(axes, part.name, part.centre), "velocity": _direction(axes, part.velocity),
+        "angular_velocity": _of_body(axes, part.name, part.angular_velocity)})
+
+
+@turned.register
+def _modal_body(part: ModalBody, axes: PlaneAxes, scene: SceneData) -> ModalBody:
+    changes: dict[str, Any] = {"velocity": _direction(axes, part.velocity)}
+    if part.data is None:
+        changes |= {"start": _point(axes, part.start), "end": _point(axes, part.end), "up": _direction(axes, part.up)}
+    else:
+        changes |= {"position": _point(axes, part.position),
+                    "orientation": tuple(axes.into(part.name, "orientation", np.array(part.orientation)).tolist())}
+    made = ModalBody(**part.entries() | changes)
+    made.__dict__["shape"] = part.shape  # in body axes, which stay: the same modes, with the same signs
+    return made
+
+
+@turned.register
+def _slide(part: Slide, axes: PlaneAxes, scene: SceneData) -> Slide:
+    changes = {"at": _place(axes, part.body, part.at)} if part.body_s is None else {}
+    return part.model_copy(update=changes | ({} if part.up is None else {"up": _direction(axes, part.up)}))
+
+
+@turned.register
+def _force(part: Force, axes: PlaneAxes, scene: SceneData) -> Force:
+    value = _of_body(axes, part.on, part.value) if part.follower else _direction(axes, part.value)
+    return part.model_copy(update={"value": value, "at": _place(axes, part.on, part.at)})
+
+
+@turned.register
+def _distributed(part: DistributedForce, axes: PlaneAxes, scene: SceneData) -> DistributedForce:
+    return part if part.follower else part.model_copy(update={"value": _direction(axes, part.value)})
+
+
+@turned.register
+def _moment(part: Moment, axes: PlaneAxes, scene: SceneData) -> Moment:
+    return part.model_copy(update={"value": _direction(axes, part.value)})
+
+
+@turned.register
+def _motion(part: Motion, axes: PlaneAxes, scene: SceneData) -> Motion:
+    changes: dict[str, Any] = {}
+    if part.displacement is not None:
+        try:
+            changes["displacement"] = tuple(_component(axes.plane, k, part.displacement) for k in range(3))
+        except ValueError as error:
+            raise SceneError(part.where, f"displacement {error}",
+                             f"prescribe or free directions in {called(axes.plane)} and across it") from None
+    if part.rotation is not None:
+        changes["rotation"] = Rotation(axis=_direction(axes, part.rotation.axis), angle=part.rotation.angle)
+    return part.model_copy(update=changes)
+
+
+def _component(plane: Plane, k: int, displacement: tuple[Signal | None, ...]) -> Signal | None:
+    """Return the component of a displacement along an axis of the plane; 0 for what is free across the plane.
+
+    Raises ValueError where that is free in part.
+    """
+    along = aligned(plane.axes[:, k])
+    given = [(float(factor), signal) for factor, signal in zip(along, displacement, strict=True) if factor]
+    prescribed = [(factor, signal) for factor, signal in given if signal is not None]
+    if not prescribed:
+        return None if k < 2 else Constant(constant=0.0)
+    if len(prescribed) < len(given):
+        raise ValueError("leaves a direction free that lies neither in the plane's axes nor across them")
+    factors, signals = zip(*prescribed, strict=True)
+    return combined(factors, signals)
+
+
+@turned.register
+def _event(part: Event, axes: PlaneAxes, scene: SceneData) -> Event:
+    """A threshold on a component along the ground's axes is a function of a state, which has results in those."""
+    if part.quantity is None or part.quantity.partition(".")[0] in scene.slides:
+        return part
+    return part.model_copy(update={"quantity": None, "s": None, "value": 0.0, "function": _passing(part, scene)})
+
+
+def _passing(event: Event, scene: SceneData) -> Callable[[float, Any], float]:
+    """Return the function of time and state that passes zero where the quantity of an event passes its value."""
+    assert event.quantity is not None, f"{event.where} has a function"
+    name, what, axis = event.quantity.split(".")
+    k, value = AXES.index(axis), event.value
+    if name in scene.bodies:
+        return lambda time, state: state[f"{name}.{what}"][k] - value
+    assert event.s is not None, f"{event.where} is not complete"
+    node = scene.cables[name].node(event.s)
+    vectors = "nodal_vectors" if what == "position" else "nodal_velocity"
+    return lambda time, state: state[f"{name}.{vectors}"][node, 0, k] - value
