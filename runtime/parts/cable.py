@@ -73,14 +73,15 @@ class Cable(Part):
     on the section turns with the curve, about its tangent nowhere. It may lie along the axis where the section is round
     or the element has no axes across: then the height lies along the ground's axis most nearly across. Planar elements
     lie in the plane through their line and ``up``, with the height on the side of that; a line in z = 0 with ``up`` in
-    it, too, stays in that plane, with the height at z x tangent, wherever ``up`` points there. ``law``: for beams "continuum" (the default), "poisson_split" or
-    "structural"; for cables ``strain`` ("green" or "engineering") and ``curvature`` ("exact" or "linear"), the measures
-    that their axial and bending stiffness act on, by default green and exact; and ``membrane``, how an element
-    represents its axial strain: "full" (the default) at every point; "assumed" by its Legendre modes of degree 0 to 2;
-    "reduced" by those of degree 0 and 1, with 1 % of the axial stiffness on degree 2, which keeps the lengths of the
-    slopes stable ("cable18": 0 to 4, 0 to 2, and 3 and 4). Beside a point force on a taut rope the tension of full and
-    assumed strain swings, that of reduced strain hardly. Reduced strain is for small strain: stable up to a compression
-    of 1 %, with about four times as many elements for axial waves.
+    it, too, stays in that plane, with the height at z x tangent, wherever ``up`` points there. ``law``: for beams
+    "continuum" (the default), "poisson_split" or "structural"; for cables ``strain`` ("green" or "engineering") and
+    ``curvature`` ("exact" or "linear"), the measures that their axial and bending stiffness act on, by default green
+    and exact; and ``membrane``, how an element represents its axial strain: "full" (the default) at every point;
+    "assumed" by its Legendre modes of degree 0 to 2; "reduced" by those of degree 0 and 1, with 1 % of the axial
+    stiffness on degree 2, which keeps the lengths of the slopes stable ("cable18": 0 to 4, 0 to 2, and 3 and 4). Beside
+    a point force on a taut rope the tension of full and assumed strain swings, that of reduced strain hardly. Reduced
+    strain is for small strain: stable up to a compression of 1 %, with about four times as many elements for axial
+    waves.
 
     A cable that is stress-free where it is curved has the exact curvature, whose size alone it measures: it resists in
     the plane of its curve, and across that plane by tension alone. Of the beams' laws, "structural" is the one for thin

@@ -9,11 +9,14 @@ import numpy as np
 from ..rotations import cross
 from . import cable_laws
 from .curves import Line, Spline, has_height, shape_through
-from .plane import Plane, aligned, called
+from .plane import Plane, aligned, called, normal_of
 from .validation import Vector, show
 
 FOLLOWS = 0.5
 """An element's slope along the curve that it stands for must be this part of the curve's everywhere."""
+
+ALONG = 1e-9
+"""Angle, in rad, up to which ``up`` counts as in the plane of a curve."""
 
 
 @lru_cache(maxsize=128)
@@ -28,12 +31,17 @@ def plane_of(points: tuple[tuple[float, ...], ...], up: Vector) -> Plane | None:
     if not has_height(points, up):
         raise ValueError(f"up must not be zero or parallel to the axis {show(tangent)}, got {show(up)}",
                          "give up, a direction in the plane of the cable")
-    normal = cross(tangent, up)
-    plane = Plane.across(normal / np.linalg.norm(normal), np.array(points[0]))
-    if not plane.contains(np.array(points)):
-        off = int(np.argmax(np.abs(plane.points_into(np.array(points))[:, 2])))
-        raise ValueError(f"point {off + 1}, {show(points[off], 'm')}, leaves the plane of its start and up, "
-                         f"{called(plane)}", "draw it in one plane, give up in that, or take " + cable_laws.others(3))
+    by_up = cross(tangent, up) / np.linalg.norm(cross(tangent, up))
+    vertices = np.array(points)
+    normal = normal_of([vertices - vertices[0]])  # of a curve its points tell it more exactly
+    normal = by_up if normal is None else normal * np.sign(np.dot(normal, by_up))
+    plane = Plane.across(aligned(normal), vertices[0])
+    remedy = "draw it in one plane, give up in that, or take " + cable_laws.others(3)
+    if np.linalg.norm(normal - by_up) > ALONG:
+        raise ValueError(f"up {show(up)} leaves {called(plane)}, in which it is drawn", remedy)
+    if not plane.contains(vertices):
+        off = int(np.argmax(np.abs(plane.points_into(vertices)[:, 2])))
+        raise ValueError(f"point {off + 1}, {show(points[off], 'm')}, leaves {called(plane)}", remedy)
     return plane
 
 

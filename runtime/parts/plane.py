@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,9 @@ from .validation import show
 
 FLAT = 1e-12
 """Of their size: as far as points and directions may be off a plane, by rounding."""
+
+SKEW = 1e-6
+"""Sine of the angle from which on two directions tell the plane that they lie in."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +69,26 @@ class Plane:
     def is_same(self, other: Plane) -> bool:
         """Return whether another plane has the same normal, but for rounding; where both lie is not compared."""
         return float(np.linalg.norm(self.normal - other.normal)) <= 1e-9
+
+
+def normal_of(groups: Iterable[np.ndarray]) -> np.ndarray | None:
+    """Return the unit vector (3,) across the first two directions that groups of vectors (n, 3) give; None of fewer.
+
+    Of a group the longest vector counts, and across that the one that makes the largest angle with it.
+    """
+    first = None
+    for vectors in groups:
+        sizes = np.linalg.norm(vectors, axis=1)
+        directions = vectors[sizes > 0] / sizes[sizes > 0, None]
+        if not len(directions):
+            continue
+        if first is None:
+            first = vectors[np.argmax(sizes)] / sizes.max()
+        across = np.cross(first, directions)
+        sines = np.linalg.norm(across, axis=1)
+        if sines.max() > SKEW:
+            return across[np.argmax(sines)] / sines.max()
+    return None
 
 
 def called(plane: Plane | None) -> str:
