@@ -27,7 +27,8 @@ def plane_of(points: tuple[tuple[float, ...], ...], up: Vector) -> Plane | None:
     """
     if not up[2] and not any(point[2] for point in points):
         return None
-    tangent = shape_through(points).tangent(0.0)
+    shape = shape_through(points)
+    tangent = shape.tangent(0.0)
     if not has_height(points, up):
         raise ValueError(f"up must not be zero or parallel to the axis {show(tangent)}, got {show(up)}",
                          "give up, a direction in the plane of the cable")
@@ -37,6 +38,9 @@ def plane_of(points: tuple[tuple[float, ...], ...], up: Vector) -> Plane | None:
     normal = by_up if normal is None else normal * np.sign(np.dot(normal, by_up))
     plane = Plane.across(aligned(normal), vertices[0])
     remedy = "draw it in one plane, give up in that, or take " + cable_laws.others(3)
+    if plane.contains(vertices) and not plane.contains(shape.point(np.linspace(0, shape.length, 8 * len(points)))):
+        raise ValueError(f"its curve leaves {called(plane)} between points in it", "give more points, or take "
+                         + cable_laws.others(3))
     if np.linalg.norm(normal - by_up) > ALONG:
         raise ValueError(f"up {show(up)} leaves {called(plane)}, in which it is drawn", remedy)
     if not plane.contains(vertices):

@@ -15,6 +15,7 @@ from ..rotations import conjugate, product, quaternion, rotate
 from .attachment import Attachment
 from .cable import Cable
 from .combined_signal import combined
+from .curves import shape_through
 from .event import Event
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
@@ -125,8 +126,16 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
                                if (value := getattr(part, name)) is not None}
     if part.points is not None:
         changes["points"] = [_point(axes, point) for point in part.points]
-    return Cable(**part.entries() | changes | {name: _direction(axes, getattr(part, name))
+    made = Cable(**part.entries() | changes | {name: _direction(axes, getattr(part, name))
                                                for name in ("up", "velocity", "angular_velocity")})
+    drawn, laid_down = shape_through(part.drawn_through), shape_through(made.drawn_through)
+    if not drawn.straight:  # Akima's pieces, unlike cubic splines, depend on the axes
+        along = np.linspace(0, 1, 8 * len(part.drawn_through))
+        apart = axes.plane.points_into(drawn.point(along * drawn.length)) - laid_down.point(along * laid_down.length)
+        if np.abs(apart).max() > FLAT * max(axes.size, drawn.length):
+            raise SceneError(part.where, f"its curve through the points is another one in the axes of "
+                             f"{called(axes.plane)}", "give more points")
+    return made
 
 
 @turned.register
