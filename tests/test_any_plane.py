@@ -63,9 +63,9 @@ def eyelet():
                 velocity=Ramp(start=0, end=0.2, after=0.5), name="drive")
     scene.rigid_body("B", mass=0.1, inertia=(1e-3,) * 3, position=(0.5, -0.3, 0))
     scene.joint("revolute", "A", ("B", (0, 0.3, 0)), axis=(0, 0, 1), name="hinge")
-    scene.rigid_body("C", mass=0.1, inertia=(1e-3,) * 3, position=(2, 0, 0), velocity=(0.1, 0, 0))
-    scene.joint("prismatic", "C", (2, 0, 0), axis=(1, 0, 0), name="guide")
-    scene.spring("C", ("rope", 1.98), stiffness=100, damping=1, length=0, name="draw")
+    scene.rigid_body("C", mass=0.1, inertia=(1e-3,) * 3, position=(2.2, 0, 0), velocity=(0.1, 0, 0))
+    scene.joint("prismatic", "C", (2.2, 0, 0), axis=(1, 0, 0), name="guide")
+    scene.spring("C", ("rope", 1.98), stiffness=100, damping=1, length=0.15, name="draw")
     return scene
 
 

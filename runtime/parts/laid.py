@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import singledispatch
 from typing import Any, TypeVar
 
@@ -44,7 +43,7 @@ def laid(scene: S) -> S:
 
 def laid_into(scene: S, plane: Plane) -> S:
     """Return a scene, planar or spatial, in the axes of a plane. Raises SceneError for what cannot be turned."""
-    axes = _axes(scene, plane)
+    axes = PlaneAxes(plane, _Unturned(plane, scene.bodies), _size(scene.cables.values()))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)  # what was adjusted has been said of the scene itself
         made = scene.with_parts((turned(part, axes, scene) for part in scene.parts()),
@@ -61,28 +60,51 @@ def turned_alone(scene: SceneData, plane: Plane, part: Part) -> Part:
     """
     if isinstance(part, Cable | Event):
         return part
-    axes = _axes(scene, plane)
-    if isinstance(part, RigidBody):
-        axes = replace(axes, bodies={**axes.bodies, part.name: _unturned(part, plane)})
+    planar = next(iter(scene.cables.values()))
+    axes = PlaneAxes(plane, _Unturned(plane, scene.bodies, part), _size([planar]))
     return turned(part, axes, scene)
 
 
-def _axes(scene: SceneData, plane: Plane) -> PlaneAxes:
-    """Return what turns parts and results of a scene into the axes of a plane."""
-    return PlaneAxes(plane, {name: _unturned(body, plane) for name, body in scene.bodies.items()
-                             if isinstance(body, RigidBody)}, _size(scene))
+class _Unturned(Mapping[str, np.ndarray]):
+    """Of each rigid body the unit quaternion (4,) that takes the axes in which it starts unturned in a plane to its
+    own; computed when asked for, as few are needed of many bodies where one part is looked at.
+    """
+
+    def __init__(self, plane: Plane, bodies: Mapping[str, Part], other: Part | None = None):
+        """other: a part that is about to join the bodies."""
+        self._attitude, self._bodies, self._other = quaternion(plane.axes), bodies, other
+        self._found: dict[str, np.ndarray] = {}
+
+    def _body(self, name: object) -> Part | None:
+        if self._other is not None and self._other.given_name == name:
+            return self._other
+        return self._bodies.get(name) if isinstance(name, str) else None
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether there is a rigid body of that name."""
+        return isinstance(self._body(name), RigidBody)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return the quaternion of a rigid body. Raises KeyError."""
+        if name not in self._found:
+            body = self._body(name)
+            if not isinstance(body, RigidBody):
+                raise KeyError(name)
+            self._found[name] = product(conjugate(body.orientation), self._attitude)
+        return self._found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the rigid bodies."""
+        return (name for name in self._bodies if name in self)
+
+    def __len__(self) -> int:
+        """Return the number of rigid bodies."""
+        return sum(1 for _ in self)
 
 
-def _unturned(body: RigidBody, plane: Plane) -> np.ndarray:
-    """Return the unit quaternion (4,) that takes the axes in which a body starts unturned in a plane to its own."""
-    return product(conjugate(body.orientation), quaternion(plane.axes))
-
-
-def _size(scene: SceneData) -> float:
-    """Return the largest coordinate of cables and bodies, in m."""
-    points = [point for cable in scene.cables.values() for point in cable.drawn_through]
-    points += [tuple(body.frame[0]) for body in scene.bodies.values()]
-    return float(np.abs(points).max(initial=0.0))
+def _size(cables: Iterable[Cable]) -> float:
+    """Return the largest coordinate in m of points that cables are drawn through."""
+    return max((abs(x) for cable in cables for point in cable.drawn_through for x in point), default=0.0)
 
 
 def _point(axes: PlaneAxes, point: Any) -> tuple[float, ...]:
