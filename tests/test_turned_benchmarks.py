@@ -62,11 +62,16 @@ def test_results_are_those_of_the_spatial_scene(name):
 
 
 def compare_written_planar(scene, duration):
-    """Compare a scene of planar elements with itself, turned upright: x stays, y becomes z."""
+    """Compare a scene of planar elements with itself, turned upright: x stays, y becomes z.
+
+    Axes of bodies are turned by quaternions, so that inertia and points are rounded; stiff cables on wheels make 1e-8
+    of that in accelerations and forces.
+    """
     flat, upright = run(scene, duration, 500), run(turned_scene(scene, *UPRIGHT), duration, 500)
     for name in flat:
         if name.rpartition(".")[2] in (*POINTS, *DIRECTIONS):
             size = max(1.0, np.abs(flat[name]).max(initial=0.0))
             assert np.abs(upright[name][..., 1]).max(initial=0.0) == 0 or name.endswith("moment"), name
             turned = np.stack([upright[name][..., 0], upright[name][..., 2], -upright[name][..., 1]], axis=-1)
-            assert np.abs(turned - flat[name]).max(initial=0.0) < 1e-9 * size, name
+            least = 1e-7 if name.endswith(("acceleration", "force", "moment")) else 1e-9
+            assert np.abs(turned - flat[name]).max(initial=0.0) < least * size, name
