@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import singledispatch
 from typing import Any, TypeVar
 
 import numpy as np
 
-from ..errors import FunicularWarning, SceneError
+from ..errors import SceneError
 from ..rotations import conjugate, product, quaternion, rotate
 from .attachment import Attachment
 from .cable import Cable
@@ -42,13 +41,13 @@ def laid(scene: S) -> S:
 
 
 def laid_into(scene: S, plane: Plane) -> S:
-    """Return a scene, planar or spatial, in the axes of a plane. Raises SceneError for what cannot be turned."""
+    """Return a scene, planar or spatial, in the axes of a plane; it is not checked again.
+
+    Raises SceneError for what cannot be turned.
+    """
     axes = PlaneAxes(plane, _Unturned(plane, scene.bodies), _size(scene.cables.values()))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", FunicularWarning)  # what was adjusted has been said of the scene itself
-        made = scene.with_parts((turned(part, axes, scene) for part in scene.parts()),
-                                tuple(aligned(plane.into(np.array(scene.gravity))).tolist()))
-    made.plane_axes, made.drawn = axes, scene
+    made = scene.replaced(lambda part: turned(part, axes, scene))
+    made.gravity, made.plane_axes, made.drawn = _direction(axes, scene.gravity), axes, scene
     return made
 
 
@@ -148,8 +147,10 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
                                if (value := getattr(part, name)) is not None}
     if part.points is not None:
         changes["points"] = [_point(axes, point) for point in part.points]
-    made = Cable(**part.entries() | changes | {name: _direction(axes, getattr(part, name))
-                                               for name in ("up", "velocity", "angular_velocity")})
+    changes |= {name: _direction(axes, getattr(part, name)) for name in ("up", "velocity", "angular_velocity")}
+    if part.dim == 2:  # whose height is normal x tangent in z = 0
+        changes["up"] = (0.0, 1.0, 0.0)
+    made = Cable(**part.entries() | changes)
     drawn, laid_down = shape_through(part.drawn_through), shape_through(made.drawn_through)
     if not drawn.straight:  # Akima's pieces, unlike cubic splines, depend on the axes
         along = np.linspace(0, 1, 8 * len(part.drawn_through))

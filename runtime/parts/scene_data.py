@@ -159,6 +159,15 @@ class SceneData:
                 setattr(made, name, value.copy())
         return made
 
+    def replaced(self, made: Callable[[Part], Part]) -> Self:
+        """Return a scene with other parts of the same kinds and names, made of each of its own, without checks."""
+        scene = self.copied()
+        for name in _groups():
+            group = getattr(scene, name)
+            setattr(scene, name, {key: made(part) for key, part in group.items()} if isinstance(group, dict)
+                    else [made(part) for part in group])
+        return scene
+
     def check_name(self, part: Part) -> None:
         """Raise SceneError where the name of a part is taken."""
         name = part.given_name
