@@ -47,15 +47,15 @@ class Plane:
 
     def into(self, directions: np.ndarray) -> np.ndarray:
         """Return directions (..., 3) along its axes."""
-        return np.asarray(directions) @ self.axes
+        return _combined(np.asarray(directions), self.axes)
 
     def points_into(self, points: np.ndarray) -> np.ndarray:
         """Return points (..., 3), in m, in its axes."""
-        return (np.asarray(points) - self.origin) @ self.axes
+        return _combined(np.asarray(points) - self.origin, self.axes)
 
     def out(self, directions: np.ndarray) -> np.ndarray:
         """Return directions (..., 2 or 3) along its axes along the ground's."""
-        return directions @ self.axes[:, : directions.shape[-1]].T
+        return _combined(directions, self.axes.T)
 
     def points_out(self, points: np.ndarray) -> np.ndarray:
         """Return points (..., 2 or 3) in its axes, in m, in the ground's."""
@@ -69,6 +69,18 @@ class Plane:
     def is_same(self, other: Plane) -> bool:
         """Return whether another plane has the same normal, but for rounding; where both lie is not compared."""
         return float(np.linalg.norm(self.normal - other.normal)) <= 1e-9
+
+
+def _combined(factors: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return (..., 3): the sums of factors (..., 2 or 3) times vectors (3, 3), as rows.
+
+    Not a product of matrices, whose rounding depends on the number of rows: files of results are the same bit for bit
+    however many rows are written at once.
+    """
+    made = factors[..., :1] * vectors[0]
+    for k in range(1, factors.shape[-1]):
+        made = made + factors[..., k : k + 1] * vectors[k]
+    return made
 
 
 def normal_of(groups: Iterable[np.ndarray]) -> np.ndarray | None:
