@@ -35,7 +35,7 @@ def plane_of(points: tuple[tuple[float, ...], ...], up: Vector) -> Plane | None:
     by_up = cross(tangent, up) / np.linalg.norm(cross(tangent, up))
     vertices = np.array(points)
     normal = normal_of([vertices - vertices[0]])  # of a curve its points tell it more exactly
-    normal = by_up if normal is None else normal * np.sign(np.dot(normal, by_up))
+    normal = by_up if normal is None else -normal if np.dot(normal, by_up) < 0 else normal
     plane = Plane.across(aligned(normal), vertices[0])
     remedy = "draw it in one plane, give up in that, or take " + cable_laws.others(3)
     if plane.contains(vertices) and not plane.contains(shape.point(np.linspace(0, shape.length, 8 * len(points)))):

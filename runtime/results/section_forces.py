@@ -114,13 +114,13 @@ def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *,
     block = max(1, AT_ONCE // max(1, s.shape[1], sum(cable.elements for cable in run.scene.cables.values())))
     for first in range(0, len(time), block):
         part = numbers[first : first + block]
-        found.append(cut_forces(scene, model, _instants(run, model, part), name,
+        found.append(cut_forces(scene, model, _instants(run, part), name,
                                 s if len(s) == 1 else s[first : first + block], method=method, side=side))
     return model.results(name, {key: np.concatenate([each[key] for each in found]) for key in found[0]})
 
 
-def _instants(run: Results, model: Model, numbers: np.ndarray) -> Instants:
-    kept: dict[str, np.ndarray] = {}
+def _instants(run: Results, numbers: np.ndarray) -> Instants:
+    model, kept = run.model, {}
     chosen = slice(numbers[0], numbers[-1] + 1) if numbers[-1] - numbers[0] + 1 == len(numbers) else numbers
 
     def value(name: str) -> np.ndarray:
