@@ -42,3 +42,21 @@ def turned_by(rotation: ArrayLike) -> np.ndarray:
     vector = np.asarray(rotation, dtype=float)
     half = np.linalg.norm(vector, axis=-1, keepdims=True) / 2
     return np.concatenate([np.cos(half), vector * np.sinc(half / np.pi) / 2], axis=-1)
+
+
+def quaternion(A: np.ndarray) -> np.ndarray:
+    """Return (4,): unit quaternion of a rotation matrix (3, 3), by its largest component."""
+    squares = np.array([A.trace(), *(2 * np.diag(A) - A.trace())]) + 1
+    k = int(np.argmax(squares))
+    skew = np.array([A[2, 1] - A[1, 2], A[0, 2] - A[2, 0], A[1, 0] - A[0, 1]])
+    if k == 0:
+        q = np.concatenate([squares[:1], skew])
+    else:
+        q = np.concatenate([skew[k - 1 : k], (A + A.T)[k - 1]])
+        q[k] = squares[k]
+    return q / np.linalg.norm(q)
+
+
+def conjugate(rotation: ArrayLike) -> np.ndarray:
+    """Return the unit quaternions (..., 4) of the rotations back."""
+    return np.asarray(rotation) * np.array([1.0, -1.0, -1.0, -1.0])

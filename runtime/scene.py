@@ -17,6 +17,7 @@ from .errors import (
     enough_memory,
     near,
 )
+from .parts.laid import laid
 from .parts.modal_body import ModalBody
 from .parts.part import Part
 from .parts.scene_text import dumps, read
@@ -261,9 +262,10 @@ class Scene(Viewable, SceneMethods):
             from .results.recording import recorded  # likewise
             from .solve.run import simulate
 
+            flat = laid(self)
             with progress_bar(settings.duration, progress) as on_progress:
-                simulation = simulate(self, settings, on_progress, initial=state, stream=stream)
-            recording = recorded(simulation, self, settings)
+                simulation = simulate(flat, settings, on_progress, initial=state, stream=stream)
+            recording = recorded(simulation, flat, settings)
             if chosen is not None:
                 recording.report["choice"] = chosen.facts()
                 recording.report["messages"] = [*chosen.messages(), *recording.report["messages"]]
@@ -324,7 +326,7 @@ class Scene(Viewable, SceneMethods):
         from .solve.static import equilibrium
 
         with one_blas_thread, enough_memory():
-            return equilibrium(self, settings, begin, Equilibrium)
+            return equilibrium(laid(self), settings, begin, Equilibrium)
 
     def relax(self, *, tol: float | None = None, max_steps: int | None = None, **unknown: Never) -> Equilibrium:
         """Bring the scene to rest by dynamic relaxation: a motion from the place drawn, damped until it ends; see
@@ -347,7 +349,7 @@ class Scene(Viewable, SceneMethods):
 
         check_comes_to_rest(self)
         with one_blas_thread, enough_memory():
-            return relax(self, settings, Equilibrium)
+            return relax(laid(self), settings, Equilibrium)
 
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
         """Return the ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from
@@ -364,7 +366,7 @@ class Scene(Viewable, SceneMethods):
         from .solve.modes import modes
 
         with one_blas_thread, enough_memory():
-            return Modes.of(modes(self, settings.n, state), self, state)
+            return Modes.of(modes(laid(self), settings.n, state), self, state)
 
     def animation(self, title: str | None = None) -> Animation:
         """Return the scene as it is drawn, before it runs, as pictures show it; see `Viewable.animation`."""

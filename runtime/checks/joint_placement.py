@@ -71,7 +71,8 @@ def _completed(scene: SceneData, joint: Joint) -> dict:
     if joint.joint_kind == "revolute" and joint.axis is None:
         if scene.dim == 3:
             raise SceneError(joint.where, "axis is missing: a revolute joint needs it")
-        return {"axis": (0.0, 0.0, 1.0)}
+        plane = scene.plane
+        return {"axis": (0.0, 0.0, 1.0) if plane is None else tuple(plane.normal.tolist())}
     if joint.joint_kind != "distance":
         return {}
     points = point_of(scene, joint.a), point_of(scene, joint.b)

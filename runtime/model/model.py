@@ -14,6 +14,7 @@ from scipy.sparse import csr_array
 from ..kernels.libraries import kernels_of
 from ..kernels.mesh import Mesh
 from ..parts.body_shape import Shape
+from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
 from .elimination import Elimination
@@ -165,7 +166,8 @@ class MotionModel:
 class Model:
     """Arrays that the engine reads; engine/include/ says what they mean. tables: addresses of further kernels.
 
-    newton, accelerations: how the borders of Newton's systems and of those of eq 38 are eliminated.
+    newton, accelerations: how the borders of Newton's systems and of those of eq 38 are eliminated; plane_axes: what
+    turns results into the ground's axes, None where the model is in these.
     """
 
     dim: int
@@ -191,6 +193,7 @@ class Model:
     chains: np.ndarray
     nodes: dict[str, list[Node]]
     tables: list[int] = field(default_factory=list)
+    plane_axes: PlaneAxes | None = None
     newton: Elimination = field(init=False)
     accelerations: Elimination = field(init=False)
 
@@ -198,6 +201,17 @@ class Model:
     def couplings(self) -> list[CouplingModel]:
         """Return all couplings in the engine's order, which adds up what they give in it."""
         return [*self.loads, *self.slides, *self.joints, *self.point_forces]
+
+    def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Return results of a part by quantity, in three dimensions, along the ground's axes."""
+        axes = self.plane_axes
+        return found if axes is None else {name: axes.out(part, name, values) for name, values in found.items()}
+
+    def as_in_model(self, name: str, values: np.ndarray) -> np.ndarray:
+        """Return a result by its name along the axes of the model: what `results` has done undone."""
+        axes = self.plane_axes
+        part, _, quantity = name.rpartition(".")
+        return values if axes is None else axes.into(part, quantity, values)
 
     @property
     def is_damped(self) -> bool:

@@ -19,6 +19,7 @@ from ..rotations import cross
 from . import cable_drawing, cable_laws, cable_mesh, curves
 from .material import Material
 from .part import Part
+from .plane import Plane
 from .schemas import ONLY_PYTHON, GivenAs, checked, list_of_lists
 from .section import AnySection, Circle, Tube
 from .validation import EXACT, Count, Name, Vector, one_of, positive, show, shown, xyz
@@ -74,14 +75,16 @@ class Cable(Part):
     ``up`` is the direction of the section's height at the start; only its part across the axis counts, and from there
     on the section turns with the curve, about its tangent nowhere. It may lie along the axis where the section is round
     or the element has no axes across: then the height lies along the ground's axis most nearly across. Planar elements
-    lie in the plane z = 0, with the height in it. ``law``: for beams "continuum" (the default), "poisson_split" or
-    "structural"; for cables ``strain`` ("green" or "engineering") and ``curvature`` ("exact" or "linear"), the measures
-    that their axial and bending stiffness act on, by default green and exact; and ``membrane``, how an element
-    represents its axial strain: "full" (the default) at every point; "assumed" by its Legendre modes of degree 0 to 2;
-    "reduced" by those of degree 0 and 1, with 1 % of the axial stiffness on degree 2, which keeps the lengths of the
-    slopes stable ("cable18": 0 to 4, 0 to 2, and 3 and 4). Beside a point force on a taut rope the tension of full and
-    assumed strain swings, that of reduced strain hardly. Reduced strain is for small strain: stable up to a compression
-    of 1 %, with about four times as many elements for axial waves.
+    lie in the plane through their line and ``up``, with the height on the side of that; a line in z = 0 with ``up`` in
+    it, too, stays in that plane, with the height at z x tangent, wherever ``up`` points there. ``law``: for beams
+    "continuum" (the default), "poisson_split" or "structural"; for cables ``strain`` ("green" or "engineering") and
+    ``curvature`` ("exact" or "linear"), the measures that their axial and bending stiffness act on, by default green
+    and exact; and ``membrane``, how an element represents its axial strain: "full" (the default) at every point;
+    "assumed" by its Legendre modes of degree 0 to 2; "reduced" by those of degree 0 and 1, with 1 % of the axial
+    stiffness on degree 2, which keeps the lengths of the slopes stable ("cable18": 0 to 4, 0 to 2, and 3 and 4). Beside
+    a point force on a taut rope the tension of full and assumed strain swings, that of reduced strain hardly. Reduced
+    strain is for small strain: stable up to a compression of 1 %, with about four times as many elements for axial
+    waves.
 
     A cable that is stress-free where it is curved has the exact curvature, whose size alone it measures: it resists in
     the plane of its curve, and across that plane by tension alone. Of the beams' laws, "structural" is the one for thin
@@ -149,11 +152,9 @@ class Cable(Part):
             raise ValueError(
                 f"start and end must be different points, got {show(self.start)} and {show(self.end, 'm')}")
         if self.dim == 2:
-            names = ("start", "end") if self.points is None else map("point {}".format, range(1, len(self.points) + 1))
-            cable_drawing.check_plane(self.element, dict(zip(names, self._drawn_through, strict=True)), self.velocity,
-                                      self.angular_velocity, self.up)
+            cable_drawing.check_plane(self.element, self.drawn_through, self.velocity, self.angular_velocity, self.up)
         else:
-            cable_drawing.check_height(self._drawn_through, self.up, self._is_round)
+            cable_drawing.check_height(self.drawn_through, self.up, self._is_round)
         if self.nodes is not None:
             if self.given_elements is not None:
                 raise ValueError(f"has {self.given_elements} elements and {len(self.nodes)} nodes",
@@ -171,7 +172,7 @@ class Cable(Part):
     @property
     def height_direction(self) -> Vector:
         """Return ``up``; where that lies along the axis of a round section, the ground's axis most nearly across it."""
-        if curves.has_height(self._drawn_through, self.up):
+        if curves.has_height(self.drawn_through, self.up):
             return self.up
         least = int(np.argmin(np.abs(self._shape.tangent(0.0))))
         return float(least == 0), float(least == 1), float(least == 2)
@@ -240,6 +241,22 @@ class Cable(Part):
         return self.kind_of_element.dim
 
     @property
+    def plane(self) -> Plane | None:
+        """Return the plane that planar elements lie in; None of z = 0, and of spatial elements."""
+        return cable_drawing.plane_of(self.drawn_through, self.up) if self.dim == 2 else None
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Return (3,): the unit normal of the plane that planar elements lie in; their height is normal x tangent."""
+        plane = self.plane
+        return np.array([0.0, 0.0, 1.0]) if plane is None else plane.normal
+
+    def in_plane(self, vectors: np.ndarray) -> np.ndarray:
+        """Return directions (..., 3) along the ground's axes as (..., dim), along those of its plane."""
+        plane = self.plane
+        return (vectors if plane is None else plane.into(vectors))[..., : self.dim]
+
+    @property
     def kernel_law(self) -> str:
         """Return the name of the law among the element's kernels."""
         return cable_laws.name_of_kernels(self.kind_of_element, self.law, self.is_curved)
@@ -256,13 +273,14 @@ class Cable(Part):
         return laws[self.law].stiffness_of if self.law in laws else self.law
 
     @property
-    def _drawn_through(self) -> tuple[tuple[float, ...], ...]:
+    def drawn_through(self) -> tuple[tuple[float, ...], ...]:
+        """Return the points that it is drawn through, in m."""
         ends = tuple(end for end in (self.start, self.end) if end is not None)
         return ends if self.points is None else self.points
 
     @property
     def _shape(self) -> curves.Line | curves.Spline:
-        return curves.shape_through(self._drawn_through)
+        return curves.shape_through(self.drawn_through)
 
     @property
     def drawn_length(self) -> float:
@@ -302,13 +320,14 @@ class Cable(Part):
         """
         if self._shape.straight or self.is_open:
             return self._shape.point(s * self.stretch)
-        return self._as_drawn.point(s)
+        return self._as_drawn_point(s)
 
     def slope(self, s: float) -> np.ndarray:
         """Return (3,): r_x at arc-length ``s``, as the elements draw it."""
         if self._shape.straight or self.is_open:
             return self.stretch * self._shape.tangent(s * self.stretch)
-        return self._as_drawn.slope(s)
+        slope, plane = self._as_drawn.slope(s), self.plane
+        return slope if plane is None else plane.out(slope)
 
     def height(self, s: float) -> np.ndarray:
         """Return (3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have
@@ -316,7 +335,7 @@ class Cable(Part):
         """
         if self._shape.straight or self.is_open or not self.kind_of_element.director:
             return self.axes_at(s)[1]
-        return self._as_drawn.point(s, y=1.0) - self._as_drawn.point(s)
+        return self._as_drawn_point(s, y=1.0) - self._as_drawn_point(s)
 
     def width(self, s: float) -> np.ndarray:
         """Return (3,): along the section's width at ``s``: r_z as the elements draw it, the axis there if they have
@@ -324,12 +343,21 @@ class Cable(Part):
         """
         if self._shape.straight or self.is_open or "r_z" not in self.kind_of_element.nodal_vectors:
             return self.axes_at(s)[2]
-        return self._as_drawn.point(s, z=1.0) - self._as_drawn.point(s)
+        return self._as_drawn_point(s, z=1.0) - self._as_drawn_point(s)
+
+    def _as_drawn_point(self, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
+        """Return (3,) in m: the point at arc-length s, height y and width z of the section, as the elements draw it."""
+        point, plane = self._as_drawn.point(s, y, z), self.plane
+        return point if plane is None else plane.points_out(point)
 
     @property
     def _as_drawn(self) -> ElementLine:
-        """Return the elements at the start, which interpolate between the nodes."""
-        return ElementLine(self.library, self.element, self.mesh, self.nodal_vectors[..., : self.dim])
+        """Return the elements at the start, which interpolate between the nodes, in the axes of its plane."""
+        vectors, plane = self.nodal_vectors, self.plane
+        if plane is not None:
+            place = self.kind_of_element.nodal_vectors.index("r")
+            vectors[:, place] -= plane.origin
+        return ElementLine(self.library, self.element, self.mesh, self.in_plane(vectors))
 
     def axes_at(self, s: ArrayLike) -> np.ndarray:
         """Return (..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
@@ -343,9 +371,9 @@ class Cable(Part):
     def _axes_along(self, places: np.ndarray) -> np.ndarray:
         """Return (places, 3, 3): `axes_at` increasing arc-lengths as drawn, the first of them 0."""
         if self.dim == 2:
-            i, k = self._shape.tangent(places), np.array([0.0, 0.0, 1.0])
+            i, k = self._shape.tangent(places), self.normal
             return np.stack([i, cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
-        return curves.transported(self._drawn_through, self.height_direction, tuple(places.tolist()))
+        return curves.transported(self.drawn_through, self.height_direction, tuple(places.tolist()))
 
     @property
     def axes(self) -> np.ndarray:
@@ -377,7 +405,7 @@ class Cable(Part):
         """
         if not self.traits.takes_shape:
             return None
-        rest = self.rest_nodal_vectors[..., : self.dim]
+        rest = self.in_plane(self.rest_nodal_vectors)
         return np.concatenate([rest[:-1], rest[1:]], axis=1)
 
     @property

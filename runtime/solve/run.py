@@ -132,7 +132,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
             model, engine, watcher, _ = _prepared(scene, settings, initial)
             status, changed = _start(scene, settings, model, engine, method, capacity)
     messages += changed.gaps + _warned(_broken_velocities(model, changed.velocities)
-                                       + velocity_jumps(scene, settings.duration) + unresolved(scene, settings))
+                                       + velocity_jumps(scene.as_drawn, settings.duration)
+                                       + unresolved(scene.as_drawn, settings))
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0)
     started = time.perf_counter() - begin - set_up - kept
     long_run = LongRun(model, engine, settings, watcher, on_progress)
