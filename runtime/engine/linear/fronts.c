@@ -86,18 +86,29 @@ static int neighbour(const fu_fronts *t, int k, int unknown)
     return -1;
 }
 
-/* Returns where the storage has an entry of the matrix; behind its end, which is `stray`, what has no place there. */
-int fu_fronts_at(const fu_fronts *t, int row, int column)
+/* Returns where the storage has an entry of the matrix; behind its end, which is `stray`, what has no place there. stride: from it to
+ * that of the next column, where both are in the same front. */
+int fu_fronts_block(const fu_fronts *t, int row, int column, int *stride)
 {
+    *stride = t->m;
     if (t->n == 1) return column * t->m + row;
     const int of_row = t->front[row], of_column = t->front[column], k = of_row < of_column ? of_row : of_column;
     const int p = t->pivots[k], s = t->neighbours[k];
     if (of_column == k) {
         const int below = of_row == k ? 0 : neighbour(t, k, row);
+        *stride = p + s;
         return below < 0 ? t->size : t->start[k] + t->place[column] * (p + s) + (of_row == k ? t->place[row] : p + below);
     }
     const int beside = neighbour(t, k, column);
+    *stride = p;
     return beside < 0 ? t->size : t->start[k] + p * (p + s) + beside * p + t->place[row];
+}
+
+/* Returns where the storage has an entry of the matrix, as above. */
+int fu_fronts_at(const fu_fronts *t, int row, int column)
+{
+    int unused;
+    return fu_fronts_block(t, row, column, &unused);
 }
 
 /* Adds to y the product of the first `columns` columns of a matrix with x. */
