@@ -1,7 +1,15 @@
 /* What a joint does as a coupling. Its own unknowns are its multipliers; their equations are phi = 0. */
 #include "engine.h"
 
+#include "lanes.h"
+
 #include <string.h>
+
+/* Adds n numbers times a factor. */
+FU_INLINE void add_row(int n, double factor, const double *row, double *restrict to)
+{
+    for (int i = 0; i < n; ++i) to[i] += row[i] * factor;
+}
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
                      double *own)
@@ -23,7 +31,8 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
             if (!n) continue; /* the ground */
             const double *J = at.J[e] + r * n;
             double *on = f + at.at[e][0]; /* an attachment's coordinates stand together, but s, the last of them on a slide */
-            for (int i = 0; i < n - on_slide; ++i) on[i] += J[i] * multipliers[r];
+            if (n == FU_FRAME_DOFS && !on_slide) add_row(FU_FRAME_DOFS, multipliers[r], J, on); /* a loop without remainder */
+            else add_row(n - on_slide, multipliers[r], J, on);
             if (on_slide && fu_joint_moves(model, joint, next, at.at[e][last]))
                 own[at.at[e][last] - model->n_dof] -= scale * (J[last] * multipliers[r]);
         }

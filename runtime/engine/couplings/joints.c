@@ -3,6 +3,8 @@
  */
 #include "engine.h"
 
+#include "lanes.h"
+
 #include <string.h>
 
 enum { MOVES = 9 }; /* gap, turn of the first attachment, turn of the second: as many in space, fewer in the plane */
@@ -38,21 +40,31 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
 }
 
 /* Adds a value times a row of n numbers to another. */
-static inline void add_row(int n, double value, const double *row, double *restrict to)
+FU_INLINE void add_row(int n, double value, const double *row, double *restrict to)
 {
-    for (int i = 0; value != 0.0 && i < n; ++i) to[i] += value * row[i];
+    for (int i = 0; i < n; ++i) to[i] += value * row[i];
+}
+
+/* Does what over_coordinates does, for n coordinates. */
+FU_INLINE void over_n(int n, int dim, const joint_view *view, int e, int rows, const double *by_moves, double *J)
+{
+    const fu_attachment_state *at = &view->at[e];
+    const int first = dim + e * view->turns;
+    for (int r = 0; r < rows; ++r, by_moves += view->moves, J += n) {
+        for (int i = 0; i < n; ++i) J[i] = 0.0;
+        for (int d = 0; d < dim; ++d)
+            if (by_moves[d] != 0.0) add_row(n, e ? by_moves[d] : -by_moves[d], at->P + d * n, J);
+        for (int d = 0; d < view->turns; ++d)
+            if (by_moves[first + d] != 0.0) add_row(n, by_moves[first + d], at->T + d * n, J);
+    }
 }
 
 /* Makes J (rows x n) over an attachment's n coordinates from that over gap and turns. */
 static void over_coordinates(int dim, const joint_view *view, int e, int rows, const double *by_moves, double *J)
 {
-    const fu_attachment_state *at = &view->at[e];
-    const int n = at->n, first = dim + e * view->turns;
-    for (int r = 0; r < rows; ++r, by_moves += view->moves, J += n) {
-        for (int i = 0; i < n; ++i) J[i] = 0.0;
-        for (int d = 0; d < dim; ++d) add_row(n, e ? by_moves[d] : -by_moves[d], at->P + d * n, J);
-        for (int d = 0; d < view->turns; ++d) add_row(n, by_moves[first + d], at->T + d * n, J);
-    }
+    const int n = view->at[e].n;
+    if (n == FU_FRAME_DOFS) over_n(FU_FRAME_DOFS, dim, view, e, rows, by_moves, J); /* its loops have no remainders */
+    else over_n(n, dim, view, e, rows, by_moves, J);
 }
 
 static void take_coordinates(const joint_view *view, int e, int *n, int *at)
@@ -121,7 +133,8 @@ static void add_elastic(int dim, const joint_view *view, int f, int n_e, const d
     for (int d = 0; d < dim + view->turns; ++d) {
         const double *by = d < dim ? at->P + d * at->n : at->T + (d - dim) * at->n;
         const double *row = half + (d < dim ? d : d + f * view->turns) * n_e;
-        for (int i = 0; i < at->n; ++i) add_row(n_e, d < dim && !f ? -by[i] : by[i], row, K + i * n_e);
+        for (int i = 0; i < at->n; ++i)
+            if (by[i] != 0.0) add_row(n_e, d < dim && !f ? -by[i] : by[i], row, K + i * n_e);
     }
 }
 

@@ -141,17 +141,17 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
 }
 
 /* Adds the same of a block over the border's unknowns from these on, which stand together in a front, rows and columns both. */
-static void add_together(fu_system *s, int row, int rows, int column, int columns, double factor, const double *values,
+static void add_together(fu_system *s, int row, int rows, int column, int columns, double factor, const double *restrict values,
                          int by_row, int by_column)
 {
     int stride;
     const int at = fu_fronts_block(s->fronts, row, column, &stride), has_place = at < s->fronts->size;
-    for (int j = 0; j < columns; ++j)
-        for (int i = 0; i < rows; ++i) {
-            const double value = factor * values[i * by_row + j * by_column];
-            if (has_place) s->D[at + j * stride + i] += value;
-            else s->D[at] += fabs(value);
-        }
+    double *restrict to = s->D + at;
+    for (int j = 0; j < columns; ++j, values += by_column) {
+        for (int i = 0; has_place && i < rows; ++i) to[i] += factor * values[i * by_row];
+        for (int i = 0; !has_place && i < rows; ++i) to[0] += fabs(factor * values[i * by_row]);
+        to += has_place ? stride : 0;
+    }
 }
 
 /* Adds T' values T to a system: of row i and column j the factor times values[i by_row + j by_column]. */
