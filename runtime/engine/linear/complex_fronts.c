@@ -1,6 +1,7 @@
 /* The border of a complex system, front by front. */
 #include "complex_system.h"
 #include "engine.h"
+#include "lanes.h"
 
 #define NUMBER fu_complex
 #define ZERO ((fu_complex){0.0, 0.0})
