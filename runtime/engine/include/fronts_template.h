@@ -1,7 +1,8 @@
 /* Gaussian elimination by fronts (Duff & Reid 1983) with threshold pivoting, for real and for complex numbers:
  * linear/fronts.c, linear/complex_fronts.c. A file that includes this has defined NUMBER, PREFIX(name), SIZE(x),
  * DIVIDE(x, by), TIMES(a, b), ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), APPLY, which makes a column what pivots
- * leave of it, and BACK, which makes the first unknowns of a front from the others.
+ * leave of it, FORWARD, which does that to a right side with all pivots of a front, and BACK, which makes the first unknowns of a
+ * front from the others.
  *
  * A pivot is taken from the rows and columns that have all their entries, if it is not much smaller than what its column
  * has elsewhere. What finds none is left to the parent front. The last front has no other rows: LAPACK factors it.
@@ -162,7 +163,7 @@ FU_INLINE void PREFIX(solve)(const fu_fronts *t, const fu_factors *f, NUMBER *y)
     for (int k = 0; k < t->n; ++k) {
         const int n = f->size[k], done = f->done[k], *rows = f->unknowns + f->first[k];
         for (int i = 0; i < n; ++i) local[i] = y[rows[i]];
-        APPLY(PREFIX(front)(f, k), n, 0, done, local);
+        FORWARD(PREFIX(front)(f, k), n, done, local);
         for (int i = 0; i < n; ++i) y[rows[i]] = local[i];
     }
     for (int k = t->n - 1; k >= 0; --k) {

@@ -12,6 +12,7 @@
 #define DIVIDE(x, by) fu_complex_quotient(x, by)
 #define ADD(to, x) ((to).re += (x).re, (to).im += (x).im)
 #define APPLY eliminated
+#define FORWARD(F, n, done, x) eliminated(F, n, 0, done, x)
 #define BACK substituted
 #define FACTOR zgetrf
 

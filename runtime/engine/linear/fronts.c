@@ -12,7 +12,8 @@
 #define DIVIDE(x, by) ((x) / (by))
 #define ADD(to, x) ((to) += (x))
 #define APPLY eliminated
-#define BACK substituted
+#define FORWARD forward
+#define BACK backward
 #define FACTOR dgetrf
 
 /* Subtracts from n numbers the sum of four columns times a number each. */
@@ -35,21 +36,51 @@ FU_INLINE void subtract_one(int n, const double *column, double factor, double *
     for (; i < n; ++i) to[i] -= column[i] * factor;
 }
 
+/* Makes a column of n what four pivots from k on leave of it. */
+FU_INLINE void eliminate_four(const double *F, int n, int k, double *restrict column)
+{
+    const double *a = F + k * n, *b = a + n, *c = b + n, *d = c + n;
+    const double w = column[k], x = column[k + 1] - a[k + 1] * w, y = column[k + 2] - a[k + 2] * w - b[k + 2] * x;
+    const double z = column[k + 3] - a[k + 3] * w - b[k + 3] * x - c[k + 3] * y;
+    column[k + 1] = x;
+    column[k + 2] = y;
+    column[k + 3] = z;
+    subtract_four(n - k - 4, (const double *const[4]){a + k + 4, b + k + 4, c + k + 4, d + k + 4}, (const double[4]){w, x, y, z},
+                  column + k + 4);
+}
+
+FU_INLINE void eliminate_one(const double *F, int n, int k, double *restrict column)
+{
+    subtract_one(n - k - 1, F + k * n + k + 1, column[k], column + k + 1);
+}
+
 /* Makes a column of n what the pivots from `from` to `to` leave of it; four at once, which need it from memory once. */
 FU_INLINE void eliminated(const double *F, int n, int from, int to, double *restrict column)
 {
     int k = from;
-    for (; k + 4 <= to; k += 4) {
-        const double *a = F + k * n, *b = a + n, *c = b + n, *d = c + n;
-        const double w = column[k], x = column[k + 1] - a[k + 1] * w, y = column[k + 2] - a[k + 2] * w - b[k + 2] * x;
-        const double z = column[k + 3] - a[k + 3] * w - b[k + 3] * x - c[k + 3] * y;
-        column[k + 1] = x;
-        column[k + 2] = y;
-        column[k + 3] = z;
-        subtract_four(n - k - 4, (const double *const[4]){a + k + 4, b + k + 4, c + k + 4, d + k + 4},
-                      (const double[4]){w, x, y, z}, column + k + 4);
-    }
-    for (; k < to; ++k) subtract_one(n - k - 1, F + k * n + k + 1, column[k], column + k + 1);
+    for (; k + 4 <= to; k += 4) eliminate_four(F, n, k, column);
+    for (; k < to; ++k) eliminate_one(F, n, k, column);
+}
+
+/* Makes the four pivots before k from their right side, and takes what they have in the right side of those before them. */
+FU_INLINE void substitute_four(const double *F, int n, int k, double *restrict x)
+{
+    const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
+    const double x3 = x[k - 1] * d[k - 1], x2 = (x[k - 2] - d[k - 2] * x3) * c[k - 2];
+    const double x1 = (x[k - 3] - c[k - 3] * x2 - d[k - 3] * x3) * b[k - 3];
+    const double x0 = (x[k - 4] - b[k - 4] * x1 - c[k - 4] * x2 - d[k - 4] * x3) * a[k - 4];
+    x[k - 1] = x3;
+    x[k - 2] = x2;
+    x[k - 3] = x1;
+    x[k - 4] = x0;
+    subtract_four(k - 4, (const double *const[4]){a, b, c, d}, (const double[4]){x0, x1, x2, x3}, x);
+}
+
+FU_INLINE void substitute_one(const double *F, int n, int k, double *restrict x)
+{
+    const double *d = F + (k - 1) * n;
+    x[k - 1] *= d[k - 1];
+    subtract_one(k - 1, d, x[k - 1], x);
 }
 
 /* Makes the first `done` of n unknowns from their right side and the others; four columns at once, as above. */
@@ -61,22 +92,36 @@ FU_INLINE void substituted(const double *F, int n, int done, double *restrict x)
         subtract_four(done, (const double *const[4]){a, b, c, d}, (const double[4]){x[k - 4], x[k - 3], x[k - 2], x[k - 1]}, x);
     }
     for (; k > done; --k) subtract_one(done, F + (k - 1) * n, x[k - 1], x);
-    for (; k >= 4; k -= 4) {
-        const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
-        const double x3 = x[k - 1] * d[k - 1], x2 = (x[k - 2] - d[k - 2] * x3) * c[k - 2];
-        const double x1 = (x[k - 3] - c[k - 3] * x2 - d[k - 3] * x3) * b[k - 3];
-        const double x0 = (x[k - 4] - b[k - 4] * x1 - c[k - 4] * x2 - d[k - 4] * x3) * a[k - 4];
-        x[k - 1] = x3;
-        x[k - 2] = x2;
-        x[k - 3] = x1;
-        x[k - 4] = x0;
-        subtract_four(k - 4, (const double *const[4]){a, b, c, d}, (const double[4]){x0, x1, x2, x3}, x);
+    for (; k >= 4; k -= 4) substitute_four(F, n, k, x);
+    for (; k > 0; --k) substitute_one(F, n, k, x);
+}
+
+/* A link of a chain: a body's unknowns and those of its spherical joint go, those of the next joint stay. Sizes that the compiler
+ * knows take half the instructions. */
+enum { LINK_PIVOTS = FU_FRAME_DOFS + 3, LINK = LINK_PIVOTS + 3 };
+_Static_assert(LINK_PIVOTS == 4 + 4 + 1, "as forward and backward do them");
+
+FU_INLINE void forward(const double *F, int n, int done, double *restrict x)
+{
+    if (n != LINK || done != LINK_PIVOTS) {
+        eliminated(F, n, 0, done, x);
+        return;
     }
-    for (; k > 0; --k) {
-        const double *d = F + (k - 1) * n;
-        x[k - 1] *= d[k - 1];
-        subtract_one(k - 1, d, x[k - 1], x);
+    eliminate_four(F, LINK, 0, x);
+    eliminate_four(F, LINK, 4, x);
+    eliminate_one(F, LINK, 8, x);
+}
+
+FU_INLINE void backward(const double *F, int n, int done, double *restrict x)
+{
+    if (n != LINK || done != LINK_PIVOTS) {
+        substituted(F, n, done, x);
+        return;
     }
+    for (int k = LINK; k > LINK_PIVOTS; --k) subtract_one(LINK_PIVOTS, F + (k - 1) * LINK, x[k - 1], x);
+    substitute_four(F, LINK, 9, x);
+    substitute_four(F, LINK, 5, x);
+    substitute_one(F, LINK, 1, x);
 }
 
 #include "fronts_template.h"
