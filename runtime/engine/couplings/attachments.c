@@ -97,12 +97,14 @@ static void point_of(const fu_model *model, const fu_attachment *on, const fu_st
     const int dim = model->dim, n = out->n;
     for (int d = 0; d < 3; ++d) out->v[d] = out->bias[d] = 0.0;
     memcpy(out->p, on->u, sizeof out->p);
-    memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
     if (on->body >= 0) {
         const fu_body *body = &model->bodies[on->body];
         body->kernel->point(state->q + body->configuration, on->u, state->v + body->dof, out->p, out->P, out->v,
                             out->bias);
-    } else if (on->cable >= 0 && on->slide < 0) {
+        return;
+    }
+    memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
+    if (on->cable >= 0 && on->slide < 0) {
         const fu_cable *cable = &model->cables[on->cable];
         const int first = cable->first + on->element * cable->per_node;
         for (int d = 0; d < dim; ++d) {

@@ -339,7 +339,11 @@ cdef extern from "engine.h" nogil:
                           fu_joint_output *out)
     int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
     int fu_between_cables(const fu_joint *joint)
-    int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K)
+    ctypedef struct fu_joint_derivatives:
+        int n[2]
+        int **at
+        double *K[2][2]
+    void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out)
     int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)

@@ -189,24 +189,22 @@ cdef class Statics(Translation):
             return None
         from scipy.sparse import coo_array, csr_array
 
-        cdef int[::1] at = np.zeros(2 * FU_ATTACHMENT_COORDINATES, dtype=np.intc)
-        cdef double[::1] J = np.zeros(6 * 2 * FU_ATTACHMENT_COORDINATES), K = np.zeros(4 * FU_ATTACHMENT_COORDINATES ** 2)
+        cdef fu_joint_derivatives by
         cdef fu_joint *joint
-        cdef int k, i, n, first, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
+        cdef int k, i, e, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
         whole = n_dof + self.model.n_extra
         stiffness = csr_array((whole, whole))
         for k in joints:
             joint = <fu_joint *>self.couplings[k]
-            first = fu_attachment_coordinates(&self.model, &joint.attachments[0], &self.run.next, &at[0])
-            n = fu_joint_tangent(&self.model, joint, &self.run.next, &at[0], &J[0], &K[0])
-            block = np.array(K[:n * n]).reshape(n, n)
-            block[:first, :first] = block[first:, first:] = 0
-            places = np.array([at[i] for i in range(n)])
-            for i in range(n):  # an s that is held has no equilibrium of its own
-                if not fu_joint_moves(&self.model, joint, &self.run.next, places[i]):
-                    block[i] = block[:, i] = 0
-            rows, columns = np.repeat(places, n), np.tile(places, n)
-            stiffness = stiffness + coo_array((block.ravel(), (rows, columns)), shape=(whole, whole)).tocsr()
+            fu_joint_tangent(&self.model, joint, &self.run.next, &by)
+            places = [np.array([by.at[e][i] for i in range(by.n[e])]) for e in range(2)]
+            for e in range(2):
+                block = np.array([by.K[1 - e][e][i] for i in range(by.n[0] * by.n[1])]).reshape(by.n[1 - e], by.n[e])
+                # an s that is held has no equilibrium of its own
+                moves = [[fu_joint_moves(&self.model, joint, &self.run.next, at) for at in side] for side in places]
+                block = block * np.outer(moves[1 - e], moves[e])
+                rows, columns = np.repeat(places[1 - e], by.n[e]), np.tile(places[e], by.n[1 - e])
+                stiffness = stiffness + coo_array((block.ravel(), (rows, columns)), shape=(whole, whole)).tocsr()
         if not stiffness.nnz:
             return None
         if self.spreads is None:
