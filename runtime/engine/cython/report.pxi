@@ -86,7 +86,7 @@ cdef class Report(Statics):
     @property
     def memory(self):
         """Bytes of the engine's arrays; recorded rows count only after `start`."""
-        return sum(array.nbytes for array in self.kept)
+        return int(self.bytes_kept)
 
     @property
     def time(self):
