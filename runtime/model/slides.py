@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -49,7 +50,7 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
         rider_is_rigid,
         dim == 3 and not along.kind_of_element.director,
         slide.s,
-        int(np.clip(np.floor(at), 0, along.elements - 1)),
+        min(max(math.floor(at), 0), along.elements - 1),
         axes[1],
         RESISTANCES[dim] * resists,
         **_friction(friction),

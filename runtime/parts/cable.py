@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
@@ -224,7 +225,7 @@ class Cable(Part):
         ends = tuple(end for end in (self.start, self.end) if end is not None)
         return ends if self.points is None else self.points
 
-    @property
+    @cached_property
     def _shape(self) -> curves.Line | curves.Spline:
         return curves.shape_through(self._drawn_through)
 
@@ -372,5 +373,5 @@ class Cable(Part):
         if self.is_open:
             return round(s / (EXACT * self.length))
         node = round(s / self.length * self.elements)
-        on_node = 0 <= node <= self.elements and abs(self.node_s[node] - s) <= EXACT * self.length
+        on_node = 0 <= node <= self.elements and abs(self.length * node / self.elements - s) <= EXACT * self.length
         return node if on_node else None
