@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, triu
@@ -51,8 +52,16 @@ def cheapest(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) 
     """Return the numbering of the unknowns, as drawn or in another order, that takes the fewest operations.
 
     elements (n, 2): first dof and number of dofs of each; made_of (k, 2): a dof, an unknown of it; shape: the numbers
-    of dofs and of unknowns.
+    of dofs and of unknowns. It is sought once for all scenes that ask alike, as those of one topology do; the arrays are
+    shared.
     """
+    return ordered(elements.tobytes(), made_of.tobytes(), shape)
+
+
+@lru_cache(maxsize=32)
+def ordered(of_elements: bytes, of_dofs: bytes, shape: tuple[int, int]) -> Numbering:
+    """Return `cheapest` of arrays given by their bytes; it stays for equal ones."""
+    elements, made_of = (np.frombuffer(given, dtype=int).reshape(-1, 2) for given in (of_elements, of_dofs))
     touches = _touches(elements, made_of, shape)
     entry = touches.tocoo()
     entries = Touches(entry.row, entry.col, len(elements))
