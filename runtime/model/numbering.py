@@ -52,8 +52,8 @@ def cheapest(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) 
     """Return the numbering of the unknowns, as drawn or in another order, that takes the fewest operations.
 
     elements (n, 2): first dof and number of dofs of each; made_of (k, 2): a dof, an unknown of it; shape: the numbers
-    of dofs and of unknowns. It is sought once for all scenes that ask alike, as those of one topology do; the arrays are
-    shared.
+    of dofs and of unknowns. It is sought once for all scenes that ask alike, as those of one topology do; the arrays
+    are shared.
     """
     return ordered(elements.tobytes(), made_of.tobytes(), shape)
 

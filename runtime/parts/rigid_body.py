@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -52,7 +52,7 @@ def unit_quaternion(value: Any) -> Quaternion:
     return w / norm, x / norm, y / norm, z / norm
 
 
-def largest_moment(inertia: Iterable[Iterable[float]]) -> float:
+def largest_moment(inertia: np.ndarray | tuple[Vector, Vector, Vector]) -> float:
     """Return the largest principal moment of inertia (3, 3), in kg m²."""
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia
     return float(np.linalg.eigvalsh(inertia)[-1]) if xy or xz or yz else max(xx, yy, zz)
