@@ -38,6 +38,11 @@ cdef class Report(Statics):
         """Number of output rows since the start."""
         return self.run.record.n
 
+    @property
+    def n_steps(self):
+        """Number of steps since the start, which `statistics` has with much else."""
+        return self.run.statistics.steps
+
     def slide_row(self, slides):
         """Split slides' numbers (..., numbers of a slide) by name; see fu_slide_output."""
         ends = np.cumsum(list(SLIDE_OUTPUTS.values()))
