@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
@@ -225,7 +224,7 @@ class Cable(Part):
         ends = tuple(end for end in (self.start, self.end) if end is not None)
         return ends if self.points is None else self.points
 
-    @cached_property
+    @property
     def _shape(self) -> curves.Line | curves.Spline:
         return curves.shape_through(self._drawn_through)
 
@@ -316,8 +315,9 @@ class Cable(Part):
     def nodal_vectors(self) -> np.ndarray:
         """Return (nodes, vectors, 3): as drawn; r in m, its gradients by the undeformed cable, r_xx in 1/m."""
         drawn, stretch = self.node_s * self.stretch, self.stretch
+        bent = "r_xx" in self.kind_of_element.nodal_vectors
         return self._vectors(self._shape.point(drawn), self.axes_at(self.node_s), stretch,
-                             stretch**2 * self._shape.curvature(drawn))
+                             stretch**2 * self._shape.curvature(drawn) if bent else None)
 
     @property
     def nodal_rates(self) -> np.ndarray:
@@ -352,8 +352,9 @@ class Cable(Part):
         return self._vectors(start + (self._shape.point(drawn) - start) / self.stretch, self.axes_at(self.node_s), 1.0,
                              self.stretch * self._shape.curvature(drawn))
 
-    def _vectors(self, r: np.ndarray, axes: np.ndarray, stretch: float, r_xx: np.ndarray) -> np.ndarray:
-        known = {"r": r, "r_x": stretch * axes[:, 0], "r_y": axes[:, 1], "r_z": axes[:, 2], "r_xx": r_xx}
+    def _vectors(self, r: np.ndarray, axes: np.ndarray, stretch: float, r_xx: np.ndarray | None) -> np.ndarray:
+        known: dict[str, Any] = {"r": r, "r_x": stretch * axes[:, 0], "r_y": axes[:, 1], "r_z": axes[:, 2],
+                                 "r_xx": r_xx}
         return np.stack([known[name] for name in self.kind_of_element.nodal_vectors], axis=1)
 
     def nearest_s(self, point: np.ndarray) -> float:
