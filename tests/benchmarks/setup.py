@@ -5,9 +5,8 @@
 CPU ms on one core, the least of repetitions in which the scenes take turns: what else the machine does only adds to it.
 Python calls are those of Python and C functions as the profiler counts them, once all is imported; they do not depend
 on the machine. `scene`: to make the scene, which is no part of a run; `set-up`: the sum from the checks to the start;
-`another`:
-that of another scene of the same topology; `results`: from the last step to the `Run`, for 101 output times. `unaccounted`: of a run of 1 s at tol 1e-4,
-what report["time_s"] has no part for.
+`another`: that of another scene of the same topology; `results`: from the last step to the `Run`, for 101 output times.
+`unaccounted`: of a run of 1 s at tol 1e-4, what report["time_s"] has no part for.
 
 The aim: set-up of the first scene within 1.5 ms, unaccounted at most 10 %.
 """
