@@ -113,9 +113,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     if initial is not None:
         messages += [f"state to start from: {message}" for message in initial.messages]
     messages += _divided_step(settings)
-    method, reason, rival = choose(settings, scene, model, engine, None if stream is None else stream.integrator)
-    if trials is not None:
-        method, reason, rival = trials.of(scene, method, reason, rival)
+    choice = choose(settings, scene, model, engine, None if stream is None else stream.integrator)
+    method, reason, rival = choice if trials is None else trials.of(scene, *choice)
     set_up, clock = time.perf_counter() - begin, time.thread_time if settings.threads == 1 else time.process_time
     cpu = clock()
     LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, model.n_dof,
@@ -127,9 +126,9 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         kept = time.perf_counter()
         status, lost = on_trial(engine, rival, method, settings.duration, pace.every,
                                 LongRun(model, engine, settings, watcher, on_progress), discard=stream is not None)
+        if lost and trials is not None:
+            trials.note(scene, method, rival)
         if lost:
-            if trials is not None:
-                trials.note(scene, method, rival)
             method, reason = rival.method, f"{reason}; {lost}"
         stopped, kept = status == "interrupted", time.perf_counter() - kept
         if lost or stream is not None:  # whose rows were not kept: the trial is a part of the start
