@@ -257,7 +257,8 @@ def test_cables_alone_have_the_border_that_they_had(name):
 
 def test_scenes_of_one_topology_share_the_analysis():
     """Other numbers are no other topology; another body or joint is one."""
-    first, other, longer = build(chain(30)), build(chain(30).replace(next(iter(chain(30).bodies)), mass=7.0)), build(chain(31))
+    scene = chain(30)
+    first, other, longer = build(scene), build(scene.replace(next(iter(scene.bodies)), mass=7.0)), build(chain(31))
     assert first.newton is other.newton and first.accelerations is other.accelerations
     assert longer.newton is not first.newton
     eliminated.cache_clear()
