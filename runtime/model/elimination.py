@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from heapq import heapify, heappop, heappush
 from typing import Any
 
@@ -117,7 +118,14 @@ class BorderGraph:
             self.on_chain.setdefault(chain, set()).add(group)
 
     def eliminate(self) -> Elimination:
-        """Return the order of elimination: one front, or those of minimum degree where they take fewer operations."""
+        """Return the order of elimination: one front, or those of minimum degree where they take fewer operations.
+
+        It is analysed once for all scenes whose graphs are equal, as those of one topology are; the arrays are shared.
+        """
+        return eliminated(tuple(tuple(own.tolist()) for own in self.unknowns), tuple(map(frozenset, self.beside)),
+                          _frozen(self.on_chain), _frozen(self.waits))
+
+    def _eliminated(self) -> Elimination:
         pairs = [(int(unknown), chain) for chain, groups in self.on_chain.items() for group in groups
                  for unknown in self.unknowns[group]]
         strips = np.array(sorted(pairs), dtype=int).reshape(-1, 2)
@@ -245,6 +253,22 @@ class _Remaining:
     def _degree(self, group: int) -> int:
         """Return how many unknowns a group's neighbours have."""
         return sum(self.size[other] for other in self.beside[group])
+
+
+def _frozen(sets: dict[int, set[int]]) -> tuple[tuple[int, frozenset[int]], ...]:
+    return tuple((key, frozenset(sets[key])) for key in sorted(sets))
+
+
+@lru_cache(maxsize=32)
+def eliminated(unknowns: tuple[tuple[int, ...], ...], beside: tuple[frozenset[int], ...],
+               on_chain: tuple[tuple[int, frozenset[int]], ...],
+               waits: tuple[tuple[int, frozenset[int]], ...]) -> Elimination:
+    """Return the order of elimination of a `BorderGraph`, given by its attributes; it stays for equal ones."""
+    graph = BorderGraph()
+    graph.unknowns, graph.beside = [np.array(own, dtype=int) for own in unknowns], [set(groups) for groups in beside]
+    graph.on_chain = {chain: set(groups) for chain, groups in on_chain}
+    graph.waits = {group: set(groups) for group, groups in waits}
+    return graph._eliminated()
 
 
 def _parents(fronts: list[list[int]], neighbours: list[set[int]]) -> list[int]:

@@ -384,8 +384,9 @@ class Cable(Part):
     def nodal_vectors(self) -> np.ndarray:
         """Return (nodes, vectors, 3): as drawn; r in m, its gradients by the undeformed cable, r_xx in 1/m."""
         drawn, stretch = self.node_s * self.stretch, self.stretch
+        bent = "r_xx" in self.kind_of_element.nodal_vectors
         return self._vectors(self._shape.point(drawn), self.axes_at(self.node_s), stretch,
-                             stretch**2 * self._shape.curvature(drawn))
+                             stretch**2 * self._shape.curvature(drawn) if bent else None)
 
     @property
     def nodal_rates(self) -> np.ndarray:
@@ -420,8 +421,9 @@ class Cable(Part):
         return self._vectors(start + (self._shape.point(drawn) - start) / self.stretch, self.axes_at(self.node_s), 1.0,
                              self.stretch * self._shape.curvature(drawn))
 
-    def _vectors(self, r: np.ndarray, axes: np.ndarray, stretch: float, r_xx: np.ndarray) -> np.ndarray:
-        known = {"r": r, "r_x": stretch * axes[:, 0], "r_y": axes[:, 1], "r_z": axes[:, 2], "r_xx": r_xx}
+    def _vectors(self, r: np.ndarray, axes: np.ndarray, stretch: float, r_xx: np.ndarray | None) -> np.ndarray:
+        known: dict[str, Any] = {"r": r, "r_x": stretch * axes[:, 0], "r_y": axes[:, 1], "r_z": axes[:, 2],
+                                 "r_xx": r_xx}
         return np.stack([known[name] for name in self.kind_of_element.nodal_vectors], axis=1)
 
     def nearest_s(self, point: np.ndarray) -> float:

@@ -74,7 +74,7 @@ class LongRun:
 
     @property
     def _steps(self) -> int:
-        return self._engine.statistics["steps"]
+        return self._engine.n_steps
 
     def _why(self) -> str:
         """Return what rules the step, and what makes it larger."""

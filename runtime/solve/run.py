@@ -29,6 +29,7 @@ from .long_runs import LongRun
 from .pauses import Pauses, pauses
 from .progress import Meter
 from .row_notes import RowNotes
+from .shared_trials import SharedTrials
 from .signal_steps import unresolved
 from .threads import share_elements
 from .trial_run import on_trial
@@ -98,11 +99,11 @@ class Simulation:
 
 
 def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initial: Start | None = None,
-             stream: Sink | None = None) -> Simulation:
+             stream: Sink | None = None, trials: SharedTrials | None = None) -> Simulation:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
 
-    initial: a state of this scene to start from; stream: takes the rows as they
-    come, so that only the last ones are in what is returned.
+    initial: a state of this scene to start from; stream: takes the rows as they come, so that only the last ones are in
+    what is returned; trials: of other scenes of this shape.
     """
     begin = time.perf_counter()
     model, engine, watcher, said = _prepared(scene, settings, initial)
@@ -112,7 +113,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     if initial is not None:
         messages += [f"state to start from: {message}" for message in initial.messages]
     messages += _divided_step(settings)
-    method, reason, rival = choose(settings, scene, model, engine, None if stream is None else stream.integrator)
+    choice = choose(settings, scene, model, engine, None if stream is None else stream.integrator)
+    method, reason, rival = choice if trials is None else trials.of(scene, *choice)
     set_up, clock = time.perf_counter() - begin, time.thread_time if settings.threads == 1 else time.process_time
     cpu = clock()
     LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, model.n_dof,
@@ -124,6 +126,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         kept = time.perf_counter()
         status, lost = on_trial(engine, rival, method, settings.duration, pace.every,
                                 LongRun(model, engine, settings, watcher, on_progress), discard=stream is not None)
+        if lost and trials is not None:
+            trials.note(scene, method, rival)
         if lost:
             method, reason = rival.method, f"{reason}; {lost}"
         stopped, kept = status == "interrupted", time.perf_counter() - kept
@@ -159,7 +163,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
 def _warned(messages: list[str]) -> list[str]:
     """Return messages, each of them given as a warning, too."""
     for message in messages:
-        warnings.warn(message, FunicularWarning, stacklevel=5)
+        warnings.warn(message, FunicularWarning, stacklevel=6)
     return messages
 
 

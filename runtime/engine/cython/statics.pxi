@@ -171,11 +171,32 @@ cdef class Statics(Translation):
         """The same as an array (n, n), which is quicker where there are few unknowns."""
         cdef int total = self.run.newton.n + self.run.newton.m
         self._weigh(inertia, rate, stiffness)
-        row, column, value = self._entries()
         full = np.zeros((total, total))
-        full[row, column] = value
+        self._fill(full)
         between = self._between_cables() if stiffness else None
         return full if between is None else full + stiffness * between.toarray()
+
+    cdef _fill(self, double[:, ::1] full):
+        """Put the entries of the unfactored Newton matrix into an array of zeros."""
+        cdef const fu_system *system = &self.run.newton
+        cdef const fu_fronts *fronts = system.fronts
+        cdef int n = system.n, width = system.width, k, i, j, p, s, row
+        cdef const double *D
+        cdef const int *at
+        for j in range(n):
+            for row in range(max(0, j - 2 * width), min(n, j + width + 1)):
+                full[row, j] = system.K[<long>j * (3 * width + 1) + row - j + 2 * width]
+        for k in range(fronts.n if system.m else 0):
+            D, at, p, s = system.D + fronts.start[k], fronts.unknown + fronts.first[k], fronts.pivots[k], fronts.neighbours[k]
+            for j in range(p):
+                for i in range(p + s):
+                    full[n + at[i], n + at[j]] = D[j * (p + s) + i]
+                for i in range(s):
+                    full[n + at[j], n + at[p + i]] = D[p * (p + s) + i * p + j]
+        for k in range(system.n_strips):
+            j = n + system.strips[k].k
+            for row in range(system.chains[system.strips[k].chain], system.chains[system.strips[k].chain + 1]):
+                full[row, j], full[j, row] = system.B[system.strips[k].at + row], system.C[system.strips[k].at + row]
 
     cdef _weigh(self, double inertia, double rate, double stiffness):
         cdef fu_weights weights
