@@ -85,7 +85,8 @@ class Scene(Viewable, SceneMethods):
         """Return a scene like this one with other values of one part, checked as any scene is; this one stays.
 
         part: its name, or the part itself; changes: by the keywords that such a part is made with, such as
-        ``scene.replace("trolley", friction=fu.Friction(coefficient=0.1))``. Raises SceneError.
+        ``scene.replace("trolley", friction=fu.Friction(coefficient=0.1))``; None leaves out what was given. Raises
+        SceneError.
 
         >>> import funicular as fu
         >>> scene = fu.load_scene("paper51")
@@ -101,7 +102,7 @@ class Scene(Viewable, SceneMethods):
         Raises SceneError.
         """
         values = {id(part): each for part, each in changes}
-        return self.with_parts((type(each)(**{**each.entries(), **values[id(each)]}) if id(each) in values else each
+        return self.with_parts((type(each)(**each.entries_with(values[id(each)])) if id(each) in values else each
                                 for each in self.parts()), gravity)
 
     def _part(self, part: Part | str) -> Part:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
@@ -192,6 +192,19 @@ class Cable(Part):
         if self.is_open and "element" not in self.model_fields_set:
             return {name: value for name, value in entries.items() if name not in ("element", "law")}
         return entries
+
+    def entries_with(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what a cable like this one is made with: drawn anew, or with another law, it keeps nothing of the old
+        one, but with another measure it keeps the other measures.
+        """
+        left: dict[str, Any] = {}
+        if any(changes.get(name) is not None for name in ("points", "curve")):
+            left = dict.fromkeys(("start", "end", "points"))
+        if "law" not in changes:
+            left |= cable_laws.changed(self.kind_of_element, self.law, changes, self.library)
+        elif changes["law"] != self.law:
+            left |= dict.fromkeys(cable_laws.MEASURES)
+        return super().entries_with(left | {**changes})
 
     @property
     def kind_of_element(self) -> ElementKind:
