@@ -285,7 +285,7 @@ class Scene(Viewable, SceneMethods):
             return other.run(**kept | changes | ({} if state is None else {"initial": state}), progress=False)
 
         if run.status != "completed":
-            run.report["messages"].append(f"the run's errors are not estimated: it is {run.status}")
+            run.report["messages"].append(f"the run's errors are not estimated: it ended with status \"{run.status}\"")
             return
         found = error_estimate(self, run, settings, state is not None, again)
         run.report["errors"] = found.as_report()

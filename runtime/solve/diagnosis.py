@@ -81,6 +81,9 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
 
 def _too_large(engine: Engine, settings: RunSettings) -> str:
     size = f"tol {settings.tol:g}" if settings.step is None else f"step {settings.step:g} s"
+    coarsest = 0.0 if settings.step is not None else settings.absolute_tol or 0.0
+    if coarsest and coarsest > settings.tol * engine.controlled_motion:
+        size = f"absolute_tol {coarsest:.3g} m"
     others = "" if settings.step is None else ", or none, so that tol chooses it"
     stable = ""
     if INTEGRATORS[engine.integrator].stability is not None:
