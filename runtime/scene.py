@@ -87,7 +87,8 @@ class Scene(Viewable, SceneMethods):
         """Return a scene like this one with other values of one part, checked as any scene is; this one stays.
 
         part: its name, or the part itself; changes: by the keywords that such a part is made with, such as
-        ``scene.replace("trolley", friction=fu.Friction(coefficient=0.1))``. Raises SceneError.
+        ``scene.replace("trolley", friction=fu.Friction(coefficient=0.1))``; None leaves out what was given. Raises
+        SceneError.
 
         >>> import funicular as fu
         >>> scene = fu.load_scene("paper51")
@@ -298,7 +299,7 @@ class Scene(Viewable, SceneMethods):
             return other.run(**kept | changes | ({} if state is None else {"initial": state}), progress=False)
 
         if run.status != "completed":
-            run.report["messages"].append(f"the run's errors are not estimated: it is {run.status}")
+            run.report["messages"].append(f"the run's errors are not estimated: it ended with status \"{run.status}\"")
             return
         found = error_estimate(self, run, settings, state is not None, again)
         run.report["errors"] = found.as_report()

@@ -302,3 +302,12 @@ def _app():
     from funicular.cli import app
 
     return app
+
+
+def test_a_quantity_that_does_not_change_is_named():
+    """Its error over its change would be 0, whatever the model."""
+    scene = fu.load_scene("paper51")
+    choice = scene.choose(1e-2, duration=0.05, quantities=["energy.dissipated", "A.position"])
+    said = "energy.dissipated did not change in the short runs: nothing is estimated of that"
+    assert said in choice.messages() and said in choice.reasons
+    assert scene.choose(1e-2, duration=0.05, quantities=["A.position"]).unchanged == []

@@ -30,7 +30,7 @@ def placed_joint(scene: SceneData, joint: Joint) -> Joint:
     joint = placed_between(scene, joint)
     if move_as_one(scene, joint.a, joint.b):
         raise SceneError(joint.where, f"joins {called(joint.a)} to itself", "give it two ends")
-    joint = joint.model_copy(update=_completed(scene, joint))
+    joint = joint.completed(_completed(scene, joint))
     _check_frames(scene, joint)
     check_other_joints(scene, joint, lambda: EXACT * scene_size(scene, joint))
     check_joint(scene, joint)

@@ -228,13 +228,17 @@ class Chooser(Generic[S]):
         if not kept:
             self.reasons.append(f"no model at hand keeps tol = {self.tol:g}: the finest is taken, which errs by about "
                                 f"{error:.1e}")
+        unchanged = [name for name, values in estimate.probes[-1].sampled.items() if not largest_change(values) > 0]
+        if unchanged:
+            self.reasons.append(f"{' and '.join(unchanged)} did not change in the short runs: nothing is estimated of "
+                                "that")
         scene = remade(self.scene, models)
         scene.run_settings = scene.run_settings | {"duration": self.settings.duration, "tol": self.time_tol,
                                                    "integrator": self.integrator}
         return Choice(scene, self.tol, self.time_tol, self.integrator, models, error, estimate.cost(models), kept,
                       self.reasons, estimate.alternatives(models, self.tol), len(self.prober.made), seconds,
                       [each.cable.name for each in self.free if each.fixed is not None or each.keeps],
-                      mesh_error=estimate.mesh_error(models))
+                      mesh_error=estimate.mesh_error(models), unchanged=unchanged)
 
     def _is_stiff(self, cable: Cable, probe: Probe[S]) -> bool:
         """Return whether a cable moves as a rigid body does, but for a part of the tolerance."""

@@ -198,12 +198,6 @@ class Cable(Part):
         raise SceneError(self.where, "has no elements yet",
                          "give elements=, or let them be chosen: scene.choose(tol).scene")
 
-    def remade(self, values: Mapping[str, Any]) -> Cable:
-        """Return it with other values by keyword; elements take the place of nodes, and nodes that of elements."""
-        other = {"elements": "nodes", "nodes": "elements"}
-        replaced = [other[name] for name in other if values.get(name) is not None and other[name] not in values]
-        return Cable(**{name: value for name, value in self.entries().items() if name not in replaced} | dict(values))
-
     def mesh_entries(self, elements: int) -> dict[str, Any]:
         """Return, by keyword, what makes it one of that many elements: unequal ones are divided or joined alike where
         the number is a multiple or a divisor of theirs; else they are equal.
@@ -229,6 +223,21 @@ class Cable(Part):
         if self.is_open and "element" not in self.model_fields_set:
             return {name: value for name, value in entries.items() if name not in ("element", "law")}
         return entries
+
+    def entries_with(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what a cable like this one is made with: drawn anew, or with another law, it keeps nothing of the old
+        one, but with another measure it keeps the other measures. Elements take the place of nodes, and nodes that of
+        elements.
+        """
+        other = {"elements": "nodes", "nodes": "elements"}
+        left: dict[str, Any] = {other[name]: None for name in other if changes.get(name) is not None}
+        if any(changes.get(name) is not None for name in ("points", "curve")):
+            left = dict.fromkeys(("start", "end", "points"))
+        if "law" not in changes:
+            left |= cable_laws.changed(self.kind_of_element, self.law, changes, self.library)
+        elif changes["law"] != self.law:
+            left |= dict.fromkeys(cable_laws.MEASURES)
+        return super().entries_with(left | {**changes})
 
     @property
     def kind_of_element(self) -> ElementKind:

@@ -143,7 +143,7 @@ class SceneData:
         scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
         scene.relax_settings = dict(self.relax_settings)
         for part in parts:
-            scene.add(part)
+            scene.add(part.as_made())
         return scene
 
     def remeshed(self, elements: Callable[[Cable], int]) -> Self:

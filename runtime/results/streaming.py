@@ -7,7 +7,6 @@ state that a checkpoint holds in full at all of them. Runs that end by themselve
 
 from __future__ import annotations
 
-import errno
 import os
 import shutil
 import time
@@ -25,7 +24,7 @@ from ..solve.pauses import Pauses
 from ..solve.row_notes import RowNotes
 from .checkpoints import Checkpoint, DamagedCheckpointError, Facts, checkpoint_of
 from .files import check_writable, create_file, file_text, open_file, over_time
-from .locks import NoLocks, Taken, claimed, is_at, lock
+from .locks import Taken, being_written, claimed_for, is_at, lock
 from .netcdf import File
 from .opening import opened
 from .quantities import Variable, labelled
@@ -39,6 +38,8 @@ CHECKPOINT_INTERVAL = 0.5
 """Seconds between two checkpoints, at least, where the buffer lasts so long."""
 REPORT_SPARE = 8192
 """Bytes for what the report will say at the end."""
+RUN = "run"
+"""What writes such files, in messages."""
 GOES_ON = ("unfinished", "interrupted")
 """What the status of a run is that can be resumed."""
 
@@ -63,7 +64,7 @@ class Stream:
         self._facts = facts_of(scene, settings)
         try:
             if not resume:
-                self._new = self._claim(self._part)
+                self._new = claimed_for(self._part, self._path, RUN)
             self._older = self._claim_older()
             self._kept = self._to_resume() if resume else None
         except BaseException:
@@ -209,7 +210,7 @@ class Stream:
     def _replace(self, coords: Mapping[str, Variable], variables: Mapping[str, Variable], report: dict,
                  rows: int | None = None) -> None:
         """Replace the older file by the part file, whole but for its rows."""
-        descriptor, self._new = self._new if self._new >= 0 else self._claim(self._part), -1
+        descriptor, self._new = self._new if self._new >= 0 else claimed_for(self._part, self._path, RUN), -1
         self._opened = create_file(self._part, coords, variables, dumps(self._scene), file_text(report, rows),
                                  REPORT_SPARE, descriptor)
 
@@ -250,20 +251,6 @@ class Stream:
             raise ResultFileError(f"{self._path}: the results could not be written: {error.strerror}; {whole}"
                                   "make room, and go on with resume where there is a checkpoint") from error
 
-    def _claim(self, path: Path) -> int:
-        """Return a descriptor of a file that is this run's alone."""
-        try:
-            return claimed(path)
-        except Taken:
-            raise self._taken_already() from None
-        except NoLocks:
-            raise self._refused(f"another run may be writing it: there is {path.name}, and this file system has no "
-                                "locks", f"delete {path.name} if there is none") from None
-        except OSError as error:
-            if error.errno == errno.ELOOP:
-                raise self._refused(f"{path.name} beside it is a link", "delete the link") from None
-            raise self._unwritable(error) from None
-
     def _claim_older(self) -> int:
         """Return a descriptor of the file that is there already, which no other run can then write; -1 where there is
         none.
@@ -279,7 +266,7 @@ class Stream:
                 lock(descriptor)
             except Taken:
                 os.close(descriptor)
-                raise self._taken_already() from None
+                raise being_written(self._path, RUN) from None
             if is_at(descriptor, self._path):
                 return descriptor
             os.close(descriptor)  # replaced while it was opened
@@ -287,9 +274,6 @@ class Stream:
 
     def _unwritable(self, error: OSError) -> ResultFileError:
         return self._refused(f"the results cannot be written here: {error.strerror}", "give another path")
-
-    def _taken_already(self) -> ResultFileError:
-        return self._refused("another run is writing it", "wait for its end, or give another name")
 
     def _refused(self, cause: str, remedy: str = "start the run anew, without resume") -> ResultFileError:
         return ResultFileError(f"{self._path}: {cause}; {remedy}")

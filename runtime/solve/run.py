@@ -22,13 +22,14 @@ from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from .diagnosis import notes, trapped
+from .diagnosis import genalpha_alone, notes, trapped
 from .event_watcher import EventWatcher
 from .integrator_choice import choose
 from .long_runs import LongRun
 from .pauses import Pauses, pauses
 from .progress import Meter
 from .row_notes import RowNotes
+from .sensitivity import sensitive
 from .shared_trials import SharedTrials
 from .signal_steps import unresolved
 from .threads import share_elements
@@ -151,7 +152,9 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     row_notes.see(engine.rows())
     messages += _controlled_alone(engine, settings)
     if status == "completed":
-        messages += _warned([*notes(engine, settings), *trapped(scene, engine), *row_notes.notes()])
+        grows = [] if settings.estimate else [*sensitive(engine, settings, row_notes.sensitivity),
+                                              *genalpha_alone(scene, engine, settings)]
+        messages += _warned([*notes(engine, settings), *trapped(scene, engine), *row_notes.notes(), *grows])
     noted = time.perf_counter() - ended
     total = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
