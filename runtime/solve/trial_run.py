@@ -12,6 +12,7 @@ from ..engine import Engine
 from ..integrators import Integrator
 from .integrator_choice import Rival
 from .long_runs import LongRun
+from .sink import Sink
 
 PART = 0.25
 """Of the duration: what is run on trial."""
@@ -27,20 +28,10 @@ CLEARLY = 3.0
 """Times the other's cost that what remains must take before."""
 
 
-class Discarding:
-    """Takes the rows of an engine at its pauses, and keeps none."""
-
-    def __init__(self, engine: Engine):
-        self.pause = engine.take_rows
-
-    def between(self) -> None:
-        """Take nothing between pauses."""
-
-
-def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, every: int,
-             follow: LongRun, discard: bool) -> tuple[str, str]:
-    """Run a started engine as far as it takes to judge its method by its cost; every: rows between pauses, of which the
-    engine keeps none where they are to be discarded.
+def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, every: int, follow: LongRun,
+             stream: Sink | None) -> tuple[str, str]:
+    """Run a started engine as far as it takes to judge its method by its cost; every: rows between pauses, at which the
+    stream may take them.
 
     Returns the status that the run has come to, "running" where there is more of it, and why the rival is the cheaper
     one, or "" where it is not. The first share of the cost, in which steps find their size, does not count.
@@ -49,7 +40,7 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
     before, shares = engine.time, 0
     while True:
         shares += 1
-        status = engine.advance(follow, every, Discarding(engine) if discard else None, most_evaluations=shares * share)
+        status = engine.advance(follow, every, stream, most_evaluations=shares * share)
         time = engine.time
         if status != "running" or time >= PART * duration:
             return status, ""
