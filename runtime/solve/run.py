@@ -24,7 +24,7 @@ from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from .diagnosis import notes, trapped
 from .event_watcher import EventWatcher
-from .integrator_choice import choose
+from .integrator_choice import choose, tol_of
 from .long_runs import LongRun
 from .pauses import Pauses, pauses
 from .progress import Meter
@@ -94,11 +94,12 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, ready.model.n_dof,
              method.name, reason, set_up)
     run = _begun(scene, settings, ready, method, pace, on_progress, stream, on_trial=rival is not None)
-    if run.status is None and rival is not None:
+    while rival is not None and run.status is None:
         run.status, lost = on_trial(run.engine, rival, method, settings.duration, pace.every, run.follow, stream)
         if lost:
-            method, reason = rival.method, f"{reason}; {lost}"
-            run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream)
+            method, reason, rival = rival.method, f"{reason}; {lost}", rival.rival
+            run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream,
+                         on_trial=rival is not None)
         elif stream is not None:
             stream.settled()
     messages += run.changed.gaps + _warned(_broken_velocities(run.model, run.changed.velocities)
@@ -189,15 +190,16 @@ def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: In
 def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
            capacity: int | None) -> tuple[str | None, _Changed]:
     """Start the engine; returns how the run ended, None where it goes on. Raises SceneError for a singular start."""
+    tol = tol_of(settings, method)
     status, change = engine.start(
         duration=settings.duration,
         output_step=settings.output_step,
-        tol=settings.tol,
+        tol=tol,
         step=settings.step or 0.0,
         **_control(settings, scene, model),
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
-        knots=knots(model, settings.duration, settings.tol, turns=settings.step is None),
+        knots=knots(model, settings.duration, tol, turns=settings.step is None),
         capacity=capacity,
     )
     if status == "singular" and engine.self_locking >= 0:

@@ -48,5 +48,5 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
         if shares > 1 and remains > (CLEARLY if shares < SETTLED else 1.0):
             spent = shares * SHARE * rival.cost
             return status, (f"{method.name} on trial took work like {spent:.3g} to t = {time:.3g} s: what remains "
-                            f"would cost {remains:.2g} times as much as all by {rival.method.name}")
+                            f"would take {remains:.2g} times the work that calls for {rival.method.name}")
         before = time
