@@ -44,6 +44,16 @@ PART_OF_TOL = 0.25
 LOW_ORDER_MOST = 3.0
 """Times the cost that is expected of radau: what the method of low order may cost."""
 
+LOW_ORDER_EVALUATIONS = 42.0
+"""Evaluations of eq 38 that a radian of the motion as a whole costs with genalpha at tol = 1, by
+tests/benchmarks/exudyn_side_by_side.py; they grow with the square root of 1/tol."""
+
+LOW_ORDER_MARGIN = 1.3
+"""Times the cost that is expected of genalpha: what radau may cost before genalpha takes its place."""
+
+LOW_ORDER_TIGHTEST = 1e-5
+"""The tol down to which genalpha may take radau's place."""
+
 LOW_ORDER_WORTH = 1500.0
 """Evaluations of eq 38 that the explicit method takes at least where the method of low order is tried before it."""
 
@@ -77,7 +87,8 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
     found = cheapest(demands, settings.duration)
     if not suits_low_order(demands, scene, model):
         return found
-    return begin_with_low_order(demands, settings.duration, *found)
+    with_low_order = begin_with_low_order if demands.tol >= LOOSE else end_with_low_order
+    return with_low_order(demands, settings.duration, *found)
 
 
 def tol_of(settings: RunSettings, method: Integrator) -> float:
@@ -118,11 +129,11 @@ def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival 
 
 
 def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
-    """Return whether tol is loose and the error of positions that genalpha estimates is the one that counts: not where
-    supports are moved, slides rub or bodies turn fast, nor where there are bodies alone.
+    """Return whether the error of positions that genalpha estimates is the one that counts: not where supports are
+    moved, slides rub or bodies turn fast, nor where there are bodies alone.
     """
     fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
-    return (demands.tol >= LOOSE and bool(model.cables) and not model.motions and not demands.friction
+    return (bool(model.cables) and not model.motions and not demands.friction
             and fastest <= FAST_TURNS * demands.slow)
 
 
@@ -139,6 +150,21 @@ def begin_with_low_order(demands: Demands, duration: float, method: Integrator, 
     low = _made(stable_at(fixed_step=True))
     most = duration * min(explicit, LOW_ORDER_MOST * radau)
     return low, f"{why}; tol is loose: {low.name} has the cheapest steps", Rival(method, most, rival)
+
+
+def end_with_low_order(demands: Demands, duration: float, method: Integrator, why: str,
+                       rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
+    """Return the method that was chosen without genalpha, why, and genalpha as its rival where that is radau: where
+    slides cross many elements, its steps are many at any tol.
+
+    The rival gives way where it costs four times what is expected of it.
+    """
+    expected = duration * LOW_ORDER_EVALUATIONS * demands.slow / math.sqrt(PART_OF_TOL * demands.tol)
+    most = LOW_ORDER_MARGIN * expected
+    if not isinstance(method, Radau) or demands.tol < LOW_ORDER_TIGHTEST or (rival is not None and rival.cost < most):
+        return method, why, rival
+    last = Rival(method, 4.0 * expected) if rival is None or rival.cost > 4.0 * expected else rival
+    return method, why, Rival(_made(stable_at(fixed_step=True)), most, last)
 
 
 def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
