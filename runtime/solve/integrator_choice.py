@@ -38,6 +38,9 @@ WORTH_A_TRIAL = 3000.0
 LOOSE = 4e-3
 """The tol from which on the method of low order begins: it is the cheaper one at errors above 1e-3 of the motion."""
 
+LOOSE_FOR_FRICTION = 4e-2
+"""The same where slides rub: at tighter ones the error of genalpha can be many times tol there."""
+
 PART_OF_TOL = 0.25
 """What the method of low order gets of tol, as its error can be some times as large (tests/benchmarks/choice.py)."""
 
@@ -130,10 +133,11 @@ def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival 
 
 def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
     """Return whether the error of positions that genalpha estimates is the one that counts: not where supports are
-    moved, slides rub or bodies turn fast, nor where there are bodies alone.
+    moved, slides rub at a tight tol or bodies turn fast, nor where there are bodies alone.
     """
     fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
-    return (bool(model.cables) and not model.motions and not demands.friction
+    return (bool(model.cables) and not model.motions
+            and (demands.tol >= LOOSE_FOR_FRICTION or not demands.friction)
             and fastest <= FAST_TURNS * demands.slow)
 
 

@@ -47,6 +47,11 @@ cdef class Report(Statics):
                 for (name, size), end in zip(SLIDE_OUTPUTS.items(), ends)}
 
     @property
+    def steps(self):
+        """Number of steps so far."""
+        return self.run.statistics.steps
+
+    @property
     def statistics(self):
         """Counts, step sizes, error estimate and seconds by part."""
         s = self.run.statistics
