@@ -1,9 +1,9 @@
 """A trial of the integrator that a scene's data let expect to be the cheaper one: its cost is measured as it runs.
 
 What steps must follow, an estimate by a scene's stiffness and tolerance cannot know: how much of a motion is vibration.
-What stability asks of the explicit method is known beforehand. So the run begins with the implicit one, and where what
-remains would cost more at its present rate than the whole run by the other, it begins anew with that. Costs are counted
-in evaluations of eq 38 and not in seconds: a run takes the same course on any machine.
+What stability asks of the explicit method is known beforehand. So the run begins with an implicit one, and where what
+remains would cost more at its present rate than the rival may cost, it begins anew with that, on trial itself where it
+has a rival. Costs are counted in evaluations of eq 38 and not in seconds: a run takes the same course on any machine.
 """
 
 from __future__ import annotations
