@@ -24,7 +24,7 @@ SHARE = 0.05
 SETTLED = 4
 """Shares after which the rate counts as it is: the motion may begin with a shock."""
 
-CLEARLY = 3.0
+CLEARLY = 10.0
 """Times the other's cost that what remains must take before."""
 
 
