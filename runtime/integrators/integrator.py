@@ -71,7 +71,8 @@ class Integrator(ABC):
         return _made(cls)
 
     cost_of_evaluation: ClassVar[float] = 1.0
-    """Of an evaluation of eq 38 with its share of the other work of a step, in evaluations alone."""
+    """Of an evaluation of eq 38, or of an iteration where these are not counted, with its share of the other work of a
+    step, in evaluations alone."""
 
     @classmethod
     def cost(cls, demands: Demands) -> tuple[float, str] | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from ..parts.scene_data import SceneData
@@ -17,32 +17,36 @@ ALIKE = 2.0
 
 @dataclass
 class SharedTrials:
-    """The outcome of the first scene's trial.
+    """The outcome of the first scene's trials.
 
     Each scene chooses by its own numbers. Where that comes to the trial that the first scene had, and the first one's
     was lost, the rival begins; its cost is known beforehand. A trial that is won costs nothing, and is not left out.
 
-    lost: its shape, the names of both methods, and the rival's cost; None where none was lost. is_open: whether the
-    first scene is still to come or under way, whose trial is the one that counts.
+    shape: of the first scene, where that lost a trial; lost: by the names of both methods, the cost of the rival.
+    is_open: whether the first scene is still to come or under way, whose trials are those that count.
     """
 
-    lost: tuple[tuple, str, str, float] | None = None
+    shape: tuple = ()
+    lost: dict[tuple[str, str], float] = field(default_factory=dict)
     is_open: bool = True
 
     def of(self, scene: SceneData, method: Integrator, reason: str,
            rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
         """Return the choice for a scene, as `choose` does, of which this is the choice by its own numbers."""
-        if self.lost is None or rival is None:
-            return method, reason, rival
-        shape, tried, better, cost = self.lost
-        if (method.name, rival.method.name) != (tried, better) or rival.cost > ALIKE * cost or shape_of(scene) != shape:
-            return method, reason, rival
-        return rival.method, f"{reason}; {method.name} on trial lost in the first scene, which has the same shape", None
+        while rival is not None and self._lost(method, rival) and shape_of(scene) == self.shape:
+            reason += f"; {method.name} on trial lost in the first scene, which has the same shape"
+            method, rival = rival.method, rival.rival
+        return method, reason, rival
+
+    def _lost(self, method: Integrator, rival: Rival) -> bool:
+        """Return whether the first scene lost this trial, with a rival that was not much cheaper."""
+        return rival.cost <= ALIKE * self.lost.get((method.name, rival.method.name), 0.0)
 
     def note(self, scene: SceneData, method: Integrator, rival: Rival) -> None:
         """Take note that a trial of a method was lost, if it is the first scene's."""
         if self.is_open:
-            self.lost = shape_of(scene), method.name, rival.method.name, rival.cost
+            self.shape = shape_of(scene)
+            self.lost[method.name, rival.method.name] = rival.cost
 
 
 def shape_of(scene: SceneData) -> tuple:
