@@ -22,10 +22,7 @@ from functools import partial
 from itertools import pairwise
 from typing import Generic
 
-import numpy as np
-
 from ..errors import SceneError
-from ..integrators import AUTO
 from ..parts.cable import Cable
 from ..parts.settings import RunSettings
 from ..results.trajectories import largest_change
@@ -36,13 +33,8 @@ from .indicators import SOFTER, deformation, shear_compliance, softened
 from .mesh_error import MeshError, mesh_error
 from .motion import motion
 from .probes import Probe, Prober, S, Simulate
-from .remaking import remade, with_model
-
-TIME_SHARE = 0.5
-"""Of the tolerance, at most, for the error of generalised-alpha in time; model and mesh get what it leaves."""
-
-ASSUMED = 0.2
-"""Of the tolerance: the error in time of the automatic choice, which is seldom more (tests/benchmarks/README.md)."""
+from .remaking import CableModel, remade, with_model
+from .time_error import ASSUMED, InTime, compared
 
 SHEAR_SAFETY = 2.0
 """The estimate of what shear does is low by up to that."""
@@ -54,17 +46,8 @@ NEGLIGIBLE = 0.03
 STOUT = 0.03
 """Of its bending stiffness: where shear takes more of it, the ladder is run with beams."""
 
-LOOSEST = 3e-3
-"""Tolerance of a probe's time integration at most."""
-
 MOST_ELEMENTS = 256
 """Of a cable that is chosen; a finer mesh is seldom what is wanted."""
-
-TIGHTEST = 0.05
-"""Of the tolerance: where generalised-alpha needs a smaller one, what it errs by does not follow its tolerance."""
-
-DAMPING = "genalpha"
-"""The integrator that is compared with the automatic choice."""
 
 
 class Chooser(Generic[S]):
@@ -75,32 +58,34 @@ class Chooser(Generic[S]):
         """free: the cables of the scene, with what is to be chosen of them."""
         self.scene, self.settings, self.tol, self.free = scene, settings, settings.tol, list(free)
         self.prober: Prober[S] = Prober(scene, settings, quantities, simulate)
-        self.probe_tol = min(settings.tol, LOOSEST)
         self.reasons: list[str] = []
+        self.time: InTime
         self.kinds = {each.cable.name: each.kinds.slender or each.kinds.finest for each in free}
-        self.integrator, self.time_tol = settings.integrator, settings.tol
-        self.time_error = ASSUMED * self.tol
 
-    def probe(self, level: float, integrator: str | None = None, coarse: Collection[str] = (),
-              soft: str | None = None) -> Probe[S]:
+    def models(self, level: float, coarse: Collection[str] = ()) -> dict[str, CableModel]:
+        """Return the models of a level; coarse: cables that have half of it."""
+        return {each.cable.name: each.model(self.kinds[each.cable.name],
+                                            level / 2 if each.cable.name in coarse else level) for each in self.free}
+
+    def probe(self, level: float, coarse: Collection[str] = (), soft: str | None = None) -> Probe[S]:
         """Return the probe of a level; coarse: cables that have half of it, soft: one that is `softened`."""
-        models = {each.cable.name: each.model(self.kinds[each.cable.name],
-                                              level / 2 if each.cable.name in coarse else level) for each in self.free}
         change = None if soft is None else partial(softened, name=soft)
-        return self.prober.probe(models, self.probe_tol, integrator or self.integrator, change, soft or "")
+        return self.prober.probe(self.models(level, coarse), self.time.probe_tol, self.time.probed, change, soft or "")
 
     def choose(self) -> Choice[S]:
         """Return the choice. Raises SceneError where no probe runs."""
         begin = time.process_time()
         level = self._first_level()
-        self._compare_integrators(2 * level if self._base else level)
-        shear = self._model_errors(2 * level if self._base else level)
+        second = 2 * level if self._base else level
+        self.time = self._in_time(second)
+        shear = self._model_errors(second)
         levels, probes = self._ladder(level)
         if probes[-1].run is None:
             raise SceneError("choose", f"no short run of the scene ends: {probes[-1].failed}",
                              "run it with elements of your own choice")
         mesh = self._mesh_error(levels, probes)
-        estimate = Estimate(mesh, self._shares(mesh, levels[-1]), shear, self.time_error, probes, self.free)
+        estimate = Estimate(mesh, self._shares(mesh, levels), shear, self.time.error, probes, self.free,
+                            self.time.longer)
         return self._result(estimate, time.process_time() - begin)
 
     def _ladder(self, level: int) -> tuple[list[int], list[Probe[S]]]:
@@ -108,7 +93,8 @@ class Chooser(Generic[S]):
         levels, probes = [level], [self.probe(level)]
         while self._base and 2 * levels[-1] * self._base <= MOST_ELEMENTS:
             mesh = self._mesh_error(levels, probes)
-            if len(levels) > 1 and mesh.level_for(self.wanted) <= mesh.trusted * mesh.level:
+            finest = min(mesh.level_for(self.wanted), MOST_ELEMENTS / self._base)
+            if len(levels) > 1 and finest <= mesh.trusted * mesh.level:
                 break
             levels.append(2 * levels[-1])
             probes.append(self.probe(levels[-1]))
@@ -124,7 +110,7 @@ class Chooser(Generic[S]):
     def wanted(self) -> float:
         """Return the error that the mesh may have, as long as that of the model is not known."""
         could_shear = any(each.kinds.slender not in (None, each.kinds.finest) for each in self.free)
-        return (1 - ASSUMED * could_shear) * self.tol - self.time_error
+        return (1 - ASSUMED * could_shear) * self.tol - self.time.error
 
     def _first_level(self) -> int:
         """Return the level of the coarsest mesh to start from: two elements at least, and able to follow a curve."""
@@ -145,28 +131,13 @@ class Chooser(Generic[S]):
         """Return the largest number of elements of a coarsest mesh that is not fixed; 0 where all are."""
         return max((each.base for each in self.free if each.fixed is None), default=0)
 
-    def _compare_integrators(self, level: int) -> None:
-        """Take generalised-alpha where it agrees with the automatic choice, if need be with a smaller tolerance, for
-        less work.
-        """
-        if self.settings.integrator != AUTO:
-            self.reasons.append(f"integrator {self.settings.integrator}: as asked for")
-            return
-        found, other = self.probe(level, AUTO), self.probe(level, DAMPING)
-        apart = self.prober.difference(other, found)
-        allowed = min(TIME_SHARE * self.tol * self.probe_tol / max(apart, 1e-300), self.tol)
-        work = other.work * np.sqrt(max(self.probe_tol / allowed, 1.0))  # of second order
-        if found.run is None or allowed < TIGHTEST * self.tol or work >= found.work:
-            why = "is no cheaper" if np.isfinite(apart) else "fails"
-            self.reasons.append(f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on a coarse "
-                                f"mesh is {apart:.1e}, {why}")
-            return
-        self.integrator, self.time_tol = DAMPING, allowed
-        self.time_error = apart * allowed / self.probe_tol
-        self.probe_tol = min(self.probe_tol, allowed)
-        self.reasons.append(f"integrator {DAMPING} with tol {allowed:.2g}: on a coarse mesh within {apart:.1e} of the "
-                            f"automatic choice ({found.run.report['integrator']}), for {work / found.work:.2g} of its "
-                            "work")
+    def _in_time(self, level: int) -> InTime:
+        """Return the integrators of the run and of probes, from runs on the mesh of a level."""
+        models = self.models(level)
+        found = compared(lambda integrator, tol: self.prober.probe(models, tol, integrator), self.prober.difference,
+                         self.settings.integrator, self.tol)
+        self.reasons.append(found.why)
+        return found
 
     def _model_errors(self, level: int) -> dict[str, float]:
         """Return what cable elements leave out of each cable that could be a beam, over the largest change."""
@@ -197,19 +168,23 @@ class Chooser(Generic[S]):
         self.kinds |= {each.cable.name: each.kinds.finest for each in stout}  # whose meshes err in another way
         return errors
 
-    def _shares(self, mesh: MeshError, level: int) -> dict[str, float]:
-        """Return what of the error of the finest probe's mesh comes from each cable: those that are alike share it."""
+    def _shares(self, mesh: MeshError, levels: Sequence[int]) -> dict[str, float]:
+        """Return what of the error of the finest probe's mesh comes from each cable: those that are alike share it.
+
+        They are told apart on the mesh before the finest, where there are three.
+        """
         groups: dict[tuple, list[str]] = {}
         for each in self.free:
             if each.fixed is None:
                 alike = each.base, each.cable.length, each.cable.section, each.cable.material
                 groups.setdefault(alike, []).append(each.cable.name)
-        shares, fine = dict.fromkeys(self.kinds, 0.0), self.probe(level)
+        shares = dict.fromkeys(self.kinds, 0.0)
+        level = levels[-2] if len(levels) > 2 else levels[-1]
         for names in groups.values():
             apart = mesh.error
             if len(groups) > 1:
-                coarse = self.prober.difference(self.probe(level, coarse=tuple(names)), fine)
-                apart = min(coarse / (2**mesh.order - 1), mesh.error)
+                coarse = self.prober.difference(self.probe(level, coarse=tuple(names)), self.probe(level))
+                apart = min(coarse / (2**mesh.order - 1) * (level / levels[-1]) ** mesh.order, mesh.error)
                 self.reasons.append(f"{', '.join(names)}: adds {apart:.1e} to the error of the mesh")
             shares |= dict.fromkeys(names, apart / len(names))
         return shares
@@ -229,9 +204,9 @@ class Chooser(Generic[S]):
             self.reasons.append(f"no model at hand keeps tol = {self.tol:g}: the finest is taken, which errs by about "
                                 f"{error:.1e}")
         scene = remade(self.scene, models)
-        scene.run_settings = scene.run_settings | {"duration": self.settings.duration, "tol": self.time_tol,
-                                                   "integrator": self.integrator}
-        return Choice(scene, self.tol, self.time_tol, self.integrator, models, error, estimate.cost(models), kept,
+        scene.run_settings = scene.run_settings | {"duration": self.settings.duration, "tol": self.time.tol,
+                                                   "integrator": self.time.integrator}
+        return Choice(scene, self.tol, self.time.tol, self.time.integrator, models, error, estimate.cost(models), kept,
                       self.reasons, estimate.alternatives(models, self.tol), len(self.prober.made), seconds,
                       [each.cable.name for each in self.free if each.fixed is not None or each.keeps])
 

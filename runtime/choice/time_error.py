@@ -1,0 +1,110 @@
+"""The integrator of a run and that of its probes, and what their steps err by.
+
+Generalised-alpha is the cheapest integrator at loose tolerances, but estimates its error by positions alone. What it
+errs by is seen from its distance to the automatic choice on a coarse mesh; it depends little on the mesh, and is about
+proportional to the tolerance. Two probes of one tolerance have most of it in common, so that their meshes are told
+apart by steps much longer than those of the run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..integrators import AUTO
+from .probes import INSTANTS, Probe
+
+SHARE = 0.5
+"""Of the tolerance, at most, for the error of generalised-alpha in time; model and mesh get what it leaves."""
+
+ASSUMED = 0.2
+"""Of the tolerance: the error in time of the automatic choice, which is seldom more (tests/benchmarks/README.md)."""
+
+LOOSER = 4.0
+"""Times the tolerance of the run: that of its probes."""
+
+LOOSEST = 1e-2
+"""Tolerance of a probe's time integration at most."""
+
+IN_COMMON = 3.0
+"""Times the tolerance of the run: what the steps of a probe may err by. Two meshes differ in about a fifth of it, and
+the last two of a ladder are some tolerances apart."""
+
+TIGHTEST = 0.05
+"""Of the tolerance: where generalised-alpha needs a smaller one, what it errs by does not follow its tolerance."""
+
+DAMPING = "genalpha"
+"""The integrator that is compared with the automatic choice."""
+
+FINER = 2.5
+"""By what the work of the automatic choice grows more than that of generalised-alpha from the coarse mesh to that of
+the run: each finer mesh brings faster vibrations, which radau follows and the explicit method's steps must resolve."""
+
+OF_AUTO, OF_DAMPING = 0.22, 0.5
+"""Powers of 1 / tolerance that the work of integrators grows with: as measured on the scenes of the table
+(tests/benchmarks/README.md), and of second order."""
+
+UNHURRIED, LABOURED = 3.0, 4.0
+"""Steps to an output time below which, and iterations a step above which, steps are bounded by other things than
+their error, which then falls more slowly than the tolerance."""
+
+AT_LEAST = 0.5
+"""Of its tolerance: what generalised-alpha is taken to err by there."""
+
+
+@dataclass(frozen=True)
+class InTime:
+    """integrator, tol: of the run; error: what it errs by in time, over the largest change; probed, probe_tol: the
+    integrator of probes and its tolerance; longer: the work of a run over that of a probe with its models; why: in
+    words.
+    """
+
+    integrator: str
+    tol: float
+    error: float
+    probed: str
+    probe_tol: float
+    longer: float
+    why: str
+
+
+def compared(probe: Callable[[str, float], Probe], difference: Callable[[Probe, Probe], float], asked: str,
+             tol: float) -> InTime:
+    """Return the integrators: generalised-alpha where it agrees with the automatic choice, if need be with a smaller
+    tolerance, for less work.
+
+    probe: returns the run on a coarse mesh by an integrator and its tolerance; difference: of two of them; asked: the
+    integrator of the settings.
+    """
+    if asked != AUTO:
+        return InTime(asked, tol, ASSUMED * tol, asked, min(tol, LOOSEST), 1.0, f"integrator {asked}: as asked for")
+    tried = min(LOOSER * tol, LOOSEST)
+    found, other = probe(AUTO, tried), probe(DAMPING, tried)
+    apart = difference(other, found)
+    rate = max(apart / tried, AT_LEAST if _is_bounded(other) else 1e-300)
+    allowed, loose = min(SHARE * tol / rate, tol), min(IN_COMMON * tol / rate, tried)
+    work, probing = (other.work * (tried / one) ** OF_DAMPING for one in (allowed, loose))
+    best = found.work * (tried / tol) ** OF_AUTO
+    probed = (DAMPING, loose) if probing <= FINER * found.work else (AUTO, tried)
+    spent = probing if probed[0] == DAMPING else found.work
+    if found.run is None or allowed < TIGHTEST * tol or work >= FINER * best:
+        why = "is no cheaper" if np.isfinite(apart) else "fails"
+        return InTime(AUTO, tol, ASSUMED * tol, *probed, best / spent,
+                      f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on a coarse mesh is "
+                      f"{apart:.1e} with tol {tried:.2g}, {why}")
+    return InTime(DAMPING, allowed, rate * allowed, *probed, work / spent,
+                  f"integrator {DAMPING} with tol {allowed:.2g}: on a coarse mesh, with tol {tried:.2g}, within "
+                  f"{apart:.1e} of the automatic choice ({found.run.report['integrator']}), for "
+                  f"{other.work / found.work:.2g} of its work")
+
+
+def _is_bounded(probe: Probe) -> bool:
+    """Return whether the steps of a probe are bounded by output times or by Newton's method, rather than by their
+    error.
+    """
+    if probe.run is None:
+        return False
+    steps = probe.run.report["steps"]
+    return steps < UNHURRIED * INSTANTS or probe.run.report["newton_iterations"] > LABOURED * steps
