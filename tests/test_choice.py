@@ -152,7 +152,7 @@ def test_shear_of_a_cantilever_under_a_force_on_its_end():
     energies = 3 * 2e6 * SQUARE.second_moment_about_z / shear  # of shear over that of bending: 3 EI / (kGA L²)
     rotary = SQUARE.shear_factors(0.3)[0] * G / 2e6
     assert shear_compliance(cable, run) == pytest.approx(energies * (1 + rotary), rel=2e-2)
-    softer = softened(scene, "beam").run(1e-3, initial="equilibrium")
+    softer = softened(scene, ["beam"]).run(1e-3, initial="equilibrium")
     assert softer["beam.position"][0, -1, 1] == pytest.approx(run["beam.position"][0, -1, 1] / 0.9, rel=1e-4)
 
 

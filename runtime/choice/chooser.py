@@ -17,10 +17,11 @@ the mesh, and that of time, which the integrator bounds by the tolerance that it
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import partial
-from itertools import pairwise
 from typing import Generic
+
+import numpy as np
 
 from ..errors import SceneError
 from ..parts.cable import Cable
@@ -46,6 +47,9 @@ NEGLIGIBLE = 0.03
 STOUT = 0.03
 """Of its bending stiffness: where shear takes more of it, the ladder is run with beams."""
 
+UNCLEAR = 2.0
+"""Times what steps bring two probes apart: meshes that are closer are run again with shorter steps."""
+
 MOST_ELEMENTS = 256
 """Of a cable that is chosen; a finer mesh is seldom what is wanted."""
 
@@ -67,10 +71,11 @@ class Chooser(Generic[S]):
         return {each.cable.name: each.model(self.kinds[each.cable.name],
                                             level / 2 if each.cable.name in coarse else level) for each in self.free}
 
-    def probe(self, level: float, coarse: Collection[str] = (), soft: str | None = None) -> Probe[S]:
-        """Return the probe of a level; coarse: cables that have half of it, soft: one that is `softened`."""
-        change = None if soft is None else partial(softened, name=soft)
-        return self.prober.probe(self.models(level, coarse), self.time.probe_tol, self.time.probed, change, soft or "")
+    def probe(self, level: float, coarse: Collection[str] = (), soft: Collection[str] = ()) -> Probe[S]:
+        """Return the probe of a level; coarse: cables that have half of it, soft: those that are `softened`."""
+        change = partial(softened, names=soft) if soft else None
+        return self.prober.probe(self.models(level, coarse), self.time.probe_tol, self.time.probed, change,
+                                 ", ".join(soft))
 
     def choose(self) -> Choice[S]:
         """Return the choice. Raises SceneError where no probe runs."""
@@ -79,37 +84,45 @@ class Chooser(Generic[S]):
         second = 2 * level if self._base else level
         self.time = self._in_time(second)
         shear = self._model_errors(second)
-        levels, probes = self._ladder(level)
-        if probes[-1].run is None:
-            raise SceneError("choose", f"no short run of the scene ends: {probes[-1].failed}",
-                             "run it with elements of your own choice")
-        mesh = self._mesh_error(levels, probes)
+        mesh, levels = self._ladder(level)
+        probes = [self.probe(at) for at in levels[-2:]]
         estimate = Estimate(mesh, self._shares(mesh, levels), shear, self.time.error, probes, self.free,
                             self.time.longer)
         return self._result(estimate, time.process_time() - begin)
 
-    def _ladder(self, level: int) -> tuple[list[int], list[Probe[S]]]:
-        """Return the levels that were run, from coarse to fine, until the mesh that is needed can be extrapolated."""
-        levels, probes = [level], [self.probe(level)]
+    def _ladder(self, level: int) -> tuple[MeshError, list[int]]:
+        """Return the error of the finest mesh that was run, and the levels from coarse to fine: until the mesh that is
+        needed can be extrapolated.
+        """
+        levels, apart = [level], []
         while self._base and 2 * levels[-1] * self._base <= MOST_ELEMENTS:
-            mesh = self._mesh_error(levels, probes)
-            finest = min(mesh.level_for(self.wanted), MOST_ELEMENTS / self._base)
-            if len(levels) > 1 and finest <= mesh.trusted * mesh.level:
-                break
             levels.append(2 * levels[-1])
-            probes.append(self.probe(levels[-1]))
-        return levels, probes
+            apart.append(self._apart(levels))
+            if self._suffices(mesh_error(levels, apart)):
+                break
+            if apart[-1] < UNCLEAR * self.time.noise and (tightened := self.time.tightened(self.tol)) is not None:
+                self.time = tightened
+                apart[-1] = self._apart(levels)
+                if self._suffices(mesh_error(levels, apart)):
+                    break
+        if self.probe(levels[-1]).run is None:
+            raise SceneError("choose", f"no short run of the scene ends: {self.probe(levels[-1]).failed}",
+                             "run it with elements of your own choice")
+        return mesh_error(levels, apart) if self._base else MeshError(level, 0.0, 1.0), levels
 
-    def _mesh_error(self, levels: Sequence[int], probes: Sequence[Probe[S]]) -> MeshError:
-        """Return the error of the last mesh; none where all meshes are fixed."""
-        if not self._base:
-            return MeshError(levels[-1], 0.0, 1.0)
-        return mesh_error(levels, [self.prober.difference(*pair) for pair in pairwise(probes)])
+    def _apart(self, levels: Sequence[int]) -> float:
+        """Return how far the last two levels are apart."""
+        return self.prober.difference(self.probe(levels[-2]), self.probe(levels[-1]))
+
+    def _suffices(self, mesh: MeshError) -> bool:
+        """Return whether the error of a mesh can be extrapolated to the mesh that is needed, or to the finest."""
+        needed = min(mesh.level_for(self.wanted), MOST_ELEMENTS / self._base)
+        return bool(np.isfinite(mesh.error)) and needed <= mesh.trusted * mesh.level
 
     @property
     def wanted(self) -> float:
         """Return the error that the mesh may have, as long as that of the model is not known."""
-        could_shear = any(each.kinds.slender not in (None, each.kinds.finest) for each in self.free)
+        could_shear = any(each.could_shear for each in self.free)
         return (1 - ASSUMED * could_shear) * self.tol - self.time.error
 
     def _first_level(self) -> int:
@@ -141,32 +154,39 @@ class Chooser(Generic[S]):
 
     def _model_errors(self, level: int) -> dict[str, float]:
         """Return what cable elements leave out of each cable that could be a beam, over the largest change."""
-        errors: dict[str, float] = {}
-        stout: list[Free] = []
+        softer: dict[str, float] = {}
         for each in self.free:
-            name, kinds = each.cable.name, each.kinds
-            self.reasons += [f"{each.cable.where}: {why}" for why in kinds.why]
+            self.reasons += [f"{each.cable.where}: {why}" for why in each.kinds.why]
             if each.fixed is not None:
                 self.reasons.append(f"{each.cable.where}: {each.fixed} elements as given: the error of its mesh is not "
                                     "estimated")
-            if kinds.slender is None or kinds.slender == kinds.finest:
-                continue
-            probe = self.probe(level)
-            if probe.run is None:
-                continue
-            softer = shear_compliance(probe.scene.cables[name], probe.run)
-            if softer < NEGLIGIBLE * self.tol:
-                errors[name] = softer
-                self.reasons.append(f"{each.cable.where}: shear softens its bending by {softer:.1e} alone")
-                continue
-            moved = self.prober.difference(self.probe(level, soft=name), probe) / (1 - SOFTER)
-            errors[name] = SHEAR_SAFETY * softer * moved
-            if softer > STOUT and errors[name] > self.tol:
-                stout.append(each)
-            self.reasons.append(f"{each.cable.where}: shear and rotary inertia soften its bending by {softer:.1e}, "
-                                f"which changes the result by about {errors[name]:.1e}")
-        self.kinds |= {each.cable.name: each.kinds.finest for each in stout}  # whose meshes err in another way
-        return errors
+            probe = self.probe(level) if each.could_shear else None
+            if probe is not None and probe.run is not None:
+                softer[each.cable.name] = shear_compliance(probe.scene.cables[each.cable.name], probe.run)
+        moved = self._moved([name for name, by in softer.items() if by >= NEGLIGIBLE * self.tol], softer, level)
+        errors = {name: SHEAR_SAFETY * by * moved[name] if name in moved else by for name, by in softer.items()}
+        for name, by in softer.items():
+            effect = (f"and rotary inertia soften its bending by {by:.1e}, which changes the result by about "
+                      f"{errors[name]:.1e}" if name in moved else f"softens its bending by {by:.1e} alone")
+            self.reasons.append(f"{self.scene.cables[name].where}: shear {effect}")
+        stout = {name for name in moved if softer[name] > STOUT and errors[name] > self.tol}
+        self.kinds |= {each.cable.name: each.kinds.finest for each in self.free if each.cable.name in stout}
+        return errors  # meshes of stout cables err in another way
+
+    def _moved(self, names: Sequence[str], softer: Mapping[str, float], level: int) -> dict[str, float]:
+        """Return the relative change of the result by that of the bending stiffness of each of these cables.
+
+        All are softened at once: if what that changes is little enough for each of them, it is not told apart.
+        """
+        def by(soft: Sequence[str]) -> float:
+            return self.prober.difference(self.probe(level, soft=soft), self.probe(level)) / (1 - SOFTER)
+
+        if not names:
+            return {}
+        together = by(names)
+        if len(names) == 1 or SHEAR_SAFETY * together * sum(softer[name] for name in names) < ASSUMED * self.tol:
+            return dict.fromkeys(names, together)
+        return {name: by([name]) for name in names}
 
     def _shares(self, mesh: MeshError, levels: Sequence[int]) -> dict[str, float]:
         """Return what of the error of the finest probe's mesh comes from each cable: those that are alike share it.

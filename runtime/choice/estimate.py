@@ -27,6 +27,11 @@ class Free:
     fixed: int | None
     keeps: bool = False
 
+    @property
+    def could_shear(self) -> bool:
+        """Return whether it may be made of cable elements, or of beams that know shear."""
+        return self.kinds.slender not in (None, self.kinds.finest)
+
     def model(self, kind: Kind, level: float) -> CableModel:
         """Return its model at a level of the mesh, rounded up."""
         return kind.with_elements(self.fixed or self.base * max(1, int(np.ceil(level - 1e-9))))

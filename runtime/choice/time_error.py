@@ -9,7 +9,7 @@ apart by steps much longer than those of the run.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,14 +23,17 @@ ASSUMED = 0.2
 """Of the tolerance: the error in time of the automatic choice, which is seldom more (tests/benchmarks/README.md)."""
 
 LOOSER = 4.0
-"""Times the tolerance of the run: that of its probes."""
+"""Times the tolerance of the run: that of its first probes."""
 
 LOOSEST = 1e-2
 """Tolerance of a probe's time integration at most."""
 
-IN_COMMON = 3.0
-"""Times the tolerance of the run: what the steps of a probe may err by. Two meshes differ in about a fifth of it, and
-the last two of a ladder are some tolerances apart."""
+AT_FIRST, AT_LAST = 3.0, 1.0
+"""Times the tolerance of the run: what the steps of a probe may err by, at first, and where meshes are so close to each
+other that this is not far less than their difference."""
+
+APART = 0.25
+"""Of what the steps of two probes err by: how far apart that brings them, about; the rest they have in common."""
 
 TIGHTEST = 0.05
 """Of the tolerance: where generalised-alpha needs a smaller one, what it errs by does not follow its tolerance."""
@@ -57,8 +60,8 @@ AT_LEAST = 0.5
 @dataclass(frozen=True)
 class InTime:
     """integrator, tol: of the run; error: what it errs by in time, over the largest change; probed, probe_tol: the
-    integrator of probes and its tolerance; longer: the work of a run over that of a probe with its models; why: in
-    words.
+    integrator of probes and its tolerance; rate: their error over that tolerance; longer: the work of a run over that
+    of a probe with its models; why: in words.
     """
 
     integrator: str
@@ -66,8 +69,21 @@ class InTime:
     error: float
     probed: str
     probe_tol: float
+    rate: float
     longer: float
     why: str
+
+    @property
+    def noise(self) -> float:
+        """Return how far apart two probes are by their steps alone, about."""
+        return APART * self.rate * self.probe_tol
+
+    def tightened(self, tol: float) -> InTime | None:
+        """Return it with probes of a smaller error, None where that is small already; tol: that of the choice."""
+        least = AT_LAST * tol / self.rate
+        if self.probed != DAMPING or least >= self.probe_tol:
+            return None
+        return replace(self, probe_tol=least, longer=self.longer * (least / self.probe_tol) ** OF_DAMPING)
 
 
 def compared(probe: Callable[[str, float], Probe], difference: Callable[[Probe, Probe], float], asked: str,
@@ -79,15 +95,16 @@ def compared(probe: Callable[[str, float], Probe], difference: Callable[[Probe, 
     integrator of the settings.
     """
     if asked != AUTO:
-        return InTime(asked, tol, ASSUMED * tol, asked, min(tol, LOOSEST), 1.0, f"integrator {asked}: as asked for")
+        return InTime(asked, tol, ASSUMED * tol, asked, min(tol, LOOSEST), ASSUMED, 1.0,
+                      f"integrator {asked}: as asked for")
     tried = min(LOOSER * tol, LOOSEST)
     found, other = probe(AUTO, tried), probe(DAMPING, tried)
     apart = difference(other, found)
     rate = max(apart / tried, AT_LEAST if _is_bounded(other) else 1e-300)
-    allowed, loose = min(SHARE * tol / rate, tol), min(IN_COMMON * tol / rate, tried)
+    allowed, loose = min(SHARE * tol / rate, tol), min(AT_FIRST * tol / rate, tried)
     work, probing = (other.work * (tried / one) ** OF_DAMPING for one in (allowed, loose))
     best = found.work * (tried / tol) ** OF_AUTO
-    probed = (DAMPING, loose) if probing <= FINER * found.work else (AUTO, tried)
+    probed = (DAMPING, loose, rate) if probing <= FINER * found.work else (AUTO, tried, ASSUMED)
     spent = probing if probed[0] == DAMPING else found.work
     if found.run is None or allowed < TIGHTEST * tol or work >= FINER * best:
         why = "is no cheaper" if np.isfinite(apart) else "fails"
