@@ -5,8 +5,8 @@ the mesh, and that of time, which the integrator bounds by the tolerance that it
 
 1. Each cable gets the elements that know what the scene asks of it (`candidates`): those of a cable, or of a beam.
 2. A ladder of meshes, each of half the element length, is run until the error of the next one can be extrapolated
-   (`mesh_error`). On its second mesh two integrators are compared: generalised-alpha is the cheapest at loose
-   tolerances, but estimates its error by positions alone.
+   (`mesh_error`). On its second mesh two integrators are compared, which tells how loose the steps of the other probes
+   may be (`time_error`). Meshes so close to each other that these steps hide it are run again with shorter ones.
 3. With more than one cable, each is run on half of its elements, the others as they are: that tells whose mesh matters.
 4. What cable elements leave out is estimated on the second mesh, from the energy of shear and the dependence of the
    motion on the bending stiffness (`indicators`).

@@ -100,17 +100,19 @@ def compared(probe: Callable[[str, float], Probe], difference: Callable[[Probe, 
     tried = min(LOOSER * tol, LOOSEST)
     found, other = probe(AUTO, tried), probe(DAMPING, tried)
     apart = difference(other, found)
+    if not np.isfinite(apart):  # one of them fails
+        return InTime(AUTO, tol, ASSUMED * tol, AUTO, tried, ASSUMED, (tried / tol) ** OF_AUTO,
+                      f"integrator {AUTO}, by stiffness and tolerance: on a coarse mesh {DAMPING} fails, or it does")
     rate = max(apart / tried, AT_LEAST if _is_bounded(other) else 1e-300)
     allowed, loose = min(SHARE * tol / rate, tol), min(AT_FIRST * tol / rate, tried)
     work, probing = (other.work * (tried / one) ** OF_DAMPING for one in (allowed, loose))
     best = found.work * (tried / tol) ** OF_AUTO
     probed = (DAMPING, loose, rate) if probing <= FINER * found.work else (AUTO, tried, ASSUMED)
     spent = probing if probed[0] == DAMPING else found.work
-    if found.run is None or allowed < TIGHTEST * tol or work >= FINER * best:
-        why = "is no cheaper" if np.isfinite(apart) else "fails"
+    if allowed < TIGHTEST * tol or work >= FINER * best:
         return InTime(AUTO, tol, ASSUMED * tol, *probed, best / spent,
                       f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on a coarse mesh is "
-                      f"{apart:.1e} with tol {tried:.2g}, {why}")
+                      f"{apart:.1e} with tol {tried:.2g}, is no cheaper")
     return InTime(DAMPING, allowed, rate * allowed, *probed, work / spent,
                   f"integrator {DAMPING} with tol {allowed:.2g}: on a coarse mesh, with tol {tried:.2g}, within "
                   f"{apart:.1e} of the automatic choice ({found.run.report['integrator']}), for "
@@ -121,7 +123,6 @@ def _is_bounded(probe: Probe) -> bool:
     """Return whether the steps of a probe are bounded by output times or by Newton's method, rather than by their
     error.
     """
-    if probe.run is None:
-        return False
+    assert probe.run is not None, "it has been compared"
     steps = probe.run.report["steps"]
     return steps < UNHURRIED * INSTANTS or probe.run.report["newton_iterations"] > LABOURED * steps
