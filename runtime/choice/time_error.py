@@ -100,7 +100,7 @@ def compared(probe: Callable[[str, float], Probe], difference: Callable[[Probe, 
     tried = min(LOOSER * tol, LOOSEST)
     found, other = probe(AUTO, tried), probe(DAMPING, tried)
     apart = difference(other, found)
-    if not np.isfinite(apart):  # one of them fails
+    if found.run is None or not np.isfinite(apart):  # one of them fails
         return InTime(AUTO, tol, ASSUMED * tol, AUTO, tried, ASSUMED, (tried / tol) ** OF_AUTO,
                       f"integrator {AUTO}, by stiffness and tolerance: on a coarse mesh {DAMPING} fails, or it does")
     rate = max(apart / tried, AT_LEAST if _is_bounded(other) else 1e-300)
