@@ -176,16 +176,15 @@ class Chooser(Generic[S]):
     def _moved(self, names: Sequence[str], softer: Mapping[str, float], level: int) -> dict[str, float]:
         """Return the relative change of the result by that of the bending stiffness of each of these cables.
 
-        All are softened at once: if what that changes is little enough for each of them, it is not told apart.
+        More than two are softened at once first: if what that changes is little enough for each, it is not told apart.
         """
         def by(soft: Sequence[str]) -> float:
             return self.prober.difference(self.probe(level, soft=soft), self.probe(level)) / (1 - SOFTER)
 
-        if not names:
-            return {}
-        together = by(names)
-        if len(names) == 1 or SHEAR_SAFETY * together * sum(softer[name] for name in names) < ASSUMED * self.tol:
-            return dict.fromkeys(names, together)
+        if len(names) > 2:
+            together = by(names)
+            if SHEAR_SAFETY * together * sum(softer[name] for name in names) < ASSUMED * self.tol:
+                return dict.fromkeys(names, together)
         return {name: by([name]) for name in names}
 
     def _shares(self, mesh: MeshError, levels: Sequence[int]) -> dict[str, float]:
