@@ -147,8 +147,9 @@ class Chooser(Generic[S]):
     def _in_time(self, level: int) -> InTime:
         """Return the integrators of the run and of probes, from runs on the mesh of a level."""
         models = self.models(level)
+        rubs = any(slide.friction is not None for slide in self.scene.slides.values())
         found = compared(lambda integrator, tol: self.prober.probe(models, tol, integrator), self.prober.difference,
-                         self.settings.integrator, self.tol)
+                         self.settings.integrator, self.tol, rubs)
         self.reasons.append(found.why)
         return found
 
