@@ -23,8 +23,8 @@ ASSUMED = 0.2
 """Of the tolerance: the error in time of the automatic choice, which is seldom more (tests/benchmarks/README.md)."""
 
 LOOSER = 4.0
-"""Times the tolerance of the run: that of its probes. With friction integrators are compared at that of the run, since
-the error of generalised-alpha then jumps as steps grow."""
+"""Times the tolerance of the run: that of its first probes. With friction it is the run's, since the error of
+generalised-alpha then jumps as steps grow."""
 
 LOOSEST = 1e-2
 """Tolerance of a probe's time integration at most."""
@@ -98,15 +98,14 @@ def compared(probe: Callable[[str, float], Probe], difference: Callable[[Probe, 
     if asked != AUTO:
         return InTime(asked, tol, ASSUMED * tol, asked, min(tol, LOOSEST), ASSUMED, 1.0,
                       f"integrator {asked}: as asked for")
-    loosest = min(LOOSER * tol, LOOSEST)
-    tried = min(tol, LOOSEST) if rubs else loosest
+    tried = min((1.0 if rubs else LOOSER) * tol, LOOSEST)
     found, other = probe(AUTO, tried), probe(DAMPING, tried)
     apart = difference(other, found)
     if found.run is None or not np.isfinite(apart):  # one of them fails
         return InTime(AUTO, tol, ASSUMED * tol, AUTO, tried, ASSUMED, (tried / tol) ** OF_AUTO,
                       f"integrator {AUTO}, by stiffness and tolerance: on a coarse mesh {DAMPING} fails, or it does")
     rate = max(apart / tried, AT_LEAST if _is_bounded(other) else 1e-300)
-    allowed, loose = min(SHARE * tol / rate, tol), min(AT_FIRST * tol / rate, loosest)
+    allowed, loose = min(SHARE * tol / rate, tol), min(AT_FIRST * tol / rate, tried)
     work, probing = (other.work * (tried / one) ** OF_DAMPING for one in (allowed, loose))
     best = found.work * (tried / tol) ** OF_AUTO
     probed = (DAMPING, loose, rate) if probing <= FINER * found.work else (AUTO, tried, ASSUMED)
