@@ -39,7 +39,7 @@ def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str
     choice = chooser.choose()
     if unequal:
         meshed = [each.cable.name for each in chooser.free if each.fixed is None]
-        choice = with_unequal_elements(choice, meshed, chooser.prober, chooser.probe_tol, chooser.integrator)
+        choice = with_unequal_elements(choice, meshed, chooser.prober, chooser.time.probe_tol, chooser.time.probed)
     if planar is not None:
         choice.reasons.insert(0, str(planar))
         choice.planar = str(planar) if planar.scene is not None else ""

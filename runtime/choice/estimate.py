@@ -27,6 +27,11 @@ class Free:
     fixed: int | None
     keeps: bool = False
 
+    @property
+    def could_shear(self) -> bool:
+        """Return whether it may be made of cable elements, or of beams that know shear."""
+        return self.kinds.slender not in (None, self.kinds.finest)
+
     def model(self, kind: Kind, level: float) -> CableModel:
         """Return its model at a level of the mesh, rounded up."""
         return kind.with_elements(self.fixed or self.base * max(1, int(np.ceil(level - 1e-9))))
@@ -37,7 +42,8 @@ class Estimate:
     """Errors and costs of models, from probes.
 
     mesh: the error of the finest probe's mesh; of_cable: what of it comes from each cable; shear: what cable elements
-    leave out of each; time: the error of the integrator; all over the largest change of a quantity.
+    leave out of each; time: the error of the integrator; all over the largest change of a quantity; longer: how many
+    times the work of a probe a run with its models takes, whose steps are shorter.
     """
 
     mesh: MeshError
@@ -46,6 +52,7 @@ class Estimate:
     time: float
     probes: Sequence[Probe]
     free: Sequence[Free]
+    longer: float = 1.0
 
     def error(self, models: Mapping[str, CableModel]) -> float:
         """Return the error of models of all cables."""
@@ -63,10 +70,10 @@ class Estimate:
         """Return the CPU seconds of a run: those of the finest probe, by its elements, their work, and its steps."""
         probe = self.probes[-1]
         if not self.free:
-            return probe.seconds
+            return probe.seconds * self.longer
         ratio = _work(models) / _work(probe.models)
         finer = sum(model.elements for model in models.values()) / sum(m.elements for m in probe.models.values())
-        return probe.seconds * ratio * finer ** self._growth()
+        return probe.seconds * self.longer * ratio * finer ** self._growth()
 
     def _growth(self) -> float:
         """Return the power of the number of elements by which the steps of a run grow."""
