@@ -83,6 +83,8 @@ SOURCES = (
     "planar_resistance.c",
     "spring.c",
     "planar_spring.c",
+    "spring_piece.c",
+    "planar_spring_piece.c",
     "zero_length_spring.c",
     "planar_zero_length_spring.c",
     "registry.c",

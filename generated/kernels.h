@@ -1356,6 +1356,34 @@ void planar_spring_tangent(const fu_real *parameters, const fu_real *gap, const 
  * 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
 void planar_spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
 
+/* spring_piece: one piece of a spring of piecewise linear tension, and damper, between two points in space */
+/* stored energy: parameters 5[N/m, N s/m, m, N, J]; gap 3[m] -> U 1[J] */
+void spring_piece_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
+/* power that the damper takes: parameters 5[N/m, N s/m, m, N, J]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
+void spring_piece_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force between the points: parameters 5[N/m, N s/m, m, N, J]; gap 3[m]; gap_rate 3[m/s] -> f 3[N] */
+void spring_piece_force(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force between the points, and its derivatives: parameters 5[N/m, N s/m, m, N, J]; gap 3[m]; gap_rate 3[m/s] -> f
+ * 3[N]; K 3x3[N/m]; D 3x3[N s/m] */
+void spring_piece_tangent(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: parameters 5[N/m, N s/m, m, N, J]; h [s];
+ * gap 3[m]; gap_next 3[m] -> f 3[N]; P 1[W] */
+void spring_piece_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* planar_spring_piece: one piece of a spring of piecewise linear tension, and damper, between two points in the plane */
+/* stored energy: parameters 5[N/m, N s/m, m, N, J]; gap 2[m] -> U 1[J] */
+void planar_spring_piece_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
+/* power that the damper takes: parameters 5[N/m, N s/m, m, N, J]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */
+void planar_spring_piece_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force between the points: parameters 5[N/m, N s/m, m, N, J]; gap 2[m]; gap_rate 2[m/s] -> f 2[N] */
+void planar_spring_piece_force(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force between the points, and its derivatives: parameters 5[N/m, N s/m, m, N, J]; gap 2[m]; gap_rate 2[m/s] -> f
+ * 2[N]; K 2x2[N/m]; D 2x2[N s/m] */
+void planar_spring_piece_tangent(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: parameters 5[N/m, N s/m, m, N, J]; h [s];
+ * gap 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
+void planar_spring_piece_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
 /* zero_length_spring: spring and damper of no length between two points in space */
 /* stored energy: parameters 2[N/m, N s/m]; gap 3[m] -> U 1[J] */
 void zero_length_spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);

@@ -229,6 +229,10 @@ static const fu_point_law_kernels point_laws[] = {
     {"spring", 3, 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
     {"planar_spring", 2, 3, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
      planar_spring_discrete_force},
+    {"spring_piece", 3, 5, spring_piece_energy, spring_piece_dissipation, spring_piece_force, spring_piece_tangent,
+     spring_piece_discrete_force},
+    {"planar_spring_piece", 2, 5, planar_spring_piece_energy, planar_spring_piece_dissipation,
+     planar_spring_piece_force, planar_spring_piece_tangent, planar_spring_piece_discrete_force},
     {"zero_length_spring", 3, 2, zero_length_spring_energy, zero_length_spring_dissipation, zero_length_spring_force,
      zero_length_spring_tangent, zero_length_spring_discrete_force},
     {"planar_zero_length_spring", 2, 2, planar_zero_length_spring_energy, planar_zero_length_spring_dissipation,
@@ -667,6 +671,16 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_spring_force, a[0], a[1], a[2], out[0]) \
     X(planar_spring_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(planar_spring_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(spring_piece_energy, a[0], a[1], out[0]) \
+    X(spring_piece_dissipation, a[0], a[1], a[2], out[0]) \
+    X(spring_piece_force, a[0], a[1], a[2], out[0]) \
+    X(spring_piece_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(spring_piece_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(planar_spring_piece_energy, a[0], a[1], out[0]) \
+    X(planar_spring_piece_dissipation, a[0], a[1], a[2], out[0]) \
+    X(planar_spring_piece_force, a[0], a[1], a[2], out[0]) \
+    X(planar_spring_piece_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(planar_spring_piece_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
     X(zero_length_spring_energy, a[0], a[1], out[0]) \
     X(zero_length_spring_dissipation, a[0], a[1], a[2], out[0]) \
     X(zero_length_spring_force, a[0], a[1], a[2], out[0]) \
@@ -696,5 +710,5 @@ const fu_tables fu_all = {
     2, frames,
     20, joints,
     2, resistances,
-    4, point_laws
+    6, point_laws
 };
