@@ -42,18 +42,6 @@ static void force_at(const fu_model *model, const fu_coupling *coupling, const f
     force_of_piece(between, fu_force_piece(between, state), gap, rate, force);
 }
 
-/* Returns the stored energy, J: that of the piece that the points' distance is on, whether the force follows its law or not. */
-static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
-{
-    const fu_point_force *between = (const fu_point_force *)coupling;
-    const int piece = fu_piece_at(model, between, state);
-    double gap[3], rate[3], stored;
-    if (between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
-    fu_gap(model, between, state->q, model->zero, gap, rate);
-    between->law->energy(fu_piece_parameters(between, piece), gap, &stored);
-    return stored;
-}
-
 /* Makes the force over a step; returns the power that it dissipates, W. */
 static double step_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double force[3])
 {
@@ -62,7 +50,7 @@ static double step_force(const fu_model *model, const fu_coupling *coupling, con
     double gap[3], gap_next[3], unused[3], power;
     if (between->senses[piece] == FU_HAS_NO_FORCE) {
         memset(force, 0, sizeof(double[3]));
-        return (energy(model, coupling, at->now) - energy(model, coupling, at->next)) / at->h;
+        return 0.0;
     }
     fu_gap(model, between, at->now->q, model->zero, gap, unused);
     fu_gap(model, between, at->next->q, model->zero, gap_next, unused);
@@ -229,24 +217,43 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
     outputs(model, coupling, state, 0, work, state->forces + coupling->force);
 }
 
-/* The work on the points that is not stored: that of the damper; and all that a spring releases which must not push. */
+/* Returns the stored energy, J: that of the piece that the points' distance is on, whether the force follows its law or not. */
+static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int piece = fu_piece_at(model, between, state);
+    double gap[3], rate[3], stored;
+    if (between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
+    fu_gap(model, between, state->q, model->zero, gap, rate);
+    between->law->energy(fu_piece_parameters(between, piece), gap, &stored);
+    return stored;
+}
+
 static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                           const fu_accelerator *work)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    const int piece = fu_force_piece(between, state), at = fu_piece_at(model, between, state);
-    double gap[3], rate[3], power = 0.0;
+    const int piece = fu_force_piece(between, state);
+    double gap[3], rate[3], power;
     (void)work;
-    if (!coupling->is_damped) return 0.0;
+    if (!coupling->is_damped || between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
     fu_gap(model, between, state->q, state->v, gap, rate);
-    if (between->senses[piece] != FU_HAS_NO_FORCE) {
-        between->law->dissipation(fu_piece_parameters(between, piece), gap, rate, &power);
-    } else if (between->senses[at] != FU_HAS_NO_FORCE) {
-        double spring[3];
-        between->law->force(fu_piece_parameters(between, at), gap, model->zero, spring);
-        for (int d = 0; d < between->dim; ++d) power -= spring[d] * rate[d];
-    }
+    between->law->dissipation(fu_piece_parameters(between, piece), gap, rate, &power);
     return power;
+}
+
+/* Returns the stored energy that comes back to nobody, J: of a spring whose damper would push, so that it has no force. */
+static double energy_without_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int has_none = between->senses[fu_force_piece(between, state)] == FU_HAS_NO_FORCE;
+    return has_none ? energy(model, coupling, state) : 0.0;
+}
+
+static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+{
+    if (!coupling->is_damped || ((const fu_point_force *)coupling)->n_pieces == 1) return 0.0;
+    return energy_without_force(model, coupling, from) - energy_without_force(model, coupling, to);
 }
 
 static const char *const role[] = {"point_law", 0};
@@ -267,4 +274,5 @@ const fu_coupling_type fu_point_force_type = {
     .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .n_outputs = 3, .n_flags = 1,
     .events = &fu_point_force_events, .touch = fu_touch_piece, .residual = residual, .tangent = tangent, .step_residual = step_residual,
     .step_tangent = step_tangent, .step_dissipation = step_dissipation, .force = own_force, .take_forces = take_forces,
-    .outputs = outputs, .energy = energy, .dissipation = dissipation};
+    .outputs = outputs, .energy = energy, .dissipation = dissipation,
+    .lost_in_step = lost_in_step};
