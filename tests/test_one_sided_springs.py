@@ -122,16 +122,18 @@ def test_a_damped_spring_that_pulls_alone_dissipates_what_it_does_not_give_back(
 
 
 def test_droppers_unload_and_reload_between_two_wires():
-    """A light wire under two droppers, lifted in its middle and let down: the droppers lose their force and regain it."""
+    """A wire under two droppers is lifted in its middle and let down: they lose their force and regain it."""
     scene = fu.Scene(gravity=(0, 0, -9.81))
     wire = scene.cable("wire", start=(0, 0, 0), end=(10, 0, 0), elements=20, element="cable12",
-                       section=fu.Circle(radius=6e-3), material=fu.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=8900),
+                       section=fu.Circle(radius=6e-3),
+                       material=fu.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=8900),
                        rest_length=10 / (1 + 7e-4))
     length = wire.rest_length
     for s in (0.0, length):
         scene.pin(wire, s=s)
     for k, s in enumerate((0.3, 0.7)):
-        scene.spring((10 * s, 0, 1.0), (wire, s * length), stiffness=1e5, length=0.998, tension_only=True, name=f"dropper{k}")
+        scene.spring((10 * s, 0, 1.0), (wire, s * length), stiffness=1e5, length=0.998, tension_only=True,
+                     name=f"dropper{k}")
     lift = fu.TableSignal(time=[0, 0.3, 0.5, 0.8], value=[0, 1, 1, 0])
     scene.force(wire, s=length / 2, value=(0, 0, 120.0), scale=lift)
     run = scene.run(duration=1.5, output_step=0.005, tol=1e-5, initial="equilibrium")

@@ -317,7 +317,8 @@ def _no_turn(scope: Scope, state: State) -> dict[str, Any]:
     return {rf"\boldsymbol{{\theta}}_{{{sub}}}": turn for sub in ("1", "2", "1,0", "2,0")}
 
 
-PARAMETERS = {"stiffness": "k", "damping": "c", "length": "L"}
+PARAMETERS = {"stiffness": "k", "damping": "c", "length": "L", "reference": "L_{0}", "tension": "T_{0}",
+              "energy": "U_{0}"}
 """What parameters of forces between two points are called in formulas; others by their number."""
 
 

@@ -76,7 +76,7 @@ class PointForceModel(CouplingModel):
     """A force between two points, whose unknowns are its components.
 
     law: the name of its kernels; parameters: of the law, in the order in which the kernels take them, for one piece of
-    it after the other. bounds (n_pieces - 1), in m: distances of the points at which one piece ends and the next begins.
+    it after the other. bounds (n_pieces - 1), in m: distances of the points at which a piece ends and the next begins.
     senses (n_pieces): what each piece may do. compliance: in m/N, that of the stiffest piece.
     """
 
@@ -177,16 +177,17 @@ class LoadBuilder:
             "n_parameters": len(law.parameters)}
         if isinstance(part, Spring) and part.has_pieces:
             return PointForceModel(kernels, ends, dim, **_pieces(part, list(law.parameters)), **common)
-        return PointForceModel(kernels, ends, dim, tuple(float(getattr(part, name)) for name in law.parameters), **common)
+        parameters = tuple(float(getattr(part, name)) for name in law.parameters)
+        return PointForceModel(kernels, ends, dim, parameters, **common)
 
 
 def _pieces(part: Spring, names: list[str]) -> dict[str, Any]:
-    """Return what a model has of the pieces of a spring that the distance of its points, which is not negative, reaches.
-    """
+    """Return what a model has of the pieces of a spring: of those that a distance, which is not negative, reaches."""
     assert part.length is not None, f"{part.where} is not complete"
     pieces = [piece for piece in part.pieces() if part.length + piece.end > 0]
     values = [{"stiffness": piece.stiffness, "damping": part.damping * (piece.sense != HAS_NO_FORCE),
-               "reference": part.length + piece.at, "tension": piece.tension, "energy": piece.energy} for piece in pieces]
+               "reference": part.length + piece.at, "tension": piece.tension, "energy": piece.energy}
+              for piece in pieces]
     return {"parameters": tuple(float(of[name]) for of in values for name in names), "n_pieces": len(pieces),
             "bounds": tuple(part.length + piece.end for piece in pieces[:-1]),
             "senses": tuple(piece.sense for piece in pieces),
