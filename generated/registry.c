@@ -72,6 +72,11 @@ static const fu_law_kernels laws[] = {
      cable12_engineering_exact_curved_discrete_force, cable12_green_exact_step_stiffness,
      cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
+    {"cable12_engineering_exact_tension_only", 9, 1, cable12_engineering_exact_tension_only_energy,
+     cable12_engineering_exact_tension_only_elastic_force, cable12_engineering_exact_tension_only_elastic_tangent,
+     cable12_engineering_exact_tension_only_discrete_force, cable12_engineering_exact_tension_only_step_stiffness,
+     cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
+     cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
     {"cable18_green_exact", 17, 1, cable18_green_exact_energy, cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent, cable18_green_exact_discrete_force, cable18_green_exact_step_stiffness,
      cable18_green_exact_damping_force, cable18_green_exact_damping_tangent, cable18_green_exact_dissipation,
@@ -137,6 +142,11 @@ static const fu_law_kernels laws[] = {
     {"cable8p_engineering_linear_assumed", 7, 0, cable8p_engineering_linear_assumed_energy,
      cable8p_engineering_linear_assumed_elastic_force, cable8p_engineering_linear_assumed_elastic_tangent,
      cable8p_engineering_linear_assumed_discrete_force, cable8p_green_exact_assumed_step_stiffness,
+     cable8p_engineering_exact_damping_force, cable8p_engineering_exact_damping_tangent,
+     cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
+    {"cable8p_engineering_exact_tension_only", 7, 0, cable8p_engineering_exact_tension_only_energy,
+     cable8p_engineering_exact_tension_only_elastic_force, cable8p_engineering_exact_tension_only_elastic_tangent,
+     cable8p_engineering_exact_tension_only_discrete_force, cable8p_engineering_exact_tension_only_step_stiffness,
      cable8p_engineering_exact_damping_force, cable8p_engineering_exact_damping_tangent,
      cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
 };
@@ -377,6 +387,13 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable12_engineering_exact_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_engineering_exact_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
+    X(cable12_engineering_exact_tension_only_stiffness, *a[0], a[1], out[0]) \
+    X(cable12_engineering_exact_tension_only_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_tension_only_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_tension_only_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_tension_only_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_tension_only_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_tension_only_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable18_green_exact_stiffness, *a[0], a[1], out[0]) \
     X(cable18_green_exact_energy, *a[0], a[1], a[2], out[0]) \
     X(cable18_green_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
@@ -495,6 +512,13 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable8p_engineering_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_engineering_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable8p_engineering_exact_tension_only_stiffness, *a[0], a[1], out[0]) \
+    X(cable8p_engineering_exact_tension_only_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_tension_only_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_tension_only_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_tension_only_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_exact_tension_only_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_exact_tension_only_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \
     X(rigid_point_force, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(rigid_frame, a[0], a[1], out[0], out[1], out[2]) \
@@ -703,7 +727,7 @@ const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
 const fu_tables fu_all = {
     5, elements,
-    28, laws,
+    30, laws,
     2, bodys,
     2, modals,
     10, slides,

@@ -207,6 +207,8 @@ def law_scope(name: str) -> Scope:
         own = [Symbol(r"\mathrm{EA}", "S", entry(0)), Symbol(r"\mathrm{EI}", "S", entry(1))]
         if traits.membrane == "assumed":
             own.append(Symbol(r"\mathrm{EA}_{u}", "S", entry(2)))
+        if traits.membrane == "tension_only":
+            own += [Symbol(r"\rho", "S", entry(2)), Symbol(r"\varepsilon_{t}", "S", entry(3))]
     elif traits.kind == "structural":
         return Scope(family, (*common, Symbol("x", "x", number)), constants=_of_law)
     else:

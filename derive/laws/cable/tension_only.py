@@ -1,0 +1,60 @@
+"""Cable that resists stretching and gives way in compression: a rope, a chain, the wire of a dropper.
+
+The force is EA strain in tension and a small part rho of it in compression. The kink at strain 0 is rounded: with
+s = sqrt(strain^2 + strain_t^2) and the transition strain strain_t, twice the energy per length over EA is
+
+    rho strain^2 + (1 - rho)/2 strain (strain + s),
+
+whose derivative is smooth and grows with the strain everywhere. Beyond a few transition strains both branches are
+reached to (strain_t/strain)^4; at strain 0 the force is (1 - rho)/4 EA strain_t. The energy is the least, slightly
+below zero, within the transition. Bending is that of the full law.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ...algebra.gram import Gram
+from ...codegen.program import Program
+from ...spec import LawTraits
+from .cable import Cable
+
+UNITS = "N, N m^2, 1, 1"
+STIFFNESS_DOC = "axial and bending stiffness EA, EI; part of EA that is left in compression; transition strain"
+
+
+def traits(strain: str, curvature: str) -> LawTraits:
+    """Return what the law with these measures is; it is damped like the full law with the same strain."""
+    return LawTraits("cable", strain, curvature, membrane="tension_only", damped_like=f"{strain}_exact")
+
+
+class TensionOnlyCable(Cable):
+    """The law over an element's strain vectors; the damping is that of the law that resists compression, too."""
+
+    def __init__(self, gram: Gram, strain: str, curvature: str):
+        super().__init__(gram, strain, curvature)
+        self.name += "_tension_only"
+        self.doc += ", which gives way in compression"
+
+    def constants(self, program: Program) -> np.ndarray:
+        """Declare the input A (4,): EA in N, EI in N m^2, rho, transition strain; return it."""
+        return program.input("A", 4, UNITS, STIFFNESS_DOC)
+
+    def section_stiffness(self, program: Program) -> np.ndarray:
+        """Declare the input S (4,): EA in N, EI in N m^2, rho, transition strain; return it."""
+        return program.input("S", 4, UNITS, STIFFNESS_DOC)
+
+    def set_up(self, program: Program) -> None:
+        """Declare the inputs l and S, and the output A, which is S."""
+        program.input("l", (), "m", "length of the element")
+        program.output("A", self.section_stiffness(program), UNITS, STIFFNESS_DOC)
+
+    def twice_axial_energy(self, program: Program, tag: str, A: np.ndarray, stiffness: sp.Expr,
+                           strain: sp.Expr) -> sp.Expr:
+        """Return stiffness (rho strain^2 + (1 - rho)/2 strain (strain + s))."""
+        lost = program.define_once("half_lost", (1 - A[2]) / 2)
+        square = program.define_once("transition2", A[3] ** 2)
+        smooth = program.define(f"smooth{tag}", sp.sqrt(strain**2 + square))
+        program.define(f"inv_smooth{tag}", 1 / smooth)
+        return stiffness * strain * (A[2] * strain + lost * (strain + smooth))
