@@ -211,11 +211,11 @@ def cable_energy(scope: Scope) -> list[Line]:
     bend = rf"\frac{{l}}{{4}} \mathrm{{EI}} \sum_{{{g}=1}}^{{{bending}}} {w}_{{{g}}} \kappa_{{{g}}}^{{2}}"
     if traits.membrane == "tension_only":
         one = r"\varepsilon_{g}"
-        smooth = Line(rf"\sigma_{{g}} = \sqrt{{{one}^{{2}} + \varepsilon_{{t}}^{{2}}}}")
-        twice = (rf"\left( \rho {one}^{{2}} + \frac{{1 - \rho}}{{2}} {one} \left( {one} + \sigma_{{g}} \right) "
-                 r"\right)")
+        smooth = rf"\sqrt{{{one}^{{2}} + \varepsilon_{{t}}^{{2}}}} + \varepsilon_{{t}}"
+        twice = (rf"{one}^{{2}} \left( \rho + \frac{{1 - \rho}}{{2}} \left( 1 + \frac{{{one}}}{{{smooth}}} "
+                 r"\right) \right)")
         stretch = rf"\frac{{l}}{{4}} \mathrm{{EA}} \sum_{{g=1}}^{{{axial}}} w_{{g}} {twice}"
-        return [smooth, Line(rf"U = {stretch} + {bend}", output="energy.U")]
+        return [Line(rf"U = {stretch} + {bend}", output="energy.U")]
     if traits.membrane != "assumed":
         stretch = rf"\frac{{l}}{{4}} \mathrm{{EA}} \sum_{{g=1}}^{{{axial}}} w_{{g}} \varepsilon_{{g}}^{{2}}"
         return [Line(rf"U = {stretch} + {bend}", output="energy.U")]

@@ -75,7 +75,7 @@ class Cable(Part):
     "structural"; for cables ``strain`` ("green" or "engineering") and ``curvature`` ("exact" or "linear"), the measures
     that their axial and bending stiffness act on, by default green and exact; and ``membrane``, how an element
     represents its axial strain: "full" (the default) at every point; "tension_only" the same, engineering strain, with
-    1e-4 of the axial stiffness in compression, the rest of which is lost over a strain of about 1e-6; "assumed" by its Legendre modes of degree 0 to 2;
+    1e-4 of the axial stiffness in compression, where the force is at most that and 2.5e-7 EA; "assumed" by its Legendre modes of degree 0 to 2;
     "reduced" by those of degree 0 and 1, with 1 % of the axial stiffness on degree 2, which keeps the lengths of the
     slopes stable ("cable18": 0 to 4, 0 to 2, and 3 and 4). Beside a point force on a taut rope the tension of full and
     assumed strain swings, that of reduced strain hardly. Reduced strain is for small strain: stable up to a compression

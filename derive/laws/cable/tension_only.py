@@ -1,13 +1,13 @@
 """Cable that resists stretching and gives way in compression: a rope, a chain, the wire of a dropper.
 
-The force is EA strain in tension and a small part rho of it in compression. The kink at strain 0 is rounded: with
-s = sqrt(strain^2 + strain_t^2) and the transition strain strain_t, twice the energy per length over EA is
+The force is EA strain in tension, and hardly any in compression. With a transition strain strain_t and
+s = sqrt(strain^2 + strain_t^2), twice the energy per length over EA is
 
-    rho strain^2 + (1 - rho)/2 strain (strain + s),
+    strain^2 (rho + (1 - rho)/2 (1 + strain/(s + strain_t))),
 
-whose derivative is smooth and grows with the strain everywhere. Beyond a few transition strains both branches are
-reached to (strain_t/strain)^4; at strain 0 the force is (1 - rho)/4 EA strain_t. The energy is the least, slightly
-below zero, within the transition. Bending is that of the full law.
+which is nil at strain 0 and grows to both sides. Beyond a few transition strains the force is EA strain in tension, less
+(1 - rho)/4 EA strain_t, and in compression rho EA strain, less the same: that is the most that an ideal cable, which has
+rho = 0, bears. Bending is that of the full law.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ class TensionOnlyCable(Cable):
 
     def twice_axial_energy(self, program: Program, tag: str, A: np.ndarray, stiffness: sp.Expr,
                            strain: sp.Expr) -> sp.Expr:
-        """Return stiffness (rho strain^2 + (1 - rho)/2 strain (strain + s))."""
+        """Return the energy of the module docstring, stiffness in place of EA."""
         lost = program.define_once("half_lost", (1 - A[2]) / 2)
         square = program.define_once("transition2", A[3] ** 2)
         smooth = program.define(f"smooth{tag}", sp.sqrt(strain**2 + square))
-        program.define(f"inv_smooth{tag}", 1 / smooth)
-        return stiffness * strain * (A[2] * strain + lost * (strain + smooth))
+        inverse = program.define(f"inv_smooth{tag}", 1 / (smooth + A[3]))
+        return stiffness * strain**2 * (A[2] + lost * (1 + strain * inverse))

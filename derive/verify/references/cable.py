@@ -48,14 +48,15 @@ def energy(element: Element, law: str, s: Any) -> Any:
 
 
 def membrane_energy(law: str, strain: Any, s: Any) -> Any:
-    """Return the energy per length of an axial strain; where there is no resistance to compression, in closed form over
-    the part of EA that is left, and the smoothed rest of it.
+    """Return the energy per length of an axial strain. A cable that gives way in compression has a part of EA left
+    there, and of the rest the force whose energy is (strain^2 + strain hypot(strain, t) - strain t)/4 times it.
     """
     EA = s["S"][0]
     if TRAITS[law].membrane != "tension_only":
         return EA * strain**2 / 2
     left, transition = s["S"][2:]
-    return EA * (left * strain**2 + (1 - left) * strain * (strain + mp.hypot(strain, transition)) / 2) / 2
+    rest = strain**2 + strain * mp.sqrt(strain**2 + transition**2) - strain * transition
+    return EA * (left * strain**2 / 2 + (1 - left) * rest / 4)
 
 
 def axial_points(element: Element, law: str) -> int:
