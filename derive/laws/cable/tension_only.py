@@ -5,9 +5,9 @@ s = sqrt(strain^2 + strain_t^2), twice the energy per length over EA is
 
     strain^2 (rho + (1 - rho)/2 (1 + strain/(s + strain_t))),
 
-which is nil at strain 0 and grows to both sides. Beyond a few transition strains the force is EA strain in tension, less
-(1 - rho)/4 EA strain_t, and in compression rho EA strain, less the same: that is the most that an ideal cable, which has
-rho = 0, bears. Bending is that of the full law.
+which is nil at strain 0 and grows to both sides. Beyond a few transition strains the force is EA strain in tension, and
+in compression rho EA strain, each less (1 - rho)/4 EA strain_t: the most that an ideal cable, of rho = 0, bears in
+compression. Bending is that of the full law.
 """
 
 from __future__ import annotations
