@@ -21,6 +21,7 @@
 #include "cable12_engineering_linear_assumed.c"
 #include "cable12_green_exact_curved.c"
 #include "cable12_engineering_exact_curved.c"
+#include "cable12_engineering_exact_tension_only.c"
 #include "cable18_green_exact.c"
 #include "cable18_engineering_exact.c"
 #include "cable18_green_exact_assumed.c"
@@ -36,6 +37,7 @@
 #include "cable8p_green_linear_assumed.c"
 #include "cable8p_engineering_exact_assumed.c"
 #include "cable8p_engineering_linear_assumed.c"
+#include "cable8p_engineering_exact_tension_only.c"
 
 #define FU_HELPER static inline __attribute__((always_inline)) FU_BLOCK_TARGET
 
@@ -419,6 +421,34 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_tange
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_engineering_exact_curved_elastic_tangent(l, e, A, K);
+        scatter(out + k * 144, K, 144);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic_force(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(of->l);
+    fu_real e[12];
+    fu_real A[4];
+    fu_real f[12];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable12_engineering_exact_tension_only_elastic_force(l, e, A, f);
+        scatter(out + k * 12, f, 12);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic_tangent(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(of->l);
+    fu_real e[12];
+    fu_real A[4];
+    fu_real K[144];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable12_engineering_exact_tension_only_elastic_tangent(l, e, A, K);
         scatter(out + k * 144, K, 144);
     }
 }
@@ -906,6 +936,34 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_tan
     }
 }
 
+FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic_force(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(of->l);
+    fu_real e[8];
+    fu_real A[4];
+    fu_real f[8];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable8p_engineering_exact_tension_only_elastic_force(l, e, A, f);
+        scatter(out + k * 8, f, 8);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic_tangent(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(of->l);
+    fu_real e[8];
+    fu_real A[4];
+    fu_real K[64];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable8p_engineering_exact_tension_only_elastic_tangent(l, e, A, K);
+        scatter(out + k * 64, K, 64);
+    }
+}
+
 static const fu_law_blocks all[] = {
     {"beam24_continuum", block_beam24_continuum_elastic_force, 0, block_beam24_continuum_damping_force},
     {"beam24_continuum_curved", block_beam24_continuum_curved_elastic_force, 0, block_beam24_continuum_damping_force},
@@ -920,6 +978,7 @@ static const fu_law_blocks all[] = {
     {"cable12_engineering_linear_assumed", block_cable12_engineering_linear_assumed_elastic_force, block_cable12_engineering_linear_assumed_elastic_tangent, block_cable12_engineering_exact_damping_force},
     {"cable12_green_exact_curved", block_cable12_green_exact_curved_elastic_force, block_cable12_green_exact_curved_elastic_tangent, block_cable12_green_exact_damping_force},
     {"cable12_engineering_exact_curved", block_cable12_engineering_exact_curved_elastic_force, block_cable12_engineering_exact_curved_elastic_tangent, block_cable12_engineering_exact_damping_force},
+    {"cable12_engineering_exact_tension_only", block_cable12_engineering_exact_tension_only_elastic_force, block_cable12_engineering_exact_tension_only_elastic_tangent, block_cable12_engineering_exact_damping_force},
     {"cable18_green_exact", block_cable18_green_exact_elastic_force, 0, block_cable18_green_exact_damping_force},
     {"cable18_engineering_exact", block_cable18_engineering_exact_elastic_force, 0, block_cable18_engineering_exact_damping_force},
     {"cable18_green_exact_assumed", block_cable18_green_exact_assumed_elastic_force, 0, block_cable18_green_exact_damping_force},
@@ -934,7 +993,8 @@ static const fu_law_blocks all[] = {
     {"cable8p_green_exact_assumed", block_cable8p_green_exact_assumed_elastic_force, block_cable8p_green_exact_assumed_elastic_tangent, block_cable8p_green_exact_damping_force},
     {"cable8p_green_linear_assumed", block_cable8p_green_linear_assumed_elastic_force, block_cable8p_green_linear_assumed_elastic_tangent, block_cable8p_green_exact_damping_force},
     {"cable8p_engineering_exact_assumed", block_cable8p_engineering_exact_assumed_elastic_force, block_cable8p_engineering_exact_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force},
-    {"cable8p_engineering_linear_assumed", block_cable8p_engineering_linear_assumed_elastic_force, block_cable8p_engineering_linear_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force}
+    {"cable8p_engineering_linear_assumed", block_cable8p_engineering_linear_assumed_elastic_force, block_cable8p_engineering_linear_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force},
+    {"cable8p_engineering_exact_tension_only", block_cable8p_engineering_exact_tension_only_elastic_force, block_cable8p_engineering_exact_tension_only_elastic_tangent, block_cable8p_engineering_exact_damping_force}
 };
 
 const fu_law_blocks *fu_blocks_of(const char *law)

@@ -237,7 +237,7 @@ cdef class Engine(Report):
                     if self.watcher is not None:
                         c = self.couplings[run.event.which]
                         self.watcher.acts(c.number, run.event.what.decode(), run.now.t,
-                                          self._view(&run.now, "s")[c.coordinate])
+                                          self._view(&run.now, "s")[c.coordinate] if c.n_coordinates else None)
                     status = FU_RUNNING
                 if status == FU_EVENT:
                     if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):

@@ -10,6 +10,7 @@ import numpy as np
 from .parts.cable import Cable
 from .parts.end_stops import Stop
 from .parts.event import Event
+from .parts.force_pieces import ForceTable
 from .parts.friction import Friction
 from .parts.joint import Joint
 from .parts.load import DistributedForce, Force, Moment
@@ -217,9 +218,12 @@ class SceneMethods(SceneData):
         a: Place,
         b: Place,
         *,
-        stiffness: float,
+        stiffness: float | None = None,
         damping: float = 0.0,
         length: float | None = None,
+        tension_only: bool = False,
+        free_play: float = 0.0,
+        table: ForceTable | dict[str, Numbers] | None = None,
         name: str | None = None,
     ) -> Spring:
         """Add a Spring, which see."""

@@ -80,11 +80,12 @@ class Cable(Part):
     "continuum" (the default), "poisson_split" or "structural"; for cables ``strain`` ("green" or "engineering") and
     ``curvature`` ("exact" or "linear"), the measures that their axial and bending stiffness act on, by default green
     and exact; and ``membrane``, how an element represents its axial strain: "full" (the default) at every point;
-    "assumed" by its Legendre modes of degree 0 to 2; "reduced" by those of degree 0 and 1, with 1 % of the axial
-    stiffness on degree 2, which keeps the lengths of the slopes stable ("cable18": 0 to 4, 0 to 2, and 3 and 4). Beside
-    a point force on a taut rope the tension of full and assumed strain swings, that of reduced strain hardly. Reduced
-    strain is for small strain: stable up to a compression of 1 %, with about four times as many elements for axial
-    waves.
+    "tension_only" the same, engineering strain, with 1e-4 of the axial stiffness in compression, where the force is at
+    most that and 2.5e-7 EA; "assumed" by its Legendre modes of degree 0 to 2; "reduced" by those of degree 0 and 1,
+    with 1 % of the axial stiffness on degree 2, which keeps the lengths of the slopes stable ("cable18": 0 to 4, 0 to
+    2, and 3 and 4). Beside a point force on a taut rope the tension of full and assumed strain swings, that of reduced
+    strain hardly. Reduced strain is for small strain: stable up to a compression of 1 %, with about four times as many
+    elements for axial waves.
 
     A cable that is stress-free where it is curved has the exact curvature, whose size alone it measures: it resists in
     the plane of its curve, and across that plane by tension alone. Of the beams' laws, "structural" is the one for thin

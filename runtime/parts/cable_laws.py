@@ -12,7 +12,7 @@ from .section import GeneralSection, Section
 from .section_stiffness import kernel_law, law_of_measures, measures_of_law, variants
 from .validation import EXACT, show, shown
 
-MEMBRANES = ("full", "assumed", "reduced")
+MEMBRANES = ("full", "assumed", "reduced", "tension_only")
 """How an element of a cable represents its axial strain, see `Cable`; the first is the default."""
 
 
@@ -79,7 +79,8 @@ def chosen(kind: ElementKind, data: dict) -> str | None:
         if not kind.is_cable:
             raise ValueError(f"strain, curvature and membrane are for cable elements, {element} is a beam",
                              "leave them out, or take " + others(kind.dim, cable=True))
-        by_measures = law_of_measures(strain or "green", curvature or "exact", membrane or MEMBRANES[0])
+        default = "engineering" if membrane == "tension_only" else "green"
+        by_measures = law_of_measures(strain or default, curvature or "exact", membrane or MEMBRANES[0])
         if law not in (None, by_measures):
             raise ValueError(f'law "{law}" disagrees with strain, curvature and membrane', "give the one or the others")
         law = by_measures

@@ -116,9 +116,15 @@ class EventWatcher:
         name, axis = _quantity(event).rsplit(".", 1)
         return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 
-    def acts(self, which: int, what: str, time: float, s: float) -> None:
-        """Note what a coupling of this number has done by itself: stuck, struck the end, and so on."""
-        self.happened.append({"name": self.model.couplings[which].name, "time": time, "what": what, "s": s})
+    def acts(self, which: int, what: str, time: float, s: float | None) -> None:
+        """Note what a coupling of this number has done by itself: stuck, struck the end, and so on.
+
+        Without a word it is no event for a user: a corner of a table. s: of a slide, m.
+        """
+        if not what:
+            return
+        happened = {"name": self.model.couplings[which].name, "time": time, "what": what}
+        self.happened.append(happened if s is None else happened | {"s": s})
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Note an event; return whether the run goes on."""

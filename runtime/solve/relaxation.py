@@ -77,7 +77,7 @@ class _NoEvents:
 
     watches: list = field(default_factory=list)
 
-    def acts(self, which: int, what: str, time: float, s: float) -> None:
+    def acts(self, which: int, what: str, time: float, s: float | None) -> None:
         """Do nothing: what sticks and strikes does so in the engine."""
 
 

@@ -21,7 +21,7 @@ struct fu_coupling_events {
     fu_path (*path)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     /* Rate of the coordinate along the path, m/s. */
     double (*rate)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Whether every step must end where the coupling passes a boundary, whatever the integrator. */
+    /* Whether every step must end where the coupling passes a boundary, whatever the integrator. Null: it need not. */
     int (*stops_at_boundaries)(const fu_model *model, const fu_coupling *coupling);
     /* Changes the velocities of `now` as the passage to another piece asks for; returns a status. Null: it asks for nothing. */
     int (*enter)(fu_run *run, const fu_coupling *coupling, int piece);
@@ -42,7 +42,7 @@ struct fu_coupling_events {
     /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);
     int (*begin)(fu_run *run, const fu_coupling *coupling);
-    /* Gives the state what follows from velocities that have jumped. */
+    /* Gives the state what follows from velocities that have jumped. Null: nothing does. */
     void (*take_velocities)(fu_run *run, const fu_coupling *coupling);
 };
 

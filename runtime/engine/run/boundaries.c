@@ -61,7 +61,8 @@ int fu_stop_at_boundaries(const fu_model *model)
 {
     for (int k = 0; k < model->n_couplings; ++k) {
         const fu_coupling *c = model->couplings[k];
-        if (c->type->events && c->type->events->stops_at_boundaries(model, c)) return 1;
+        const fu_coupling_events *events = c->type->events;
+        if (events && events->stops_at_boundaries && events->stops_at_boundaries(model, c)) return 1;
     }
     return 0;
 }
