@@ -427,11 +427,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_tange
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[4];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
         cable12_engineering_exact_tension_only_elastic_force(l, e, A, f);
@@ -441,11 +442,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[4];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
         cable12_engineering_exact_tension_only_elastic_tangent(l, e, A, K);
@@ -938,11 +940,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_tan
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[4];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
         cable8p_engineering_exact_tension_only_elastic_force(l, e, A, f);
@@ -952,11 +955,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[4];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
         cable8p_engineering_exact_tension_only_elastic_tangent(l, e, A, K);
