@@ -23,6 +23,7 @@ from ..model.states import attachment_points, body_rates, body_state, joint_stat
 from ..parts.cable import Cable
 from ..parts.joint import Joint
 from ..parts.scene_data import SceneData
+from ..parts.section_stiffness import RESIDUAL_STIFFNESS
 from ..parts.settings import RunSettings
 from ..rotations import rotate
 
@@ -93,14 +94,16 @@ class Sensitivity:
         part = self._scene.cables[cable.name]
         vectors = q[:, cable.coordinates].reshape(-1, *cable.shape)
         r, r_x = (vectors[:, :, cable.vectors.index(name)] for name in ("r", "r_x"))
-        middle = 1.5 * np.diff(r, axis=1) / cable.length - 0.25 * (r_x[:, 1:] + r_x[:, :-1])
+        middle = 1.5 * np.diff(r, axis=1) / cable.mesh.lengths[:, None] - 0.25 * (r_x[:, 1:] + r_x[:, :-1])
         slopes, middle = np.linalg.norm(r_x, axis=-1), np.linalg.norm(middle, axis=-1)
         strain = (slopes[:, 1:] + 4 * middle + slopes[:, :-1]) / 6 - 1  # by Simpson's rule
         E, moments = part.material.youngs_modulus, part.section.moments()
         EA, EI = E * moments[0], E * (moments[1] if self._model.dim == 2 else min(moments[1:3]))
+        if part.traits.membrane == "tension_only":
+            EA *= RESIDUAL_STIFFNESS
         mass = part.material.density * part.section.mass_moments()[0]
         N = EA * np.maximum(-strain, 0.0)
-        k = np.clip(np.sqrt(N / (2 * EI)), np.pi / part.length, np.pi / cable.length)
+        k = np.clip(np.sqrt(N / (2 * EI)), np.pi / part.length, np.pi / cable.mesh.lengths)
         return np.sqrt(np.maximum(k**2 * (N - EI * k**2), 0.0) / mass)
 
     def _of_joint(self, k: int, joint: JointModel, rows: dict[str, np.ndarray]) -> np.ndarray:
