@@ -275,7 +275,7 @@ class Scene(Viewable, SceneMethods):
 
             flat = laid(self)
             with progress_bar(settings.duration, progress) as on_progress:
-                simulation = simulate(flat, settings, on_progress, state, stream, trials)
+                simulation = simulate(flat, settings, on_progress, initial=state, stream=stream, trials=trials)
             recording = recorded(simulation, flat, settings)
             if chosen is not None:
                 recording.report["choice"] = chosen.facts()

@@ -31,7 +31,7 @@ def kernel(*name: str):
 
 
 def cable_stiffness(law: str, EA: float, EI: float) -> np.ndarray:
-    """S of a law of cables; an assumed strain's upper modes have EA, too; what compression leaves of EA is much here."""
+    """S of a law of cables; upper modes of an assumed strain have EA, too; much of EA is left in compression."""
     more = [EA] if law.endswith("_assumed") else [LEFT, TRANSITION] if law.endswith("_tension_only") else []
     return np.array([EA, EI, *more])
 

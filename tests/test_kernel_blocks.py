@@ -17,7 +17,9 @@ SAME_BITS = platform.machine() in ("x86_64", "AMD64")  # no contraction to fused
 CABLE = [{"strain": strain, "curvature": curvature, "membrane": membrane} for strain in ("green", "engineering")
          for curvature in ("exact", "linear") for membrane in ("full", "assumed")]
 BEAM = [{"law": "continuum"}, {"law": "structural"}]
-STRAIGHT = {"cable12": CABLE, "cable8p": CABLE, "cable18": [kind for kind in CABLE if kind["curvature"] == "exact"],
+TENSION_ONLY = [{"membrane": "tension_only"}]
+STRAIGHT = {"cable12": CABLE + TENSION_ONLY, "cable8p": CABLE + TENSION_ONLY,
+            "cable18": [kind for kind in CABLE if kind["curvature"] == "exact"],
             "beam24": BEAM, "beam12p": BEAM}
 CURVED = {"cable12": [{"strain": "green"}, {"strain": "engineering"}], "beam24": [{"law": "continuum"}],
           "beam12p": [{"law": "continuum"}]}

@@ -134,7 +134,8 @@ def everything() -> fu.Scene:
 
 OTHERS = {
     "cable": {"name": "cord", "start": (0, 0, 0.0), "end": (1.0, 0, 0), "points": ((0, 0, 0), (0.5, 0, 0), (1, 0, 0)),
-              "curve": lambda u: (u, 0, 0), "elements": 8, "element": "cable18", "law": "engineering_linear",
+              "curve": lambda u: (u, 0, 0), "elements": 8, "nodes": (0, 0.25, 1.0),
+              "element": "cable18", "law": "engineering_linear",
               "strain": "green", "curvature": "linear", "membrane": "assumed", "section": fu.Circle(radius=0.02),
               "material": fu.Material(youngs_modulus=2e9, poisson_ratio=0.3, density=1000), "up": (0, 1, 1),
               "rest": "straight", "rest_length": 1.0, "velocity": (0, 0, 1), "angular_velocity": (0, 1, 0)},
@@ -158,7 +159,8 @@ OTHERS = {
     "distributed_force": {"cable": "hook", "value": (0, -2, 0), "start": 0.25, "stop": 0.75, "follower": False,
                           "scale": 2.0, "name": "x"},
     "moment": {"on": "B", "s": 0.25, "value": (0, 0, 2), "scale": 2.0, "name": "x"},
-    "spring": {"a": "A", "b": (0, -4, 0), "stiffness": 20.0, "damping": 2.0, "length": 1.0, "name": "x"},
+    "spring": {"a": "A", "b": (0, -4, 0), "stiffness": 20.0, "damping": 2.0, "length": 1.0, "tension_only": True,
+               "free_play": 0.1, "name": "x"},
     "event": {"name": "x", "quantity": "B.position.x", "value": 1.0, "direction": "rising", "action": "stop"},
 }
 """Another value for fields, by the kind of the part."""
@@ -173,7 +175,7 @@ REFUSED = {
 
 ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_body", "data"), ("modal_body", "position"),
               ("modal_body", "orientation"), ("joint", "second_axis"), ("joint", "up"), ("joint", "distance"),
-              ("joint", "velocity"), ("joint", "length"), ("slide", "body_s")}
+              ("joint", "velocity"), ("joint", "length"), ("slide", "body_s"), ("spring", "table")}
 """Fields of parts that are described otherwise, or of other kinds of joints."""
 
 

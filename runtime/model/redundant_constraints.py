@@ -156,13 +156,13 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
     for row, begin in enumerate(begins):
         before[row] = n
         first = before[begin]
-        window, others = L[first:n, first:n], kept[first:n]
-        factor = solve_triangular(window, S[others, row], lower=True, check_finite=False) if n > first else np.zeros(0)
+        window, near = L[first:n, first:n], S[kept[first:n], row]
+        factor = solve_triangular(window, near, lower=True, check_finite=False) if n > first else np.zeros(0)
         left = 1 - factor @ factor
-        if left < SUSPECT:
-            share = np.abs(solve_triangular(window.T, factor, check_finite=False))
+        if left < SUSPECT:  # rows before the window have shares, too: through those in it
+            share = np.abs(solve_triangular(L[:n, :n].T, np.pad(factor, (first, 0)), check_finite=False))
             if left <= max(SAME, EPSILON * (1 + share.sum()) ** 2):
-                found[int(used[row])] = [int(used[k]) for k, part in zip(others, share, strict=True) if part > SHARE]
+                found[int(used[row])] = [int(used[k]) for k, part in zip(kept[:n], share, strict=True) if part > SHARE]
                 continue
         L[n, first:n], L[n, n], kept[n] = factor, np.sqrt(left), row
         n += 1
