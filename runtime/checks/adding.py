@@ -7,6 +7,7 @@ from typing import Any
 
 from ..errors import SceneError
 from ..parts.cable import Cable
+from ..parts.drag import Drag
 from ..parts.event import Event
 from ..parts.joint import Joint
 from ..parts.load import Load
@@ -15,6 +16,7 @@ from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.support import Support, Tie
+from .drag_placement import placed_drag
 from .event_placement import placed_event
 from .joint_placement import placed_joint
 from .placement import placed_between, placed_load, placed_point_force, placed_support, placed_tie
@@ -40,7 +42,7 @@ def placed_cable(scene: SceneData, cable: Cable) -> Cable:
 
 _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
     Cable: placed_cable, Support: placed_support, Tie: placed_tie, Joint: placed_joint, Slide: placed_slide,
-    Load: placed_load, PointForce: placed_point_force, Event: placed_event}
+    Load: placed_load, PointForce: placed_point_force, Event: placed_event, Drag: placed_drag}
 
 
 def check_of(part: Part) -> Callable[[SceneData, Any], Any]:

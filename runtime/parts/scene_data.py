@@ -9,7 +9,9 @@ from typing import Any, Self
 from ..errors import SceneError, check_renamed
 from .attachment import Attachment
 from .cable import Cable
+from .drag import Drag
 from .event import Event
+from .fluid import Fluid
 from .joint import Joint
 from .kinds import KINDS
 from .load import DistributedForce, Force, Moment
@@ -44,6 +46,8 @@ class SceneData:
     slides: dict[str, Slide]
     loads: dict[str, Force | DistributedForce | Moment]
     point_forces: dict[str, PointForce]
+    fluids: dict[str, Fluid]
+    drags: dict[str, Drag]
     events: dict[str, Event]
 
     def __init__(self, gravity: Any = (0, -9.81, 0)):

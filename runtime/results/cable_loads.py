@@ -10,6 +10,7 @@ import numpy as np
 
 from ..kernels.libraries import kernels_of
 from ..model.attachments import CARRIED, UP, AttachmentModel
+from ..model.drag_forces import densities
 from ..model.loads import GAUSS
 from ..model.model import CableModel, Kernel, Model
 from ..model.states import attachment_points, spatial
@@ -98,6 +99,7 @@ class CableLoads:
         names = [cable.name for cable in model.cables]
         self.number = {name: k for k, name in enumerate(names)}
         self._loads()
+        self._drags()
         self._slides()
         self._joints()
         self._point_forces()
@@ -158,6 +160,19 @@ class CableLoads:
             density = spatial(np.stack([f[:, is_r].sum(axis=1) for f in each], axis=1))
             f = sum(half * w * part for w, part in zip(GAUSS[1], each, strict=True))
             self.spreads.setdefault(number, []).append(Spread(element, start, stop, places, density, f))
+
+    def _drags(self) -> None:
+        """Add what fluids do to cables."""
+        for drag in self.model.drags:
+            if drag.cable < 0:
+                continue
+            cable = self.model.cables[drag.cable]
+            density = self.at.load * densities(self.model, drag, self.at.time, self.at.q, self.at.v)
+            places = cable.length / 2 * (1 + np.array(GAUSS[0]))
+            for element in range(cable.n_elements):
+                f = np.einsum("g,gk,tgd->tkd", drag.weights, drag.N, density[:, element, :, : self.dim])
+                self.spreads.setdefault(drag.cable, []).append(
+                    Spread(element, 0.0, cable.length, places, density[:, element], f))
 
     def _slides(self) -> None:
         """Add riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""
