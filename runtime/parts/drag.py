@@ -6,8 +6,6 @@ import math
 from collections.abc import Iterator
 from typing import Annotated, ClassVar
 
-from pydantic import model_validator
-
 from .cable import Cable
 from .part import Part
 from .plane import across
@@ -47,13 +45,6 @@ class Drag(Part):
     coefficient: Annotated[float, not_negative()] = 1.0
     at: Annotated[Vector, xyz("m")] | None = None
     volume: Annotated[float, not_negative("m³")] = 0.0
-
-    @model_validator(mode="after")
-    def _is_of_one_kind(self) -> Drag:
-        given = self.model_fields_set
-        if (cable := [f for f in OF_CABLE if f in given]) and (body := [f for f in OF_BODY if f in given]):
-            raise ValueError(f"{cable[0]} is of a cable, {body[0]} of a body", "give one part a cable and a body")
-        return self
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
