@@ -128,8 +128,8 @@ def families() -> dict[str, Family]:
     every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()),
              *(_modal(name, body) for name, body in modal.FRAMES.items()),
              *of_role["slide"],
-             *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES),
-             *map(_drag, drag.DRAGS), *(family for name, law in POINT_LAWS.items() for family in of_point_law(name, law))]
+             *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES), *map(_drag, drag.DRAGS),
+             *(family for name, law in POINT_LAWS.items() for family in of_point_law(name, law))]
     return {f.name: f for f in every}
 
 

@@ -15,8 +15,8 @@ from .errors import (
 )
 from .many_scenes import run_many
 from .parts.cable import Cable
-from .parts.end_stops import Buffer, HardStop
 from .parts.drag import Drag
+from .parts.end_stops import Buffer, HardStop
 from .parts.event import Event
 from .parts.flow_profile import PowerProfile, TableProfile
 from .parts.fluid import Fluid

@@ -64,7 +64,8 @@ def test_a_towed_cable_is_straight_at_the_critical_angle(element):
     assert np.abs(along[:, 0] / np.linalg.norm(along, axis=1) - cosine).max() < 1e-7
     tension = 20 * (weight * sin(acos(cosine)) + 1025 / 2 * pi * 2 * radius * 0.02 * (speed * cosine) ** 2)
     assert np.linalg.norm(state["wire@0.force"]) == pytest.approx(tension, rel=1e-6)
-    assert np.abs(state["wire@0.force"] + state["drag_1.force"] + [0, -density * pi * radius**2 * 20 * G, 0]).max() < 1e-6
+    own = [0, -density * pi * radius**2 * 20 * G, 0]
+    assert np.abs(state["wire@0.force"] + state["drag_1.force"] + own).max() < 1e-6
 
 
 def string_in_current(length, span, stiffness, weight, flow, normal, tangential):
@@ -103,7 +104,8 @@ def current_scene(elements, element="cable12", **more):
     s = np.linspace(0, 1, 81)
     line = np.column_stack([10 * s, 3.0 * 4 * s * (s - 1), 0 * s])
     wire = scene.cable("wire", points=line, rest="straight", rest_length=12.0, elements=elements,
-                       element=element, section=section, strain="engineering", material=fu.Material(youngs_modulus=1e9, poisson_ratio=0, density=3000))
+                       element=element, section=section, strain="engineering",
+                       material=fu.Material(youngs_modulus=1e9, poisson_ratio=0, density=3000))
     scene.pin(wire, s=0.0)
     scene.pin(wire, s=wire.length)
     profile = fu.TableProfile(height=[-8, -4, 0], factors=[0.2, 0.6, 1.0])
@@ -188,7 +190,7 @@ def test_a_pendulum_rests_aslant_in_the_wind(integrator):
     """tan(angle) = drag/weight, where both act at the same point."""
     scene = fu.Scene()
     scene.rigid_body("ball", mass=2.0, inertia=(1e-3, 1e-3, 1e-3), position=(0, -1, 0))
-    scene.joint("spherical", "ball", (0, 0, 0), at=(0, 0, 0))
+    scene.joint("spherical", ("ball", (0, 1, 0)), (0, 0, 0))
     scene.fluid("wind", density=1.2, velocity=(10, 0, 0), profile=fu.PowerProfile(exponent=0.2, reference_height=10))
     scene.drag("ball", area=0.2, coefficient=1.0)
     state = scene.equilibrium()
@@ -241,7 +243,8 @@ REFUSED = {
     "twice": (lambda s: (s.fluid(density=1.2), s.drag("wire", normal=1), s.drag("wire", normal=1)),
               'cable "wire" has the drag "drag_1" already'),
     "area of a cable": (lambda s: (s.fluid(density=1.2), s.drag("wire", area=1.0)), "takes no area"),
-    "both": (lambda s: (s.fluid(density=1.2), s.drag("A", area=1.0, normal=1.0)), 'acts on body "A" and takes no normal'),
+    "both": (lambda s: (s.fluid(density=1.2), s.drag("A", area=1.0, normal=1.0)),
+             'acts on body "A" and takes no normal'),
     "width": (lambda s: (s.fluid(density=1.2), s.drag("square", normal=1.0)), "diameter is missing"),
     "profile": (lambda s: s.fluid(density=1.2, profile={"form": "power", "exponent": 0.2}),
                 "reference_height is missing|profile"),
@@ -256,7 +259,7 @@ def test_bad_input_is_refused(case):
     rope(scene)
     scene.cable("square", start=(0, 0, 0), end=(2, 0, 0), elements=2, element="beam24",
                 section=fu.Rectangle(height=0.01, width=0.02), material=ROPE["material"])
-    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1))
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(0, 1, 0))
     add, message = REFUSED[case]
     with pytest.raises(fu.SceneError, match=message):
         add(scene)

@@ -15,10 +15,10 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     if drag.on in scene.cables:
         _check_cable(scene, drag)
         return drag
+    placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
     _refuse(drag, OF_CABLE, "body")
     if drag.area * drag.coefficient == 0 and drag.volume == 0:
         raise SceneError(drag.where, "has neither drag nor buoyancy", "give an area with a coefficient, or a volume")
-    placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
     return drag.model_copy(update={"at": placed.at})
 
 

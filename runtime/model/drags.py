@@ -56,6 +56,7 @@ class DragModel(CouplingModel):
 
 def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> DragModel:
     """Return the model of a drag of the scene."""
+    assert part.fluid is not None, f"{part.where} is not complete"
     fluid, dim = scene.fluids[part.fluid], scene.dim
     signal, factor = loads.scale(fluid.scale)
     gravity = np.array(scene.gravity)[:dim]

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..parts.locations import ends_of, joined, node_of
 from ..parts.drag import Drag
+from ..parts.locations import ends_of, joined, node_of
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
