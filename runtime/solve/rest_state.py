@@ -185,6 +185,7 @@ class RestState(NamedArrays):
             found[f"{slide.name}.s"] = self.static_state["s"][k]
             found[f"{slide.name}.force"] = self.static_state["force"][k]
         forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
-                                   self.static_state["point_force"][None], self.load_fraction * drag_forces(self.model, q)[None])
+                                   self.static_state["point_force"][None],
+                                   self.load_fraction * drag_forces(self.model, q)[None])
         return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()
                         for name, value in values.items() if name != "residual"}
