@@ -264,3 +264,35 @@ def test_bad_input_is_refused(case):
     add, message = REFUSED[case]
     with pytest.raises(fu.SceneError, match=message):
         add(scene)
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "explicit", "radau"])
+def test_a_modal_body_takes_it_at_a_node(integrator):
+    scene = fu.Scene()
+    scene.modal_body("bar", start=(0, 0, 0), end=(1, 0, 0), modes=4, section=fu.Rectangle(height=0.02, width=0.02),
+                     material=fu.Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1500))
+    scene.fluid(density=WATER, velocity=(0.3, 1.0, 0.2))
+    scene.drag("bar", area=0.02, at=(0.5, 0, 0), volume=1e-4)
+    run = scene.run(0.4, tol=1e-7, integrator=integrator, output_step=0.1)
+    assert balance(run) < 1e-6
+    assert run["bar.position"][-1] == pytest.approx([0.85506393, -0.30115553, 0.03580343], abs=1e-6)
+    with pytest.raises(fu.SceneError, match="is no node of the body"):
+        scene.drag("bar", area=0.02, at=(0.7, 0, 0))
+
+
+def test_section_forces_of_a_run_hold_what_the_flow_does():
+    """A rope at rest in a current has the section forces of its equilibrium."""
+    scene = current_scene(24)
+    state = scene.equilibrium()
+    run = scene.run(0.2, initial=state, tol=1e-6, output_step=0.1)
+    assert np.abs(run["wire.position"] - state["wire.position"]).max() < 1e-9
+    one, other = (np.array(of.section_forces("wire", [3.0, 6.0])["force"]) for of in (run, state))
+    assert np.abs(one[-1] - other).max() < 1e-6 * np.abs(other).max()
+
+
+def test_a_load_path_puts_on_as_much_of_the_flow_as_of_the_loads():
+    state = current_scene(12).equilibrium(load_steps=4)
+    for each in state.path:
+        cut = sum(each[f"wire@{s}.force"] for s in (0, 12))
+        weight = np.array([0, 3000 * 1e-4 * 12.0 * G * each.gravity_fraction, 0])
+        assert cut + each["drag_1.force"] == pytest.approx(weight, abs=1e-6)
