@@ -18,7 +18,7 @@ from .codegen.family import (
     PointLawFamily,
     SlideFamily,
 )
-from .couplings import frame, joint, point_law, resistance, slide
+from .couplings import drag, frame, joint, point_law, resistance, slide
 from .couplings.point_laws import LAWS as POINT_LAWS
 from .elements import ELEMENTS
 from .elements import kernels as element_kernels
@@ -90,6 +90,11 @@ def _resistance(dim: int) -> CouplingFamily:
                           ("couplings.resistance",), role="resistance", facts={"dim": dim}, dim=dim)
 
 
+def _drag(dim: int) -> CouplingFamily:
+    return CouplingFamily(drag.DRAGS[dim], f"drag of a fluid in {_SPACE[dim]}", partial(drag.build, dim),
+                          ("couplings.drag",), role="drag", facts={"dim": dim}, dim=dim)
+
+
 def _joint(dim: int, name: str) -> CouplingFamily:
     return CouplingFamily(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames",
                           partial(joint.build, dim, name), ("couplings.joint",), role="joint",
@@ -113,7 +118,7 @@ def of_element(element: Element) -> list[Family]:
 
 def families() -> dict[str, Family]:
     """Return every family by name: elements, laws, bodies, the slide of each element and rider, joints, resistances,
-    forces between two points.
+    drag, forces between two points.
     """
     of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
     for element in ELEMENTS.values():
@@ -123,7 +128,7 @@ def families() -> dict[str, Family]:
     every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()),
              *(_modal(name, body) for name, body in modal.FRAMES.items()),
              *of_role["slide"],
-             *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES),
+             *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES), *map(_drag, drag.DRAGS),
              *(family for name, law in POINT_LAWS.items() for family in of_point_law(name, law))]
     return {f.name: f for f in every}
 

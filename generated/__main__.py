@@ -83,6 +83,8 @@ SOURCES = (
     "joint_planar_locked.c",
     "resistance.c",
     "planar_resistance.c",
+    "drag.c",
+    "planar_drag.c",
     "spring.c",
     "planar_spring.c",
     "spring_piece.c",

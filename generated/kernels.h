@@ -1366,6 +1366,20 @@ void resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, cons
  * buffer 4[N/m, N s/m, m, 1] -> R 1[N]; R_t 2[N]; R_u 2[N s/m]; R_f 2[1]; R_x 1[N/m] */
 void planar_resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 
+/* drag: drag of a fluid in space */
+/* drag a length of a cable, and its derivatives: t 3[1]; w 3[m/s]; c 3[N s^2/m^3, N s^2/m^3, m/s] -> f 3[N/m]; f_t
+ * 3x3[N/m]; f_w 3x3[N s/m^2] */
+void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
+/* drag on a point, and its derivatives: w 3[m/s]; c_point 2[N s^2/m^2, m/s] -> f 3[N]; f_w 3x3[N s/m] */
+void drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
+
+/* planar_drag: drag of a fluid in the plane */
+/* drag a length of a cable, and its derivatives: t 2[1]; w 2[m/s]; c 3[N s^2/m^3, N s^2/m^3, m/s] -> f 2[N/m]; f_t
+ * 2x2[N/m]; f_w 2x2[N s/m^2] */
+void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
+/* drag on a point, and its derivatives: w 2[m/s]; c_point 2[N s^2/m^2, m/s] -> f 2[N]; f_w 2x2[N s/m] */
+void planar_drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
+
 /* spring: spring and damper between two points in space */
 /* stored energy: parameters 3[N/m, N s/m, m]; gap 3[m] -> U 1[J] */
 void spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
@@ -1567,6 +1581,14 @@ typedef struct {
     void (*force)(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 } fu_resistance_kernels;
 
+/* What the engine needs of a drag. */
+typedef struct {
+    const char *name;
+    int dim;
+    void (*along_cable)(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
+    void (*on_point)(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
+} fu_drag_kernels;
+
 /* What the engine needs of a point_law. */
 typedef struct {
     const char *name;
@@ -1597,6 +1619,8 @@ typedef struct {
     const fu_joint_kernels *joints;
     int n_resistances;
     const fu_resistance_kernels *resistances;
+    int n_drags;
+    const fu_drag_kernels *drags;
     int n_point_laws;
     const fu_point_law_kernels *point_laws;
 } fu_tables;
@@ -1621,6 +1645,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->joints[i].name, name)) return &tables->joints[i];
     for (int i = 0; i < tables->n_resistances && !strcmp(role, "resistance"); ++i)
         if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
+    for (int i = 0; i < tables->n_drags && !strcmp(role, "drag"); ++i)
+        if (!strcmp(tables->drags[i].name, name)) return &tables->drags[i];
     for (int i = 0; i < tables->n_point_laws && !strcmp(role, "point_law"); ++i)
         if (!strcmp(tables->point_laws[i].name, name)) return &tables->point_laws[i];
     return 0;

@@ -235,6 +235,11 @@ static const fu_resistance_kernels resistances[] = {
     {"planar_resistance", 2, planar_resistance_force},
 };
 
+static const fu_drag_kernels drags[] = {
+    {"drag", 3, drag_along_cable, drag_on_point},
+    {"planar_drag", 2, planar_drag_along_cable, planar_drag_on_point},
+};
+
 static const fu_point_law_kernels point_laws[] = {
     {"spring", 3, 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
     {"planar_spring", 2, 3, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
@@ -685,6 +690,10 @@ static const fu_point_law_kernels point_laws[] = {
     X(joint_planar_locked_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
     X(resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
     X(planar_resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
+    X(drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(drag_on_point, a[0], a[1], out[0], out[1]) \
+    X(planar_drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(planar_drag_on_point, a[0], a[1], out[0], out[1]) \
     X(spring_energy, a[0], a[1], out[0]) \
     X(spring_dissipation, a[0], a[1], a[2], out[0]) \
     X(spring_force, a[0], a[1], a[2], out[0]) \
@@ -734,5 +743,6 @@ const fu_tables fu_all = {
     2, frames,
     20, joints,
     2, resistances,
+    2, drags,
     6, point_laws
 };

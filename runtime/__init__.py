@@ -15,8 +15,11 @@ from .errors import (
 )
 from .many_scenes import run_many
 from .parts.cable import Cable
+from .parts.drag import Drag
 from .parts.end_stops import Buffer, HardStop
 from .parts.event import Event
+from .parts.flow_profile import PowerProfile, TableProfile
+from .parts.fluid import Fluid
 from .parts.force_pieces import ForceTable
 from .parts.friction import Friction
 from .parts.joint import Joint
@@ -45,10 +48,12 @@ __all__ = [
     "ConvergenceError",
     "Cylinder",
     "DistributedForce",
+    "Drag",
     "EndOfCableError",
     "EquilibriumError",
     "EquilibriumSettings",
     "Event",
+    "Fluid",
     "Force",
     "ForceTable",
     "Friction",
@@ -64,6 +69,7 @@ __all__ = [
     "Moment",
     "Motion",
     "Pin",
+    "PowerProfile",
     "Pulse",
     "Ramp",
     "Rectangle",
@@ -76,6 +82,7 @@ __all__ = [
     "Slide",
     "Sphere",
     "Spring",
+    "TableProfile",
     "TableSignal",
     "Tie",
     "Tube",

@@ -8,8 +8,11 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from .parts.cable import Cable
+from .parts.drag import Drag
 from .parts.end_stops import Stop
 from .parts.event import Event
+from .parts.flow_profile import Profile
+from .parts.fluid import Fluid
 from .parts.force_pieces import ForceTable
 from .parts.friction import Friction
 from .parts.joint import Joint
@@ -227,6 +230,34 @@ class SceneMethods(SceneData):
         name: str | None = None,
     ) -> Spring:
         """Add a Spring, which see."""
+
+    def fluid(
+        self,
+        name: str | None = None,
+        *,
+        density: float,
+        velocity: Numbers = (0.0, 0.0, 0.0),
+        scale: Scale = 1.0,
+        profile: Profile | None = None,
+    ) -> Fluid:
+        """Add a Fluid, which see."""
+
+    def drag(
+        self,
+        on: Named,
+        *,
+        fluid: Named | None = None,
+        normal: float = 0.0,
+        tangential: float = 0.0,
+        diameter: float | None = None,
+        displaced_area: float | None = None,
+        area: float = 0.0,
+        coefficient: float = 1.0,
+        at: Numbers | None = None,
+        volume: float = 0.0,
+        name: str | None = None,
+    ) -> Drag:
+        """Add a Drag, which see."""
 
     def event(
         self,

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from .parts.end_stops import STOPS
+from .parts.flow_profile import PROFILES
 from .parts.kinds import PARTS
 from .parts.part import Part
 from .parts.scene_text import SETTINGS
@@ -19,7 +20,7 @@ DIALECT = "http://json-schema.org/draft-07/schema#"
 
 GROUPS: dict[str, tuple[str, Iterable[type[Part]]]] = {
     "section": ("shape", SHAPES.values()), "signal": ("form", FORMS.values()), "stop": ("stop", STOPS.values()),
-    "solid": ("kind", SOLIDS.values())}
+    "solid": ("kind", SOLIDS.values()), "profile": ("form", PROFILES.values())}
 """What tables describe that say by an entry which of several parts they are: that entry, and the parts."""
 
 

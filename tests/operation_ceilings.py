@@ -236,4 +236,6 @@ CEILINGS = {
     "planar_spring": {"energy": 8, "dissipation": 12, "force": 16, "tangent": 58, "discrete_force": 33},
     "planar_zero_length_spring": {"energy": 5, "dissipation": 4, "force": 6, "tangent": 6, "discrete_force": 21},
     "planar_resistance": {"force": 207},
+    "drag": {"along_cable": 370, "on_point": 31},
+    "planar_drag": {"along_cable": 201, "on_point": 20},
 }

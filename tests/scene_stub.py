@@ -9,6 +9,7 @@ import inspect
 from pathlib import Path
 
 from funicular.parts.end_stops import Stop
+from funicular.parts.flow_profile import Profile
 from funicular.parts.force_pieces import ForceTable
 from funicular.parts.friction import Friction
 from funicular.parts.kinds import KINDS
@@ -45,13 +46,13 @@ def signature(kind: type[Part]) -> Signature: ...
 class SceneMethods(SceneData):
 '''
 
-OTHERS = (Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Solid, Part)
+OTHERS = (Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Solid, Profile, Part)
 """What signatures need beside the kinds of parts."""
 
 TYPES = {
     "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points", "nodes": "Numbers",
     "AnySection": "Section", "AnySolid": "Solid", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
-    "CableEnd": "str | Stop",
+    "AnyProfile": "Profile", "CableEnd": "str | Stop",
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Material": "Material", "Friction": "Friction",

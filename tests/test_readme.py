@@ -75,6 +75,12 @@ def events(space):
     assert run["A.position"][-1, 1] == pytest.approx(-0.03, abs=1e-9)
 
 
+def towed_line(space):
+    forces = space["towed"]["line@0.force"] + space["towed"]["drag_1.force"]
+    weight = 5000 * 3.141592653589793 * 0.005**2 * 20 * 9.81
+    assert forces == pytest.approx([0, weight, 0], rel=1e-6, abs=1e-6 * weight)
+
+
 def middle_of_an_element(space):
     assert space["r"] == pytest.approx([0.25, 0, 0])
 
@@ -126,6 +132,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "The model for a tolerance"): chosen_model,
               ("runtime/README.md", "Scenes"): first_scene,
               ("runtime/README.md", "Cables and beams"): unequal_elements,
+              ("runtime/README.md", "Wind and water"): towed_line,
               ("runtime/README.md", "Joints and springs"): trolley,
               ("runtime/README.md", "Running a scene"): named_quantities,
               ("runtime/README.md", "Events"): events,

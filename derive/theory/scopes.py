@@ -343,8 +343,15 @@ def resistance_scope(name: str) -> Scope:
                                     Symbol(r"\mathbf{f}", "f", column), *friction, *buffer))
 
 
+def drag_scope(name: str) -> Scope:
+    """Return the scope of drag."""
+    return Scope(families()[name], (Symbol(r"\mathbf{t}", "t", column), Symbol(r"\mathbf{w}", "w", column),
+                                    *(Symbol(s, "c", entry(k)) for k, s in enumerate(("c_{n}", "c_{t}", "w_{0}"))),
+                                    *(Symbol(s, "c_point", entry(k)) for k, s in enumerate(("c_{p}", "w_{p}")))))
+
+
 def scope(role: str, name: str) -> Scope:
     """Return the scope of a family, by its role."""
     return {"element": element_scope, "law": law_scope, "slide": slide_scope, "body": body_scope,
             "modal": modal_scope, "frame": frame_scope, "joint": joint_scope, "point_law": point_law_scope,
-            "resistance": resistance_scope}[role](name)
+            "resistance": resistance_scope, "drag": drag_scope}[role](name)

@@ -108,13 +108,13 @@ class LoadBuilder:
                                         signal.amplitude, signal.angular_frequency, signal.phase))
         return len(self.signals) - 1
 
-    def _scale(self, signal: Signal) -> tuple[int, float]:
+    def scale(self, signal: Signal) -> tuple[int, float]:
         """Return the number and constant factor of a load's scale."""
         return (-1, float(signal.value(0.0))) if isinstance(signal, Constant) else (self.signal(signal), 1.0)
 
     def load(self, load: Force | DistributedForce | Moment) -> None:
         """Add the model of a load to `dead` or `turning`."""
-        number, factor = self._scale(load.scale)
+        number, factor = self.scale(load.scale)
         value = factor * np.array(load.value)
         if isinstance(load, DistributedForce):
             self._distributed(load, number, value)

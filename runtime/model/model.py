@@ -17,6 +17,7 @@ from ..parts.body_shape import Shape
 from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
+from .drags import DragModel
 from .elimination import Elimination
 from .joints import JointModel
 from .loads import DeadLoadModel, LoadModel, PointForceModel, SignalModel
@@ -179,6 +180,7 @@ class Model:
     signals: list[SignalModel]
     motions: list[MotionModel]
     loads: list[DeadLoadModel | LoadModel]
+    drags: list[DragModel]
     q: np.ndarray
     v: np.ndarray
     weight: np.ndarray
@@ -200,7 +202,7 @@ class Model:
     @property
     def couplings(self) -> list[CouplingModel]:
         """Return all couplings in the engine's order, which adds up what they give in it."""
-        return [*self.loads, *self.slides, *self.joints, *self.point_forces]
+        return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags]
 
     def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return results of a part by quantity, in three dimensions, along the ground's axes."""
@@ -236,5 +238,5 @@ class Model:
                       | {slide.kernel for slide in self.slides} | {body.kernel for body in self.bodies}
                       | {joint.kernel for joint in self.joints}
                       | {slide.resistance for slide in self.slides if slide.resistance}
-                      | {force.law for force in self.point_forces}
+                      | {force.law for force in self.point_forces} | {drag.kernel for drag in self.drags}
                       | {body.modal_kernel for body in self.bodies if body.modes})

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ..parts.drag import Drag
 from ..parts.locations import ends_of, joined, node_of
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
@@ -151,12 +152,12 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
 
 
 def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: np.ndarray, joints: np.ndarray,
-                      point_forces: np.ndarray) -> dict[str, dict[str, dict[str, np.ndarray]]]:
+                      point_forces: np.ndarray, drags: np.ndarray) -> dict[str, dict[str, dict[str, np.ndarray]]]:
     """Return forces and moments of supports, ties, joints and forces between points, by group, label and quantity.
 
     Of a slide it is the moment that keeps its rider's axes. All arguments have the time first: q (time, n_q), reaction
-    (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3). They are along the
-    ground's axes.
+    (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3),
+    drags (time, drags, 3). They are along the ground's axes.
     """
     def reactions(supports: Iterable[Support]) -> dict[str, dict[str, np.ndarray]]:
         return {support.label: support_reaction(model, scene, support, reaction, q) for support in supports}
@@ -171,6 +172,7 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
         "joints": {joint.name: state for joint, state in of_joints if joint.slide is None},
         PointForce.group: {force.name: point_force_state(model, force, point_forces[:, k], q)
                            for k, force in enumerate(model.point_forces)},
+        Drag.group: {drag.name: {"force": drags[:, k]} for k, drag in enumerate(model.drags)},
     }
     return found if model.plane_axes is None else {
         group: {label: model.results(label, values) for label, values in of.items()} for group, of in found.items()}

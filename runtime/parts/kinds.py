@@ -1,7 +1,9 @@
 """The kinds of parts that a scene is made of; a further kind is one file beside this one and one entry here."""
 
 from .cable import Cable
+from .drag import Drag
 from .event import Event
+from .fluid import Fluid
 from .joint import Joint
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
@@ -12,7 +14,7 @@ from .spring import Spring
 from .support import Clamp, Motion, Pin, Tie
 
 KINDS: tuple[type[Part], ...] = (Cable, Pin, Clamp, Motion, Tie, RigidBody, ModalBody, Joint, Slide, Force,
-                                 DistributedForce, Moment, Spring, Event)
+                                 DistributedForce, Moment, Spring, Fluid, Drag, Event)
 """In the order in which they can be added: a slide needs its cable and its body."""
 
 PARTS = {part.kind: part for part in KINDS}

@@ -14,7 +14,9 @@ from .attachment import Attachment
 from .cable import Cable
 from .combined_signal import combined
 from .curves import shape_through
+from .drag import Drag
 from .event import Event
+from .fluid import Fluid
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
 from .part import Part
@@ -201,6 +203,16 @@ def _force(part: Force, axes: PlaneAxes, scene: SceneData) -> Force:
 @turned.register
 def _distributed(part: DistributedForce, axes: PlaneAxes, scene: SceneData) -> DistributedForce:
     return part if part.follower else part.model_copy(update={"value": _direction(axes, part.value)})
+
+
+@turned.register
+def _fluid(part: Fluid, axes: PlaneAxes, scene: SceneData) -> Fluid:
+    return part.model_copy(update={"velocity": _direction(axes, part.velocity)})
+
+
+@turned.register
+def _drag(part: Drag, axes: PlaneAxes, scene: SceneData) -> Drag:
+    return part if part.at is None else part.model_copy(update={"at": _place(axes, part.on, part.at)})
 
 
 @turned.register

@@ -9,7 +9,9 @@ from typing import Any, Self
 from ..errors import SceneError, check_renamed
 from .attachment import Attachment
 from .cable import Cable
+from .drag import Drag
 from .event import Event
+from .fluid import Fluid
 from .joint import Joint
 from .kinds import KINDS
 from .load import DistributedForce, Force, Moment
@@ -46,6 +48,8 @@ class SceneData:
     slides: dict[str, Slide]
     loads: dict[str, Force | DistributedForce | Moment]
     point_forces: dict[str, PointForce]
+    fluids: dict[str, Fluid]
+    drags: dict[str, Drag]
     events: dict[str, Event]
     plane_axes: PlaneAxes | None = None
     """Of a scene that `laid.laid` made in the axes of a plane: what turns its results into the ground's axes."""

@@ -16,6 +16,7 @@ from ..errors import SceneError, SceneFileError, near
 from ..kernels.libraries import check_allowed, resolved
 from .end_stops import Stop
 from .event import Event
+from .flow_profile import Profile
 from .kinds import PARTS
 from .part import Part
 from .scene_data import SceneData
@@ -27,7 +28,7 @@ from .solids import Solid
 
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings, "relax": RelaxationSettings}
 
-TAGS = {Section: "shape", Signal: "form", Stop: "stop", Solid: "kind"}
+TAGS = {Section: "shape", Signal: "form", Stop: "stop", Solid: "kind", Profile: "form"}
 """The word in a table that says which of several parts it is."""
 
 TABLES = ("gravity", *PARTS, *SETTINGS)

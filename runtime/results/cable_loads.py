@@ -11,6 +11,7 @@ import numpy as np
 from ..kernels.libraries import kernels_of
 from ..kernels.mesh import Mesh
 from ..model.attachments import CARRIED, UP, AttachmentModel
+from ..model.drag_forces import densities
 from ..model.loads import GAUSS
 from ..model.model import CableModel, Kernel, Model
 from ..model.states import attachment_points, spatial
@@ -104,6 +105,7 @@ class CableLoads:
         names = [cable.name for cable in model.cables]
         self.number = {name: k for k, name in enumerate(names)}
         self._loads()
+        self._drags()
         self._slides()
         self._joints()
         self._point_forces()
@@ -166,6 +168,20 @@ class CableLoads:
             density = spatial(np.stack([f[:, is_r].sum(axis=1) for f in each], axis=1))
             f = sum(half * w * part for w, part in zip(GAUSS[1], each, strict=True))
             self.spreads.setdefault(number, []).append(Spread(element, start, stop, places, density, f))
+
+    def _drags(self) -> None:
+        """Add what fluids do to cables."""
+        for drag in self.model.drags:
+            if drag.cable < 0:
+                continue
+            cable = self.model.cables[drag.cable]
+            density = self.at.load * densities(self.model, drag, self.at.time, self.at.q, self.at.v)
+            for element in range(cable.n_elements):
+                k, length = 0 if cable.mesh.is_even else element, cable.mesh.length(element)
+                f = np.einsum("g,gk,tgd->tkd", drag.weights[k], drag.N[k], density[:, element, :, : self.dim])
+                places = length / 2 * (1 + np.array(GAUSS[0]))
+                self.spreads.setdefault(drag.cable, []).append(
+                    Spread(element, 0.0, length, places, density[:, element], f))
 
     def _slides(self) -> None:
         """Add riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""

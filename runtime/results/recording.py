@@ -68,7 +68,8 @@ def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
         bodies[body.name] = model.results(body.name, state | body_rates(model, body, state["orientation"], v, a))
         if body.modes:
             modal[body.name] = model.results(body.name, modal_state(model, body, state, q, v))
-    forces = connection_states(model, scene, q, rows["reaction"], rows["joint"], rows["point_force"])
+    forces = connection_states(model, scene, q, rows["reaction"], rows["joint"], rows["point_force"],
+                               rows["drag"])
     slides = {}
     for k, slide in enumerate(model.slides):
         own = {"s": rows["s"][:, k], **engine.slide_row(rows["slide"][:, k])}

@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 
 from ..errors import SceneError, UnknownResultError, near
+from ..model.drag_forces import drag_forces
 from ..model.model import Model
 from ..model.states import (
     body_state,
@@ -188,6 +189,7 @@ class RestState(NamedArrays):
             found |= {f"{slide.name}.{name}": value for name, value in
                       model.results(slide.name, {"force": self.static_state["force"][k]}).items()}
         forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
-                                   self.static_state["point_force"][None])
+                                   self.static_state["point_force"][None],
+                                   self.load_fraction * drag_forces(self.model, q)[None])
         return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()
                         for name, value in values.items() if name != "residual"}

@@ -94,6 +94,16 @@ void fu_coupling_external_forces(const fu_model *model, double t, const double *
     }
 }
 
+double fu_coupling_external_power(const fu_model *model, const fu_state *state)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->external_power) total += c->type->external_power(model, c, state);
+    }
+    return total;
+}
+
 double fu_coupling_energy(const fu_model *model, const fu_state *state)
 {
     double total = 0.0;

@@ -118,10 +118,8 @@ static void step_residual(const fu_model *model, const fu_coupling *coupling, co
     own_rows(coupling, at, force, own);
 }
 
-/* Makes, for an attachment to a body, whose point's derivatives P change with its coordinates: `turned`, P by the unknowns;
- * `by_place`, the derivatives of the point's velocity by them at fixed rates; K, those of P' own. */
-static void turning(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own,
-                    const double *psi, const fu_attachment_state *at, double *turned, double *by_place, double *K)
+void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own, const double *psi,
+                   const fu_attachment_state *at, double *turned, double *by_place, double *K)
 {
     const fu_body *body = &model->bodies[on->body];
     const double *turn = psi ? psi + body->dof : 0;
@@ -162,7 +160,7 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
         for (int i = 0; i < dim * n; ++i) by_place[i] = 0.0;
         if (between->attachments[e].body >= 0) {
             double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-            turning(model, &between->attachments[e], state, own, psi, &at, turned, by_place, K);
+            fu_turn_point(model, &between->attachments[e], state, own, psi, &at, turned, by_place, K);
             for (int i = 0; i < n; ++i)
                 for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, sign * stiffness * K[i * n + j]);
         }

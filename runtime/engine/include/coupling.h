@@ -73,12 +73,16 @@ struct fu_coupling_type {
     void (*step_residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
     void (*step_tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
     double (*step_dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+    /* What comes in from outside in that step by its own forces, J. */
+    double (*step_work)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
     /* Makes the constraint rows of accelerations (eq 38), H and W among them, in work->rows[coupling->row]. */
     void (*rows)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
     /* Adds the coupling's own force to f; adds a force from outside, whose work the energy balance counts as external. */
     void (*force)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f);
     void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
+    /* Returns the power that comes in from outside by the coupling's own force, W. */
+    double (*external_power)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     /* Adds forces that depend on the multipliers lambda (null: those of the state) to work->work; returns the largest change
      * since the last call over the force. Afterwards `reacted` takes what follows from the final multipliers. */
     double (*react)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,

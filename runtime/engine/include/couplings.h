@@ -18,6 +18,7 @@ void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, d
 void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu_system *system);
 void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f);
 void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f);
+double fu_coupling_external_power(const fu_model *model, const fu_state *state);
 double fu_coupling_energy(const fu_model *model, const fu_state *state);
 double fu_coupling_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work);
 double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to);

@@ -31,6 +31,10 @@ extern const fu_coupling_events fu_point_force_events;
 /* couplings/point_force.c */
 void fu_gap(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
             double rate[3]);
+/* Makes, for an attachment to a body, whose point's derivatives P change with its coordinates: `turned`, P by the unknowns, from P;
+ * adds to `by_place` the derivatives of the point's velocity by them at fixed rates; K, those of P' own, of a force `own`. */
+void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own, const double *psi,
+                   const fu_attachment_state *at, double *turned, double *by_place, double *K);
 
 /* couplings/force_pieces.c */
 int fu_force_piece(const fu_point_force *between, const fu_state *state);

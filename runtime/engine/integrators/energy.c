@@ -185,7 +185,8 @@ static void account(fu_run *run, double h)
     const fu_model *model = run->model;
     const fu_state *now = &run->now, *next = &run->next;
     const middle_view m = middle(run);
-    const fu_equations at = equations(run, 0, h);
+    const fu_state middle_state = middle_of(run, h);
+    const fu_equations at = equations(run, &middle_state, h);
     run->since = 0.5 * h;
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_rate_forces(model, m.q, m.v, m.force);
@@ -195,6 +196,7 @@ static void account(fu_run *run, double h)
     for (int k = 0; k < model->n_couplings; ++k) {
         const fu_coupling *c = model->couplings[k];
         if (c->type->step_dissipation) run->dissipated += c->type->step_dissipation(model, c, &at);
+        if (c->type->step_work) run->external += c->type->step_work(model, c, &at);
     }
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_coupling_external_forces(model, now->t + 0.5 * h, m.q, m.force);

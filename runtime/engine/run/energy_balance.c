@@ -30,7 +30,7 @@ double fu_dissipated_power(const fu_run *run, const fu_state *state)
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
     const fu_model *model = run->model;
-    double power = model->n_driven ? driving_power(run) : 0.0;
+    double power = (model->n_driven ? driving_power(run) : 0.0) + fu_coupling_external_power(model, state);
     if (model->n_external) {
         for (int i = 0; i < model->n_dof; ++i) run->work[i] = 0.0;
         fu_coupling_external_forces(model, state->t, state->q, run->work);

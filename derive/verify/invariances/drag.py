@@ -1,0 +1,32 @@
+"""What drag is in cases known without derivation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...codegen.family import CouplingFamily
+from ..numbers import EPS, Numbers, State
+from .measures import Invariance, relative, spins
+
+
+def drag(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
+    """Yield that drag turns with the scene, has the flow's sense, and vanishes with its derivatives at rest."""
+    out = k("along_cable", s)
+    f, w = out["f"], s["w"]
+    for spin in spins(family.dim):
+        turned = out["f_t"] @ (spin @ s["t"]) + out["f_w"] @ (spin @ w)
+        yield "drag turns with the scene", relative(turned - spin @ f, f), 64 * EPS
+    yield "drag is of degree 2 in the velocity", relative(out["f_w"] @ w - 2 * f, f), 64 * EPS
+    yield "drag is of degree 1 in the slope", relative(out["f_t"] @ s["t"] - f, f), 64 * EPS
+    yield "drag does not change its size with the sense of the flow", relative(
+        k("along_cable", {**s, "w": -w})["f"] + f, f), 64 * EPS
+    i = s["t"] / np.linalg.norm(s["t"])
+    across = k("along_cable", {**s, "c": np.array([0.8, 0.0, 1e-30])})["f"]
+    yield "drag across has no part along the cable", relative(i @ across, across), 64 * EPS
+    at_rest = k("along_cable", {**s, "w": 0 * w})
+    yield "drag and its derivatives vanish without flow", max(
+        float(np.max(np.abs(at_rest[name]))) for name in ("f", "f_t", "f_w")), 64 * EPS
+    on_point = k("on_point", {**s, "w": 0 * w})
+    yield "so do those on a point", max(float(np.max(np.abs(on_point[name]))) for name in ("f", "f_w")), 64 * EPS

@@ -1,0 +1,44 @@
+"""Forces of fluids at given instants, from results: along cables, and on whole parts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..kernels.libraries import kernels_of
+from .drags import DragModel
+from .model import Model
+from .states import attachment_points, spatial
+
+
+def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return (T, elements, points, 3): drag and buoyancy on a cable at its points of quadrature, N/m undeformed.
+
+    time (T,) in s, q (T, n_q), v (T, n_dof).
+    """
+    cable, dim = model.cables[drag.cable], model.dim
+    e, rates = (np.concatenate([each[:, :-1], each[:, 1:]], axis=2) for each in (
+        values[:, cable.coordinates].reshape(len(values), *cable.shape) for values in (q, v)))
+    is_r = np.array([name == "r" for name in cable.vectors] * 2)
+    local = e - np.where(is_r[:, None], e[:, :, :1], 0.0)
+    r, slope, velocity = (np.einsum("egk,tekd->tegd", np.broadcast_to(shape, (cable.n_elements, *shape.shape[1:])), of)
+                          for shape, of in ((drag.N, e), (drag.N_x, local), (drag.N, rates)))
+    flow = drag.fluid.velocity_at(time[:, None, None], drag.base + r @ drag.up)[..., :dim]
+    kernel = getattr(kernels_of(None), f"{drag.kernel}_along_cable")
+    n = r[..., 0].size
+    f = kernel.rows(n, slope.reshape(n, dim), (flow - velocity).reshape(n, dim), np.array(drag.coefficients))[0]
+    return spatial(f.reshape(r.shape) + drag.buoyancy)
+
+
+def drag_forces(model: Model, q: np.ndarray) -> np.ndarray:
+    """Return (drags, 3): the forces of fluids on the parts at rest at t = 0, in N; q (1, n_q)."""
+    found = np.zeros((len(model.drags), 3))
+    time, at_rest = np.zeros(1), np.zeros((1, model.n_dof))
+    for k, drag in enumerate(model.drags):
+        if drag.cable >= 0:
+            found[k] = np.sum(drag.weights[..., None] * densities(model, drag, time, q, at_rest)[0], axis=(0, 1))
+        else:
+            r = attachment_points(model, drag.attachments[0], q)[:, : model.dim]
+            flow = drag.fluid.velocity_at(time, drag.base + r @ drag.up)[0, : model.dim]
+            kernel = getattr(kernels_of(None), f"{drag.kernel}_on_point")
+            found[k] = spatial(kernel(flow, np.array(drag.coefficients))[0] + drag.buoyancy)
+    return found

@@ -1,0 +1,113 @@
+"""Fluids and the drag in them, as the engine takes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..parts.attachment import Attachment
+from ..parts.drag import Drag
+from ..parts.flow_profile import PowerProfile, TableProfile
+from ..parts.fluid import Fluid
+from ..parts.scene_data import SceneData
+from .attachments import AttachmentBuilder, AttachmentModel
+from .coupling import CouplingModel
+from .loads import GAUSS, LoadBuilder
+
+LEAST_SPEED = 1e-30
+"""m/s: what sizes of velocities are not below in the kernels, lest derivatives at rest be 0/0."""
+
+KERNELS = {2: "planar_drag", 3: "drag"}
+
+
+@dataclass
+class DragModel(CouplingModel):
+    """The force of a fluid on a cable, or on a point of a body; cable -1: it is on a body, at the one attachment.
+
+    velocity (dim), in m/s, times the signal of that number (-1: one) and the profile, as engine/include/drags.h has it,
+    at the height base + up . r. coefficients: as the kernel takes them. buoyancy (dim): N/m of a cable, N of a body.
+    weights (1 or elements, n_points), in m, N and N_x (1 or elements, n_points, vectors): of the quadrature on the
+    elements of the cable, once where they are equal; stride: points from one element's to the next's. fluid: the
+    scene's, of which the engine takes nothing.
+    """
+
+    kernel: str
+    velocity: np.ndarray
+    up: np.ndarray
+    base: float
+    signal: int
+    profile: str
+    reference: float
+    exponent: float
+    least: float
+    n_pieces: int
+    breaks: np.ndarray
+    coefficients_of_profile: np.ndarray
+    cable: int
+    coefficients: tuple[float, ...]
+    buoyancy: np.ndarray
+    n_points: int
+    stride: int
+    weights: np.ndarray
+    N: np.ndarray
+    N_x: np.ndarray
+    attachments: list[AttachmentModel]
+    fluid: Fluid
+
+
+def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> DragModel:
+    """Return the model of a drag of the scene."""
+    assert part.fluid is not None, f"{part.where} is not complete"
+    fluid, dim = scene.fluids[part.fluid], scene.dim
+    signal, factor = loads.scale(fluid.scale)
+    gravity = np.array(scene.gravity)[:dim]
+    up, base = _height(scene)
+    displaced, none = part.displaced(scene.cables.get(part.on)), np.zeros(0)
+    model = DragModel(
+        kernel=KERNELS[dim], velocity=factor * np.array(fluid.velocity)[:dim], up=up[:dim], base=base, signal=signal,
+        **_profile(fluid), cable=-1, coefficients=(), buoyancy=-fluid.density * displaced * gravity, n_points=0,
+        stride=0, weights=none, N=none, N_x=none, attachments=[], fluid=fluid, type="drag",
+        name=part.name or "", is_damped=True)
+    pressure = fluid.density / 2
+    if part.on in attachments.cable_index:
+        model.cable = attachments.cable_index[part.on]
+        cable = attachments.cables[model.cable]
+        width = part.width(scene.cables[part.on])
+        model.coefficients = (pressure * width * part.normal, pressure * np.pi * width * part.tangential, LEAST_SPEED)
+        lengths = cable.mesh.lengths
+        shapes = [[cable.kernel("on_axis")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
+        model.N, model.N_x = (np.array([[shape[k] for shape in each] for each in shapes]) for k in range(2))
+        model.n_points, model.weights = len(GAUSS[0]), np.outer(lengths, GAUSS[1]) / 2
+        model.stride = 0 if cable.mesh.is_even else model.n_points
+    else:
+        model.coefficients = (pressure * part.area * part.coefficient, LEAST_SPEED)
+        model.attachments = [attachments.model(Attachment(on=part.on, at=part.at))]
+    return model
+
+
+def up_of(scene: SceneData) -> np.ndarray:
+    """Return (3,): the direction in which heights are counted, against gravity, along y without gravity."""
+    size = float(np.linalg.norm(scene.gravity))
+    return -np.array(scene.gravity) / size if size else np.array([0.0, 1.0, 0.0])
+
+
+def _height(scene: SceneData) -> tuple[np.ndarray, float]:
+    """Return up (3,) along the axes of the model, and the height of their origin, m; those of a plane are not the
+    ground's.
+    """
+    axes, up = scene.plane_axes, up_of(scene.as_drawn)
+    return (up, 0.0) if axes is None else (axes.plane.into(up), float(up @ axes.plane.origin))
+
+
+def _profile(fluid: Fluid) -> dict[str, Any]:
+    """Return what a model has of the profile of a fluid."""
+    breaks, coefficients = np.zeros(0), np.zeros((0, 7))
+    power = fluid.profile if isinstance(fluid.profile, PowerProfile) else PowerProfile(exponent=0, reference_height=1)
+    kind = "uniform" if fluid.profile is None else fluid.profile.form
+    if isinstance(fluid.profile, TableProfile):
+        breaks, coefficients = fluid.profile.pieces()
+    return {"profile": kind, "reference": power.reference_height, "exponent": power.exponent,
+            "least": power.least_height, "n_pieces": len(coefficients), "breaks": breaks,
+            "coefficients_of_profile": coefficients}

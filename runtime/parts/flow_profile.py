@@ -1,0 +1,83 @@
+"""How the velocity of a fluid changes with height: a power of it, or a table."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import model_validator
+
+from .part import Part, part_of_table
+from .schemas import checked, tagged
+from .signal import TableSignal
+from .validation import list_of, not_negative, one_of, positive
+
+
+class Profile(Part):
+    """Base of the factors of a velocity by height."""
+
+    form: ClassVar[str]
+
+    def factor(self, height: np.ndarray) -> np.ndarray:
+        """Return the factors at heights in m, of any shape."""
+        raise NotImplementedError
+
+
+class PowerProfile(Profile):
+    """The factor (height/reference_height)^exponent, heights in m; below ``least_height`` that of least_height.
+
+    >>> import funicular as fu
+    >>> fu.PowerProfile(exponent=0.5, reference_height=10.0, least_height=2.5).factor([1.0, 10.0, 40.0]).tolist()
+    [0.5, 1.0, 2.0]
+    """
+
+    form: ClassVar[str] = "power"
+    exponent: Annotated[float, not_negative()]
+    reference_height: Annotated[float, positive("m")]
+    least_height: Annotated[float, positive("m")] = 1.0
+
+    def factor(self, height: np.ndarray) -> np.ndarray:
+        """Return the factors at heights in m, of any shape."""
+        return (np.maximum(height, self.least_height) / self.reference_height) ** self.exponent
+
+
+class TableProfile(Profile):
+    """Factors at given heights in m: straight lines, or a cubic spline through them; beyond the ends they stay."""
+
+    form: ClassVar[str] = "table"
+    height: Annotated[tuple[float, ...], list_of("m", least=2)]
+    factors: Annotated[tuple[float, ...], list_of("", least=2)]
+    interpolation: Annotated[str, one_of(("linear", "cubic"))] = "linear"
+
+    @model_validator(mode="after")
+    def _is_a_function(self) -> TableProfile:
+        if len(self.height) != len(self.factors):
+            raise ValueError("height and factors must be of equal length, got "
+                             f"{len(self.height)} and {len(self.factors)}")
+        if not np.diff(self.height).min() > 0:
+            raise ValueError("height must increase from each entry to the next")
+        return self
+
+    def _table(self) -> TableSignal:
+        return TableSignal(time=self.height, value=self.factors, interpolation=self.interpolation)
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return its polynomials of the height between breaks, as `Signal.pieces` does of time."""
+        return self._table().pieces()
+
+    def factor(self, height: np.ndarray) -> np.ndarray:
+        """Return the factors at heights in m, of any shape."""
+        return self._table().value(height)
+
+
+PROFILES = {profile.form: profile for profile in (PowerProfile, TableProfile)}
+
+
+def _profile(value: Any) -> Profile | None:
+    """Return a profile from itself, None or a table such as {form="power", exponent=0.16}. Raises ValueError."""
+    if value is None or isinstance(value, Profile):
+        return value
+    return part_of_table(value, "a profile such as PowerProfile(exponent=0.16, reference_height=10)", "form", PROFILES)
+
+
+AnyProfile = Annotated[Profile | None, checked(_profile, tagged("profile"))]
