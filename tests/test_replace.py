@@ -129,6 +129,8 @@ def everything() -> fu.Scene:
     scene.moment("bar", s=0.5, value=(0, 0, 1), name="turn")
     scene.spring("B", (0, -3, 0), stiffness=10, damping=1, name="spring")
     scene.event("low", quantity="B.position.y", value=-2)
+    scene.fluid("air", density=1.2, velocity=(3, 0, 0))
+    scene.drag("rope", fluid="air", normal=1.2, name="gust")
     return scene
 
 
@@ -161,6 +163,10 @@ OTHERS = {
     "moment": {"on": "B", "s": 0.25, "value": (0, 0, 2), "scale": 2.0, "name": "x"},
     "spring": {"a": "A", "b": (0, -4, 0), "stiffness": 20.0, "damping": 2.0, "length": 1.0, "tension_only": True,
                "free_play": 0.1, "name": "x"},
+    "fluid": {"name": "breeze", "density": 1.3, "velocity": (0, 0, 2.0), "scale": 2.0,
+              "profile": fu.PowerProfile(exponent=0.2, reference_height=10)},
+    "drag": {"on": "hook", "fluid": "air", "normal": 1.0, "tangential": 0.01, "diameter": 0.03, "displaced_area": 0.0,
+             "name": "x"},
     "event": {"name": "x", "quantity": "B.position.x", "value": 1.0, "direction": "rising", "action": "stop"},
 }
 """Another value for fields, by the kind of the part."""
@@ -170,16 +176,18 @@ REFUSED = {
     ("moment", "on"): 'acts on body "B" and takes no arc-length s',
     ("cable", "name"): 'there is no cable "rope"',
     ("rigid_body", "name"): 'there is no cable or body "A"',
+    ("fluid", "name"): 'there is no fluid "air"',
 }
 """Why another value is refused, as another entry, or another part, does not go with it."""
 
 ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_body", "data"), ("modal_body", "position"),
               ("modal_body", "orientation"), ("joint", "second_axis"), ("joint", "up"), ("joint", "distance"),
-              ("joint", "velocity"), ("joint", "length"), ("slide", "body_s"), ("spring", "table")}
+              ("joint", "velocity"), ("joint", "length"), ("slide", "body_s"), ("spring", "table"),
+              ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume")}
 """Fields of parts that are described otherwise, or of other kinds of joints."""
 
 
-REASONS = "missing", "needs", "has neither", "must watch", "is for frame", "are for cable elements"
+REASONS = "missing", "needs", "has neither", "must watch", "is for frame", "are for cable elements", "there is no fluid"
 """Why a value cannot be left out."""
 
 

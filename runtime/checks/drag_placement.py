@@ -11,7 +11,7 @@ from .placement import placed_attachment
 
 def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     """Return the drag with its fluid and its place complete, sure to act on something. Raises SceneError."""
-    drag = drag.model_copy(update={"fluid": _fluid(scene, drag)})
+    drag = drag.completed({"fluid": _fluid(scene, drag)})
     if drag.on in scene.cables:
         _check_cable(scene, drag)
         return drag
@@ -19,7 +19,7 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     _refuse(drag, OF_CABLE, "body")
     if drag.area * drag.coefficient == 0 and drag.volume == 0:
         raise SceneError(drag.where, "has neither drag nor buoyancy", "give an area with a coefficient, or a volume")
-    return drag.model_copy(update={"at": placed.at})
+    return drag.completed({"at": placed.at})
 
 
 def _fluid(scene: SceneData, drag: Drag) -> str:
