@@ -135,16 +135,18 @@ static double apply(fu_run *run, double h)
     return size;
 }
 
-/* Returns what a_n+1 is of a_n where psi = h v. */
-static double of_velocities(const fu_run *run)
+/* Returns what the scheme does with what it does not resolve: a_n+1 is `rest` times a_n where psi = h v; its eigenvalues at
+ * infinite frequency are -alpha_f/(1 - alpha_f), minus the spectral radius. */
+static fu_own_motion own_motion(const fu_run *run)
 {
-    return 1.0 - 0.5 / scheme_of(run)->beta;
+    const parameters *g = scheme_of(run);
+    return (fu_own_motion){1.0 - 0.5 / g->beta, g->alpha_f / (1.0 - g->alpha_f)};
 }
 
 static void predict(fu_run *run, double h)
 {
     const workspace w = space(run);
-    fu_extrapolate(&w.past, run, of_velocities(run), h);
+    fu_extrapolate(&w.past, run, own_motion(run), h);
     fu_choose_pieces(run);
     fu_carried_residual_correct(&w.carried, run->model, h);
 }
@@ -157,13 +159,23 @@ static void residual(fu_run *run, double h)
     fu_carried_residual_add(&w.carried, run, at.weights.stiffness);
 }
 
+/* Makes minus the residual of the couplings' own equations, beside zero for the dofs. */
+static void own_residual(fu_run *run, double h)
+{
+    const fu_equations at = equations(run, h);
+    const workspace w = space(run);
+    fu_coupling_residuals(run->model, &at, run->force, fu_own(run));
+    fu_carried_residual_add(&w.carried, run, at.weights.stiffness);
+    memset(run->rhs, 0, sizeof(double) * (size_t)(run->model->n_band + run->model->n_border_dof));
+}
+
 static void note_rest(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_note(&w.carried, run, sigma(scheme_of(run), h));
 }
 
-static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0, note_rest};
+static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0, note_rest, own_residual};
 
 static int step(fu_run *run, double h)
 {
@@ -189,8 +201,8 @@ static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_accept(&w.carried, run->model, h);
-    if (fu_carries_rest(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
-    else fu_extrapolation_start(&w.past);
+    if (fu_carries_rest(run)) fu_extrapolation_accept(&w.past, run, own_motion(run), h);
+    else fu_extrapolation_start(&w.past, run->model);
     fu_account_trapezoid(run, h);
 }
 
@@ -198,7 +210,7 @@ static int start(fu_run *run)
 {
     const workspace w = space(run);
     if (run->statistics.steps == 0) fu_carried_residual_start(&w.carried, run->model);
-    fu_extrapolation_start(&w.past);
+    fu_extrapolation_start(&w.past, run->model);
     memcpy(run->now.a, run->now.acceleration, sizeof(double) * (size_t)run->model->n_dof);
     run->factored = 0;
     return FU_RUNNING;
