@@ -249,7 +249,8 @@ static void take_columns(const fu_system *s, const double *y, double *x)
     }
 }
 
-/* Makes zero what goes on beyond the unknowns: a step that has overflowed leaves no numbers there, and no later step would have any. */
+/* Makes zero what goes on beyond the unknowns: a step that has overflowed leaves no numbers there, and no later step would have
+ * any. */
 static void clear_beyond(const fu_system *s, double *y)
 {
     for (int i = s->m; i < s->m + FU_BAND_BEYOND(s->width); ++i) y[i] = 0.0;
