@@ -20,7 +20,7 @@
 #include <math.h>
 #include <string.h>
 
-#define MEMORY 0.8 /* of a mean of misses: what it keeps of the one before; vibrations make one way seem best by chance */
+#define MEMORY 0.5 /* of a mean of misses: what it keeps of the one before; vibrations make one way seem best by chance */
 
 enum { BY_VELOCITIES = 0, MOST_VALUES = FU_LONGER_PAST + 1, SUMS = 4 };
 
