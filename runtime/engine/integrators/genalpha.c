@@ -135,18 +135,16 @@ static double apply(fu_run *run, double h)
     return size;
 }
 
-/* Returns what the scheme does with what it does not resolve: a_n+1 is `rest` times a_n where psi = h v; its eigenvalues at
- * infinite frequency are -alpha_f/(1 - alpha_f), minus the spectral radius. */
-static fu_own_motion own_motion(const fu_run *run)
+/* Returns what a_n+1 is of a_n where psi = h v. */
+static double of_velocities(const fu_run *run)
 {
-    const parameters *g = scheme_of(run);
-    return (fu_own_motion){1.0 - 0.5 / g->beta, g->alpha_f / (1.0 - g->alpha_f)};
+    return 1.0 - 0.5 / scheme_of(run)->beta;
 }
 
 static void predict(fu_run *run, double h)
 {
     const workspace w = space(run);
-    fu_extrapolate(&w.past, run, own_motion(run), h);
+    fu_extrapolate(&w.past, run, of_velocities(run), h);
     fu_choose_pieces(run);
     fu_carried_residual_correct(&w.carried, run->model, h);
 }
@@ -201,8 +199,8 @@ static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_accept(&w.carried, run->model, h);
-    if (fu_carries_rest(run)) fu_extrapolation_accept(&w.past, run, own_motion(run), h);
-    else fu_extrapolation_start(&w.past, run->model);
+    if (fu_carries_rest(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
+    else fu_extrapolation_start(&w.past);
     fu_account_trapezoid(run, h);
 }
 
@@ -210,7 +208,7 @@ static int start(fu_run *run)
 {
     const workspace w = space(run);
     if (run->statistics.steps == 0) fu_carried_residual_start(&w.carried, run->model);
-    fu_extrapolation_start(&w.past, run->model);
+    fu_extrapolation_start(&w.past);
     memcpy(run->now.a, run->now.acceleration, sizeof(double) * (size_t)run->model->n_dof);
     run->factored = 0;
     return FU_RUNNING;
