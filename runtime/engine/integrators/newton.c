@@ -17,8 +17,6 @@
 #define COARSE 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
 #define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
 
-enum { MOST_CLOSINGS = 2 }; /* of the gaps that one iteration leaves */
-
 double fu_clock(void)
 {
     struct timespec now;
@@ -191,18 +189,12 @@ static void count_for_matrix(fu_run *run, int iterations, int most)
 static void close_gaps(fu_run *run, const fu_newton *method, double h)
 {
     const fu_model *model = run->model;
-    const double enough = CLOSED * fmax(run->newton_tolerance, run->round_off);
-    double last = INFINITY;
     if (!model->n_extra || !model->n_band) return;
-    for (int i = 0; i < MOST_CLOSINGS; ++i) {
-        method->own_residual(run, h);
-        const double gap = largest_gap(run);
-        if (!(gap > enough && gap < SLOWEST * last)) return;
-        fu_system_solve_border(&run->newton, model->lapack, run->rhs);
-        method->apply(run, h);
-        method->kinematics(run, h);
-        last = gap;
-    }
+    method->own_residual(run, h);
+    if (largest_gap(run) <= CLOSED * fmax(run->newton_tolerance, run->round_off)) return;
+    fu_system_solve_border(&run->newton, model->lapack, run->rhs);
+    method->apply(run, h);
+    method->kinematics(run, h);
 }
 
 /* Does the same where the steps to come make up for what is left: its residual is evaluated, and tells how much that is. */
