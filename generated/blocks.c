@@ -21,6 +21,7 @@
 #include "cable12_engineering_linear_assumed.c"
 #include "cable12_green_exact_curved.c"
 #include "cable12_engineering_exact_curved.c"
+#include "cable12_engineering_exact_tension_only.c"
 #include "cable18_green_exact.c"
 #include "cable18_engineering_exact.c"
 #include "cable18_green_exact_assumed.c"
@@ -36,6 +37,7 @@
 #include "cable8p_green_linear_assumed.c"
 #include "cable8p_engineering_exact_assumed.c"
 #include "cable8p_engineering_linear_assumed.c"
+#include "cable8p_engineering_exact_tension_only.c"
 
 #define FU_HELPER static inline __attribute__((always_inline)) FU_BLOCK_TARGET
 
@@ -53,11 +55,12 @@ FU_HELPER void scatter(double *to, const fu_real *from, int n)
 
 FU_BLOCK_TARGET static void block_beam24_continuum_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real A[61];
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 61, of->A_stride);
         beam24_continuum_elastic_force(l, e, A, f);
@@ -67,13 +70,14 @@ FU_BLOCK_TARGET static void block_beam24_continuum_elastic_force(int n, const fu
 
 FU_BLOCK_TARGET static void block_beam24_continuum_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real v[24];
     fu_real A[61];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 61, of->A_stride);
@@ -84,11 +88,12 @@ FU_BLOCK_TARGET static void block_beam24_continuum_damping_force(int n, const fu
 
 FU_BLOCK_TARGET static void block_beam24_continuum_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real A[495];
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 495, of->A_stride);
         beam24_continuum_curved_elastic_force(l, e, A, f);
@@ -98,11 +103,12 @@ FU_BLOCK_TARGET static void block_beam24_continuum_curved_elastic_force(int n, c
 
 FU_BLOCK_TARGET static void block_beam24_structural_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real A[31];
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
         beam24_structural_elastic_force(l, e, A, f);
@@ -112,13 +118,14 @@ FU_BLOCK_TARGET static void block_beam24_structural_elastic_force(int n, const f
 
 FU_BLOCK_TARGET static void block_beam24_structural_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real v[24];
     fu_real A[31];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
@@ -129,11 +136,12 @@ FU_BLOCK_TARGET static void block_beam24_structural_damping_force(int n, const f
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_green_exact_elastic_force(l, e, A, f);
@@ -143,11 +151,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_green_exact_elastic_tangent(l, e, A, K);
@@ -157,13 +166,14 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_tangent(int n, con
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -174,11 +184,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_damping_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable12_green_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_green_linear_elastic_force(l, e, A, f);
@@ -188,11 +199,12 @@ FU_BLOCK_TARGET static void block_cable12_green_linear_elastic_force(int n, cons
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_engineering_exact_elastic_force(l, e, A, f);
@@ -202,11 +214,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_force(int n,
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_engineering_exact_elastic_tangent(l, e, A, K);
@@ -216,13 +229,14 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_tangent(int 
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -233,11 +247,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_damping_force(int n,
 
 FU_BLOCK_TARGET static void block_cable12_engineering_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_engineering_linear_elastic_force(l, e, A, f);
@@ -247,11 +262,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_linear_elastic_force(int n
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_green_exact_assumed_elastic_force(l, e, A, f);
@@ -261,11 +277,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_force(int 
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_green_exact_assumed_elastic_tangent(l, e, A, K);
@@ -275,11 +292,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_tangent(in
 
 FU_BLOCK_TARGET static void block_cable12_green_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_green_linear_assumed_elastic_force(l, e, A, f);
@@ -289,11 +307,12 @@ FU_BLOCK_TARGET static void block_cable12_green_linear_assumed_elastic_force(int
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_exact_assumed_elastic_force(l, e, A, f);
@@ -303,11 +322,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_forc
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_exact_assumed_elastic_tangent(l, e, A, K);
@@ -317,11 +337,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_tang
 
 FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_linear_assumed_elastic_force(l, e, A, f);
@@ -331,11 +352,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_for
 
 FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_linear_assumed_elastic_tangent(l, e, A, K);
@@ -345,11 +367,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_tan
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_green_exact_curved_elastic_force(l, e, A, f);
@@ -359,11 +382,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_force(int n
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_green_exact_curved_elastic_tangent(l, e, A, K);
@@ -373,11 +397,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_tangent(int
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_engineering_exact_curved_elastic_force(l, e, A, f);
@@ -387,11 +412,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_force
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_engineering_exact_curved_elastic_tangent(l, e, A, K);
@@ -399,13 +425,44 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_tange
     }
 }
 
+FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic_force(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[12];
+    fu_real A[4];
+    fu_real f[12];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable12_engineering_exact_tension_only_elastic_force(l, e, A, f);
+        scatter(out + k * 12, f, 12);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic_tangent(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[12];
+    fu_real A[4];
+    fu_real K[144];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable12_engineering_exact_tension_only_elastic_tangent(l, e, A, K);
+        scatter(out + k * 144, K, 144);
+    }
+}
+
 FU_BLOCK_TARGET static void block_cable18_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[2];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable18_green_exact_elastic_force(l, e, A, f);
@@ -415,13 +472,14 @@ FU_BLOCK_TARGET static void block_cable18_green_exact_elastic_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable18_green_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real v[18];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -432,11 +490,12 @@ FU_BLOCK_TARGET static void block_cable18_green_exact_damping_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable18_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[2];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable18_engineering_exact_elastic_force(l, e, A, f);
@@ -446,13 +505,14 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_elastic_force(int n,
 
 FU_BLOCK_TARGET static void block_cable18_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real v[18];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -463,11 +523,12 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_damping_force(int n,
 
 FU_BLOCK_TARGET static void block_cable18_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[3];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable18_green_exact_assumed_elastic_force(l, e, A, f);
@@ -477,11 +538,12 @@ FU_BLOCK_TARGET static void block_cable18_green_exact_assumed_elastic_force(int 
 
 FU_BLOCK_TARGET static void block_cable18_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[3];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable18_engineering_exact_assumed_elastic_force(l, e, A, f);
@@ -491,11 +553,12 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_assumed_elastic_forc
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[31];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
         beam12p_continuum_elastic_force(l, e, A, f);
@@ -505,11 +568,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_force(int n, const f
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[31];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
         beam12p_continuum_elastic_tangent(l, e, A, K);
@@ -519,13 +583,14 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_tangent(int n, const
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[31];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
@@ -536,11 +601,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_damping_force(int n, const f
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[166];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 166, of->A_stride);
         beam12p_continuum_curved_elastic_force(l, e, A, f);
@@ -550,11 +616,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_force(int n, 
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[166];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 166, of->A_stride);
         beam12p_continuum_curved_elastic_tangent(l, e, A, K);
@@ -564,11 +631,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_tangent(int n
 
 FU_BLOCK_TARGET static void block_beam12p_structural_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[15];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
         beam12p_structural_elastic_force(l, e, A, f);
@@ -578,11 +646,12 @@ FU_BLOCK_TARGET static void block_beam12p_structural_elastic_force(int n, const 
 
 FU_BLOCK_TARGET static void block_beam12p_structural_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[15];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
         beam12p_structural_elastic_tangent(l, e, A, K);
@@ -592,13 +661,14 @@ FU_BLOCK_TARGET static void block_beam12p_structural_elastic_tangent(int n, cons
 
 FU_BLOCK_TARGET static void block_beam12p_structural_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[15];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
@@ -609,11 +679,12 @@ FU_BLOCK_TARGET static void block_beam12p_structural_damping_force(int n, const 
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_green_exact_elastic_force(l, e, A, f);
@@ -623,11 +694,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_green_exact_elastic_tangent(l, e, A, K);
@@ -637,13 +709,14 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_tangent(int n, con
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real v[8];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -654,11 +727,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_damping_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable8p_green_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_green_linear_elastic_force(l, e, A, f);
@@ -668,11 +742,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_linear_elastic_force(int n, cons
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_exact_elastic_force(l, e, A, f);
@@ -682,11 +757,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_force(int n,
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_exact_elastic_tangent(l, e, A, K);
@@ -696,13 +772,14 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_tangent(int 
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real v[8];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -713,11 +790,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_damping_force(int n,
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_linear_elastic_force(l, e, A, f);
@@ -727,11 +805,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_force(int n
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_linear_elastic_tangent(l, e, A, K);
@@ -741,11 +820,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_tangent(int
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_exact_assumed_elastic_force(l, e, A, f);
@@ -755,11 +835,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_force(int 
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_exact_assumed_elastic_tangent(l, e, A, K);
@@ -769,11 +850,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_tangent(in
 
 FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_linear_assumed_elastic_force(l, e, A, f);
@@ -783,11 +865,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_force(int
 
 FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_linear_assumed_elastic_tangent(l, e, A, K);
@@ -797,11 +880,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_tangent(i
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_exact_assumed_elastic_force(l, e, A, f);
@@ -811,11 +895,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_forc
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_exact_assumed_elastic_tangent(l, e, A, K);
@@ -825,11 +910,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_tang
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_linear_assumed_elastic_force(l, e, A, f);
@@ -839,14 +925,45 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_for
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_linear_assumed_elastic_tangent(l, e, A, K);
+        scatter(out + k * 64, K, 64);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic_force(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[8];
+    fu_real A[4];
+    fu_real f[8];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable8p_engineering_exact_tension_only_elastic_force(l, e, A, f);
+        scatter(out + k * 8, f, 8);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic_tangent(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[8];
+    fu_real A[4];
+    fu_real K[64];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable8p_engineering_exact_tension_only_elastic_tangent(l, e, A, K);
         scatter(out + k * 64, K, 64);
     }
 }
@@ -865,6 +982,7 @@ static const fu_law_blocks all[] = {
     {"cable12_engineering_linear_assumed", block_cable12_engineering_linear_assumed_elastic_force, block_cable12_engineering_linear_assumed_elastic_tangent, block_cable12_engineering_exact_damping_force},
     {"cable12_green_exact_curved", block_cable12_green_exact_curved_elastic_force, block_cable12_green_exact_curved_elastic_tangent, block_cable12_green_exact_damping_force},
     {"cable12_engineering_exact_curved", block_cable12_engineering_exact_curved_elastic_force, block_cable12_engineering_exact_curved_elastic_tangent, block_cable12_engineering_exact_damping_force},
+    {"cable12_engineering_exact_tension_only", block_cable12_engineering_exact_tension_only_elastic_force, block_cable12_engineering_exact_tension_only_elastic_tangent, block_cable12_engineering_exact_damping_force},
     {"cable18_green_exact", block_cable18_green_exact_elastic_force, 0, block_cable18_green_exact_damping_force},
     {"cable18_engineering_exact", block_cable18_engineering_exact_elastic_force, 0, block_cable18_engineering_exact_damping_force},
     {"cable18_green_exact_assumed", block_cable18_green_exact_assumed_elastic_force, 0, block_cable18_green_exact_damping_force},
@@ -879,7 +997,8 @@ static const fu_law_blocks all[] = {
     {"cable8p_green_exact_assumed", block_cable8p_green_exact_assumed_elastic_force, block_cable8p_green_exact_assumed_elastic_tangent, block_cable8p_green_exact_damping_force},
     {"cable8p_green_linear_assumed", block_cable8p_green_linear_assumed_elastic_force, block_cable8p_green_linear_assumed_elastic_tangent, block_cable8p_green_exact_damping_force},
     {"cable8p_engineering_exact_assumed", block_cable8p_engineering_exact_assumed_elastic_force, block_cable8p_engineering_exact_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force},
-    {"cable8p_engineering_linear_assumed", block_cable8p_engineering_linear_assumed_elastic_force, block_cable8p_engineering_linear_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force}
+    {"cable8p_engineering_linear_assumed", block_cable8p_engineering_linear_assumed_elastic_force, block_cable8p_engineering_linear_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force},
+    {"cable8p_engineering_exact_tension_only", block_cable8p_engineering_exact_tension_only_elastic_force, block_cable8p_engineering_exact_tension_only_elastic_tangent, block_cable8p_engineering_exact_damping_force}
 };
 
 const fu_law_blocks *fu_blocks_of(const char *law)

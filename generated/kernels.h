@@ -445,6 +445,25 @@ void cable12_engineering_exact_curved_discrete_force(fu_real l, const fu_real *e
  * moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
+/* cable12_engineering_exact_tension_only: elastic law engineering_exact_tension_only on cable12 */
+/* constants of the law from the stiffness of the section: l [m]; S 4[N, N m^2, 1, 1] -> A 4[N, N m^2, 1, 1] */
+void cable12_engineering_exact_tension_only_stiffness(fu_real l, const fu_real *S, fu_real *A);
+/* elastic energy: l [m]; e 4x3[m, 1]; A 4[N, N m^2, 1, 1] -> U 1[J] */
+void cable12_engineering_exact_tension_only_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+/* dU/de, minus the elastic force Q_k: l [m]; e 4x3[m, 1]; A 4[N, N m^2, 1, 1] -> f 4x3[N, N m] */
+void cable12_engineering_exact_tension_only_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+/* d2U/de2: l [m]; e 4x3[m, 1]; A 4[N, N m^2, 1, 1] -> K 12x12[N/m, N, N m] */
+void cable12_engineering_exact_tension_only_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+/* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 4[N, N
+ * m^2, 1, 1] -> f 4x3[N, N m] */
+void cable12_engineering_exact_tension_only_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 4[N, N m^2, 1,
+ * 1] -> k 4x4[N/m, N, N m] */
+void cable12_engineering_exact_tension_only_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+/* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 4[N, N m^2, 1, 1] -> force 3[N]; moment 3[N
+ * m]; axes 3x3[1]; strain 6[1, 1/m] */
+void cable12_engineering_exact_tension_only_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
 /* cable18_green_exact: elastic law green_exact on cable18 */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable18_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -765,6 +784,25 @@ void cable8p_engineering_linear_assumed_discrete_force(fu_real l, const fu_real 
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* cable8p_engineering_exact_tension_only: elastic law engineering_exact_tension_only on cable8p */
+/* constants of the law from the stiffness of the section: l [m]; S 4[N, N m^2, 1, 1] -> A 4[N, N m^2, 1, 1] */
+void cable8p_engineering_exact_tension_only_stiffness(fu_real l, const fu_real *S, fu_real *A);
+/* elastic energy: l [m]; e 4x2[m, 1]; A 4[N, N m^2, 1, 1] -> U 1[J] */
+void cable8p_engineering_exact_tension_only_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+/* dU/de, minus the elastic force Q_k: l [m]; e 4x2[m, 1]; A 4[N, N m^2, 1, 1] -> f 4x2[N, N m] */
+void cable8p_engineering_exact_tension_only_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+/* d2U/de2: l [m]; e 4x2[m, 1]; A 4[N, N m^2, 1, 1] -> K 8x8[N/m, N, N m] */
+void cable8p_engineering_exact_tension_only_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+/* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 4[N, N
+ * m^2, 1, 1] -> f 4x2[N, N m] */
+void cable8p_engineering_exact_tension_only_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 4[N, N m^2, 1,
+ * 1] -> k 4x4[N/m, N, N m] */
+void cable8p_engineering_exact_tension_only_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+/* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 4[N, N m^2, 1, 1] -> force 3[N]; moment 3[N
+ * m]; axes 3x3[1]; strain 6[1, 1/m] */
+void cable8p_engineering_exact_tension_only_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* rigid: rigid body */
 /* position, Jacobian, velocity and acceleration bias of a point: b 7[m, 1]; u 3[m]; w 6[m/s, rad/s] -> p 3[m]; p_q
@@ -1355,6 +1393,34 @@ void planar_spring_tangent(const fu_real *parameters, const fu_real *gap, const 
 /* force over a step, which takes the work that is stored and dissipated: parameters 3[N/m, N s/m, m]; h [s]; gap
  * 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
 void planar_spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* spring_piece: one piece of a spring of piecewise linear tension, and damper, between two points in space */
+/* stored energy: parameters 5[N/m, N s/m, m, N, J]; gap 3[m] -> U 1[J] */
+void spring_piece_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
+/* power that the damper takes: parameters 5[N/m, N s/m, m, N, J]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
+void spring_piece_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force between the points: parameters 5[N/m, N s/m, m, N, J]; gap 3[m]; gap_rate 3[m/s] -> f 3[N] */
+void spring_piece_force(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force between the points, and its derivatives: parameters 5[N/m, N s/m, m, N, J]; gap 3[m]; gap_rate 3[m/s] -> f
+ * 3[N]; K 3x3[N/m]; D 3x3[N s/m] */
+void spring_piece_tangent(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: parameters 5[N/m, N s/m, m, N, J]; h [s];
+ * gap 3[m]; gap_next 3[m] -> f 3[N]; P 1[W] */
+void spring_piece_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* planar_spring_piece: one piece of a spring of piecewise linear tension, and damper, between two points in the plane */
+/* stored energy: parameters 5[N/m, N s/m, m, N, J]; gap 2[m] -> U 1[J] */
+void planar_spring_piece_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
+/* power that the damper takes: parameters 5[N/m, N s/m, m, N, J]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */
+void planar_spring_piece_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force between the points: parameters 5[N/m, N s/m, m, N, J]; gap 2[m]; gap_rate 2[m/s] -> f 2[N] */
+void planar_spring_piece_force(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force between the points, and its derivatives: parameters 5[N/m, N s/m, m, N, J]; gap 2[m]; gap_rate 2[m/s] -> f
+ * 2[N]; K 2x2[N/m]; D 2x2[N s/m] */
+void planar_spring_piece_tangent(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: parameters 5[N/m, N s/m, m, N, J]; h [s];
+ * gap 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
+void planar_spring_piece_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
 
 /* zero_length_spring: spring and damper of no length between two points in space */
 /* stored energy: parameters 2[N/m, N s/m]; gap 3[m] -> U 1[J] */

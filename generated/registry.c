@@ -72,6 +72,11 @@ static const fu_law_kernels laws[] = {
      cable12_engineering_exact_curved_discrete_force, cable12_green_exact_step_stiffness,
      cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
+    {"cable12_engineering_exact_tension_only", 9, 1, cable12_engineering_exact_tension_only_energy,
+     cable12_engineering_exact_tension_only_elastic_force, cable12_engineering_exact_tension_only_elastic_tangent,
+     cable12_engineering_exact_tension_only_discrete_force, cable12_engineering_exact_tension_only_step_stiffness,
+     cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
+     cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
     {"cable18_green_exact", 17, 1, cable18_green_exact_energy, cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent, cable18_green_exact_discrete_force, cable18_green_exact_step_stiffness,
      cable18_green_exact_damping_force, cable18_green_exact_damping_tangent, cable18_green_exact_dissipation,
@@ -137,6 +142,11 @@ static const fu_law_kernels laws[] = {
     {"cable8p_engineering_linear_assumed", 7, 0, cable8p_engineering_linear_assumed_energy,
      cable8p_engineering_linear_assumed_elastic_force, cable8p_engineering_linear_assumed_elastic_tangent,
      cable8p_engineering_linear_assumed_discrete_force, cable8p_green_exact_assumed_step_stiffness,
+     cable8p_engineering_exact_damping_force, cable8p_engineering_exact_damping_tangent,
+     cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
+    {"cable8p_engineering_exact_tension_only", 7, 0, cable8p_engineering_exact_tension_only_energy,
+     cable8p_engineering_exact_tension_only_elastic_force, cable8p_engineering_exact_tension_only_elastic_tangent,
+     cable8p_engineering_exact_tension_only_discrete_force, cable8p_engineering_exact_tension_only_step_stiffness,
      cable8p_engineering_exact_damping_force, cable8p_engineering_exact_damping_tangent,
      cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
 };
@@ -229,6 +239,10 @@ static const fu_point_law_kernels point_laws[] = {
     {"spring", 3, 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
     {"planar_spring", 2, 3, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
      planar_spring_discrete_force},
+    {"spring_piece", 3, 5, spring_piece_energy, spring_piece_dissipation, spring_piece_force, spring_piece_tangent,
+     spring_piece_discrete_force},
+    {"planar_spring_piece", 2, 5, planar_spring_piece_energy, planar_spring_piece_dissipation,
+     planar_spring_piece_force, planar_spring_piece_tangent, planar_spring_piece_discrete_force},
     {"zero_length_spring", 3, 2, zero_length_spring_energy, zero_length_spring_dissipation, zero_length_spring_force,
      zero_length_spring_tangent, zero_length_spring_discrete_force},
     {"planar_zero_length_spring", 2, 2, planar_zero_length_spring_energy, planar_zero_length_spring_dissipation,
@@ -373,6 +387,13 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable12_engineering_exact_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_engineering_exact_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
+    X(cable12_engineering_exact_tension_only_stiffness, *a[0], a[1], out[0]) \
+    X(cable12_engineering_exact_tension_only_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_tension_only_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_tension_only_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_tension_only_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_tension_only_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_tension_only_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable18_green_exact_stiffness, *a[0], a[1], out[0]) \
     X(cable18_green_exact_energy, *a[0], a[1], a[2], out[0]) \
     X(cable18_green_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
@@ -491,6 +512,13 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable8p_engineering_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_engineering_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable8p_engineering_exact_tension_only_stiffness, *a[0], a[1], out[0]) \
+    X(cable8p_engineering_exact_tension_only_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_tension_only_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_tension_only_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_tension_only_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_exact_tension_only_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_exact_tension_only_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \
     X(rigid_point_force, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(rigid_frame, a[0], a[1], out[0], out[1], out[2]) \
@@ -667,6 +695,16 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_spring_force, a[0], a[1], a[2], out[0]) \
     X(planar_spring_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(planar_spring_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(spring_piece_energy, a[0], a[1], out[0]) \
+    X(spring_piece_dissipation, a[0], a[1], a[2], out[0]) \
+    X(spring_piece_force, a[0], a[1], a[2], out[0]) \
+    X(spring_piece_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(spring_piece_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(planar_spring_piece_energy, a[0], a[1], out[0]) \
+    X(planar_spring_piece_dissipation, a[0], a[1], a[2], out[0]) \
+    X(planar_spring_piece_force, a[0], a[1], a[2], out[0]) \
+    X(planar_spring_piece_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(planar_spring_piece_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
     X(zero_length_spring_energy, a[0], a[1], out[0]) \
     X(zero_length_spring_dissipation, a[0], a[1], a[2], out[0]) \
     X(zero_length_spring_force, a[0], a[1], a[2], out[0]) \
@@ -689,12 +727,12 @@ const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
 const fu_tables fu_all = {
     5, elements,
-    28, laws,
+    30, laws,
     2, bodys,
     2, modals,
     10, slides,
     2, frames,
     20, joints,
     2, resistances,
-    4, point_laws
+    6, point_laws
 };

@@ -17,6 +17,7 @@ from .many_scenes import run_many
 from .parts.cable import Cable
 from .parts.end_stops import Buffer, HardStop
 from .parts.event import Event
+from .parts.force_pieces import ForceTable
 from .parts.friction import Friction
 from .parts.joint import Joint
 from .parts.load import DistributedForce, Force, Moment
@@ -49,6 +50,7 @@ __all__ = [
     "EquilibriumSettings",
     "Event",
     "Force",
+    "ForceTable",
     "Friction",
     "FunicularError",
     "FunicularWarning",

@@ -10,6 +10,7 @@ import numpy as np
 from .parts.cable import Cable
 from .parts.end_stops import Stop
 from .parts.event import Event
+from .parts.force_pieces import ForceTable
 from .parts.friction import Friction
 from .parts.joint import Joint
 from .parts.load import DistributedForce, Force, Moment
@@ -45,6 +46,7 @@ class SceneMethods(SceneData):
         points: Points | None = None,
         curve: Callable[..., Any] | None = None,
         elements: int | None = None,
+        nodes: Numbers | None = None,
         library: str | os.PathLike[str] | None = None,
         element: str = "beam24",
         law: str | None = None,
@@ -216,9 +218,12 @@ class SceneMethods(SceneData):
         a: Place,
         b: Place,
         *,
-        stiffness: float,
+        stiffness: float | None = None,
         damping: float = 0.0,
         length: float | None = None,
+        tension_only: bool = False,
+        free_play: float = 0.0,
+        table: ForceTable | dict[str, Numbers] | None = None,
         name: str | None = None,
     ) -> Spring:
         """Add a Spring, which see."""

@@ -47,6 +47,14 @@ CEILINGS = {
         "stiffness_at": 521, "energy": 572, "elastic_force": 656, "elastic_tangent": 2590, "section_forces": 616,
         "discrete_force": 823, "step_stiffness": 675
     },
+    "cable12_engineering_exact_tension_only": {
+        "stiffness": 0, "energy": 319, "elastic_force": 629, "elastic_tangent": 2164, "discrete_force": 1140,
+        "step_stiffness": 161, "section_forces": 290
+    },
+    "cable8p_engineering_exact_tension_only": {
+        "stiffness": 0, "energy": 262, "elastic_force": 509, "elastic_tangent": 1473, "discrete_force": 933,
+        "step_stiffness": 127, "section_forces": 214
+    },
     "cable12_green_exact": {
         "stiffness": 0, "energy": 251, "elastic_force": 476, "elastic_tangent": 1681, "damping_force": 423,
         "damping_tangent": 1761, "dissipation": 301, "section_forces": 258,

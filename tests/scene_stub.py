@@ -9,6 +9,7 @@ import inspect
 from pathlib import Path
 
 from funicular.parts.end_stops import Stop
+from funicular.parts.force_pieces import ForceTable
 from funicular.parts.friction import Friction
 from funicular.parts.kinds import KINDS
 from funicular.parts.material import Material
@@ -44,20 +45,23 @@ def signature(kind: type[Part]) -> Signature: ...
 class SceneMethods(SceneData):
 '''
 
-OTHERS = (Stop, Friction, Material, SceneData, Section, Signal, Solid, Part)
+OTHERS = (Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Solid, Part)
 """What signatures need beside the kinds of parts."""
 
 TYPES = {
-    "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points",
+    "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points", "nodes": "Numbers",
     "AnySection": "Section", "AnySolid": "Solid", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
-    "CableEnd": "str | Stop", "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
+    "CableEnd": "str | Stop",
+    "ForceTable": "ForceTable | dict[str, Numbers]",
+    "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Material": "Material", "Friction": "Friction",
     "float": "float", "str": "str", "int": "int", "bool": "bool", "Callable": "Callable[..., Any]",
     "Any": "Callable[..., Any]",
 }
-"""What may be given for fields that are annotated so; ``inertia`` and ``points`` are fields of their own."""
+"""What may be given for fields that are annotated so; ``inertia``, ``points`` and ``nodes`` are fields of their own."""
 
-BY_NAME = {"inertia": "inertia", "points": "points", "library": "path", "data": "path", "body": "rider"}
+BY_NAME = {"inertia": "inertia", "points": "points", "nodes": "nodes", "library": "path", "data": "path",
+           "body": "rider"}
 PATHS = {"path": "str | os.PathLike[str]", "rider": "Named | tuple[Named, float] | Numbers"}
 
 

@@ -48,7 +48,7 @@ CHAPTERS = {"element": "elements/elements", "slide": "couplings/slide", "body": 
 
 def chapter_of(family: Family) -> str:
     """Return the chapter about a family."""
-    if family.role == "point_law" and family.name.endswith("spring"):
+    if family.role == "point_law" and "spring" in family.name:
         return "couplings/spring"
     if family.role != "law":
         return CHAPTERS[family.role]

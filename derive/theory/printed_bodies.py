@@ -168,21 +168,23 @@ def joint_motion(scope: Scope) -> list[Line]:
 
 
 def spring_extension(scope: Scope) -> list[Line]:
-    """Return extension, energy, dissipated power, force and its derivatives of a spring."""
+    """Return extension, energy, dissipated power, force and its derivatives of a spring, or of a piece of one."""
     gap, rate = r"\mathbf{gap}", r"\dot{\mathbf{gap}}"
     assert isinstance(scope.family, PointLawFamily), f"{scope.family.name} is no law of a force between two points"
-    if "length" in scope.family.point_law.parameters:
-        e, de = r"\varepsilon", r"\dot{\varepsilon}"
-        lines = [Line(rf"{e} = \lvert {gap} \rvert - L"),
+    parameters = scope.family.point_law.parameters
+    if "length" in parameters or "reference" in parameters:
+        e, de, length = r"\varepsilon", r"\dot{\varepsilon}", "L" if "length" in parameters else "L_{0}"
+        lines = [Line(rf"{e} = \lvert {gap} \rvert - {length}"),
                  Line(rf"{de} = \frac{{{gap} \cdot {rate}}}{{\lvert {gap} \rvert}}")]
         squares = rf"{e}^{{2}}", rf"{de}^{{2}}"
-        force = (rf"\left( k {e} + c {de} \right) \left( \frac{{\partial {e}}}{{\partial {gap}}} "
-                 r"\right)^{\mathsf{T}}")
+        tension = rf"k {e} + c {de}" if "tension" not in parameters else rf"T_{{0}} + k {e} + c {de}"
+        force = rf"\left( {tension} \right) \left( \frac{{\partial {e}}}{{\partial {gap}}} \right)^{{\mathsf{{T}}}}"
     else:
         lines = []
         squares = rf"\left( {gap} \cdot {gap} \right)", rf"\left( {rate} \cdot {rate} \right)"
         force = rf"k {gap} + c {rate}"
-    return [*lines, Line(rf"U = \frac{{1}}{{2}} k {squares[0]}", output="energy.U"),
+    before = rf"U_{{0}} + T_{{0}} {e} + " if "tension" in parameters else ""
+    return [*lines, Line(rf"U = {before}\frac{{1}}{{2}} k {squares[0]}", output="energy.U"),
             Line(f"P = c {squares[1]}", output="dissipation.P"), Line(rf"\mathbf{{F}} = {force}", output="force.f"),
             Line(rf"\mathbf{{K}} = \frac{{\partial \mathbf{{F}}}}{{\partial {gap}}}", output="tangent.K"),
             Line(rf"\mathbf{{D}} = \frac{{\partial \mathbf{{F}}}}{{\partial {rate}}}", output="tangent.D")]

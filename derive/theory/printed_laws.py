@@ -209,6 +209,13 @@ def cable_energy(scope: Scope) -> list[Line]:
         return [Line(rf"U = \frac{{l}}{{2}} \sum_{{g=1}}^{{{axial}}} w_{{g}} W_{{g}}", output="energy.U")]
     g, w = ("g", "w") if axial == bending else ("h", "v")
     bend = rf"\frac{{l}}{{4}} \mathrm{{EI}} \sum_{{{g}=1}}^{{{bending}}} {w}_{{{g}}} \kappa_{{{g}}}^{{2}}"
+    if traits.membrane == "tension_only":
+        one = r"\varepsilon_{g}"
+        smooth = rf"\sqrt{{{one}^{{2}} + \varepsilon_{{t}}^{{2}}}} + \varepsilon_{{t}}"
+        twice = (rf"{one}^{{2}} \left( \rho + \frac{{1 - \rho}}{{2}} \left( 1 + \frac{{{one}}}{{{smooth}}} "
+                 r"\right) \right)")
+        stretch = rf"\frac{{l}}{{4}} \mathrm{{EA}} \sum_{{g=1}}^{{{axial}}} w_{{g}} {twice}"
+        return [Line(rf"U = {stretch} + {bend}", output="energy.U")]
     if traits.membrane != "assumed":
         stretch = rf"\frac{{l}}{{4}} \mathrm{{EA}} \sum_{{g=1}}^{{{axial}}} w_{{g}} \varepsilon_{{g}}^{{2}}"
         return [Line(rf"U = {stretch} + {bend}", output="energy.U")]

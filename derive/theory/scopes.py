@@ -207,6 +207,8 @@ def law_scope(name: str) -> Scope:
         own = [Symbol(r"\mathrm{EA}", "S", entry(0)), Symbol(r"\mathrm{EI}", "S", entry(1))]
         if traits.membrane == "assumed":
             own.append(Symbol(r"\mathrm{EA}_{u}", "S", entry(2)))
+        if traits.membrane == "tension_only":
+            own += [Symbol(r"\rho", "S", entry(2)), Symbol(r"\varepsilon_{t}", "S", entry(3))]
     elif traits.kind == "structural":
         return Scope(family, (*common, Symbol("x", "x", number)), constants=_of_law)
     else:
@@ -317,7 +319,8 @@ def _no_turn(scope: Scope, state: State) -> dict[str, Any]:
     return {rf"\boldsymbol{{\theta}}_{{{sub}}}": turn for sub in ("1", "2", "1,0", "2,0")}
 
 
-PARAMETERS = {"stiffness": "k", "damping": "c", "length": "L"}
+PARAMETERS = {"stiffness": "k", "damping": "c", "length": "L", "reference": "L_{0}", "tension": "T_{0}",
+              "energy": "U_{0}"}
 """What parameters of forces between two points are called in formulas; others by their number."""
 
 

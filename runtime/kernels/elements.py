@@ -18,7 +18,7 @@ class LawTraits:
     stiffness_of       the law of this package whose section stiffness it takes: itself, but for a law of the user's
     kind               "cable" (of the axis alone), "continuum" or "structural" (of the whole section)
     strain, curvature  the measures of a cable: "green" or "engineering", "exact" or "linear"; else empty
-    membrane           how a cable represents its axial strain: "full" or "assumed"; else empty
+    membrane           how a cable represents its axial strain: "full", "assumed" or "tension_only"; else empty
     straight           where the law is for a curved stress-free shape: the law for a straight one; else empty
     takes_shape        whether its kernels take the stress-free shape
     damped_like        the law whose damping it has; empty where it has its own

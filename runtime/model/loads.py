@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..checks.placement import placed_attachment
 from ..kernels.point_laws import point_law
 from ..parts.attachment import Attachment
+from ..parts.force_pieces import HAS_NO_FORCE, PULLS_AND_PUSHES
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.signal import Constant, Signal, value_at
+from ..parts.spring import Spring
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 
@@ -72,13 +75,20 @@ class LoadModel(CouplingModel):
 class PointForceModel(CouplingModel):
     """A force between two points, whose unknowns are its components.
 
-    law: the name of its kernels; parameters: of the law, in the order in which the kernels take them.
+    law: the name of its kernels; parameters: of the law, in the order in which the kernels take them, for one piece of
+    it after the other. bounds (n_pieces - 1), in m: distances of the points at which a piece ends and the next begins.
+    senses (n_pieces): what each piece may do. compliance: in m/N, that of the stiffest piece.
     """
 
     law: str
     attachments: list[AttachmentModel]
     dim: int
     parameters: tuple[float, ...]
+    n_pieces: int = 1
+    n_parameters: int = 0
+    bounds: tuple[float, ...] = ()
+    senses: tuple[int, ...] = (PULLS_AND_PUSHES,)
+    compliance: float = 0.0
 
 
 class LoadBuilder:
@@ -126,8 +136,9 @@ class LoadBuilder:
         model = self.cables[self.cable_index[load.cable]]
         points = []
         for element in range(model.n_elements):
-            start = max(load.start - element * model.length, 0.0)
-            stop = min(load.stop - element * model.length, model.length)
+            begin = model.mesh.start(element)
+            start = max(load.start - begin, 0.0)
+            stop = min(load.stop - begin, model.mesh.length(element))
             if stop > start:
                 points += [(element, (start + stop) / 2 + (stop - start) / 2 * x, (stop - start) / 2 * w)
                            for x, w in zip(*GAUSS, strict=True)]
@@ -144,7 +155,7 @@ class LoadBuilder:
         total = np.zeros(int(np.prod(model.shape)))
         for element, x, weight in points:
             at = element * model.shape[1] * dim
-            N = model.kernel("on_axis")(model.length, x)[0]
+            N = model.kernel("on_axis")(model.mesh.length(element), x)[0]
             total[at : at + len(N) * dim] += weight * np.outer(N, value[:dim]).ravel()
         used = np.flatnonzero(total)
         self.dead.append(DeadLoadModel(number, list(model.first + used), list(total[used]), type="dead load"))
@@ -161,7 +172,24 @@ class LoadBuilder:
         dim = self.scene.dim
         kernels = ("planar_" if dim == 2 else "") + part.law
         law = point_law(kernels)
-        parameters = {name: float(getattr(part, name)) for name in law.parameters}
-        return PointForceModel(kernels, ends, dim, tuple(parameters.values()), type="point_force",
-                               name=part.name or "", scale=[max(end.mass for end in ends)] * dim,
-                               is_damped=parameters.get(law.damping, 0.0) != 0, follows_law=True)
+        common: dict[str, Any] = {
+            "type": "point_force", "name": part.name or "", "scale": [max(end.mass for end in ends)] * dim,
+            "is_damped": bool(law.damping) and getattr(part, law.damping) != 0, "follows_law": True,
+            "n_parameters": len(law.parameters)}
+        if isinstance(part, Spring) and part.has_pieces:
+            return PointForceModel(kernels, ends, dim, **_pieces(part, list(law.parameters)), **common)
+        parameters = tuple(float(getattr(part, name)) for name in law.parameters)
+        return PointForceModel(kernels, ends, dim, parameters, **common)
+
+
+def _pieces(part: Spring, names: list[str]) -> dict[str, Any]:
+    """Return what a model has of the pieces of a spring: of those that a distance, which is not negative, reaches."""
+    assert part.length is not None, f"{part.where} is not complete"
+    pieces = [piece for piece in part.pieces() if part.length + piece.end > 0]
+    values = [{"stiffness": piece.stiffness, "damping": part.damping * (piece.sense != HAS_NO_FORCE),
+               "reference": part.length + piece.at, "tension": piece.tension, "energy": piece.energy}
+              for piece in pieces]
+    return {"parameters": tuple(float(of[name]) for of in values for name in names), "n_pieces": len(pieces),
+            "bounds": tuple(part.length + piece.end for piece in pieces[:-1]),
+            "senses": tuple(piece.sense for piece in pieces),
+            "compliance": 1 / max((abs(piece.stiffness) for piece in pieces), default=1.0)}

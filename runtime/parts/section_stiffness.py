@@ -20,7 +20,8 @@ def section_stiffness(law: str, section: Section, material: Material, dim: int =
     """Return S of an elastic law, see the module docstring.
 
     law: of this package, or one of `variants`; dim: 2 for a planar element, else 3.
-    Returns, in N times even powers of m: (2,) [EA, EI] for cables, (3,) with an assumed axial strain, see `_assumed`;
+    Returns, in N times even powers of m: (2,) [EA, EI] for cables, (3,) with an assumed axial strain, see `_assumed`,
+    (4,) where it gives way in compression, see `_tension_only`;
     for a continuum (9, 6) or, planar, (4, 6): the
     integrals over the section of D11, D22, D33, D12, D13, D23, G12, G13, G23 (planar: D11, D22, D12, G12) times
     1, y², z², y⁴, y²z², z⁴; for structural (9,) or, planar, (4,), see `_structural`.
@@ -56,6 +57,12 @@ def law_of_measures(strain: str, curvature: str, membrane: str) -> str:
     return "_".join([strain, curvature, *([membrane] if membrane != "full" else [])])
 
 
+def measures_of_law(law: str) -> dict[str, str]:
+    """Return the measures of a cable's law by keyword, those of `law_of_measures`; empty for another law."""
+    measures = dict(zip(("strain", "curvature", "membrane"), (*law.split("_"), "full"), strict=False))
+    return measures if len(measures) == 3 and law_of_measures(**measures) == law else {}
+
+
 STABILISATION = 0.01
 """Part of the axial stiffness that the upper modes of a reduced axial strain have."""
 
@@ -78,6 +85,15 @@ def _assumed(section: Section, material: Material, dim: int) -> np.ndarray:
     """Return EA, EI, and EA of the modes of the axial strain that the lengths of the slopes alone govern."""
     EA, EI = _cable(section, material, dim)
     return np.array([EA, EI, EA])
+
+
+RESIDUAL_STIFFNESS, TRANSITION_STRAIN = 1e-4, 1e-6
+"""Of a cable that gives way in compression: the part of EA that is left there; the strain over which EA is lost."""
+
+
+def _tension_only(section: Section, material: Material, dim: int) -> np.ndarray:
+    """Return EA, EI, the part of EA that is left in compression, and the strain over which the rest is lost."""
+    return np.array([*_cable(section, material, dim), RESIDUAL_STIFFNESS, TRANSITION_STRAIN])
 
 
 def _reduced(section: Section, material: Material, dim: int) -> np.ndarray:
@@ -139,5 +155,5 @@ def _elasticity(material: Material, dim: int) -> np.ndarray:
 
 _BY_KIND: dict[tuple[str, str], Callable[[Section, Material, int], np.ndarray]] = {
     ("continuum", ""): _continuum, ("structural", ""): _structural, ("cable", "full"): _cable,
-    ("cable", "assumed"): _assumed}
+    ("cable", "assumed"): _assumed, ("cable", "tension_only"): _tension_only}
 """By kind of the law and membrane, see `LawTraits`."""

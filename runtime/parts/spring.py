@@ -6,39 +6,71 @@ from typing import Annotated, ClassVar, Self
 
 from pydantic import model_validator
 
+from .force_pieces import ForceTable, Piece, pulling, tabulated, with_play
 from .point_force import PointForce
-from .validation import not_negative
+from .validation import Flag, not_negative
 
 
 class Spring(PointForce):
-    """A linear spring with a damper between two points of cables, bodies or the ground.
+    """A spring with a damper between two points of cables, bodies or the ground.
 
     a, b: its ends: ("wire", s), ("A", (x, y, z) in body axes), "A" for its origin, or a point (x, y, z) of the
     ground, in m; stiffness in N/m; damping in N s/m; length: where it is free of force, in m, that at the start if
-    not given.
+    not given. tension_only: it has no force while it is shorter than its length, and its damper never pushes.
+    free_play: in m, the range of distances about its length in which neither spring nor damper acts. table: tension
+    by extension beyond the length, in place of a stiffness.
     """
 
     kind: ClassVar[str] = "spring"
-    stiffness: Annotated[float, not_negative("N/m")]
+    stiffness: Annotated[float, not_negative("N/m")] | None = None
     damping: Annotated[float, not_negative("N s/m")] = 0.0
     length: Annotated[float, not_negative("m")] | None = None
+    tension_only: Flag = False
+    free_play: Annotated[float, not_negative("m")] = 0.0
+    table: ForceTable | None = None
 
     @property
     def law(self) -> str:
         """Return the name of its law, that of a file in derive/couplings/point_laws."""
+        if self.has_pieces:
+            return "spring_piece"
         return "spring" if self.length else "zero_length_spring"
+
+    @property
+    def has_pieces(self) -> bool:
+        """Return whether its law differs by its extension. Distances are not negative, so that of no length pulls."""
+        return self.table is not None or self.free_play > 0 or (self.tension_only and self.length != 0.0)
+
+    def pieces(self) -> list[Piece]:
+        """Return the pieces of its law."""
+        if self.table is not None:
+            return tabulated(self.table, self.tension_only)
+        assert self.stiffness is not None, f"{self.where} has no stiffness"
+        if self.tension_only:
+            return pulling(self.free_play / 2, self.stiffness)
+        return with_play(self.free_play, self.stiffness)
 
     @property
     def loses_direction(self) -> bool:
         """Return whether its force has no direction where its points meet: not if it is free of force there."""
+        if self.has_pieces:
+            return False
         return self.length != 0.0
 
     def at_distance(self, distance: float) -> Self:
         """Return the spring with its length, the distance of its points at the start if not given."""
-        return self.model_copy(update={"length": distance}) if self.length is None else self
+        return self.completed({"length": distance}) if self.length is None else self
 
     @model_validator(mode="after")
     def _has_a_law(self) -> Self:
-        if self.stiffness == 0 and self.damping == 0:
-            raise ValueError("has neither stiffness nor damping", "give one of them, or both")
+        if self.table is not None and self.stiffness is not None:
+            raise ValueError("has both a stiffness and a table", "give one of them")
+        if self.table is not None and self.free_play:
+            raise ValueError("has both free play and a table", "write the free play into the table, as tension nil")
+        if self.table is None and not self.stiffness and (self.damping == 0 or self.tension_only or self.free_play):
+            needs = " with tension_only or free_play" * bool(self.tension_only or self.free_play)
+            raise ValueError("has neither stiffness nor damping" if not needs else f"needs a stiffness{needs}",
+                             "give one of them, or both" if not needs else "give a stiffness above nil")
+        if self.table is not None:
+            self.pieces()
         return self

@@ -60,10 +60,10 @@ class State:
 
     def __getitem__(self, name: str) -> np.ndarray | float:
         """Return position, orientation, velocity, angular_velocity of a body (3 or 4,); nodal_vectors, nodal_velocity
-        of a cable (nodes, vectors, 3); s of a slide. Raises KeyError.
+        of a cable (nodes, vectors, 3); s of a slide, along the ground's axes. Raises KeyError.
         """
         of, _, quantity = name.partition(".")
-        found = self._all(of)
+        found = self._model.results(of, self._all(of))
         if quantity not in found:
             raise KeyError(f'the state has no "{name}"; {near(quantity, found) if found else "known: "}'
                            + ("" if found else ", ".join(self.names())))
@@ -116,9 +116,15 @@ class EventWatcher:
         name, axis = _quantity(event).rsplit(".", 1)
         return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 
-    def acts(self, which: int, what: str, time: float, s: float) -> None:
-        """Note what a coupling of this number has done by itself: stuck, struck the end, and so on."""
-        self.happened.append({"name": self.model.couplings[which].name, "time": time, "what": what, "s": s})
+    def acts(self, which: int, what: str, time: float, s: float | None) -> None:
+        """Note what a coupling of this number has done by itself: stuck, struck the end, and so on.
+
+        Without a word it is no event for a user: a corner of a table. s: of a slide, m.
+        """
+        if not what:
+            return
+        happened = {"name": self.model.couplings[which].name, "time": time, "what": what}
+        self.happened.append(happened if s is None else happened | {"s": s})
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Note an event; return whether the run goes on."""

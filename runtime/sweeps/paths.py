@@ -93,7 +93,7 @@ def changed(scene: S, values: Mapping[Path, Any]) -> S:
     for path, value in values.items():
         if path.part is not None:
             entries = of_parts.setdefault(path.part, {})
-            _put(path, entries, parts[path.part].entries(), value)
+            _put(path, entries, parts[path.part].as_made().entries(), value)
         elif path.head == GRAVITY:
             gravity[COMPONENTS[path.entries[0]]] = value
             _check_end(path, 1)

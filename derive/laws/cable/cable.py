@@ -143,7 +143,12 @@ class Cable(Damping):
         """Return the energy per length whose derivative is the membrane's force at X, what is constant in it, and the
         strain.
         """
-        return S[0] * strain**2 / 2, [], strain
+        return self.twice_axial_energy(program, "", S, S[0], strain) / 2, [], strain
+
+    def twice_axial_energy(self, program: Program, tag: str, A: np.ndarray, stiffness: sp.Expr,
+                           strain: sp.Expr) -> sp.Expr:
+        """Return twice the energy of an axial strain, stiffness times its square; A: the constants of the law."""
+        return stiffness * strain**2
 
     # --- the energy through the invariants ------------------------------------------------------------------
 
@@ -181,12 +186,13 @@ class Cable(Damping):
                         for g in range(len(points))]
             for g, ((invariants, *at), (axial, bending)) in enumerate(zip(every, weighted, strict=True)):
                 strain, k2, _ = self.measures(program, f"_{g}", invariants, bending)
-                yield Term("abc", axial * strain**2 + k2, invariants, *at)
+                yield Term("abc", self.twice_axial_energy(program, f"_{g}", A, axial, strain) + k2, invariants, *at)
             return
         points = self.axial_points
         for g, (invariants, *at) in enumerate(self._at_points(program, "", "a", points, c)):
             strain = self._axial_strain(program, f"_{g}", *invariants)
-            yield Term("a", self._weighted(program, points, g, "EA", EA) * strain**2, invariants, *at)
+            axial = self._weighted(program, points, g, "EA", EA)
+            yield Term("a", self.twice_axial_energy(program, f"_{g}", A, axial, strain), invariants, *at)
         program.stage("curvature at the quadrature points")
         points = self.bending_points
         for g, (invariants, *at) in enumerate(self._at_points(program, "b", "c", points, c)):

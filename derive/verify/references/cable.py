@@ -27,7 +27,7 @@ def energy(element: Element, law: str, s: Any) -> Any:
     """Return 1/2 EA strain^2 + 1/2 EI curvature^2 along the axis; strain and curvature from the stress-free shape's."""
     traits, kernels = TRAITS[law], LAWS[law](Gram(element))
     strain, curvature = traits.strain, traits.curvature
-    EA, EI = s["S"][:2]
+    EI = s["S"][1]
     n_axial, n_bending = axial_points(element, law), len(kernels.bending_points)
     if traits.straight:
         return curved_cable.energy(element, strain, s, n_bending)
@@ -38,13 +38,25 @@ def energy(element: Element, law: str, s: Any) -> Any:
             total += l * stiffness * mode**2 / (2 * m + 1) / 2
     else:
         for weight, r_x, _, _, _ in _along(element, s, n_axial):
-            total += weight * EA * axial_strain(strain, r_x)**2 / 2
+            total += weight * membrane_energy(law, axial_strain(strain, r_x), s)
     # two points more, where the kernels' number is claimed to be exact
     for weight, r_x, r_xx, _, _ in _along(element, s, n_bending + 2 * (curvature == "linear")):
         normal, length = cross(r_x, r_xx), mp.sqrt(r_x.dot(r_x))
         kappa = normal / length ** (3 if strain == "green" else 2) if curvature == "exact" else r_xx
         total += weight * EI * kappa.dot(kappa) / 2
     return total
+
+
+def membrane_energy(law: str, strain: Any, s: Any) -> Any:
+    """Return the energy per length of an axial strain. A cable that gives way in compression has a part of EA left
+    there, and of the rest the force whose energy is (strain^2 + strain hypot(strain, t) - strain t)/4 times it.
+    """
+    EA = s["S"][0]
+    if TRAITS[law].membrane != "tension_only":
+        return EA * strain**2 / 2
+    left, transition = s["S"][2:]
+    rest = strain**2 + strain * mp.sqrt(strain**2 + transition**2) - strain * transition
+    return EA * (left * strain**2 / 2 + (1 - left) * rest / 4)
 
 
 def axial_points(element: Element, law: str) -> int:

@@ -45,7 +45,7 @@ def section(element: Element, law: str, s: Any) -> dict[str, np.ndarray]:
             if curved:
                 return curved_cable.density(strain, vectors, derivatives(at, "e0"), EA, EI, s["l"].item())
             eps, kappa = measures(*vectors)
-            return (N * eps if assumed else EA * eps**2 / 2) + EI * kappa**2 / 2
+            return (N * eps if assumed else cable.membrane_energy(law, eps, s)) + EI * kappa**2 / 2
 
         return np.array([(energy(STEP, i) - energy(-STEP, i)) / (2 * STEP) for i in range(3)])
 

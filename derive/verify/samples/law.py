@@ -58,8 +58,9 @@ def section_stiffness(traits: LawTraits, dim: int, moments: np.ndarray,
     if traits.kind == "structural":
         return {"S": random.uniform(1, 4, 9 if dim == 3 else 4)}
     if traits.kind == "cable":
-        upper = [0.6 * moments[0]] if traits.membrane == "assumed" else []
-        return {"S": 53.0 * np.array([*moments[:2], *upper])}
+        S = 53.0 * moments[:2]
+        more = {"assumed": [0.6 * S[0]], "tension_only": [0.2, 0.1]}.get(traits.membrane, [])
+        return {"S": np.array([*S, *more])}
     pairs = dim * (dim - 1) // 2
     D, on_axis_alone = (np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
                                         random.uniform(10, 20, pairs)]) for _ in range(2))

@@ -33,7 +33,7 @@ void fu_couplings_take_velocities(fu_run *run)
 {
     for (int k = 0; k < run->model->n_couplings; ++k) {
         const fu_coupling *c = run->model->couplings[k];
-        if (c->type->events) c->type->events->take_velocities(run, c);
+        if (c->type->events && c->type->events->take_velocities) c->type->events->take_velocities(run, c);
     }
 }
 

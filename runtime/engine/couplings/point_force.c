@@ -14,8 +14,8 @@ static int point(const fu_model *model, const fu_attachment *on, const double *q
 }
 
 /* Makes the gap between the points, and its rate. */
-static void gap_of(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
-                   double rate[3])
+void fu_gap(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
+            double rate[3])
 {
     fu_attachment_state at[2];
     for (int e = 0; e < 2; ++e) point(model, &between->attachments[e], q, v, &at[e]);
@@ -25,23 +25,36 @@ static void gap_of(const fu_model *model, const fu_point_force *between, const d
     }
 }
 
+/* Makes the force on the first point by the law of a piece. */
+static void force_of_piece(const fu_point_force *between, int piece, const double gap[3], const double rate[3],
+                           double force[3])
+{
+    if (between->senses[piece] == FU_HAS_NO_FORCE) memset(force, 0, sizeof(double[3]));
+    else between->law->force(fu_piece_parameters(between, piece), gap, rate, force);
+}
+
 /* Makes the force on the first point by the law. */
 static void force_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3])
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     double gap[3], rate[3];
-    gap_of(model, between, state->q, state->v, gap, rate);
-    between->law->force(between->parameters, gap, rate, force);
+    fu_gap(model, between, state->q, state->v, gap, rate);
+    force_of_piece(between, fu_force_piece(between, state), gap, rate, force);
 }
 
 /* Makes the force over a step; returns the power that it dissipates, W. */
 static double step_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double force[3])
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
+    const int piece = fu_force_piece(between, at->next);
     double gap[3], gap_next[3], unused[3], power;
-    gap_of(model, between, at->now->q, model->zero, gap, unused);
-    gap_of(model, between, at->next->q, model->zero, gap_next, unused);
-    between->law->discrete_force(between->parameters, at->h, gap, gap_next, force, &power);
+    if (between->senses[piece] == FU_HAS_NO_FORCE) {
+        memset(force, 0, sizeof(double[3]));
+        return 0.0;
+    }
+    fu_gap(model, between, at->now->q, model->zero, gap, unused);
+    fu_gap(model, between, at->next->q, model->zero, gap_next, unused);
+    between->law->discrete_force(fu_piece_parameters(between, piece), at->h, gap, gap_next, force, &power);
     return power;
 }
 
@@ -128,16 +141,17 @@ static void turning(const fu_model *model, const fu_attachment *on, const fu_sta
     fu_turn_columns(body->kernel, K, n, n, 0, turn);
 }
 
-/* Adds the derivatives of the equations at a state to a system; own: the forces; psi as in fu_equations. */
-static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *own,
+/* Adds the derivatives of the equations at a state to a system, by the law of a piece; own: the forces; psi as in fu_equations. */
+static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int piece, const double *own,
                    const double *psi, fu_weights weights, fu_system *system)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int dim = between->dim, row = fu_extra(model, coupling->unknown);
     const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), stiffness = weights.stiffness;
     double gap[3], rate[3], force[3], by_gap[9], by_rate[9];
-    gap_of(model, between, state->q, state->v, gap, rate);
-    between->law->tangent(between->parameters, gap, rate, force, by_gap, by_rate);
+    fu_gap(model, between, state->q, state->v, gap, rate);
+    if (between->senses[piece] == FU_HAS_NO_FORCE) memset(by_gap, 0, sizeof by_gap), memset(by_rate, 0, sizeof by_rate);
+    else between->law->tangent(fu_piece_parameters(between, piece), gap, rate, force, by_gap, by_rate);
     for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
@@ -166,14 +180,16 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    matrix(model, coupling, at->next, at->next->forces + coupling->force, at->psi, at->weights, system);
+    const int piece = fu_force_piece((const fu_point_force *)coupling, at->next);
+    matrix(model, coupling, at->next, piece, at->next->forces + coupling->force, at->psi, at->weights, system);
 }
 
 /* The middle moves by half of psi, which weights.stiffness has. */
 static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                                  fu_system *system)
 {
-    matrix(model, coupling, at->middle, at->next->forces + coupling->force, 0, at->weights, system);
+    const int piece = fu_force_piece((const fu_point_force *)coupling, at->next);
+    matrix(model, coupling, at->middle, piece, at->next->forces + coupling->force, 0, at->weights, system);
 }
 
 static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
@@ -201,12 +217,15 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
     outputs(model, coupling, state, 0, work, state->forces + coupling->force);
 }
 
+/* Returns the stored energy, J: that of the piece that the points' distance is on, whether the force follows its law or not. */
 static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
+    const int piece = fu_piece_at(model, between, state);
     double gap[3], rate[3], stored;
-    gap_of(model, between, state->q, model->zero, gap, rate);
-    between->law->energy(between->parameters, gap, &stored);
+    if (between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
+    fu_gap(model, between, state->q, model->zero, gap, rate);
+    between->law->energy(fu_piece_parameters(between, piece), gap, &stored);
     return stored;
 }
 
@@ -214,12 +233,27 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
                           const fu_accelerator *work)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
+    const int piece = fu_force_piece(between, state);
     double gap[3], rate[3], power;
     (void)work;
-    if (!coupling->is_damped) return 0.0;
-    gap_of(model, between, state->q, state->v, gap, rate);
-    between->law->dissipation(between->parameters, gap, rate, &power);
+    if (!coupling->is_damped || between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
+    fu_gap(model, between, state->q, state->v, gap, rate);
+    between->law->dissipation(fu_piece_parameters(between, piece), gap, rate, &power);
     return power;
+}
+
+/* Returns the stored energy that comes back to nobody, J: of a spring whose damper would push, so that it has no force. */
+static double energy_without_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int has_none = between->senses[fu_force_piece(between, state)] == FU_HAS_NO_FORCE;
+    return has_none ? energy(model, coupling, state) : 0.0;
+}
+
+static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+{
+    if (!coupling->is_damped || ((const fu_point_force *)coupling)->n_pieces == 1) return 0.0;
+    return energy_without_force(model, coupling, from) - energy_without_force(model, coupling, to);
 }
 
 static const char *const role[] = {"point_law", 0};
@@ -228,10 +262,17 @@ static const fu_field fields[] = {
     FU_FIELD(fu_point_force, parameters, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_point_force, attachments, FU_ATTACHMENT),
     FU_FIELD(fu_point_force, dim, FU_INTEGER, 0),
+    FU_FIELD(fu_point_force, n_pieces, FU_INTEGER, 0),
+    FU_FIELD(fu_point_force, n_parameters, FU_INTEGER, 0),
+    FU_FIELD(fu_point_force, bounds, FU_REALS, 0),
+    FU_FIELD(fu_point_force, senses, FU_INTEGERS, 0),
+    FU_FIELD(fu_point_force, compliance, FU_REAL, 0),
     {0},
 };
 
 const fu_coupling_type fu_point_force_type = {
-    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .n_outputs = 3, .residual = residual, .tangent = tangent, .step_residual = step_residual,
+    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .n_outputs = 3, .n_flags = 1,
+    .events = &fu_point_force_events, .touch = fu_touch_piece, .residual = residual, .tangent = tangent, .step_residual = step_residual,
     .step_tangent = step_tangent, .step_dissipation = step_dissipation, .force = own_force, .take_forces = take_forces,
-    .outputs = outputs, .energy = energy, .dissipation = dissipation};
+    .outputs = outputs, .energy = energy, .dissipation = dissipation,
+    .lost_in_step = lost_in_step};

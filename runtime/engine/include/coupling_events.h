@@ -7,11 +7,13 @@
 #include "coupling.h"
 #include "events.h"
 
-/* The path of a coupling's coordinate: n pieces of one length, m, with boundaries between them at which the equations are not
- * smooth. state->piece tells on which piece a coupling is. n is zero while the coupling is on none of them. */
+/* The path of a coupling's coordinate: n pieces, of one length, m, or between given boundaries, m, where the length is their
+ * mean and boundaries is not null. At the boundaries the equations are not smooth. state->piece tells on which piece a
+ * coupling is. n is zero while the coupling is on none of them. */
 typedef struct {
     int n;
     double length;
+    const double *boundaries;
 } fu_path;
 
 struct fu_coupling_events {
@@ -19,7 +21,7 @@ struct fu_coupling_events {
     fu_path (*path)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     /* Rate of the coordinate along the path, m/s. */
     double (*rate)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Whether every step must end where the coupling passes a boundary, whatever the integrator. */
+    /* Whether every step must end where the coupling passes a boundary, whatever the integrator. Null: it need not. */
     int (*stops_at_boundaries)(const fu_model *model, const fu_coupling *coupling);
     /* Changes the velocities of `now` as the passage to another piece asks for; returns a status. Null: it asks for nothing. */
     int (*enter)(fu_run *run, const fu_coupling *coupling, int piece);
@@ -40,7 +42,7 @@ struct fu_coupling_events {
     /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);
     int (*begin)(fu_run *run, const fu_coupling *coupling);
-    /* Gives the state what follows from velocities that have jumped. */
+    /* Gives the state what follows from velocities that have jumped. Null: nothing does. */
     void (*take_velocities)(fu_run *run, const fu_coupling *coupling);
 };
 
@@ -48,7 +50,7 @@ struct fu_coupling_events {
 static inline fu_path fu_path_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_coupling_events *events = coupling->type->events;
-    return events && events->path ? events->path(model, coupling, state) : (fu_path){0, 0.0};
+    return events && events->path ? events->path(model, coupling, state) : (fu_path){0, 0.0, 0};
 }
 
 #endif

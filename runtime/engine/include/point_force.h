@@ -5,15 +5,37 @@
 #include "attachments.h"
 #include "coupling.h"
 
-/* A force between the points of two attachments, by a law and its parameters. */
+/* What a piece of a law may do: pull and push, one of them alone, or neither: then it has no force. */
+enum { FU_PUSHES_ALONE = -1, FU_PULLS_AND_PUSHES = 0, FU_PULLS_ALONE = 1, FU_HAS_NO_FORCE = 2 };
+
+/* A force between the points of two attachments, by a law and its parameters.
+ *
+ * The parameters may differ by the distance of the points: n_pieces sets of them, one after the other, and the distances
+ * `bounds` at which one piece ends and the next begins (couplings/force_pieces.c). The flag of a state is the piece whose
+ * law the force follows. */
 typedef struct {
     fu_coupling base;
     const fu_point_law_kernels *law;
     const double *parameters;
     fu_attachment attachments[2];
     int dim;
+    int n_pieces, n_parameters;
+    const double *bounds; /* (n_pieces - 1), m */
+    const int *senses;    /* (n_pieces): what each piece may do */
+    double compliance;    /* m/N: makes lengths of forces, to compare them */
 } fu_point_force;
 
 extern const fu_coupling_type fu_point_force_type;
+extern const fu_coupling_events fu_point_force_events;
+
+/* couplings/point_force.c */
+void fu_gap(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
+            double rate[3]);
+
+/* couplings/force_pieces.c */
+int fu_force_piece(const fu_point_force *between, const fu_state *state);
+int fu_piece_at(const fu_model *model, const fu_point_force *between, const fu_state *state);
+const double *fu_piece_parameters(const fu_point_force *between, int piece);
+void fu_touch_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
 #endif

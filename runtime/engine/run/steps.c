@@ -25,7 +25,7 @@ static void accept(fu_run *run, double h, fu_event event)
     const fu_model *model = run->model;
     for (int i = 0; i < model->n_coordinates; ++i) run->s_slope[i] = (run->next.s[i] - run->now.s[i]) / h;
     run->integrator->account(run, h);
-    if (model->n_reacting) run->dissipated += fu_lost_in_step(model, &run->now, &run->next);
+    run->dissipated += fu_lost_in_step(model, &run->now, &run->next);
     run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
     run->now = run->next;

@@ -1,0 +1,60 @@
+"""Cable that resists stretching and gives way in compression: a rope, a chain, the wire of a dropper.
+
+The force is EA strain in tension, and hardly any in compression. With a transition strain strain_t and
+s = sqrt(strain^2 + strain_t^2), twice the energy per length over EA is
+
+    strain^2 (rho + (1 - rho)/2 (1 + strain/(s + strain_t))),
+
+which is nil at strain 0 and grows to both sides. Beyond a few transition strains the force is EA strain in tension, and
+in compression rho EA strain, each less (1 - rho)/4 EA strain_t: the most that an ideal cable, of rho = 0, bears in
+compression. Bending is that of the full law.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ...algebra.gram import Gram
+from ...codegen.program import Program
+from ...spec import LawTraits
+from .cable import Cable
+
+UNITS = "N, N m^2, 1, 1"
+STIFFNESS_DOC = "axial and bending stiffness EA, EI; part of EA that is left in compression; transition strain"
+
+
+def traits(strain: str, curvature: str) -> LawTraits:
+    """Return what the law with these measures is; it is damped like the full law with the same strain."""
+    return LawTraits("cable", strain, curvature, membrane="tension_only", damped_like=f"{strain}_exact")
+
+
+class TensionOnlyCable(Cable):
+    """The law over an element's strain vectors; the damping is that of the law that resists compression, too."""
+
+    def __init__(self, gram: Gram, strain: str, curvature: str):
+        super().__init__(gram, strain, curvature)
+        self.name += "_tension_only"
+        self.doc += ", which gives way in compression"
+
+    def constants(self, program: Program) -> np.ndarray:
+        """Declare the input A (4,): EA in N, EI in N m^2, rho, transition strain; return it."""
+        return program.input("A", 4, UNITS, STIFFNESS_DOC)
+
+    def section_stiffness(self, program: Program) -> np.ndarray:
+        """Declare the input S (4,): EA in N, EI in N m^2, rho, transition strain; return it."""
+        return program.input("S", 4, UNITS, STIFFNESS_DOC)
+
+    def set_up(self, program: Program) -> None:
+        """Declare the inputs l and S, and the output A, which is S."""
+        program.input("l", (), "m", "length of the element")
+        program.output("A", self.section_stiffness(program), UNITS, STIFFNESS_DOC)
+
+    def twice_axial_energy(self, program: Program, tag: str, A: np.ndarray, stiffness: sp.Expr,
+                           strain: sp.Expr) -> sp.Expr:
+        """Return the energy of the module docstring, stiffness in place of EA."""
+        lost = program.define_once("half_lost", (1 - A[2]) / 2)
+        square = program.define_once("transition2", A[3] ** 2)
+        smooth = program.define(f"smooth{tag}", sp.sqrt(strain**2 + square))
+        inverse = program.define(f"inv_smooth{tag}", 1 / (smooth + A[3]))
+        return stiffness * strain**2 * (A[2] + lost * (1 + strain * inverse))

@@ -1,0 +1,113 @@
+"""Springs whose tension is piecewise linear in their extension: those that pull alone, free play, tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from pydantic import model_validator
+
+from .part import Part
+from .validation import list_of, show
+
+PUSHES_ALONE, PULLS_AND_PUSHES, PULLS_ALONE, HAS_NO_FORCE = -1, 0, 1, 2
+"""What a piece of a law may do, as in runtime/engine/include/point_force.h."""
+
+
+class ForceTable(Part):
+    """Tension (N) of a spring at given extensions (m), with straight lines between them, and beyond them on both sides.
+
+    >>> import funicular as fu
+    >>> fu.ForceTable(extension=[0, 0.1, 0.2], tension=[0, 10, 40]).tension
+    (0.0, 10.0, 40.0)
+    """
+
+    extension: Annotated[tuple[float, ...], list_of("m", least=2)]
+    tension: Annotated[tuple[float, ...], list_of("N", least=2)]
+
+    @model_validator(mode="after")
+    def _is_a_function(self) -> ForceTable:
+        if len(self.extension) != len(self.tension):
+            raise ValueError("extension and tension must be of equal length, got "
+                             f"{len(self.extension)} and {len(self.tension)}")
+        steps = np.diff(self.extension)
+        if not steps.min() > 1e-12 * (1 + np.abs(self.extension).max()):
+            k = int(np.argmin(steps))
+            raise ValueError(f"extension must increase, got {show(self.extension[k + 1], 'm')} after "
+                             f"{show(self.extension[k], 'm')}")
+        return self
+
+
+@dataclass(frozen=True)
+class Piece:
+    """The tension of a spring up to the extension ``end`` (m): ``tension`` (N) at ``at`` (m), of slope ``stiffness``.
+
+    sense: what the piece may do. energy: at ``at``, in J.
+    """
+
+    end: float
+    at: float
+    tension: float
+    stiffness: float
+    sense: int = PULLS_AND_PUSHES
+    energy: float = 0.0
+
+
+def pulling(start: float, stiffness: float) -> list[Piece]:
+    """Return the pieces of a spring that has no force up to an extension, and pulls beyond it."""
+    return [Piece(start, start, 0.0, 0.0, HAS_NO_FORCE), Piece(np.inf, start, 0.0, stiffness, PULLS_ALONE)]
+
+
+def with_play(play: float, stiffness: float) -> list[Piece]:
+    """Return the pieces of a spring that pushes, has no force over the length ``play`` (m) about nil, and pulls."""
+    half = play / 2
+    return [Piece(-half, -half, 0.0, stiffness, PUSHES_ALONE), *pulling(half, stiffness)]
+
+
+def tabulated(table: ForceTable, pulls_alone: bool) -> list[Piece]:
+    """Return the pieces of a table; pulls_alone: where its tension is not above nil there is none.
+
+    Raises ValueError where a table that pulls alone has tension at no extension, or loses it again.
+    """
+    x, T = np.array(table.extension), np.array(table.tension)
+    slopes = np.diff(T) / np.diff(x)
+    ends = [*x[1:-1], np.inf]
+    pieces = [Piece(end, at, tension, slope) for end, at, tension, slope in zip(ends, x, T, slopes, strict=False)]
+    if not pulls_alone:
+        return _with_energies(pieces)
+    if slopes[-1] < 0 or not (T[-1] > 0 or slopes[-1] > 0):
+        raise ValueError("with tension_only, a table must have tension at large extensions",
+                         "give a last piece that does not fall, with tension above nil")
+    start = _loses_force(x, T, slopes)
+    taut = [Piece(p.end, max(p.at, start), p.tension + p.stiffness * max(start - p.at, 0.0), p.stiffness, PULLS_ALONE)
+            for p in pieces if p.end > start]
+    return _with_energies([Piece(start, start, 0.0, 0.0, HAS_NO_FORCE), *taut])
+
+
+def _loses_force(x: np.ndarray, T: np.ndarray, slopes: np.ndarray) -> float:
+    """Return the extension below which a table has no tension, and above which it has."""
+    if T[0] > 0:
+        if slopes[0] <= 0:
+            raise ValueError("with tension_only, a table must have no tension at small extensions",
+                             "let it begin with tension nil")
+        return float(x[0] - T[0] / slopes[0])
+    last = int(np.flatnonzero(T <= 0)[-1])
+    if np.any(T[:last] > 0):
+        raise ValueError("with tension_only, a table must not lose its tension as it is extended",
+                         "give tensions that stay above nil once they are")
+    return float(x[last] - T[last] / slopes[min(last, len(slopes) - 1)])
+
+
+def _with_energies(pieces: Sequence[Piece]) -> list[Piece]:
+    """Return the pieces with their energies, of which those of a table are nil at the extension nil, if it may be."""
+    at = [p.at for p in pieces]
+    rises = [p.tension * (b - p.at) + p.stiffness * (b - p.at) ** 2 / 2
+             for p, b in zip(pieces[:-1], at[1:], strict=True)]
+    energies = np.cumsum([0.0, *rises])
+    if pieces[0].sense == PULLS_AND_PUSHES:
+        k = int(np.searchsorted([p.end for p in pieces[:-1]], 0.0))
+        energies -= energies[k] + pieces[k].tension * -at[k] + pieces[k].stiffness * at[k] ** 2 / 2
+    return [Piece(p.end, p.at, p.tension, p.stiffness, p.sense, float(energy))
+            for p, energy in zip(pieces, energies, strict=True)]

@@ -1,0 +1,184 @@
+"""Springs that pull alone, free play, tables of tension: closed forms, order of events, energy, rest, refusals."""
+
+import funicular as fu
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+MASS, GRAVITY, STIFFNESS = 2.0, 9.81, 400.0
+BY_TOL = ("explicit", "radau")
+BY_STEP = ("genalpha", "energy")
+
+
+def hanging(speed, drawn=0.0, **law):
+    """Return a mass on a spring of 1 m, extended by so much at the start, that goes down at this speed."""
+    scene = fu.Scene(gravity=(0, 0, -GRAVITY))
+    scene.rigid_body("m", mass=MASS, inertia=(1, 1, 1), position=(0, 0, -1.0 - drawn), velocity=(0, 0, -speed))
+    scene.spring((0, 0, 0), "m", length=1.0, name="dropper", **law)
+    return scene
+
+
+def extension(run):
+    return -run["m.position"][:, 2] - 1.0
+
+
+def total_energy(run):
+    return sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "potential", "dissipated"))
+
+
+class Thrown:
+    """A mass on a spring that pulls alone: sines while it is taut, parabolas while it is slack, from nil extension."""
+
+    def __init__(self, speed, duration):
+        self.omega, self.shift = np.sqrt(STIFFNESS / MASS), MASS * GRAVITY / STIFFNESS
+        self.speed, self.instants = speed, [0.0]
+        radius = np.hypot(self.shift, speed / self.omega)
+        self.taut = 2 * (np.pi - np.arctan2(speed / self.omega, self.shift)) / self.omega
+        self.slack = 2 * speed / GRAVITY
+        assert radius > self.shift
+        while self.instants[-1] < duration:
+            self.instants.append(self.instants[-1] + (self.taut if len(self.instants) % 2 else self.slack))
+
+    def __call__(self, time):
+        k = np.searchsorted(self.instants, time, side="right") - 1
+        t = time - np.array(self.instants)[k]
+        sine = (self.shift * (1 - np.cos(self.omega * t)) + self.speed / self.omega * np.sin(self.omega * t))
+        return np.where(k % 2 == 0, sine, -self.speed * t + GRAVITY * t**2 / 2)
+
+
+@pytest.mark.parametrize("integrator", BY_TOL)
+def test_a_mass_thrown_up_follows_sines_and_parabolas(integrator):
+    run = hanging(0.5, stiffness=STIFFNESS, tension_only=True).run(
+        duration=2.0, output_step=0.01, integrator=integrator, tol=1e-9)
+    exact = Thrown(0.5, 2.0)
+    assert np.abs(extension(run) - exact(run.time)).max() < 1e-8
+    events = [event for event in run.report["events"] if event["time"] > 1e-6]
+    assert [event["what"] for event in events] == (["became slack", "became taut"] * 9)[:len(events)]
+    assert len(events) == len([t for t in exact.instants if 0 < t < 2.0])
+    assert np.abs(np.subtract([event["time"] for event in events], exact.instants[1:len(events) + 1])).max() < 1e-9
+    assert np.ptp(total_energy(run)) < 1e-8
+
+
+@pytest.mark.parametrize("integrator", BY_STEP)
+def test_fixed_steps_end_where_it_becomes_slack_and_keep_their_order(integrator):
+    exact, errors = Thrown(0.5, 1.0), []
+    for step in (2e-3, 1e-3):
+        run = hanging(0.5, stiffness=STIFFNESS, tension_only=True).run(
+            duration=1.0, output_step=0.02, integrator=integrator, step=step)
+        errors.append(np.abs(extension(run) - exact(run.time)).max())
+    assert errors[1] < 3e-5
+    assert np.log2(errors[0] / errors[1]) > 1.7
+    if integrator == "energy":
+        assert np.ptp(total_energy(run)) < 1e-12
+
+
+TABLE = {"extension": [-0.1, 0, 0.05, 0.1], "tension": [-30, 0, 10, 60]}
+FROM_TABLE = ([-1.1, -0.1, 0, 0.05, 0.1, 1.1], [-330, -30, 0, 10, 60, 1060])
+DAMPING = 12.0
+LAWS = {
+    "damper never pushes": ({"stiffness": STIFFNESS, "damping": DAMPING, "tension_only": True},
+                            lambda x, v: max(0.0, STIFFNESS * x + DAMPING * v) if x > 0 else 0.0),
+    "free play": ({"stiffness": STIFFNESS, "free_play": 0.1},
+                  lambda x, v: STIFFNESS * (x - np.clip(x, -0.05, 0.05))),
+    "damped free play": ({"stiffness": STIFFNESS, "free_play": 0.1, "damping": DAMPING},
+                         lambda x, v: (max(0.0, STIFFNESS * (x - 0.05) + DAMPING * v) if x > 0.05 else
+                                       min(0.0, STIFFNESS * (x + 0.05) + DAMPING * v) if x < -0.05 else 0.0)),
+    "table": ({"table": TABLE}, lambda x, v: np.interp(x, *FROM_TABLE)),
+    "table that pulls alone": ({"table": TABLE, "tension_only": True, "damping": DAMPING},
+                               lambda x, v: max(0.0, np.interp(x, *FROM_TABLE) + DAMPING * v) if x > 0 else 0.0),
+}
+
+
+@pytest.fixture(scope="module")
+def references():
+    """Return, by law, the motion by a Runge-Kutta method of short steps, at times of rows."""
+    time = np.linspace(0, 1, 51)
+    return {name: solve_ivp(lambda t, y, force=force: [y[1], GRAVITY - force(*y) / MASS], (0, 1), [0, 1.5],
+                            rtol=1e-8, atol=1e-10, t_eval=time, max_step=2e-4).y[0]
+            for name, (_, force) in LAWS.items()}
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("integrator", (*BY_TOL, *BY_STEP))
+def test_laws_of_pieces(law, integrator, references):
+    size = {"tol": 1e-8} if integrator in BY_TOL else {"step": 5e-4}
+    run = hanging(1.5, **LAWS[law][0]).run(duration=1.0, output_step=0.02, integrator=integrator, **size)
+    assert np.abs(extension(run) - references[law]).max() < (1e-6 if integrator in BY_TOL else 2e-5)
+    drift = np.ptp(total_energy(run))
+    assert drift < {"explicit": 1e-7, "radau": 1e-7, "genalpha": 1e-4, "energy": 1e-12}[integrator]
+    if LAWS[law][0].get("tension_only"):
+        assert run["dropper.tension"].min() >= 0.0
+
+
+@pytest.mark.parametrize("integrator", BY_TOL)
+def test_a_damped_spring_that_pulls_alone_dissipates_what_it_does_not_give_back(integrator):
+    run = hanging(-4.0, 0.3, stiffness=STIFFNESS, damping=40.0, tension_only=True).run(
+        duration=2.0, output_step=0.001, integrator=integrator, tol=1e-8)
+    cut = (extension(run) > 1e-4) & (run["dropper.tension"] == 0.0)
+    assert cut[:50].all()  # slack though longer than its length: the damper would push
+    assert run["dropper.tension"].max() > 10.0
+    assert np.diff(run["energy.dissipated"]).min() > -1e-9
+    assert np.ptp(total_energy(run)) < 1e-7
+
+
+def test_droppers_unload_and_reload_between_two_wires():
+    """A wire under two droppers is lifted in its middle and let down: they lose their force and regain it."""
+    scene = fu.Scene(gravity=(0, 0, -9.81))
+    wire = scene.cable("wire", start=(0, 0, 0), end=(10, 0, 0), elements=20, element="cable12",
+                       section=fu.Circle(radius=6e-3),
+                       material=fu.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=8900),
+                       rest_length=10 / (1 + 7e-4))
+    length = wire.rest_length
+    for s in (0.0, length):
+        scene.pin(wire, s=s)
+    for k, s in enumerate((0.3, 0.7)):
+        scene.spring((10 * s, 0, 1.0), (wire, s * length), stiffness=1e5, length=0.998, tension_only=True,
+                     name=f"dropper{k}")
+    lift = fu.TableSignal(time=[0, 0.3, 0.5, 0.8], value=[0, 1, 1, 0])
+    scene.force(wire, s=length / 2, value=(0, 0, 120.0), scale=lift)
+    run = scene.run(duration=1.5, output_step=0.005, tol=1e-5, initial="equilibrium")
+    force = run["dropper0.tension"]
+    assert force[0] > 20.0
+    assert force.min() == 0.0
+    assert np.abs(force - run["dropper1.tension"]).max() < 1e-2 * force.max()  # symmetric
+    slack = [event for event in run.report["events"] if event["what"] == "became slack"]
+    taut = [event for event in run.report["events"] if event["what"] == "became taut"]
+    assert slack and len(taut) >= len(slack) - 2
+    for event in (e for e in slack + taut if e["name"] == "dropper0"):
+        side = np.interp([event["time"] - 0.006, event["time"] + 0.006], run.time, run["dropper0.length"]) - 0.998
+        assert side.min() < 2e-5  # the passage is near: neither is deep in a spring of 1e5 N/m
+
+
+def test_rest_on_droppers_takes_those_that_are_taut():
+    scene = fu.Scene(gravity=(0, 0, -10.0))
+    scene.rigid_body("m", mass=1.0, inertia=(1, 1, 1), position=(0, 0, -1.0))
+    scene.spring((0, 0, 0), "m", stiffness=100.0, length=1.0, tension_only=True, name="upper")
+    scene.spring("m", (0, 0, -2.0), stiffness=1e4, length=1.5, tension_only=True, name="lower")
+    rest = scene.equilibrium()
+    assert rest["m.position"][2] == pytest.approx(-1.1, abs=1e-9)
+    assert rest["upper.tension"] == pytest.approx(10.0, rel=1e-9)
+    assert rest["lower.tension"] == 0.0
+
+
+@pytest.mark.parametrize("law, cause", [
+    ({"tension_only": True}, "needs a stiffness"),
+    ({"free_play": 0.1}, "needs a stiffness"),
+    ({"stiffness": 1.0, "table": TABLE}, "both a stiffness and a table"),
+    ({"free_play": 0.1, "table": TABLE}, "both free play and a table"),
+    ({"table": {"extension": [0, 1], "tension": [0, 1, 2]}}, "equal length"),
+    ({"table": {"extension": [0, 0], "tension": [0, 1]}}, "must increase"),
+    ({"table": {"extension": [0, 1, 2], "tension": [0, 5, 0]}, "tension_only": True}, "at large extensions"),
+    ({"table": {"extension": [0, 1, 2, 3], "tension": [0, 5, -1, 9]}, "tension_only": True}, "lose its tension"),
+    ({"table": {"extension": [0, 1], "tension": [5, 5]}, "tension_only": True}, "at small extensions"),
+])
+def test_laws_that_are_none_are_refused(law, cause):
+    with pytest.raises(fu.SceneError, match=cause):
+        hanging(0.0, **law)
+
+
+def test_scene_files_have_them(tmp_path):
+    scene = hanging(0.5, table=TABLE, tension_only=True)
+    file = tmp_path / "scene.toml"
+    file.write_text(scene.to_toml())
+    again = fu.load_scene(file)
+    assert again.point_forces["dropper"] == scene.point_forces["dropper"]
