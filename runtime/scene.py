@@ -94,16 +94,6 @@ class Scene(Viewable, SceneMethods):
         """
         return self.changed([(self._part(part), changes)])
 
-    def changed(self, changes: Iterable[tuple[Part, Mapping[str, Any]]], gravity: Any = None) -> Self:
-        """Return a scene like this one with other values of several of its parts at once, checked as any scene is.
-
-        changes: parts of this scene, each once, with values by keyword; gravity: in m/s², None to keep this one's.
-        Raises SceneError.
-        """
-        values = {id(part): each for part, each in changes}
-        return self.with_parts((type(each)(**{**each.entries(), **values[id(each)]}) if id(each) in values else each
-                                for each in self.parts()), gravity)
-
     def _part(self, part: Part | str) -> Part:
         """Return the part of a name, or this part where it is the scene's. Raises SceneError."""
         parts = list(self.parts())

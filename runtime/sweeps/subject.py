@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ..errors import FunicularWarning, SceneError, near
+from ..parts.paths import Path, changed, path_of, unit_of
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.validation import shown
@@ -19,7 +20,6 @@ from ..results.run import Run
 from ..scene import Scene
 from .kept import Keep, of_dict, text_of
 from .parameters import SWEEP
-from .paths import Path, changed, path_of, unit_of
 from .points import RETURNED, Outcome, failure, outcome_of, run_points
 
 
