@@ -290,6 +290,8 @@ class Scene(Viewable, SceneMethods):
         largest_step: float | None = None,
         seek_stable: bool | None = None,
         scale_gravity: bool | None = None,
+        adjust: Mapping[str, tuple[float, float] | str | None] | Sequence[str] | None = None,
+        to: Mapping[str, float] | None = None,
         start: Equilibrium | None = None,
         **unknown: Never,
     ) -> Equilibrium:
@@ -299,11 +301,19 @@ class Scene(Viewable, SceneMethods):
         ``stable``, in ``messages`` and by a `FunicularWarning`; friction of slides is left out. start: a state of this
         scene, under the same loads or others, from which the search begins instead of as drawn; method "arc_length"
         goes on from its load_fraction in its sense, or, from a state under all its loads, anew from rest without loads.
+
+        adjust, to: parameters, by path with limits or "free", that are changed until the state has given values, by
+        name: ``adjust={"dropper.length": "free"}, to={"wire@20.position.y": 5.3}``. The state's ``scene`` is the
+        adjusted one, from which runs start, ``adjusted`` has the values found, ``adjustment`` more about them. With
+        more parameters than values the least change is taken. Places on a cable whose length is adjusted keep their
+        part of it.
+
         Raises SceneError; EquilibriumError, which keeps the state that was reached.
         """
         _refuse_unknown("equilibrium", unknown, (*EquilibriumSettings.keywords(), "start"))
         given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
-                 "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity}
+                 "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity,
+                 "adjust": adjust, "to": to}
         begin = None if start is None else _equilibrium_state(self, start)
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
         self.check()
@@ -312,7 +322,13 @@ class Scene(Viewable, SceneMethods):
         from .solve.static import equilibrium
 
         with one_blas_thread, enough_memory():
-            return equilibrium(self, settings, begin, Equilibrium)
+            if settings.adjust is None:
+                return equilibrium(self, settings, begin, Equilibrium)
+
+            from .results.targets import reader
+            from .solve.adjustment import adjusted
+
+            return adjusted(self, settings, begin, Equilibrium, reader)
 
     def relax(self, *, tol: float | None = None, max_steps: int | None = None, **unknown: Never) -> Equilibrium:
         """Bring the scene to rest by dynamic relaxation: a motion from the place drawn, damped until it ends; see

@@ -18,7 +18,7 @@ from ..model.states import (
 from ..named_arrays import NamedArrays
 from ..parts.scene_data import SceneData
 from .stability import Stability
-from .static_problem import StaticProblem
+from .static_problem import StaticState
 
 
 def in_loads(fraction: float) -> str:
@@ -72,6 +72,24 @@ class Relaxation:
                 f"{self.resets} times; {self.residuals[-1]:.3g} N were left over")
 
 
+@dataclass
+class Adjustment:
+    """What was changed in a scene so that its state of rest has given values.
+
+    values: the parameters found, by path; targets: the values of the state asked for, by name; found: those reached;
+    jacobian (targets, parameters): derivatives of the state's values by the parameters, at the state; iterations: of
+    Newton's method on the parameters; misfits: at its states, the largest distance from a target over the scale of that
+    (the scene's size of a position, the larger of target and first value of what else there is).
+    """
+
+    values: dict[str, float]
+    targets: dict[str, float]
+    found: dict[str, float]
+    jacobian: np.ndarray = field(repr=False)
+    iterations: int
+    misfits: list[float] = field(repr=False)
+
+
 @dataclass(repr=False)
 class RestState(NamedArrays):
     """A state of rest of a scene.
@@ -82,7 +100,9 @@ class RestState(NamedArrays):
     the largest force left over, in N; stability: see `Stability`; path: the states of rest on the way, each under its
     load_fraction of all loads, in their order, this one last: what a curve of load and displacement is drawn from;
     critical_points of that path; gravity_fraction: how much of gravity is on, all of it where scale_gravity is off;
-    messages: what the search passed, adjusted or left out; relaxation: how `Scene.relax` came to the state, else None.
+    messages: what the search passed, adjusted or left out; relaxation: how `Scene.relax` came to the state, else None;
+    adjustment: what the search changed in the scene for given values of the state, else None; ``scene`` is the one with
+    the values found, then.
     """
 
     scene: SceneData
@@ -102,9 +122,10 @@ class RestState(NamedArrays):
     messages: list[str] = field(default_factory=list)
     layout: dict[str, list] = field(default_factory=dict, repr=False)
     relaxation: Relaxation | None = None
+    adjustment: Adjustment | None = None
 
     @classmethod
-    def of(cls, problem: StaticProblem, stability: Stability, heading: np.ndarray | None = None) -> Self:
+    def of(cls, problem: StaticState, stability: Stability, heading: np.ndarray | None = None) -> Self:
         """Read the static state of a problem, under the load that is on; heading: of the path there."""
         left = problem.residual()
         units = np.where(problem.weight > 0, problem.weight, np.inf)
@@ -121,6 +142,11 @@ class RestState(NamedArrays):
         stable = "stable" if self.stable else f"{self.unstable_directions} unstable directions"
         return (f"<funicular.Equilibrium: {stable}, under {in_loads(self.load_fraction)}, "
                 f"{len(self.quantities)} results>")
+
+    @property
+    def adjusted(self) -> dict[str, float]:
+        """Return the values of the parameters that the search for the state adjusted, by path; empty without any."""
+        return {} if self.adjustment is None else dict(self.adjustment.values)
 
     @property
     def unstable_directions(self) -> int:
