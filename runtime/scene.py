@@ -6,7 +6,7 @@ import os
 import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
-from typing import TYPE_CHECKING, Any, Never, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Never, Self, TypeVar, cast
 
 from .errors import (
     ConvergenceError,
@@ -183,6 +183,9 @@ class Scene(Viewable, SceneMethods):
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
         chosen = self._chosen_for(settings)
         scene, settings = (self, settings) if chosen is None else (chosen.scene, chosen.settings_of(settings))
+        if state is None and settings.initial == "equilibrium" and "adjust" in scene.equilibrium_settings:
+            state = scene.equilibrium()
+            scene = cast(Self, state.scene)
         scene._check_for(settings)
         _check_resume(resume, settings)
         run = scene._simulated(settings, state, resume, progress, chosen)
@@ -314,7 +317,7 @@ class Scene(Viewable, SceneMethods):
         given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
                  "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity,
                  "adjust": adjust, "to": to}
-        begin = None if start is None else _equilibrium_state(self, start)
+        begin = None if start is None else _equilibrium_state(self, start, anew=True)
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
         self.check()
 
@@ -446,11 +449,14 @@ def _state(scene: Scene, given: Equilibrium | Mapping[str, ArrayLike]) -> Start:
     return state
 
 
-def _equilibrium_state(scene: Scene, state: Equilibrium) -> Equilibrium:
+def _equilibrium_state(scene: Scene, state: Equilibrium, *, anew: bool = False) -> Equilibrium:
+    """Return a state to start from, checked against the scene; anew: a search, which may be for other values."""
     from .results.equilibrium import Equilibrium  # brings SciPy; there is a state only where it is loaded already
 
     if not isinstance(state, Equilibrium):
         raise SceneError("scene", "the state to start from must be one that equilibrium() returned, got "
                          + shown(state))
     state.check_fits(scene)
+    if not anew:
+        state.check_adjusted(scene)
     return state

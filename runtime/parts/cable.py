@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import Field, ValidationInfo, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from ..errors import SceneError, near
 from ..kernels.element_line import ElementLine
@@ -15,6 +15,7 @@ from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.libraries import of_library, resolved
 from ..rotations import cross
 from . import cable_drawing, cable_laws, curves
+from .hanging import catenary
 from .material import Material
 from .part import Part
 from .schemas import ONLY_PYTHON, GivenAs, checked, list_of_lists
@@ -60,7 +61,9 @@ class Cable(Part):
 
     Drawn, which is how a run starts: from ``start`` to ``end``; or smoothly through ``points`` (x, y, z); or along
     ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m. The tangent
-    must be continuous, the curvature need not: straight, arc, straight will do.
+    must be continuous, the curvature need not: straight, arc, straight will do. ``shape`` "hanging": from ``start`` to
+    ``end`` along the catenary of a cable with this ``rest_length``, longer than the span, that cannot stretch, under
+    the gravity of the scene; its stress-free shape is straight.
     Undeformed: ``rest`` "drawn", the drawn shape, or "straight"; ``rest_length`` in m, the length as drawn if not
     given: a shorter one makes the drawn cable taut, a longer one slack (or compressed, where it is straight).
     All arc-lengths s are of the undeformed cable.
@@ -86,6 +89,8 @@ class Cable(Part):
     arcs: the continuum locks there, unless its elements are about as short as two heights.
     """
 
+    _hanging: tuple[tuple[float, ...], ...] | None = PrivateAttr(None)
+
     kind: ClassVar[str] = "cable"
     group: ClassVar[str] = "cables"
     name: Name
@@ -93,6 +98,7 @@ class Cable(Part):
     end: Annotated[Vector | None, xyz("m")] = None
     points: Annotated[tuple[tuple[float, ...], ...] | None, checked(_points, list_of_lists("m"))] = None
     curve: Annotated[Callable | None, GivenAs(ONLY_PYTHON)] = None  # kept as points, see `_settled`
+    shape: Annotated[str | None, one_of(("straight", "hanging"), optional=True)] = None
     given_elements: Annotated[Count | None, Field(alias="elements")] = None
     library: Annotated[str | None, checked(_library, {"type": "string"})] = None
     element: Annotated[str, checked(_element, {"type": "string"})] = "beam24"
@@ -115,7 +121,7 @@ class Cable(Part):
         if not isinstance(data, dict):
             return data
         optional = ("start", "end", "points", "curve", "law", "library", "strain", "curvature", "membrane",
-                    "rest_length", "elements")
+                    "rest_length", "elements", "shape")
         data = {name: value for name, value in data.items() if value is not None or name not in optional}
         if "curve" in data:
             if "points" in data:
@@ -124,6 +130,8 @@ class Cable(Part):
             if not callable(curve):
                 raise ValueError(f"curve must be a function of u from 0 to 1, got {shown(curve)}", "or give points")
             data["points"] = curves.sample(curve, min(elements, 1000) if isinstance(elements, int) else 1)
+        if data.get("shape") == "hanging":
+            data.setdefault("rest", "straight")
         try:
             known = of_library(_library(data.get("library")))
         except ValueError:  # the check of the library says it
@@ -142,18 +150,41 @@ class Cable(Part):
         if self.points is None and not all(ends):
             missing = "end is" if ends[0] else "start is" if ends[1] else "start and end, or points, are"
             raise ValueError(f"{missing} missing")
+        if self.shape is not None and self.points is not None:
+            raise ValueError(f'has points and shape="{self.shape}"', "give one of them")
+        if self.shape == "hanging" and self.rest_length is None:
+            raise ValueError("hangs with the length that it has, but rest_length is missing")
+        if self.shape == "hanging" and self.rest != "straight":
+            raise ValueError('has shape="hanging", but is to be free of stress as drawn', 'leave rest out, or give the '
+                             "catenary as curve")
         if self.start is not None and self.end is not None and self.start == self.end:
             raise ValueError(
                 f"start and end must be different points, got {show(self.start)} and {show(self.end, 'm')}")
         if self.dim == 2:
-            names = ("start", "end") if self.points is None else map("point {}".format, range(1, len(self.points) + 1))
-            cable_drawing.check_plane(self.element, dict(zip(names, self._drawn_through, strict=True)), self.velocity,
+            through = self._drawn_through
+            drawn_straight = self.points is None and self._hanging is None
+            names = ("start", "end") if drawn_straight else map("point {}".format, range(1, len(through) + 1))
+            cable_drawing.check_plane(self.element, dict(zip(names, through, strict=True)), self.velocity,
                                       self.angular_velocity, self.up)
         else:
             cable_drawing.check_height(self._drawn_through, self.up, self._is_round)
         if self.given_elements is not None:
             cable_drawing.check_elements(self._shape, self.given_elements)
         return self
+
+    def hanging_under(self, gravity: Vector) -> Cable:
+        """Return the cable drawn as it hangs under gravity (m/s²), where its shape is that. Raises SceneError."""
+        if self.shape != "hanging":
+            return self
+        assert self.start is not None, f"{self.where} has no start"
+        assert self.end is not None, f"{self.where} has no end"
+        made = self.model_copy()
+        try:
+            curve = catenary(self.start, self.end, self.length, gravity)
+            made._hanging = curves.points(curves.sample(curve, min(self.given_elements or 1, 1000)))
+            return made._is_drawn()
+        except ValueError as error:
+            raise SceneError(self.where, *error.args) from None
 
     @property
     def _is_round(self) -> bool:
@@ -222,6 +253,8 @@ class Cable(Part):
 
     @property
     def _drawn_through(self) -> tuple[tuple[float, ...], ...]:
+        if self._hanging is not None:
+            return self._hanging
         ends = tuple(end for end in (self.start, self.end) if end is not None)
         return ends if self.points is None else self.points
 

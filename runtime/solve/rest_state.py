@@ -16,9 +16,13 @@ from ..model.states import (
     spatial,
 )
 from ..named_arrays import NamedArrays
+from ..parts.paths import path_of, value_at
 from ..parts.scene_data import SceneData
 from .stability import Stability
 from .static_problem import StaticState
+
+SAME = 1e-12
+"""Of an adjusted value: what rounding may change."""
 
 
 def in_loads(fraction: float) -> str:
@@ -188,6 +192,14 @@ class RestState(NamedArrays):
             if here != self.layout[kind]:
                 raise SceneError("scene", f"the state to start from is of another scene: its {kind} are "
                                  f"{self.layout[kind]}, here they are {here}", "take an equilibrium of this scene")
+
+    def check_adjusted(self, scene: SceneData) -> None:
+        """Raise SceneError where the scene lacks the values that were adjusted for the state, as it would not rest."""
+        for name, value in self.adjusted.items():
+            here = value_at(scene, path_of(scene, name, "adjust"))
+            if here is None or abs(here - value) > SAME * abs(value):
+                raise SceneError("scene", f"the state to start from is at rest with {name} = {value:.9g}, to which it "
+                                 f"was adjusted, here it is {here}", "take the state's own scene: rest.scene")
 
     def start(self, model: Model, scene: SceneData) -> None:
         """Put a freshly built model of the scene into this state."""
