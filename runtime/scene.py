@@ -183,9 +183,7 @@ class Scene(Viewable, SceneMethods):
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
         chosen = self._chosen_for(settings)
         scene, settings = (self, settings) if chosen is None else (chosen.scene, chosen.settings_of(settings))
-        if state is None and settings.initial == "equilibrium" and "adjust" in scene.equilibrium_settings:
-            state = scene.equilibrium()
-            scene = cast(Self, state.scene)
+        scene, state = scene._adjusted(settings, state)
         scene._check_for(settings)
         _check_resume(resume, settings)
         run = scene._simulated(settings, state, resume, progress, chosen)
@@ -193,6 +191,15 @@ class Scene(Viewable, SceneMethods):
         if run.status == "interrupted":
             warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
         return run
+
+    def _adjusted(self, settings: RunSettings, state: Start | None) -> tuple[Self, Start | None]:
+        """Return the scene and the state that a run starts from: adjusted where it starts from a state of rest for
+        which the scene's file adjusts parameters.
+        """
+        if state is not None or settings.initial != "equilibrium" or not self.equilibrium_settings.get("adjust"):
+            return self, state
+        rest = self.equilibrium()
+        return cast(Self, rest.scene), rest
 
     def choose(self, tol: float | None = None, *, duration: float | None = None, quantities: Sequence[str] = (),
                free: str = "unset", initial: str | None = None, integrator: str | None = None) -> Choice[Self]:

@@ -160,6 +160,11 @@ class Cable(Part):
         if self.start is not None and self.end is not None and self.start == self.end:
             raise ValueError(
                 f"start and end must be different points, got {show(self.start)} and {show(self.end, 'm')}")
+        self._check_drawing()
+        return self
+
+    def _check_drawing(self) -> None:
+        """Raise ValueError where its elements cannot be drawn along its shape."""
         if self.dim == 2:
             through = self._drawn_through
             drawn_straight = self.points is None and self._hanging is None
@@ -170,9 +175,8 @@ class Cable(Part):
             cable_drawing.check_height(self._drawn_through, self.up, self._is_round)
         if self.given_elements is not None:
             cable_drawing.check_elements(self._shape, self.given_elements)
-        return self
 
-    def hanging_under(self, gravity: Vector) -> Cable:
+    def hanging_under(self, gravity: tuple[float, ...]) -> Cable:
         """Return the cable drawn as it hangs under gravity (m/s²), where its shape is that. Raises SceneError."""
         if self.shape != "hanging":
             return self
@@ -182,9 +186,10 @@ class Cable(Part):
         try:
             curve = catenary(self.start, self.end, self.length, gravity)
             made._hanging = curves.points(curves.sample(curve, min(self.given_elements or 1, 1000)))
-            return made._is_drawn()
+            made._check_drawing()
         except ValueError as error:
             raise SceneError(self.where, *error.args) from None
+        return made
 
     @property
     def _is_round(self) -> bool:

@@ -82,7 +82,7 @@ def _cause(parameters: Parameters, linear: Linear, names: list[str], reason: str
     if (depends := _in_conflict(linear, everything, names)) is not None:
         return f"the parameters change {depends} only together, so that these values contradict each other"
     if not linear.free.all():
-        limits = " and ".join(_at_limit(parameters, linear, k) for k in np.flatnonzero(~linear.free))
+        limits = " and ".join(_at_limit(parameters, linear, k) for k in np.flatnonzero(~linear.free).tolist())
         return f"{limits}; give wider limits, more parameters or other targets"
     return reason
 
