@@ -23,6 +23,7 @@ from ..model.model import Model
 from ..model.unknowns import as_supports_leave
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
+from ..parts.spring import Spring
 from .parameters import Parameters
 from .rest_state import Adjustment, RestState
 from .stability import Stability
@@ -139,7 +140,13 @@ def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState |
     targets = np.array(list(to.values()))
     scales = np.where(in_metres, at.problem.size, np.maximum(np.abs(targets), np.abs(at.g)))
     scales = np.where(scales > 0, scales, 1.0)
-    misfits = _approach(search, at, to, scales)
+    try:
+        misfits = _approach(search, at, to, scales)
+    except EquilibriumError:
+        if (taut := _with_all_taut(search, to, scales)) is None:
+            raise
+        misfits = _approach(search, taut.at, to, scales)
+        misfits.sizes[:0] = taut.sizes[:-1]  # of the same values
     at = misfits.at
     found = find_rest(at.problem)
     state = made.of(at.problem, found or search.state(at.problem).stability)
@@ -155,6 +162,37 @@ def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState |
                                   [*misfits.sizes[:-1], left])
     note(at.problem, state)
     return state
+
+
+def _with_all_taut(search: _Search[S], to: Mapping[str, float], scales: np.ndarray) -> _Approach[S] | None:
+    """Return a state of rest of the scene with the values that a scene finds whose springs push, too, where they pull
+    alone; None where there is none, or no such spring.
+
+    A slack spring changes nothing, so that no derivative says by how much it must be shorter. Where all are taut in the
+    end, both scenes are at rest in the same state.
+    """
+    scene, settings = search.parameters.scene, search.settings
+    pulling = [part for part in scene.point_forces.values() if isinstance(part, Spring) and part.tension_only
+               and part.table is None]
+    if not pulling:
+        return None
+    assert settings.adjust is not None, "the search has parameters"
+    both = scene.changed([(part, {"tension_only": False}) for part in pulling])
+    pushing = _Search(Parameters(both, settings.adjust), settings, search.made, search.read)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", FunicularWarning)  # as above
+            rest = equilibrium(both, settings, None, search.made)
+        found = _approach(pushing, pushing.begin(rest), to, scales)
+        at = found.at
+        problem = StaticProblem(search.parameters.scene_at(at.p), settings)
+    except (EquilibriumError, SceneError):
+        return None
+    problem.restore(fitted(at.problem.keep(), problem.model))
+    if find_rest(problem) is None:
+        return None
+    problem.iterations += at.problem.iterations
+    return _Approach(_Found(problem, at.p, search.read(search.state(problem))), found.sizes)
 
 
 @dataclass
