@@ -27,7 +27,7 @@ def wire(scene, name, y, excess, data, bending, elements):
 
 
 def line(bending=1.0, elements=44):
-    """Return the line with droppers of one length, of which many are slack; bending: of the wires, over that of the data."""
+    """Return the line with droppers of one length, of which many are slack; bending: over that of the data."""
     scene = fu.Scene()
     contact = wire(scene, "contact", 0.0, 0.0, CONTACT, bending, elements)
     messenger = wire(scene, "messenger", 1.2, 0.03, MESSENGER, bending, elements)

@@ -158,11 +158,17 @@ def test_targets_that_cannot_be_reached_say_which_and_why():
               to={"A.position.y": -1.0, "spring.length": 1.5})
 
 
-def test_a_slack_dropper_changes_nothing():
+def test_a_dropper_that_begins_slack_is_made_taut_and_none_pushes():
     scene = wire(length=49.9)
     scene.spring((25, 0.2, 0), ("wire", 24.95), name="dropper", stiffness=1e5, length=2.0, tension_only=True)
+    free = scene.equilibrium()
+    assert free["dropper.tension"] == 0.0
+    name = "wire@24.95.position.y"
+    rest = scene.equilibrium(adjust=["dropper.length"], to={name: -0.1})
+    assert rest["wire.position"][20, 1] == pytest.approx(-0.1, abs=1e-7)
+    assert rest["dropper.tension"] > 100
     unreached(scene, "a part that is slack changes nothing", adjust=["dropper.length"],
-              to={"wire@24.95.position.y": -0.1})
+              to={name: free["wire.position"][20, 1] - 0.1})
 
 
 @pytest.mark.parametrize(("given", "cause"), [
