@@ -69,6 +69,16 @@ def test_sag_by_rest_length():
     assert np.all(np.diff(rest.adjustment.misfits) < 0)
 
 
+def test_a_hanging_cable_may_become_shorter_than_its_span():
+    scene = wire()
+    scene = scene.replace("wire", shape="hanging", rest="straight")
+    rest = scene.equilibrium(adjust=["wire.rest_length"], to={"wire@0.force.x": -20e3})
+    assert rest.adjusted["wire.rest_length"] < 50
+    horizontal, _ = catenary.end_forces(50, 0, rest.adjusted["wire.rest_length"], WEIGHT, AXIAL)
+    assert horizontal == pytest.approx(20e3, rel=2e-5)
+    assert rest.scene.equilibrium()["wire@0.force"][0] == pytest.approx(-20e3, rel=1e-8)
+
+
 def test_section_forces_and_points_between_nodes_are_targets():
     rest = wire().equilibrium(adjust=["wire.rest_length", "wire.section.radius"],
                               to={"wire@12.3.tension": 2000.0, "wire@31.7.position.y": -2.0})

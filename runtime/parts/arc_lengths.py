@@ -7,6 +7,7 @@ from typing import Any
 
 from .attachment import Attachment
 from .cable import Cable
+from .hanging import hangs
 from .load import DistributedForce, Force, Moment
 from .part import Part
 from .scene_data import SceneData
@@ -36,14 +37,18 @@ def on_cables(part: Part) -> Iterator[tuple[str, str, float]]:
 def following(scene: SceneData, changes: Mapping[int, Mapping[str, Any]]) -> dict[int, dict[str, Any]]:
     """Return changes of a scene's parts, with arc-lengths on cables that change in length: they keep their part of it.
 
-    changes: values by keyword, by the number of the part. Values that are changed already stay so. Raises SceneError.
+    changes: values by keyword, by the number of the part. Values that are changed already stay so. A cable that hangs
+    as it is drawn, and becomes shorter than its span, is drawn straight. Raises SceneError.
     """
     parts = list(scene.parts())
     stretch = {}
-    for k, entries in changes.items():
-        if isinstance(part := parts[k], Cable) and entries:
-            stretch[part.name] = type(part)(**{**part.entries(), **entries}).length / part.length
     found = {k: dict(entries) for k, entries in changes.items()}
+    for k, entries in found.items():
+        if isinstance(part := parts[k], Cable) and entries:
+            changed = type(part)(**{**part.entries(), **entries})
+            stretch[part.name] = changed.length / part.length
+            if changed.shape == "hanging" and not hangs(changed.drawn_length, changed.length):
+                entries["shape"] = "straight"
     stretch = {name: ratio for name, ratio in stretch.items() if ratio != 1.0}
     if not stretch:
         return found

@@ -14,6 +14,11 @@ TAUT = 1e-9
 """Of the chord: a cable that is longer by less does not hang."""
 
 
+def hangs(span: float, length: float) -> bool:
+    """Return whether a cable of this length hangs between points at this distance, both in m."""
+    return length > (1 + TAUT) * span
+
+
 def catenary(start: Sequence[float], end: Sequence[float], length: float,
              gravity: Sequence[float]) -> Callable[[float], np.ndarray]:
     """Return the curve (3,) in m of u, from 0 to 1 along the length (m), between two points under gravity (m/s²).
@@ -27,7 +32,7 @@ def catenary(start: Sequence[float], end: Sequence[float], length: float,
     span, pull = float(np.linalg.norm(chord)), float(np.linalg.norm(g))
     if not pull > 0:
         raise ValueError("cannot hang without gravity", 'give the scene gravity, or leave shape="hanging" out')
-    if not length > (1 + TAUT) * span:
+    if not hangs(span, length):
         raise ValueError(f"hangs only where rest_length is above the distance of its ends, {show(span, 'm')}, got "
                          f"{show(length, 'm')}", 'give a longer rest_length, or leave shape="hanging" out')
     up = -g / pull
