@@ -19,6 +19,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from ..errors import EquilibriumError, FunicularWarning, SceneError
+from ..model.build import with_point_force
 from ..model.model import Model
 from ..model.unknowns import as_supports_leave
 from ..parts.scene_data import SceneData
@@ -91,7 +92,11 @@ class _Search(Generic[S]):
         """Return the fixed state `kept` with parameter k changed."""
         p = at.p.copy()
         p[k] += change
-        other = StaticState(self.parameters.scene_at(p), self.settings)
+        if (name := self.parameters.law_of(k)) is not None:
+            scene = self.parameters.with_law(at.problem.scene, k, p[k])
+            other = StaticState(scene, self.settings, with_point_force(at.problem.model, scene, name))
+        else:
+            other = StaticState(self.parameters.scene_at(p), self.settings)
         self.check_same(at.problem.model, other.model, k)
         other.restore(fitted(kept, other.model))
         return other

@@ -12,6 +12,7 @@ from ..errors import FunicularWarning, SceneError
 from ..parts.arc_lengths import following
 from ..parts.cable import Cable
 from ..parts.paths import Path, changes_of, path_of, unit_of, value_at
+from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.settings import Limits
 from ..parts.validation import shown
@@ -89,6 +90,25 @@ class Parameters(Generic[S]):
             made = self.scene.changed([(self.parts[k], entries) for k, entries in changes.items()], gravity)
         made.equilibrium_settings = {name: value for name, value in made.equilibrium_settings.items()
                                      if name not in ("adjust", "to")}
+        return made
+
+    def law_of(self, k: int) -> str | None:
+        """Return the name of the force between two points whose law parameter k is of, None where it is of none."""
+        path = self.paths[k]
+        part = None if path.part is None else self.parts[path.part]
+        return part.name if isinstance(part, PointForce) and path.entries[0] not in ("a", "b") else None
+
+    def with_law(self, scene: S, k: int, value: float) -> S:
+        """Return a scene of these parameters with another value of parameter k, of those that `law_of` names, which
+        nothing else of a scene depends on. Raises SceneError.
+        """
+        path = self.paths[k]
+        name = self.law_of(k)
+        assert name is not None, f"{path.text} is of no force between two points"
+        assert path.part is not None, f"{path.text} is of no part"
+        part = scene.point_forces[name]
+        made = scene.copied()
+        made.point_forces[name] = type(part)(**{**part.entries(), **changes_of(scene, {path: value})[path.part]})
         return made
 
     def sizes(self, length: float) -> np.ndarray:

@@ -30,9 +30,10 @@ FREE = 1e-14
 class StaticState:
     """The engine's static state and its residual; `load` says how much load is on."""
 
-    def __init__(self, scene: SceneData, settings: EquilibriumSettings):
+    def __init__(self, scene: SceneData, settings: EquilibriumSettings, model: Model | None = None):
+        """model: of the scene, where it is at hand."""
         self.scene, self.settings = scene, settings
-        self.model = build(scene)
+        self.model = build(scene) if model is None else model
         self.engine = Engine(self.model)
         drop_redundant_rows(self.model, self.engine)
         self.engine.set_state(0.0)
