@@ -210,3 +210,31 @@ def test_scene_files_adjust():
     run = again.run(duration=0.02, initial="equilibrium", tol=1e-6)
     assert run.scene.cables["wire"].length == rest.adjusted["wire.rest_length"]
     assert np.ptp(run["wire.position"], axis=0).max() < 1e-6
+
+
+@pytest.mark.parametrize("element", ["beam24", "cable12"])
+def test_clamps_that_turn_and_move_with_the_drawing_have_the_right_derivatives(element):
+    scene = fu.Scene()
+    scene.cable("rod", start=(0, 0, 0), end=(2, 1, 0.5), elements=8, element=element, section=fu.Circle(radius=0.02),
+                material=fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000), rest_length=2.25)
+    scene.clamp("rod", s=0)
+    scene.pin("rod", s=2.25)
+    rest = scene.equilibrium(adjust=["rod.end.y", "rod.start.x"],
+                             to={"rod@1.125.position.y": 0.5, "rod@2.25.force.x": 5e3})
+    for k, name in enumerate(rest.adjusted):
+        ends = []
+        for change in (-1e-5, 1e-5):
+            other = changed(rest.scene, {path_of(rest.scene, name): rest.adjusted[name] + change})
+            state = other.equilibrium(tolerance=1e-13, start=rest)
+            assert state["rod.position"][-1] == pytest.approx(other.cables["rod"].end, abs=1e-12)
+            ends.append([state["rod.position"][4, 1], state["rod@2.25.force"][0]])
+        assert rest.adjustment.jacobian[:, k] == pytest.approx((np.array(ends[1]) - ends[0]) / 2e-5, rel=1e-4)
+
+
+def test_a_search_that_begins_at_a_state_takes_the_supports_as_they_are_now():
+    scene = wire(length=49.9)
+    rest = scene.equilibrium()
+    moved = scene.replace("wire", end=(50, 1, 0))
+    from_there = moved.equilibrium(start=rest)
+    assert from_there["wire.position"][-1] == pytest.approx([50, 1, 0])
+    assert from_there["wire.position"] == pytest.approx(moved.equilibrium()["wire.position"], abs=1e-8)

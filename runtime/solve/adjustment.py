@@ -21,7 +21,6 @@ import numpy as np
 from ..errors import EquilibriumError, FunicularWarning, SceneError
 from ..model.build import with_point_force
 from ..model.model import Model
-from ..model.unknowns import as_supports_leave
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from ..parts.spring import Spring
@@ -30,7 +29,7 @@ from .rest_state import Adjustment, RestState
 from .stability import Stability
 from .stable_search import find_rest
 from .static import equilibrium, note
-from .static_problem import StaticProblem, StaticState
+from .static_problem import StaticProblem, StaticState, fitted
 from .unreachable import Linear, why_unreachable
 
 STEP = 1e-6
@@ -246,14 +245,3 @@ def _step(search: _Search[S], at: _Found[S], linear: Linear, rates: np.ndarray, 
             return found, ""
         part *= 0.5
     return None, reason
-
-
-def fitted(kept: dict, model: Model) -> dict:
-    """Return a state as the supports of another model of the same unknowns have it: what they fix is as drawn there."""
-    if not model.cables:
-        return kept
-    own = slice(0, model.cables[-1].coordinates.stop)
-    q = kept["q"].copy()
-    drawn = model.q[own]
-    q[own] = drawn + as_supports_leave(q[own] - drawn, model.unknown_of_dof[own], model.combinations)
-    return kept | {"q": q}

@@ -19,7 +19,7 @@ from .path_following import Critical, Point, follow
 from .rest_state import CriticalPoint, RestState
 from .stability import stability
 from .stable_search import find_rest
-from .static_problem import StaticProblem
+from .static_problem import StaticProblem, fitted
 
 LOG = logging.getLogger(__name__)
 
@@ -43,7 +43,7 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
     """
     problem = StaticProblem(scene, settings)
     if start is not None:
-        problem.restore(start.static_state)
+        problem.restore(fitted(start.static_state, problem.model))
     search = _Search(problem, made)
     reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
     state = search.found

@@ -17,12 +17,15 @@ from ..model.build import build
 from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import attachment_points
+from ..model.unknowns import as_supports_leave
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from .condensation import condensed, fastest
 
 GROWTH = 1e3
 """Of a correction over the least one before: Newton diverges."""
+ROUNDED = 1e-13
+"""Of a coordinate: what it may differ by from what a support makes of it."""
 FREE = 1e-14
 """Of the fastest vibration's square: a stiffness this small is none."""
 
@@ -179,6 +182,20 @@ class StaticProblem(StaticState):
         s = self.engine.state()["s"]
         past = np.maximum(-s, s - ends)
         return bool(np.all(past <= self.settings.tolerance * self.size))
+
+
+def fitted(kept: dict, model: Model) -> dict:
+    """Return a static state as the supports of a model have it, which may be drawn elsewhere than where it was found:
+    what they fix is as drawn, what they tie follows, and what is free stays to the bit.
+    """
+    if not model.cables:
+        return kept
+    own = slice(0, model.cables[-1].coordinates.stop)
+    q, drawn = kept["q"].copy(), model.q[own]
+    change = q[own] - drawn
+    left = as_supports_leave(change, model.unknown_of_dof[own], model.combinations)
+    q[own] = np.where(np.abs(left - change) > ROUNDED * (1 + np.abs(q[own])), drawn + left, q[own])
+    return kept | {"q": q}
 
 
 def _point_entries(model: Model) -> np.ndarray:
