@@ -238,3 +238,12 @@ def test_a_search_that_begins_at_a_state_takes_the_supports_as_they_are_now():
     from_there = moved.equilibrium(start=rest)
     assert from_there["wire.position"][-1] == pytest.approx([50, 1, 0])
     assert from_there["wire.position"] == pytest.approx(moved.equilibrium()["wire.position"], abs=1e-8)
+
+
+def test_runs_and_modes_take_no_state_whose_supports_are_elsewhere():
+    scene = wire(length=49.9)
+    rest = scene.equilibrium()
+    moved = scene.replace("wire", end=(50, 1, 0))
+    for start in (lambda: moved.run(duration=0.01, initial=rest), lambda: moved.modes(2, about=rest)):
+        with pytest.raises(fu.SceneError, match="has a support 1 m from where it is here"):
+            start()

@@ -202,7 +202,15 @@ class RestState(NamedArrays):
                                  f"was adjusted, here it is {here}", "take the state's own scene: rest.scene")
 
     def start(self, model: Model, scene: SceneData) -> None:
-        """Put a freshly built model of the scene into this state."""
+        """Put a freshly built model of the scene into this state. Raises SceneError where supports are elsewhere."""
+        if model.cables:
+            own = slice(0, model.cables[-1].coordinates.stop)
+            fixed = model.unknown_of_dof[own] == -1
+            fixed[[motion.dof for motion in model.motions if motion.dof < own.stop]] = False
+            moved = np.abs(self.static_state["q"][own] - model.q[own]) * model.weight[own] * fixed
+            if np.max(moved) > 1e-6 * max(cable.length * cable.n_elements for cable in model.cables):
+                raise SceneError("scene", f"the state to start from has a support {np.max(moved):.3g} m from where it "
+                                 "is here", "take an equilibrium of this scene")
         model.q = self.static_state["q"].copy()
         for slide, s in zip(model.slides, self.static_state["s"], strict=True):
             slide.place_at(float(s), model.cables[slide.cable])
