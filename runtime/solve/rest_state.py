@@ -201,8 +201,8 @@ class RestState(NamedArrays):
                 raise SceneError("scene", f"the state to start from is at rest with {name} = {value:.9g}, to which it "
                                  f"was adjusted, here it is {here}", "take the state's own scene: rest.scene")
 
-    def start(self, model: Model, scene: SceneData) -> None:
-        """Put a freshly built model of the scene into this state. Raises SceneError where supports are elsewhere."""
+    def check_supports(self, model: Model) -> None:
+        """Raise SceneError where supports are drawn elsewhere in a freshly built model than they are in this state."""
         if model.cables:
             own = slice(0, model.cables[-1].coordinates.stop)
             fixed = model.unknown_of_dof[own] == -1
@@ -211,6 +211,10 @@ class RestState(NamedArrays):
             if np.max(moved) > 1e-6 * max(cable.length * cable.n_elements for cable in model.cables):
                 raise SceneError("scene", f"the state to start from has a support {np.max(moved):.3g} m from where it "
                                  "is here", "take an equilibrium of this scene")
+
+    def start(self, model: Model, scene: SceneData) -> None:
+        """Put a freshly built model of the scene into this state. Raises SceneError where supports are elsewhere."""
+        self.check_supports(model)
         model.q = self.static_state["q"].copy()
         for slide, s in zip(model.slides, self.static_state["s"], strict=True):
             slide.place_at(float(s), model.cables[slide.cable])
