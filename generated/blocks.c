@@ -55,11 +55,12 @@ FU_HELPER void scatter(double *to, const fu_real *from, int n)
 
 FU_BLOCK_TARGET static void block_beam24_continuum_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real A[61];
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 61, of->A_stride);
         beam24_continuum_elastic_force(l, e, A, f);
@@ -69,13 +70,14 @@ FU_BLOCK_TARGET static void block_beam24_continuum_elastic_force(int n, const fu
 
 FU_BLOCK_TARGET static void block_beam24_continuum_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real v[24];
     fu_real A[61];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 61, of->A_stride);
@@ -86,11 +88,12 @@ FU_BLOCK_TARGET static void block_beam24_continuum_damping_force(int n, const fu
 
 FU_BLOCK_TARGET static void block_beam24_continuum_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real A[495];
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 495, of->A_stride);
         beam24_continuum_curved_elastic_force(l, e, A, f);
@@ -100,11 +103,12 @@ FU_BLOCK_TARGET static void block_beam24_continuum_curved_elastic_force(int n, c
 
 FU_BLOCK_TARGET static void block_beam24_structural_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real A[31];
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
         beam24_structural_elastic_force(l, e, A, f);
@@ -114,13 +118,14 @@ FU_BLOCK_TARGET static void block_beam24_structural_elastic_force(int n, const f
 
 FU_BLOCK_TARGET static void block_beam24_structural_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[24];
     fu_real v[24];
     fu_real A[31];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[24];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
@@ -131,11 +136,12 @@ FU_BLOCK_TARGET static void block_beam24_structural_damping_force(int n, const f
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_green_exact_elastic_force(l, e, A, f);
@@ -145,11 +151,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_green_exact_elastic_tangent(l, e, A, K);
@@ -159,13 +166,14 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_tangent(int n, con
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -176,11 +184,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_damping_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable12_green_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_green_linear_elastic_force(l, e, A, f);
@@ -190,11 +199,12 @@ FU_BLOCK_TARGET static void block_cable12_green_linear_elastic_force(int n, cons
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_engineering_exact_elastic_force(l, e, A, f);
@@ -204,11 +214,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_force(int n,
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_engineering_exact_elastic_tangent(l, e, A, K);
@@ -218,13 +229,14 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_tangent(int 
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -235,11 +247,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_damping_force(int n,
 
 FU_BLOCK_TARGET static void block_cable12_engineering_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[2];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_engineering_linear_elastic_force(l, e, A, f);
@@ -249,11 +262,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_linear_elastic_force(int n
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_green_exact_assumed_elastic_force(l, e, A, f);
@@ -263,11 +277,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_force(int 
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_green_exact_assumed_elastic_tangent(l, e, A, K);
@@ -277,11 +292,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_tangent(in
 
 FU_BLOCK_TARGET static void block_cable12_green_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_green_linear_assumed_elastic_force(l, e, A, f);
@@ -291,11 +307,12 @@ FU_BLOCK_TARGET static void block_cable12_green_linear_assumed_elastic_force(int
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_exact_assumed_elastic_force(l, e, A, f);
@@ -305,11 +322,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_forc
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_exact_assumed_elastic_tangent(l, e, A, K);
@@ -319,11 +337,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_tang
 
 FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_linear_assumed_elastic_force(l, e, A, f);
@@ -333,11 +352,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_for
 
 FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[3];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable12_engineering_linear_assumed_elastic_tangent(l, e, A, K);
@@ -347,11 +367,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_tan
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_green_exact_curved_elastic_force(l, e, A, f);
@@ -361,11 +382,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_force(int n
 
 FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_green_exact_curved_elastic_tangent(l, e, A, K);
@@ -375,11 +397,12 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_tangent(int
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_engineering_exact_curved_elastic_force(l, e, A, f);
@@ -389,11 +412,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_force
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[32];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
         cable12_engineering_exact_curved_elastic_tangent(l, e, A, K);
@@ -403,11 +427,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_tange
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[4];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
         cable12_engineering_exact_tension_only_elastic_force(l, e, A, f);
@@ -417,11 +442,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic
 
 FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[4];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
         cable12_engineering_exact_tension_only_elastic_tangent(l, e, A, K);
@@ -431,11 +457,12 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic
 
 FU_BLOCK_TARGET static void block_cable18_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[2];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable18_green_exact_elastic_force(l, e, A, f);
@@ -445,13 +472,14 @@ FU_BLOCK_TARGET static void block_cable18_green_exact_elastic_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable18_green_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real v[18];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -462,11 +490,12 @@ FU_BLOCK_TARGET static void block_cable18_green_exact_damping_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable18_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[2];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable18_engineering_exact_elastic_force(l, e, A, f);
@@ -476,13 +505,14 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_elastic_force(int n,
 
 FU_BLOCK_TARGET static void block_cable18_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real v[18];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -493,11 +523,12 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_damping_force(int n,
 
 FU_BLOCK_TARGET static void block_cable18_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[3];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable18_green_exact_assumed_elastic_force(l, e, A, f);
@@ -507,11 +538,12 @@ FU_BLOCK_TARGET static void block_cable18_green_exact_assumed_elastic_force(int 
 
 FU_BLOCK_TARGET static void block_cable18_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[18];
     fu_real A[3];
     fu_real f[18];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable18_engineering_exact_assumed_elastic_force(l, e, A, f);
@@ -521,11 +553,12 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_assumed_elastic_forc
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[31];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
         beam12p_continuum_elastic_force(l, e, A, f);
@@ -535,11 +568,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_force(int n, const f
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[31];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
         beam12p_continuum_elastic_tangent(l, e, A, K);
@@ -549,13 +583,14 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_tangent(int n, const
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[31];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
@@ -566,11 +601,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_damping_force(int n, const f
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[166];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 166, of->A_stride);
         beam12p_continuum_curved_elastic_force(l, e, A, f);
@@ -580,11 +616,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_force(int n, 
 
 FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[166];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 166, of->A_stride);
         beam12p_continuum_curved_elastic_tangent(l, e, A, K);
@@ -594,11 +631,12 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_tangent(int n
 
 FU_BLOCK_TARGET static void block_beam12p_structural_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[15];
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
         beam12p_structural_elastic_force(l, e, A, f);
@@ -608,11 +646,12 @@ FU_BLOCK_TARGET static void block_beam12p_structural_elastic_force(int n, const 
 
 FU_BLOCK_TARGET static void block_beam12p_structural_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real A[15];
     fu_real K[144];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
         beam12p_structural_elastic_tangent(l, e, A, K);
@@ -622,13 +661,14 @@ FU_BLOCK_TARGET static void block_beam12p_structural_elastic_tangent(int n, cons
 
 FU_BLOCK_TARGET static void block_beam12p_structural_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[12];
     fu_real v[12];
     fu_real A[15];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[12];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
@@ -639,11 +679,12 @@ FU_BLOCK_TARGET static void block_beam12p_structural_damping_force(int n, const 
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_green_exact_elastic_force(l, e, A, f);
@@ -653,11 +694,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_green_exact_elastic_tangent(l, e, A, K);
@@ -667,13 +709,14 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_tangent(int n, con
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real v[8];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -684,11 +727,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_damping_force(int n, const
 
 FU_BLOCK_TARGET static void block_cable8p_green_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_green_linear_elastic_force(l, e, A, f);
@@ -698,11 +742,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_linear_elastic_force(int n, cons
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_exact_elastic_force(l, e, A, f);
@@ -712,11 +757,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_force(int n,
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_exact_elastic_tangent(l, e, A, K);
@@ -726,13 +772,14 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_tangent(int 
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real v[8];
     fu_real A[2];
     fu_real tau = FU_NUMBER(of->tau);
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
@@ -743,11 +790,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_damping_force(int n,
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_linear_elastic_force(l, e, A, f);
@@ -757,11 +805,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_force(int n
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[2];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_linear_elastic_tangent(l, e, A, K);
@@ -771,11 +820,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_tangent(int
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_exact_assumed_elastic_force(l, e, A, f);
@@ -785,11 +835,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_force(int 
 
 FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_exact_assumed_elastic_tangent(l, e, A, K);
@@ -799,11 +850,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_tangent(in
 
 FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_linear_assumed_elastic_force(l, e, A, f);
@@ -813,11 +865,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_force(int
 
 FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_green_linear_assumed_elastic_tangent(l, e, A, K);
@@ -827,11 +880,12 @@ FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_tangent(i
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_exact_assumed_elastic_force(l, e, A, f);
@@ -841,11 +895,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_forc
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_exact_assumed_elastic_tangent(l, e, A, K);
@@ -855,11 +910,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_tang
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_linear_assumed_elastic_force(l, e, A, f);
@@ -869,11 +925,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_for
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[3];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
         cable8p_engineering_linear_assumed_elastic_tangent(l, e, A, K);
@@ -883,11 +940,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_tan
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic_force(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[4];
     fu_real f[8];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
         cable8p_engineering_exact_tension_only_elastic_force(l, e, A, f);
@@ -897,11 +955,12 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic
 
 FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic_tangent(int n, const fu_elements *of, double *out)
 {
-    fu_real l = FU_NUMBER(of->l);
+    fu_real l = FU_NUMBER(*of->l);
     fu_real e[8];
     fu_real A[4];
     fu_real K[64];
     for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
         gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
         cable8p_engineering_exact_tension_only_elastic_tangent(l, e, A, K);

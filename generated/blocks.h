@@ -9,11 +9,12 @@
 #define FU_BLOCK_ELEMENTS 4 /* they take multiples of so many */
 
 /* Consecutive elements: length, retardation time, coordinates and rates of the first with what lies between two first
- * nodes, constants of the law with what lies between two elements' (zero: they are equal). */
+ * nodes, lengths and constants of the law with what lies between two elements' (zero: they are equal). */
 typedef struct {
-    double l, tau;
+    const double *l;
+    double tau;
     const double *e, *v, *A;
-    int per_node, A_stride;
+    int per_node, A_stride, l_stride;
 } fu_elements;
 
 /* out: element after element what the kernel gives of one */

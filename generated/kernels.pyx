@@ -10,10 +10,12 @@ import inspect
 import json
 from functools import cache
 from importlib import resources
+from math import prod
 
 import numpy as np
 from funicular.generated import described
 
+from cpython.buffer cimport PyBUF_SIMPLE, PyBuffer_Release, PyObject_GetBuffer
 from cpython.pycapsule cimport PyCapsule_New
 
 cdef extern from "kernels.h" nogil:
@@ -25,6 +27,9 @@ cdef extern from "kernels.h" nogil:
     const fu_tables fu_all
     const fu_kernel fu_kernels[]
     const int fu_n_kernels
+
+cdef enum:
+    MOST_ARRAYS = 64  # of a kernel, its arguments and results
 
 
 tables = PyCapsule_New(<void *>&fu_all, "funicular.generated.kernels.tables", NULL)
@@ -57,11 +62,11 @@ def _function(name, int place):
     outputs = [tuple(a["shape"]) for a in entry["outputs"]]
 
     def kernel(*args, **kwargs):
-        given = signature.bind(*args, **kwargs).arguments
-        arrays = [_array(name, argument, shape, given[argument]) for argument, shape in inputs]
+        if kwargs or len(args) != len(inputs):
+            args = signature.bind(*args, **kwargs).args
+        arrays = [_array(name, argument, shape, value) for (argument, shape), value in zip(inputs, args)]
         results = [np.empty(shape) for shape in outputs]
-        _call(place, np.array([a.ctypes.data for a in arrays], dtype=np.uintp),
-              np.array([r.ctypes.data for r in results], dtype=np.uintp))
+        _call(place, arrays, results)
         return results[0] if len(results) == 1 else tuple(results)
 
     lines = [f"    {a['name']} {tuple(a['shape'])} [{a['unit']}]: {a['doc']}" for a in entry["inputs"] + entry["outputs"]]
@@ -76,8 +81,8 @@ def _function(name, int place):
             raise TypeError(f"{name} takes ({', '.join(argument for argument, _ in inputs)})")
         arrays = [_rows(name, argument, shape, n, value) for (argument, shape), value in zip(inputs, given)]
         results = [np.empty((n, *shape)) for shape in outputs]
-        steps = [0 if alike else a.nbytes // n for a, alike in arrays] + [8 * int(np.prod(shape)) for shape in outputs]
-        _call_rows(place, n, np.array([a.ctypes.data for a, _ in arrays] + [r.ctypes.data for r in results],
+        steps = [0 if alike else a.nbytes // n for a, alike in arrays] + [8 * prod(shape) for shape in outputs]
+        _call_rows(place, n, np.array([_address(a) for a, _ in arrays] + [_address(r) for r in results],
                                       dtype=np.uintp), np.array(steps, dtype=np.uintp), len(arrays))
         return results[0] if len(results) == 1 else tuple(results)
 
@@ -87,8 +92,8 @@ def _function(name, int place):
 
 
 def _array(kernel, name, shape, value):
-    array = np.ascontiguousarray(value, dtype=float)
-    if array.size != np.prod(shape, dtype=int):
+    array = np.asarray(value, dtype=float, order="C")
+    if array.size != prod(shape):
         raise ValueError(f"{kernel}: argument {name} must have shape {shape}, got {array.shape}")
     return array
 
@@ -113,8 +118,26 @@ cdef _call_rows(int place, int n, pointers, steps, int n_inputs):
                 at[i] += by[i]
 
 
-cdef _call(int place, inputs, outputs):
-    """Run a kernel on arrays of pointers."""
-    cdef size_t a = inputs.ctypes.data, out = outputs.ctypes.data
+cdef size_t _address(array) except? 0:
+    """Return where a contiguous array is."""
+    cdef Py_buffer view
+    PyObject_GetBuffer(array, &view, PyBUF_SIMPLE)
+    cdef size_t address = <size_t>view.buf
+    PyBuffer_Release(&view)
+    return address
+
+
+cdef _call(int place, list inputs, list outputs):
+    """Run a kernel on arrays."""
+    cdef size_t at[MOST_ARRAYS]
+    cdef int k = 0, n = len(inputs)
+    if n + len(outputs) > MOST_ARRAYS:
+        raise ValueError("more arrays than a kernel may have")
+    for array in inputs:
+        at[k] = _address(array)
+        k += 1
+    for array in outputs:
+        at[k] = _address(array)
+        k += 1
     with nogil:
-        fu_kernels[place].call(<const double *const *>a, <double *const *>out)
+        fu_kernels[place].call(<const double *const *>at, <double *const *>(at + n))

@@ -142,6 +142,7 @@ def choose(
     quantities: Annotated[str | None, typer.Option(help="results that count, such as A.position,trolley.force "
                                                    "(default: the motion)")] = None,
     free: Annotated[str, typer.Option(help="unset: choose what the scene leaves out; all: choose all")] = "unset",
+    unequal: Annotated[bool, typer.Option("--unequal", help="try elements of unequal lengths, too")] = False,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE.toml",
                                                 help="scene file to write, with the chosen models")] = None,
     library: Libraries = None,
@@ -152,7 +153,7 @@ def choose(
     with _reported_without_traceback():
         described = load_scene(scene, library or ())
         chosen = described.choose(tol, duration=duration, quantities=quantities.split(",") if quantities else (),
-                                  free=free)
+                                  free=free, unequal=unequal)
         print(chosen)
         if output is not None:
             output.write_text(chosen.scene.to_toml(), encoding="utf-8")

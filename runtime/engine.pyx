@@ -5,11 +5,15 @@ The engine is C and not Cython because `cimport` does not work across the mapped
 generated kernels and the engine is a C header.
 """
 
+from math import prod
+
 import numpy as np
 
 from cpython.exc cimport PyErr_CheckSignals
 from cpython.mem cimport PyMem_Calloc, PyMem_Free
 from cpython.pycapsule cimport PyCapsule_GetName, PyCapsule_GetPointer
+from libc.stdlib cimport calloc, free, realloc
+from libc.string cimport memcpy
 
 from funicular.generated import kernels
 from funicular.operating_system import machine_memory
@@ -153,8 +157,8 @@ cdef class Engine(Report):
         fu_coupling_watches(&self.model, self.watches + n)
         run = &self.run
         run.n_watches, run.watches = n + own, self.watches
-        run.watched, run.late = self._doubles(np.zeros(run.n_watches)), self._ints(np.zeros(run.n_watches))
-        run.watch_work = self._doubles(np.zeros(self.model.n_dof + self.model.n_outputs))
+        run.watched, run.late = self._zeros(run.n_watches), self._int_zeros(run.n_watches)
+        run.watch_work = self._zeros(self.model.n_dof + self.model.n_outputs)
 
     def _knots(self, times, jumps):
         """Let steps end at these instants."""
@@ -187,7 +191,7 @@ cdef class Engine(Report):
         m = &self.model
         for k in range(FU_N_RECORD_ARRAYS):
             array = fu_record_array(&self.model, &run.record, k)
-            shape = (rows, array.items) if array.axes == 2 else rows
+            shape = (rows, array.items) if array.axes == 2 else (rows,)
             fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
         output = self.arrays.pop("output")
         for kind in ("slide", "joint", "point_force"):

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from threading import Event
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from .errors import FunicularError, SceneError
+from .integrators import AUTO
 from .parts.settings import RunSettings
 from .parts.validation import shown
 from .results.run import Run
 from .scene import Scene
+from .solve.shared_trials import SharedTrials
 from .solve.threads import available, one_blas_thread
 
 Result: TypeAlias = Run | dict[str, np.ndarray] | FunicularError
@@ -40,10 +42,12 @@ def run_many(scenes: Iterable[Scene | Callable[[], Scene]], *, threads: int | No
     scenes that run at once, by default as many as there are processors. keep: names of results such as
     ``["A.position"]``. settings: as for `Scene.run`, but for save, resume and progress.
 
-    Yields, for each scene, its `Run`, the same bit for bit as ``scene.run(**settings)`` returns; with ``keep`` a dict
-    of its arrays by these names, with ``"time"`` in it. A scene that fails yields its `FunicularError`, without a
-    traceback, and the others go on. What is left of the scenes is given up where the iteration ends early, after Ctrl-C
-    too. Raises SceneError for settings that no scene can take, and whatever else a function of ``scenes`` raises.
+    Yields, for each scene, its `Run`, bit for bit what ``scene.run(**settings)`` returns where the integrator is the
+    same; with ``keep`` a dict of its arrays by these names, with ``"time"`` in it. The first scene is run before the
+    others: an integrator that loses its trial there is not tried again with scenes of its shape, see
+    `solve.shared_trials`. A scene that fails yields its `FunicularError`, without a traceback, and the others go on.
+    What is left of the scenes is given up where the iteration ends early, after Ctrl-C too. Raises SceneError for
+    settings that no scene can take, and whatever else a function of ``scenes`` raises.
 
     >>> import funicular as fu
     >>> scene = fu.load_scene("paper51")
@@ -99,16 +103,20 @@ def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: 
             if scene.run_settings.get("save") is not None:
                 raise SceneError("run", '"save" in the scene\'s settings names a file of one run',
                                  "leave it out where many scenes run")
-            run = scene.run(**settings, threads=1, progress=watch)
+            run = scene._run(settings | {"threads": 1}, False, watch, trials)
             return run if keep is None else {"time": run.time} | {name: run[name] for name in keep}
         except FunicularError as error:
             return _bare(error)
 
+    trials = SharedTrials(is_open=settings.get("integrator") in (None, AUTO) and settings.get("step") is None)
     waiting: deque[Future[Result]] = deque()
     with one_blas_thread, ThreadPoolExecutor(threads, "funicular") as pool:
         try:
             for scene in scenes:
                 waiting.append(pool.submit(result, scene))
+                if trials.is_open:  # the others go by what the first scene finds, however many threads there are
+                    wait(waiting)
+                    trials.is_open = False
                 if len(waiting) >= AHEAD * threads:
                     yield waiting.popleft().result()
             while waiting:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,10 +23,20 @@ def cross(first: ArrayLike, second: ArrayLike) -> np.ndarray:
 
 def rotate(quaternion: ArrayLike, vector: ArrayLike) -> np.ndarray:
     """Return vectors (..., 3) given in body axes in the ground's, by unit quaternions (..., 4)."""
+    if isinstance(quaternion, tuple) and isinstance(vector, tuple) and isinstance(vector[0], float):
+        return np.array(_rotated(quaternion, vector))
     components, drawn = np.asarray(quaternion), np.asarray(vector)
     w, axis = components[..., :1], components[..., 1:]
     turn = 2 * cross(axis, drawn)
     return drawn + w * turn + cross(axis, turn)
+
+
+def _rotated(quaternion: tuple[Any, ...], vector: tuple[Any, ...]) -> list[float]:
+    """Return what `rotate` does of one vector, of numbers, in a tenth of its time."""
+    (w, i, j, k), (x, y, z) = quaternion, vector
+    turn = u, v, t = 2 * (j * z - k * y), 2 * (k * x - i * z), 2 * (i * y - j * x)
+    twice = j * t - k * v, k * u - i * t, i * v - j * u
+    return [drawn + w * once + again for drawn, once, again in zip(vector, turn, twice, strict=True)]
 
 
 def product(first: ArrayLike, second: ArrayLike) -> np.ndarray:
@@ -42,3 +52,21 @@ def turned_by(rotation: ArrayLike) -> np.ndarray:
     vector = np.asarray(rotation, dtype=float)
     half = np.linalg.norm(vector, axis=-1, keepdims=True) / 2
     return np.concatenate([np.cos(half), vector * np.sinc(half / np.pi) / 2], axis=-1)
+
+
+def quaternion(A: np.ndarray) -> np.ndarray:
+    """Return (4,): unit quaternion of a rotation matrix (3, 3), by its largest component."""
+    squares = np.array([A.trace(), *(2 * np.diag(A) - A.trace())]) + 1
+    k = int(np.argmax(squares))
+    skew = np.array([A[2, 1] - A[1, 2], A[0, 2] - A[2, 0], A[1, 0] - A[0, 1]])
+    if k == 0:
+        q = np.concatenate([squares[:1], skew])
+    else:
+        q = np.concatenate([skew[k - 1 : k], (A + A.T)[k - 1]])
+        q[k] = squares[k]
+    return q / np.linalg.norm(q)
+
+
+def conjugate(rotation: ArrayLike) -> np.ndarray:
+    """Return the unit quaternions (..., 4) of the rotations back."""
+    return np.asarray(rotation) * np.array([1.0, -1.0, -1.0, -1.0])

@@ -17,6 +17,7 @@ from .errors import (
     enough_memory,
     near,
 )
+from .parts.laid import laid
 from .parts.modal_body import ModalBody
 from .parts.part import Part
 from .parts.scene_text import dumps, read
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from .results.equilibrium import Equilibrium
     from .results.modes import Modes
     from .solve.run import Start
+    from .solve.shared_trials import SharedTrials
     from .view.animation import Animation
 
 P = TypeVar("P", bound=Part)
@@ -85,7 +87,8 @@ class Scene(Viewable, SceneMethods):
         """Return a scene like this one with other values of one part, checked as any scene is; this one stays.
 
         part: its name, or the part itself; changes: by the keywords that such a part is made with, such as
-        ``scene.replace("trolley", friction=fu.Friction(coefficient=0.1))``. Raises SceneError.
+        ``scene.replace("trolley", friction=fu.Friction(coefficient=0.1))``; None leaves out what was given. Raises
+        SceneError.
 
         >>> import funicular as fu
         >>> scene = fu.load_scene("paper51")
@@ -173,12 +176,20 @@ class Scene(Viewable, SceneMethods):
         everything up to then. Ctrl-C returns what was computed, with a `FunicularWarning`.
         """
         _refuse_unknown("run", unknown, (*RunSettings.keywords(), "resume", "progress"))
-        state = None if initial is None or isinstance(initial, str) else _state(self, initial)
         given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
                  "output_step": output_step, "integrator": integrator, "spectral_radius": spectral_radius,
-                 "threads": threads, "save": save, "estimate": estimate, "model": model,
-                 "initial": initial if state is None else "state" if isinstance(initial, Mapping) else "equilibrium"}
-        settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
+                 "threads": threads, "save": save, "estimate": estimate, "model": model, "initial": initial}
+        return self._run(given, resume, progress)
+
+    def _run(self, settings_given: Mapping[str, Any], resume: bool, progress: bool | Callable[[float], None] | None,
+             trials: SharedTrials | None = None) -> Run:
+        """Return the run with these settings, None for those not given, see `run`; trials: of scenes of one shape."""
+        given = {name: value for name, value in settings_given.items() if value is not None}
+        initial = given.get("initial")
+        state = None if initial is None or isinstance(initial, str) else _state(self, initial)
+        if state is not None:
+            given["initial"] = "state" if isinstance(initial, Mapping) else "equilibrium"
+        settings = RunSettings(**self.run_settings | given)
         if settings.initial == "state" and state is None:
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
         chosen = self._chosen_for(settings)
@@ -186,10 +197,10 @@ class Scene(Viewable, SceneMethods):
         scene, state = scene._adjusted(settings, state)
         scene._check_for(settings)
         _check_resume(resume, settings)
-        run = scene._simulated(settings, state, resume, progress, chosen)
+        run = scene._simulated(settings, state, resume, progress, chosen, trials)
         _raise_where_stopped(run)
         if run.status == "interrupted":
-            warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
+            warnings.warn(run.report["message"], FunicularWarning, stacklevel=3)
         return run
 
     def _adjusted(self, settings: RunSettings, state: Start | None) -> tuple[Self, Start | None]:
@@ -202,7 +213,8 @@ class Scene(Viewable, SceneMethods):
         return cast(Self, rest.scene), rest
 
     def choose(self, tol: float | None = None, *, duration: float | None = None, quantities: Sequence[str] = (),
-               free: str = "unset", initial: str | None = None, integrator: str | None = None) -> Choice[Self]:
+               free: str = "unset", initial: str | None = None, integrator: str | None = None,
+               unequal: bool = False) -> Choice[Self]:
         """Choose element, law and mesh of each cable, and the integrator, so that a run errs by less than ``tol``.
 
         tol: of the error of model and mesh, against the finest model at hand, with that of time, over the largest
@@ -210,14 +222,14 @@ class Scene(Viewable, SceneMethods):
         "A.position" or "trolley.force"; the motion of all cables and bodies if none is named. free: "unset" chooses
         what was not given: the number of elements of cables without ``elements``, element and law of those without
         ``element``; "all" chooses all. duration in s, initial and integrator are those of the run, by default the scene
-        file's.
+        file's. unequal: elements of unequal lengths are tried, too, and taken where they save a third.
 
         It is decided by short runs on coarse meshes and by what they indicate. The choice has the chosen ``scene``,
         ``reasons`` and ``table``, the alternatives with their estimated errors and costs; print it. Raises SceneError.
         """
         given = {"tol": tol, "duration": duration, "initial": initial, "integrator": integrator}
         settings = RunSettings(**{"tol": 1e-3} | self.run_settings | {k: v for k, v in given.items() if v is not None})
-        return self._choose(settings, quantities, free)
+        return self._choose(settings, quantities, free, unequal)
 
     def _chosen_for(self, settings: RunSettings) -> Choice[Self] | None:
         """Return the choice where a run needs one: where that is asked for, or elements were left out; else None."""
@@ -226,10 +238,11 @@ class Scene(Viewable, SceneMethods):
         if not any(cable.is_open for cable in self.cables.values()):
             return None
         chosen = self._choose(settings, settings.quantities or (), "unset")
-        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=3)  # which nobody has asked for
+        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=4)  # which nobody has asked for
         return chosen
 
-    def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str) -> Choice[Self]:
+    def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str,
+                unequal: bool = False) -> Choice[Self]:
         """Return the choice for a run with these settings."""
         from .choice.choosing import choose  # runs, which bring SciPy
 
@@ -241,10 +254,11 @@ class Scene(Viewable, SceneMethods):
                 raise KeyboardInterrupt
             return run
 
-        return choose(self, settings, quantities, free, simulate)
+        return choose(self, settings, quantities, free, simulate, unequal)
 
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
-                   progress: bool | Callable[[float], None] | None, chosen: Choice | None = None) -> Run:
+                   progress: bool | Callable[[float], None] | None, chosen: Choice | None = None,
+                   trials: SharedTrials | None = None) -> Run:
         """Return the run with these settings, however it ended, from a state or as the settings say."""
         from .results.streaming import Stream  # brings SciPy and the engine
 
@@ -259,9 +273,10 @@ class Scene(Viewable, SceneMethods):
             from .results.recording import recorded  # likewise
             from .solve.run import simulate
 
+            flat = laid(self)
             with progress_bar(settings.duration, progress) as on_progress:
-                simulation = simulate(self, settings, on_progress, initial=state, stream=stream)
-            recording = recorded(simulation, self, settings)
+                simulation = simulate(flat, settings, on_progress, initial=state, stream=stream, trials=trials)
+            recording = recorded(simulation, flat, settings)
             if chosen is not None:
                 recording.report["choice"] = chosen.facts()
                 recording.report["messages"] = [*chosen.messages(), *recording.report["messages"]]
@@ -284,7 +299,7 @@ class Scene(Viewable, SceneMethods):
             return other.run(**kept | changes | ({} if state is None else {"initial": state}), progress=False)
 
         if run.status != "completed":
-            run.report["messages"].append(f"the run's errors are not estimated: it is {run.status}")
+            run.report["messages"].append(f"the run's errors are not estimated: it ended with status \"{run.status}\"")
             return
         found = error_estimate(self, run, settings, state is not None, again)
         run.report["errors"] = found.as_report()
@@ -333,7 +348,7 @@ class Scene(Viewable, SceneMethods):
 
         with one_blas_thread, enough_memory():
             if settings.adjust is None:
-                return equilibrium(self, settings, begin, Equilibrium)
+                return equilibrium(laid(self), settings, begin, Equilibrium)
 
             from .results.targets import reader
             from .solve.adjustment import adjusted
@@ -361,7 +376,7 @@ class Scene(Viewable, SceneMethods):
 
         check_comes_to_rest(self)
         with one_blas_thread, enough_memory():
-            return relax(self, settings, Equilibrium)
+            return relax(laid(self), settings, Equilibrium)
 
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
         """Return the ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from
@@ -378,7 +393,7 @@ class Scene(Viewable, SceneMethods):
         from .solve.modes import modes
 
         with one_blas_thread, enough_memory():
-            return Modes.of(modes(self, settings.n, state), self, state)
+            return Modes.of(modes(laid(self), settings.n, state), self, state)
 
     def animation(self, title: str | None = None) -> Animation:
         """Return the scene as it is drawn, before it runs, as pictures show it; see `Viewable.animation`."""

@@ -47,6 +47,7 @@ class SceneMethods(SceneData):
         curve: Callable[..., Any] | None = None,
         shape: str | None = None,
         elements: int | None = None,
+        nodes: Numbers | None = None,
         library: str | os.PathLike[str] | None = None,
         element: str = "beam24",
         law: str | None = None,

@@ -49,7 +49,7 @@ OTHERS = (Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Soli
 """What signatures need beside the kinds of parts."""
 
 TYPES = {
-    "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points",
+    "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points", "nodes": "Numbers",
     "AnySection": "Section", "AnySolid": "Solid", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
     "CableEnd": "str | Stop",
     "ForceTable": "ForceTable | dict[str, Numbers]",
@@ -58,9 +58,10 @@ TYPES = {
     "float": "float", "str": "str", "int": "int", "bool": "bool", "Callable": "Callable[..., Any]",
     "Any": "Callable[..., Any]",
 }
-"""What may be given for fields that are annotated so; ``inertia`` and ``points`` are fields of their own."""
+"""What may be given for fields that are annotated so; ``inertia``, ``points`` and ``nodes`` are fields of their own."""
 
-BY_NAME = {"inertia": "inertia", "points": "points", "library": "path", "data": "path", "body": "rider"}
+BY_NAME = {"inertia": "inertia", "points": "points", "nodes": "nodes", "library": "path", "data": "path",
+           "body": "rider"}
 PATHS = {"path": "str | os.PathLike[str]", "rider": "Named | tuple[Named, float] | Numbers"}
 
 

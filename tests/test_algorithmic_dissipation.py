@@ -95,8 +95,8 @@ def test_energy_with_what_is_stored_decays_in_every_step(kind):
     lag, viscosity, _, _ = method.parameters
     cable, engine, stored = model.cables[0], Engine(model), []
     EA, EI = np.ravel(cable.A)[:2]
-    axial = EA * cable.length / 2 * np.polynomial.legendre.leggauss(3)[1]
-    bending = 2 * EI / cable.length * np.repeat(np.polynomial.legendre.leggauss(2)[1], model.dim)
+    axial = EA * cable.mesh.mean / 2 * np.polynomial.legendre.leggauss(3)[1]
+    bending = 2 * EI / cable.mesh.mean * np.repeat(np.polynomial.legendre.leggauss(2)[1], model.dim)
     stiffness = np.concatenate([axial, bending])
 
     def look():

@@ -1,5 +1,7 @@
 """The model for a tolerance: what is chosen of cables, by what indicators, and how true the estimate is."""
 
+from types import SimpleNamespace
+
 import funicular as fu
 import numpy as np
 import pytest
@@ -9,7 +11,9 @@ from funicular.choice.deciding import balanced
 from funicular.choice.indicators import deformation, shear_compliance, softened
 from funicular.choice.mesh_error import mesh_error
 from funicular.choice.motion import along, motion
+from funicular.choice.probes import Probe, Prober
 from funicular.choice.remaking import CableModel, coarsest, remade
+from funicular.choice.time_error import compared
 from funicular.results.trajectories import distance, largest_change
 from model_cells import models
 from model_choice import chosen, simulate, true_error
@@ -130,6 +134,59 @@ def test_errors_of_meshes_follow_from_their_differences():
     assert mesh_error([2, 4], [np.inf]).error == np.inf
 
 
+def test_differences_that_grew_before_they_fell_are_of_a_lower_order():
+    grown = mesh_error([2, 4, 8, 16], [5e-3, 9e-3, 3e-3])
+    assert grown.order == pytest.approx((0.7 + np.log2(3)) / 2) and grown.trusted == 2
+
+
+def _probe(work: float, steps: int = 500, iterations: int = 600):
+    report = {"integrator": "radau", "steps": steps, "newton_iterations": iterations}
+    return SimpleNamespace(work=work, run=SimpleNamespace(report=report))
+
+
+@pytest.mark.parametrize("rate", [0.2, 0.5, 1.6])
+def test_probes_are_looser_than_the_run_whose_error_in_time_they_tell(rate):
+    tried = []
+
+    def probe(integrator, tol):
+        tried.append(tol)
+        return _probe(1000.0 if integrator == "auto" else 800.0)
+
+    found = compared(probe, lambda one, other: rate * tried[-1], "auto", 1e-4)
+    assert tried == [4e-4, 4e-4] and found.integrator == found.probed == "genalpha"
+    assert found.tol == pytest.approx(min(1e-4, 0.5e-4 / rate)) and found.error == pytest.approx(rate * found.tol)
+    assert found.probe_tol == pytest.approx(min(4e-4, 3e-4 / rate))
+    assert found.longer == pytest.approx((found.probe_tol / found.tol) ** 0.5)  # of second order
+    tight = found.tightened(1e-4)
+    if rate < 0.25:  # what their steps err by is less than the tolerance
+        assert tight is None
+    else:
+        assert tight.probe_tol * rate == pytest.approx(1e-4) and tight.tightened(1e-4) is None
+        assert tight.noise < found.noise
+
+
+def test_steps_that_other_things_bound_do_not_tell_their_error():
+    few, laboured = _probe(100.0, steps=30), _probe(100.0, iterations=3000)
+    for other in (few, laboured):
+        found = compared(lambda integrator, tol, other=other: _probe(900.0) if integrator == "auto" else other,
+                         lambda one, other: 1e-9, "auto", 1e-4)
+        assert found.error == pytest.approx(0.5e-4)
+    plain = compared(lambda integrator, tol: _probe(900.0), lambda one, other: 1e-9, "auto", 1e-4)
+    assert plain.error < 1e-8
+
+
+def test_where_the_damped_integrator_fails_or_costs_more_it_is_not_taken():
+    for work, apart in ((np.inf, np.inf), (9e3, 1e-5)):
+        found = compared(lambda integrator, tol, work=work: _probe(1e3 if integrator == "auto" else work),
+                         lambda one, other, apart=apart: apart, "auto", 1e-4)
+        assert found.integrator == found.probed == "auto" and found.tol == 1e-4
+    tried = []
+    compared(lambda integrator, tol: tried.append(tol) or _probe(1e3), lambda one, other: 1e-5, "auto", 1e-4, rubs=True)
+    assert tried == [1e-4, 1e-4]  # with friction errors jump as steps grow
+    asked = compared(lambda integrator, tol: None, lambda one, other: 0.0, "radau", 1e-4)
+    assert (asked.integrator, asked.tol, asked.probed) == ("radau", 1e-4, "radau")
+
+
 def test_meshes_share_their_error_for_the_least_work():
     errors, work, order, wanted = np.array([1e-3, 3e-5]), np.array([1.0, 20.0]), 2.0, 1e-4
     longer = balanced(errors, work, order, wanted)
@@ -152,7 +209,7 @@ def test_shear_of_a_cantilever_under_a_force_on_its_end():
     energies = 3 * 2e6 * SQUARE.second_moment_about_z / shear  # of shear over that of bending: 3 EI / (kGA L²)
     rotary = SQUARE.shear_factors(0.3)[0] * G / 2e6
     assert shear_compliance(cable, run) == pytest.approx(energies * (1 + rotary), rel=2e-2)
-    softer = softened(scene, "beam").run(1e-3, initial="equilibrium")
+    softer = softened(scene, ["beam"]).run(1e-3, initial="equilibrium")
     assert softer["beam.position"][0, -1, 1] == pytest.approx(run["beam.position"][0, -1, 1] / 0.9, rel=1e-4)
 
 
@@ -248,6 +305,28 @@ def test_the_same_is_chosen_each_time():
     assert (first.models, first.integrator, first.time_tol) == (second.models, second.integrator, second.time_tol)
 
 
+def test_the_work_of_a_choice_for_a_fine_tolerance_is_less_than_that_of_the_run(monkeypatch):
+    made = []
+
+    class Counted(Prober):
+        def probe(self, *args, **keywords):
+            found = super().probe(*args, **keywords)
+            if found not in made:
+                made.append(found)
+            return found
+
+    def work(models, probe) -> float:
+        return sum(model.elements * Kind(model.element, model.law).work for model in models.values()) * probe.work
+
+    monkeypatch.setattr(chooser, "Prober", Counted)
+    choice = chosen("pendulum, E 2e6", 1e-4)
+    run = simulate("pendulum, E 2e6", choice)[0]
+    whole = Probe(choice.models, choice.scene, run, {}, 0.0)
+    share = sum(work(probe.models, probe) for probe in made) / work(choice.models, whole)
+    print(f"the choice takes {share:.2f} times the counted work of the run")
+    assert len(made) == choice.probes and share < 1.0
+
+
 def test_a_finer_tolerance_takes_more():
     coarse, fine = chosen("pendulum, E 2e6", 1e-2), chosen("pendulum, E 2e6", 1e-4)
     assert fine.models["wire"].elements > coarse.models["wire"].elements
@@ -302,3 +381,12 @@ def _app():
     from funicular.cli import app
 
     return app
+
+
+def test_a_quantity_that_does_not_change_is_named():
+    """Its error over its change would be 0, whatever the model."""
+    scene = fu.load_scene("paper51")
+    choice = scene.choose(1e-2, duration=0.05, quantities=["energy.dissipated", "A.position"])
+    said = "energy.dissipated did not change in the short runs: nothing is estimated of that"
+    assert said in choice.messages() and said in choice.reasons
+    assert scene.choose(1e-2, duration=0.05, quantities=["A.position"]).unchanged == []

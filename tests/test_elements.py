@@ -16,6 +16,7 @@ from funicular.model.constants import element_constants
 
 LAWS = [(name, law) for name, element in ELEMENTS.items() for law in element.laws]
 CABLES = [(name, law) for name, law in LAWS if law in CABLE_LAWS + ASSUMED_LAWS]
+LEFT, TRANSITION = 0.2, 0.1
 YOUNGS_MODULUS = 50.0
 
 
@@ -30,8 +31,24 @@ def kernel(*name: str):
 
 
 def cable_stiffness(law: str, EA: float, EI: float) -> np.ndarray:
-    """S of a law of cables; an assumed strain's upper modes have EA, too."""
-    return np.array([EA, EI, EA] if law.endswith("_assumed") else [EA, EI])
+    """S of a law of cables; upper modes of an assumed strain have EA, too; much of EA is left in compression."""
+    more = [EA] if law.endswith("_assumed") else [LEFT, TRANSITION] if law.endswith("_tension_only") else []
+    return np.array([EA, EI, *more])
+
+
+def part_of_stiffness(law: str, strain: float) -> float:
+    """What a law has of the axial energy EA strain^2/2."""
+    if not law.endswith("_tension_only"):
+        return 1.0
+    return LEFT + (1 - LEFT) / 2 * (1 + strain / (np.hypot(strain, TRANSITION) + TRANSITION))
+
+
+def force_of_strain(law: str, strain: float) -> float:
+    """The axial force of a law over EA."""
+    if not law.endswith("_tension_only"):
+        return strain
+    smooth = np.hypot(strain, TRANSITION)
+    return LEFT * strain + (1 - LEFT) / 4 * (2 * strain + smooth + strain**2 / smooth - TRANSITION)
 
 
 def at_rest(name: str, law: str, l: float) -> tuple:
@@ -233,7 +250,8 @@ def test_homogeneous_stretch_stores_what_the_law_says(elastic, stretch):
     F[0, 0] += stretch
     U = elastic.at("energy", reference(elastic.element, elastic.l) @ F.T)[0]
     strain = stretch if elastic.law.startswith(("engineering", "structural")) else stretch + stretch**2 / 2
-    assert U == pytest.approx(YOUNGS_MODULUS * strain**2 / 2 * elastic.section[0] * elastic.l, rel=1e-9)
+    energy = YOUNGS_MODULUS * strain**2 / 2 * elastic.section[0] * elastic.l
+    assert U == pytest.approx(part_of_stiffness(elastic.law, strain) * energy, rel=1e-9)
 
 
 def test_the_straight_element_has_its_rigid_motions_and_no_other(elastic):

@@ -10,7 +10,7 @@ from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model import border, elimination
 from funicular.model.build import build
-from funicular.model.elimination import BorderGraph
+from funicular.model.elimination import BorderGraph, eliminated
 from funicular.model.loops import bridges, joints_in_loops
 from linear_cost import SCENES as CABLES
 from linear_cost import scene as cables
@@ -253,3 +253,16 @@ def test_joints_in_loops():
 def test_cables_alone_have_the_border_that_they_had(name):
     """Riders and knots of a few cables are too few for more than one front."""
     assert build(cables(name, 60)).newton.n == 1
+
+
+def test_scenes_of_one_topology_share_the_analysis():
+    """Other numbers are no other topology; another body or joint is one."""
+    scene = chain(30)
+    first, other, longer = build(scene), build(scene.replace(next(iter(scene.bodies)), mass=7.0)), build(chain(31))
+    assert first.newton is other.newton and first.accelerations is other.accelerations
+    assert longer.newton is not first.newton
+    eliminated.cache_clear()
+    anew = build(chain(30)).newton
+    assert anew is not first.newton
+    for name, values in vars(anew).items():
+        assert np.array_equal(values, getattr(first.newton, name)), name

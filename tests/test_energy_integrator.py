@@ -73,7 +73,7 @@ def momenta(scene: Scene, run) -> tuple[np.ndarray, np.ndarray]:
         h = np.cross(run["A.position"][i], p) + turned @ inertia @ run["A.angular_velocity"][i]
         for k in range(cable.n_elements):
             e, v = (run[f"wire.{name}"][i, k:k + 2].reshape(-1, 3) for name in ("nodal_vectors", "nodal_velocity"))
-            mv = cable.m @ v
+            mv = cable.m[0] @ v
             p = p + mv[:: len(cable.vectors)].sum(axis=0)
             h = h + np.cross(e, mv).sum(axis=0)
         linear.append(p)

@@ -84,4 +84,4 @@ def test_a_run_that_stops_early_is_not_estimated():
     scene.event("stop", quantity="rod.position.y", s=1.0, value=-0.01, action="stop")
     run = scene.run(0.1, estimate=True)
     assert "errors" not in run.report
-    assert "the run's errors are not estimated: it is event" in run.report["messages"]
+    assert "the run's errors are not estimated: it ended with status \"event\"" in run.report["messages"]

@@ -139,3 +139,13 @@ def test_energy_that_grows_without_damping_is_told_to_take_some():
             for radius in (1, 0.9)}
     assert "or a spectral_radius below 1" in said[1]
     assert "spectral_radius" not in said[0.9]
+
+
+def test_an_absolute_tol_that_is_too_large_is_named():
+    """It was tol that should be smaller, which would change nothing."""
+    scene = fu.Scene()
+    scene.cable("c", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="cable12", section=fu.Circle(radius=0.005),
+                material=fu.Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3))
+    scene.pin("c", s=0.0)
+    with pytest.raises(fu.ConvergenceError, match="The absolute_tol 1e\\+03 m is too large for integrator"):
+        scene.run(0.5, output_step=0.05, tol=1e-4, absolute_tol=1e3, progress=False)

@@ -17,7 +17,9 @@ SAME_BITS = platform.machine() in ("x86_64", "AMD64")  # no contraction to fused
 CABLE = [{"strain": strain, "curvature": curvature, "membrane": membrane} for strain in ("green", "engineering")
          for curvature in ("exact", "linear") for membrane in ("full", "assumed")]
 BEAM = [{"law": "continuum"}, {"law": "structural"}]
-STRAIGHT = {"cable12": CABLE, "cable8p": CABLE, "cable18": [kind for kind in CABLE if kind["curvature"] == "exact"],
+TENSION_ONLY = [{"membrane": "tension_only"}]
+STRAIGHT = {"cable12": CABLE + TENSION_ONLY, "cable8p": CABLE + TENSION_ONLY,
+            "cable18": [kind for kind in CABLE if kind["curvature"] == "exact"],
             "beam24": BEAM, "beam12p": BEAM}
 CURVED = {"cable12": [{"strain": "green"}, {"strain": "engineering"}], "beam24": [{"law": "continuum"}],
           "beam12p": [{"law": "continuum"}]}
@@ -29,17 +31,20 @@ def arc(u):
     return np.array([np.sin(u), 1.0 - np.cos(u), 0.0])
 
 
-def scene(element: str, law: dict, curved: bool) -> Scene:
+def scene(element: str, law: dict, curved: bool, uneven: bool = False) -> Scene:
     shape = {"curve": arc} if curved else {}
     up = {"up": (0, 0, 1)} if element == "beam24" and curved else {}
-    return cable_scene(pins=(0.0,), elements=ELEMENTS, element=element, section=Rectangle(height=0.02, width=0.02),
+    made = cable_scene(pins=(0.0,), elements=ELEMENTS, element=element, section=Rectangle(height=0.02, width=0.02),
                        material=Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000, damping_time=1e-2),
                        **shape, **up, **law)
+    cable = made.cables["wire"]
+    return made.replace(cable, nodes=cable.length * (cable.node_s / cable.length) ** 1.5) if uneven else made
 
 
+@pytest.mark.parametrize("uneven", [False, True])
 @pytest.mark.parametrize(("element", "law", "curved"), CASES)
-def test_blocks_give_what_single_elements_give(element, law, curved):
-    model = build(scene(element, law, curved))
+def test_blocks_give_what_single_elements_give(element, law, curved, uneven):
+    model = build(scene(element, law, curved, uneven))
     rng = np.random.default_rng(5)
     model.v[:] = 0.1 * rng.standard_normal(model.n_dof)
     found = []

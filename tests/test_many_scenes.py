@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from choice_scenes import SCENES
 from funicular import many_scenes
+from funicular.solve import run as solve_run
 from shared_scenes import cable_scene, one_rider
 
 DURATION = 0.05
@@ -33,8 +34,10 @@ def assert_same_bits(run: fu.Run, alone: fu.Run):
         assert run[name].tobytes() == values.tobytes(), name
     assert run.time.tobytes() == alone.time.tobytes()
     for count in ("steps", "rejected_steps", "evaluations", "newton_iterations", "factorisations", "integrator",
-                  "integrator_reason", "messages", "events"):
+                  "messages", "events"):
         assert run.report[count] == alone.report[count], count
+    reasons = [one.report["integrator_reason"].partition(" on trial ") for one in (run, alone)]
+    assert reasons[0][:2] == reasons[1][:2]  # what a trial came to may be known from another scene
 
 
 SHAPES = {
@@ -183,3 +186,48 @@ def test_cpu_time_is_that_of_one_scene(monkeypatch):
     monkeypatch.setattr("funicular.solve.run.time.process_time", lambda: pytest.fail("the clock of the process"))
     (run,) = fu.run_many([partial(one_rider, elements=2)], **SETTINGS)
     assert 0.0 < run.report["time_s"]["solve_cpu"] < run.report["time_s"]["total"]
+
+
+LOST = {"duration": 0.15, "tol": 1e-4, "output_step": 0.01}
+"""Settings with which radau loses its trial in the scene "buckling"."""
+
+
+def counted_trials(monkeypatch) -> list[str]:
+    """Return a list to which the name of a method is added whenever one is on trial."""
+    tried = []
+
+    def on_trial(engine, rival, method, *others, **more):
+        tried.append(method.name)
+        return given(engine, rival, method, *others, **more)
+
+    given = solve_run.on_trial
+    monkeypatch.setattr(solve_run, "on_trial", on_trial)
+    return tried
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_a_method_that_lost_with_the_first_scene_is_not_tried_again(threads, monkeypatch):
+    scenes = variants(SCENES["buckling"].make, 5)
+    alone = [scene.run(**LOST) for scene in scenes]
+    assert all(one.report["integrator"] == "explicit" for one in alone)
+    tried = counted_trials(monkeypatch)
+    together = list(fu.run_many(scenes, threads=threads, **LOST))
+    assert tried == ["radau"]
+    assert_same_bits(together[0], alone[0])
+    for one, expected in zip(together[1:], alone[1:], strict=True):
+        assert one.report["integrator"] == "explicit"
+        assert one.report["integrator_reason"].endswith("radau on trial lost in the first scene, which has the same "
+                                                        "shape")
+        for name, values in expected.items():
+            assert one[name].tobytes() == values.tobytes(), name
+
+
+def test_other_shapes_and_dearer_scenes_have_their_own_trials(monkeypatch):
+    make = SCENES["buckling"].make
+    first, cable = make(), next(iter(make().cables.values()))
+    finer = first.replace(cable.name, elements=cable.elements + 2)
+    stiffer = first.replace(cable.name, material=fu.Material(**cable.material.entries() | {
+        "youngs_modulus": 16 * cable.material.youngs_modulus}))
+    tried = counted_trials(monkeypatch)
+    list(fu.run_many([first, finer, stiffer, first], threads=2, **LOST))
+    assert tried == ["radau"] * 3

@@ -118,6 +118,11 @@ def held_by_friction(space):
     assert 0.315 < float(state["trolley.s"]) < 0.9
     assert abs(run["A.position"] - run["A.position"][0]).max() < 1e-5
 
+def unequal_elements(space):
+    assert space["rope"].elements == 8 and space["equal"].cables["rope"].elements == 25
+    assert space["halves"].cables["rope"].nodes[:5] == pytest.approx((0, 0.05, 0.1, 0.2, 0.3))
+
+
 def chosen_model(space):
     assert space["choice"].kept and space["run"].report["choice"]["kept"]
     assert space["run"].scene.cables["strip"].elements == space["choice"].models["strip"].elements
@@ -126,6 +131,7 @@ def chosen_model(space):
 AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "The model for a tolerance"): chosen_model,
               ("runtime/README.md", "Scenes"): first_scene,
+              ("runtime/README.md", "Cables and beams"): unequal_elements,
               ("runtime/README.md", "Joints and springs"): trolley,
               ("runtime/README.md", "Running a scene"): named_quantities,
               ("runtime/README.md", "Events"): events,

@@ -1,8 +1,12 @@
 """Scenes made of others with a part changed."""
 
+import re
+
 import funicular as fu
+import numpy as np
 import pytest
 from expectations import refused
+from funicular.parts.kinds import PARTS
 
 
 def test_replace_returns_a_changed_scene():
@@ -28,3 +32,190 @@ def test_replace_checks_and_names():
     with refused('cable "wire": elements cannot be changed once the part is made; make another part, or another scene: '
                  'scene.replace("wire", elements=...)'):
         scene.cables["wire"].elements = 4
+
+
+ROPE = {"start": (0, 0, 0), "end": (1, 0, 0), "elements": 4, "element": "cable12", "section": fu.Circle(radius=0.01),
+        "material": fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000)}
+
+
+def rope(**given) -> fu.Scene:
+    scene = fu.Scene()
+    scene.cable("rope", **ROPE | given)
+    return scene
+
+
+@pytest.mark.parametrize(("given", "changes", "law"), [
+    ({}, {"membrane": "reduced"}, "green_exact_reduced"),
+    ({}, {"strain": "engineering"}, "engineering_exact"),
+    ({"strain": "engineering"}, {"membrane": "reduced"}, "engineering_exact_reduced"),
+    ({"strain": "engineering"}, {"curvature": "linear"}, "engineering_linear"),
+    ({"law": "engineering_exact"}, {"membrane": "assumed"}, "engineering_exact_assumed"),
+    ({"strain": "engineering", "membrane": "reduced"}, {"membrane": None}, "engineering_exact"),
+    ({"strain": "engineering", "membrane": "reduced"}, {"strain": None}, "green_exact_reduced"),
+    ({"strain": "engineering"}, {"law": "green_exact"}, "green_exact"),
+    ({"strain": "engineering"}, {"element": "cable18"}, "engineering_exact"),
+    ({}, {"element": "beam24"}, "continuum"),
+    ({"element": "beam24"}, {"element": "cable12"}, "green_exact"),
+    ({"element": "beam24", "law": "structural"}, {"elements": 2}, "structural"),
+])
+def test_another_measure_keeps_the_others_and_makes_another_law(given, changes, law):
+    cable = rope(**given).replace("rope", **changes).cables["rope"]
+    assert cable.law == law
+    assert cable.law == fu.Cable(**cable.entries()).law
+
+
+def test_a_law_that_no_longer_fits_is_refused_by_name():
+    with pytest.raises(fu.SceneError, match='law "structural" is not possible for cable12; possible: green_exact, '):
+        rope(element="beam24", law="structural").replace("rope", element="cable12")
+    with pytest.raises(fu.SceneError, match="curvature and membrane are for cable elements, beam24 is a beam; leave"):
+        rope(strain="engineering").replace("rope", element="beam24")
+
+
+def test_a_cable_is_drawn_anew():
+    bent = rope().replace("rope", curve=lambda u: (u, u**2, 0))
+    assert bent.cables["rope"].points is not None and bent.cables["rope"].start is None
+    assert bent.replace("rope", curve=lambda u: (u, 0, 0)).cables["rope"].points[-1] == (1, 0, 0)
+    assert bent.replace("rope", start=(0, 0, 0), end=(2, 0, 0), points=None).cables["rope"].length == 2
+    with pytest.raises(fu.SceneError, match="has points and start or end; give the points alone"):
+        bent.replace("rope", start=(0, 0, 0))
+    hung = rope().replace("rope", shape="hanging", rest_length=1.2, elements=8).cables["rope"]
+    assert (hung.rest, hung.drawn_length) == ("straight", pytest.approx(1.2, abs=1e-6))
+    drawn = rope(shape="hanging", rest_length=1.2).replace("rope", points=[(0, 0, 0), (1, 0, 0)], nodes=(0, 0.5, 1.2))
+    assert (drawn.cables["rope"].shape, drawn.cables["rope"].elements) == (None, 2)
+
+
+def test_what_a_scene_has_found_is_found_anew():
+    """A length, an axis or an end that nobody gave follows from the scene, also where another part of that changes."""
+    scene = rope()
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 3, 0))
+    scene.spring("A", (0, 0, 0), stiffness=10, name="free")
+    scene.spring("A", (0, 0, 0), stiffness=10, length=2.5, name="given")
+    scene.joint("distance", "A", ("rope", 1.0), name="rod")
+    scene.distributed_force("rope", value=(0, -1, 0), name="wind")
+    moved = scene.replace("A", position=(0, 4, 0))
+    assert [moved.point_forces[name].length for name in ("free", "given")] == [4, 2.5]
+    assert moved.joints["rod"].length == pytest.approx(np.hypot(1, 4))
+    assert scene.replace("rope", rest_length=1.5).loads["wind"].stop == 1.5
+    assert moved.replace("free", length=3).replace("A", position=(0, 5, 0)).point_forces["free"].length == 3
+    section = fu.GeneralSection(area=1e-4, second_moment_about_z=1e-9)
+    assert fu.GeneralSection(**section.entries() | {"second_moment_about_z": 2e-9}).second_moment_about_y == 2e-9
+
+
+def test_another_rider_has_its_own_point():
+    scene = rope()
+    for name in "AB":
+        scene.rigid_body(name, mass=1, inertia=(1, 1, 1), position=(0.5, -0.25 * (name == "A"), 0))
+    scene.slide("A", along="rope", s=0.5, at=(0, 0.25, 0), name="trolley")
+    assert scene.replace("trolley", body="B").slides["trolley"].at == (0, 0, 0)
+    assert scene.replace("trolley", body=(0.5, 0, 0)).slides["trolley"].body is None
+    assert scene.replace("trolley", body="A").slides["trolley"].at == (0, 0.25, 0)
+
+
+def everything() -> fu.Scene:
+    """A scene with a part of every kind."""
+    scene = rope(strain="engineering")
+    scene.cable("bar", **ROPE | {"start": (0, 0, 1), "end": (1, 0, 1), "element": "beam24", "law": "structural"})
+    scene.cable("hook", **ROPE | {"start": (1, 0, 0), "end": (2, 0, 0)})
+    scene.pin("rope", s=0.0)
+    scene.clamp("bar", s=0.5, fix="all")
+    scene.motion("bar", s=1.0, displacement=(fu.Harmonic(amplitude=0.1, frequency=1.0), 0, "free"))
+    scene.tie("hook", s=0.0, to="rope", at=1.0, rotation="free", name="knot")
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0.5, 0, 0), shape=fu.Sphere(radius=0.1))
+    scene.rigid_body("B", mass=1, inertia=(1, 1, 1), position=(0.5, -1, 0))
+    scene.modal_body("beam", start=(0, 0, 3), end=(1, 0, 3), section=fu.Circle(radius=0.01), material=ROPE["material"],
+                     elements=4, modes=2)
+    scene.joint("revolute", "A", ("B", (0, 1, 0)), axis=(0, 0, 1), name="hinge")
+    scene.joint("distance", "B", ("hook", 1.0), name="rod")
+    scene.slide("A", along="rope", s=0.5, frame="tangent", roll="fixed", friction=fu.Friction(coefficient=0.1),
+                name="trolley")
+    scene.force("B", value=(1, 0, 0), at=(0, 0.1, 0), name="push")
+    scene.distributed_force("rope", value=(0, -1, 0), name="wind")
+    scene.moment("bar", s=0.5, value=(0, 0, 1), name="turn")
+    scene.spring("B", (0, -3, 0), stiffness=10, damping=1, name="spring")
+    scene.event("low", quantity="B.position.y", value=-2)
+    return scene
+
+
+OTHERS = {
+    "cable": {"name": "cord", "start": (0, 0, 0.0), "end": (1.0, 0, 0), "points": ((0, 0, 0), (0.5, 0, 0), (1, 0, 0)),
+              "curve": lambda u: (u, 0, 0), "elements": 8, "nodes": (0, 0.25, 1.0),
+              "element": "cable18", "law": "engineering_linear",
+              "strain": "green", "curvature": "linear", "membrane": "assumed", "section": fu.Circle(radius=0.02),
+              "material": fu.Material(youngs_modulus=2e9, poisson_ratio=0.3, density=1000), "up": (0, 1, 1),
+              "rest": "straight", "rest_length": 1.0, "shape": "straight",
+              "velocity": (0, 0, 1), "angular_velocity": (0, 1, 0)},
+    "pin": {"cable": "hook", "s": 0.25}, "clamp": {"cable": "rope", "s": 0.0, "fix": "section"},
+    "motion": {"cable": "rope", "s": 0.75, "displacement": (0, 0, 0), "rotation": ((1, 0, 0), 0.1)},
+    "tie": {"cable": "hook", "s": 0.0, "to": "rope", "at": 1.0, "rotation": "rigid", "name": "knot_2"},
+    "rigid_body": {"name": "C", "mass": 2.0, "inertia": (2, 2, 2), "position": (0.5, 0, 0.0),
+                   "orientation": (0, 1, 0, 0),
+                   "centre": (0, 0, 0.1), "velocity": (0, 0, 0.0), "angular_velocity": (0, 0, 1),
+                   "shape": fu.Box(size=(1, 1, 1))},
+    "modal_body": {"name": "pole", "start": (0, 0.1, 3), "end": (1, 0.1, 3), "section": fu.Circle(radius=0.02),
+                   "material": fu.Material(youngs_modulus=2e9, poisson_ratio=0.3, density=1000), "up": (0, 0, 1),
+                   "elements": 8, "element": "cable12", "law": "structural", "modes": 3, "boundary": "attached",
+                   "orthogonal": False, "damping_ratio": 0.1, "velocity": (1, 0, 0), "angular_velocity": (1, 0, 0)},
+    "joint": {"kind": "cylindrical", "a": "A", "b": ("B", (0, 1, 0.0)), "axis": (1, 0, 0), "angle": 0.0,
+              "name": "x"},
+    "slide": {"body": (0.5, 0, 0), "along": "rope", "s": 0.5, "at": (0, 0, 0.0), "name": "x", "frame": "point",
+              "roll": "free", "up": (0, 1, 1), "drive": 0.5, "velocity": 0.1, "friction": fu.Friction(coefficient=0.2),
+              "at_start": "leave", "at_end": fu.HardStop(restitution=0.5)},
+    "force": {"on": "A", "at": (0, 0, 0), "value": (2, 0, 0), "scale": 2.0, "follower": True, "name": "x"},
+    "distributed_force": {"cable": "hook", "value": (0, -2, 0), "start": 0.25, "stop": 0.75, "follower": False,
+                          "scale": 2.0, "name": "x"},
+    "moment": {"on": "B", "s": 0.25, "value": (0, 0, 2), "scale": 2.0, "name": "x"},
+    "spring": {"a": "A", "b": (0, -4, 0), "stiffness": 20.0, "damping": 2.0, "length": 1.0, "tension_only": True,
+               "free_play": 0.1, "name": "x"},
+    "event": {"name": "x", "quantity": "B.position.x", "value": 1.0, "direction": "rising", "action": "stop"},
+}
+"""Another value for fields, by the kind of the part."""
+
+REFUSED = {
+    ("slide", "frame"): 'roll "fixed" is for frame "tangent", got frame "point"; leave it out, or take frame="tangent"',
+    ("moment", "on"): 'acts on body "B" and takes no arc-length s',
+    ("cable", "name"): 'there is no cable "rope"',
+    ("rigid_body", "name"): 'there is no cable or body "A"',
+}
+"""Why another value is refused, as another entry, or another part, does not go with it."""
+
+ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_body", "data"), ("modal_body", "position"),
+              ("modal_body", "orientation"), ("joint", "second_axis"), ("joint", "up"), ("joint", "distance"),
+              ("joint", "velocity"), ("joint", "length"), ("slide", "body_s"), ("spring", "table")}
+"""Fields of parts that are described otherwise, or of other kinds of joints."""
+
+
+REASONS = "missing", "needs", "has neither", "must watch", "is for frame", "are for cable elements"
+"""Why a value cannot be left out."""
+
+
+def test_all_fields_are_tried():
+    fields = {(kind, keyword) for kind, part in PARTS.items() for keyword in part.keywords()}
+    tried = {(kind, keyword) for kind, values in OTHERS.items() for keyword in values}
+    assert tried <= fields and fields - tried <= ONE_OF_TWO | {("cable", "library")}
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize("kind", PARTS)
+def test_each_field_of_each_part_can_be_replaced(kind):
+    """By its own value, by none where it may be left out, and by another; what cannot be is refused with its reason."""
+    scene = everything()
+    part = next(part for part in scene.parts() if part.kind == kind)
+    here, keywords = [*scene.parts()].index(part), type(part).keywords()
+    for keyword, value in part.as_made().entries().items():
+        same = scene.replace(part, **{keyword: value})
+        assert [*same.parts()][here].entries().items() >= part.entries().items(), keyword
+        try:
+            other = [*scene.replace(part, **{keyword: None}).parts()][here]
+        except fu.SceneError as error:
+            assert any(reason in str(error) for reason in REASONS), (keyword, error)
+        else:
+            assert keyword in ("law", "name") or keyword not in other.as_made().model_fields_set
+    for keyword, value in OTHERS[kind].items():
+        if (kind, keyword) in REFUSED:
+            with pytest.raises(fu.SceneError, match=re.escape(REFUSED[kind, keyword])):
+                scene.replace(part, **{keyword: value})
+            continue
+        other = [*scene.replace(part, **{keyword: value}).parts()][here]
+        if keyword not in ("curve", "body", "a", "b"):  # kept as points, or completed
+            alone = type(part).model_validate(part.entries_with({keyword: value}))
+            assert getattr(other, keywords[keyword]) == getattr(alone, keywords[keyword]), keyword

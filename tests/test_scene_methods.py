@@ -32,7 +32,9 @@ def test_help_tells_keywords_defaults_and_meaning(kind):
 def test_signatures():
     assert str(inspect.signature(fu.Scene.pin)) == "(self, cable, *, s)"
     assert str(inspect.signature(fu.Scene.tie)) == "(self, cable, *, s, to, at, rotation='rigid', name=None)"
-    assert str(inspect.signature(fu.Scene.spring)) == "(self, a, b, *, stiffness, damping=0.0, length=None, name=None)"
+    assert str(inspect.signature(fu.Scene.spring)) == (
+        "(self, a, b, *, stiffness=None, damping=0.0, length=None, tension_only=False, free_play=0.0, table=None, "
+        "name=None)")
 
 
 def test_none_is_what_is_not_given():

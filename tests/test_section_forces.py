@@ -6,7 +6,7 @@ from funicular.derive.elements import ELEMENTS
 from funicular.derive.verify.samples.shapes import reference, rotation, section
 from funicular.generated import kernels
 from funicular.model.constants import element_constants
-from test_elements import CABLES, LAWS, arc, at_rest, cable_stiffness
+from test_elements import CABLES, LAWS, arc, at_rest, cable_stiffness, force_of_strain
 
 E, SIDE = 1e6, 0.1
 MOMENTS = section(SIDE, SIDE)
@@ -43,7 +43,8 @@ def test_a_bar_in_tension(name, law, stretch):
     t[: element.dim] = turn[:, 0]
     engineering = law.startswith(("engineering", "structural"))
     expected = stretch if engineering else stretch + stretch**2 / 2
-    np.testing.assert_allclose(force, E * SIDE**2 * expected * (1 if engineering else 1 + stretch) * t, atol=1e-11)
+    N = E * SIDE**2 * force_of_strain(law, expected) * (1 if engineering else 1 + stretch)
+    np.testing.assert_allclose(force, N * t, atol=1e-11)
     np.testing.assert_allclose(moment, 0, atol=1e-11)
     np.testing.assert_allclose(axes[0], t, atol=1e-15)
     np.testing.assert_allclose(strain, [expected, 0, 0, 0, 0, 0], atol=1e-14)

@@ -172,7 +172,7 @@ def test_a_start_that_breaks_the_joint_is_projected_and_reported():
     assert "initial velocities broke a joint" in message
     v = run["A.velocity"][0]
     model = build(run.scene)
-    l = model.cables[0].length
+    l = model.cables[0].mesh.mean
     nodal = run["wire.nodal_velocity"][0]
     at_half = 0.5 * (nodal[0, 0] + nodal[1, 0]) + l / 8 * (nodal[0, 1] - nodal[1, 1])
     np.testing.assert_allclose(v, [1, *at_half[1:]], atol=1e-13)  # one velocity across the cable, its own along it
@@ -237,7 +237,7 @@ def angular_momentum(run, cable, mass, inertia):
     angular += rotate(run["P.orientation"], np.array(inertia) * run["P.angular_velocity"])
     for e in range(cable.n_elements):
         at, rate = (run[f"wire.{name}"][:, e : e + 2].reshape(-1, 8, 3) for name in ("nodal_vectors", "nodal_velocity"))
-        momentum = np.einsum("ij,tjd->tid", cable.m, rate)
+        momentum = np.einsum("ij,tjd->tid", cable.m[0], rate)
         linear = linear + momentum[:, 0] + momentum[:, 4]
         angular += np.cross(at, momentum).sum(axis=1)
     return linear, angular

@@ -1,6 +1,9 @@
 """Files of sweeps: stopped sweeps go on, others are refused, damage is found; nothing grows but the file."""
 
+import functools
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import funicular as fu
@@ -133,3 +136,86 @@ def test_the_file_grows_by_a_row_a_point_and_memory_by_a_byte(tmp_path):
     assert os.path.getsize(tmp_path / "x.nc") == file.first_row_at + 500 * file.row_bytes
     assert 8000 < file.row_bytes < 8400
     assert float(found["array"][123, 7]) == float(found.x[123])
+
+
+FACTOR = 1.0
+
+
+def scaled(x: float) -> dict:
+    return {"y": FACTOR * x}
+
+
+def calls(x: float) -> dict:
+    return scaled(x)
+
+
+def multiplied(factor: float):
+    return lambda x: {"y": factor * x}
+
+
+class Times:
+    def __init__(self, factor: float):
+        self.factor = factor
+
+    def __call__(self, x: float) -> dict:
+        return {"y": self.factor * x}
+
+    def method(self, x: float) -> dict:
+        return self(x)
+
+
+def made(source: str):
+    """A function without a file."""
+    return eval(source)
+
+
+def by_array(factor: float):
+    values = np.array([factor])
+    return lambda x: {"y": values[0] * x}
+
+
+@pytest.mark.parametrize("make", [
+    multiplied, by_array, Times, lambda factor: Times(factor).method,
+    lambda factor: functools.partial(lambda factor, x: {"y": factor * x}, factor),
+    lambda factor: lambda x, factor=factor: {"y": factor * x}, lambda factor: made(f"lambda x: {{'y': {factor} * x}}")])
+def test_a_sweep_does_not_go_on_with_a_function_of_other_values(make, tmp_path):
+    """The text is the same, and the results are not: what was computed before was given without a word."""
+    call = {"parameters": {"x": [1.0, 2.0]}, "save": tmp_path / "x.nc", "workers": 0, "progress": False}
+    for _ in range(2):
+        assert fu.sweep(make(1.0), **call)["y"].values.tolist() == [1, 2]
+    with pytest.raises(fu.ResultFileError, match="another scene or function"):
+        fu.sweep(make(2.0), **call)
+
+
+@pytest.mark.parametrize("function", [scaled, calls])
+def test_a_sweep_does_not_go_on_where_a_global_value_is_another(function, tmp_path, monkeypatch):
+    call = {"parameters": {"x": [1.0, 2.0]}, "save": tmp_path / "x.nc", "workers": 0, "progress": False}
+    fu.sweep(function, **call)
+    monkeypatch.setitem(globals(), "FACTOR", 3.0)
+    with pytest.raises(fu.ResultFileError, match="another scene or function"):
+        fu.sweep(function, **call)
+
+
+def test_a_sweep_does_not_go_on_with_another_watched_function(tmp_path):
+    def watched(height: float) -> fu.Scene:
+        made = scene()
+        made.event("low", function=lambda time, state: time - height, action="stop")
+        return made
+
+    call = {"parameters": {"A.mass": [1.0, 2.0]}, "save": tmp_path / "x.nc", "workers": 0, "progress": False,
+            "keep": ["A.position"], **SHORT}
+    fu.sweep(watched(1e-3), **call)
+    fu.sweep(watched(1e-3), **call)
+    with pytest.raises(fu.ResultFileError, match="another scene or function"):
+        fu.sweep(watched(2e-3), **call)
+
+
+def test_what_a_function_is_does_not_depend_on_the_process():
+    """A sweep goes on in another process, in which addresses and the order of sets differ."""
+    code = ("import sys; sys.path.insert(0, 'tests'); from test_sweep_files import *; "
+            "from funicular.sweeps.identity import identity_of; "
+            "print([identity_of(each) for each in (calls, multiplied(2.0), Times(1.0), by_array(1.0))])")
+    folder = Path(__file__).parent.parent
+    one, other = (subprocess.run([sys.executable, "-c", code], cwd=folder, check=True, capture_output=True, text=True,
+                                 env=os.environ | {"PYTHONHASHSEED": seed}).stdout for seed in "12")
+    assert one == other and "0x" not in one

@@ -5,16 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from ..errors import SceneError
 from ..parts.cable import Cable
 from ..parts.event import Event
 from ..parts.joint import Joint
 from ..parts.load import Load
 from ..parts.part import Part
+from ..parts.plane import called
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.support import Support, Tie
+from ..parts.validation import show
 from .event_placement import placed_event
 from .joint_placement import placed_joint
 from .placement import placed_between, placed_load, placed_point_force, placed_support, placed_tie
@@ -31,12 +35,25 @@ def placed_cable(scene: SceneData, cable: Cable) -> Cable:
             raise SceneError(
                 cable.where, f'{cable.element} is {word[cable.dim]}, but the elements of cable "{other.name}" '
                 f"({other.element}) are {word[other.dim]}", "take planar elements for all cables, or for none")
+        if cable.dim == 2 and not _lie_in_one_plane(cable, other):
+            raise SceneError(
+                cable.where, f'lies in {called(cable.plane)}, with the height at {show(cable.normal)} x tangent, '
+                f'but cable "{other.name}" in {called(other.plane)}, with that at {show(other.normal)} x tangent',
+                "draw both in one plane, and give up, on the same side of it")
     scene.cables[cable.name] = cable
     try:
         check_plane(scene)
     finally:
         del scene.cables[cable.name]
     return cable
+
+
+def _lie_in_one_plane(cable: Cable, other: Cable) -> bool:
+    """Return whether two planar cables lie in one plane, with one normal."""
+    one, two = cable.plane, other.plane
+    if one is None or two is None:
+        return one is two
+    return one.is_same(two) and two.contains(np.array(cable.drawn_through))
 
 
 _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {

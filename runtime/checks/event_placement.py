@@ -13,6 +13,11 @@ WATCHABLE = {"rigid_body": ("position", "velocity"), "modal_body": ("position", 
 """Quantities that a threshold can be set on, by kind of part."""
 
 
+def _normal(scene: SceneData) -> tuple[float, ...]:
+    """Return the normal of the plane of a planar scene."""
+    return (0.0, 0.0, 1.0) if scene.plane is None else tuple(scene.plane.normal.tolist())
+
+
 def placed_event(scene: SceneData, event: Event) -> Event:
     """Return the event, sure to watch a function or a quantity that the scene has. Raises SceneError."""
     if event.quantity is None:
@@ -28,8 +33,10 @@ def placed_event(scene: SceneData, event: Event) -> Event:
         forms = ", ".join(f"{name}.{k}" if part.kind == "slide" else f"{name}.{k}.x" for k in known)
         raise SceneError(event.where, f'"{event.quantity}" cannot be watched', f"{forms}, with x, y or z, can"
                          if part.kind != "slide" else f"{forms} can")
-    if scene.dim == 2 and axis == "z":
-        raise SceneError(event.where, f'"{event.quantity}" is always 0: the scene is planar', "watch x or y")
+    if scene.dim == 2 and axis and abs(_normal(scene)[AXES.index(axis)]) == 1.0:
+        same = "always 0" if scene.plane is None else "always the same"
+        others = " or ".join(each for each in AXES if each != axis)
+        raise SceneError(event.where, f'"{event.quantity}" is {same}: the scene is planar', f"watch {others}")
     if part.kind == "cable":
         if event.s is None:
             raise SceneError(event.where, "s is missing: where on the cable?", "give the s of a node")

@@ -36,9 +36,8 @@ def cable_frame(cable: Cable, s: float, up: Sequence[float] | None = None) -> np
     The tangent frame of eq 16 to 18: k square to the tangent and to r_y or, where ``up`` is given, to that (up must be
     off the tangent); the cable's own axes where there is neither.
     """
-    tangent, width = _unit(cable.slope(s)), np.array([0.0, 0.0, 1.0])
-    if cable.dim == 3:
-        width = _unit(np.cross(tangent, cable.height(s) if up is None else up))
+    tangent = _unit(cable.slope(s))
+    width = cable.normal if cable.dim == 2 else _unit(np.cross(tangent, cable.height(s) if up is None else up))
     return np.column_stack([tangent, np.cross(width, tangent), width])
 
 

@@ -30,7 +30,7 @@ def placed_joint(scene: SceneData, joint: Joint) -> Joint:
     joint = placed_between(scene, joint)
     if move_as_one(scene, joint.a, joint.b):
         raise SceneError(joint.where, f"joins {called(joint.a)} to itself", "give it two ends")
-    joint = joint.model_copy(update=_completed(scene, joint))
+    joint = joint.completed(_completed(scene, joint))
     _check_frames(scene, joint)
     check_other_joints(scene, joint, lambda: EXACT * scene_size(scene, joint))
     check_joint(scene, joint)
@@ -71,7 +71,8 @@ def _completed(scene: SceneData, joint: Joint) -> dict:
     if joint.joint_kind == "revolute" and joint.axis is None:
         if scene.dim == 3:
             raise SceneError(joint.where, "axis is missing: a revolute joint needs it")
-        return {"axis": (0.0, 0.0, 1.0)}
+        plane = scene.plane
+        return {"axis": (0.0, 0.0, 1.0) if plane is None else tuple(plane.normal.tolist())}
     if joint.joint_kind != "distance":
         return {}
     points = point_of(scene, joint.a), point_of(scene, joint.b)

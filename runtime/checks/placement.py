@@ -108,7 +108,7 @@ def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Pa
         start, stop = max(start, 0.0), min(stop, along.length)
         if not start < stop:
             raise SceneError(load.where, f"stop must be beyond start {show(start, 'm')}, got {show(stop, 'm')}")
-        load = load.model_copy(update={"start": start, "stop": stop})
+        load = load.completed({"start": start, "stop": stop})
     else:
         at = getattr(load, "at", None)
         end = placed_attachment(scene, Attachment(on=load.on, s=load.s, at=at), load.where)
@@ -116,7 +116,7 @@ def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Pa
         if not isinstance(scene.bodies.get(load.on), ModalBody):  # of which a moment's s says all
             update = {"s": end.s}
         update |= {"at": end.at, "s": end.s} if isinstance(load, Force) else {}
-        load = load.model_copy(update=update)
+        load = load.completed(update)
     cable = scene.cables.get(load.cable if isinstance(load, DistributedForce) else load.on)
     if cable is not None and cable.dim == 3 and not cable.kind_of_element.director:
         _check_without_section(load, cable)

@@ -1,10 +1,14 @@
-"""What would leave the plane z = 0 of a scene of planar cables."""
+"""What would leave the plane of a scene of planar cables."""
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..errors import SceneError
 from ..kernels.elements import built_in
+from ..parts.laid import turned_alone
 from ..parts.part import Part
+from ..parts.plane import aligned, called
 from ..parts.scene_data import SceneData
 from ..parts.validation import show
 
@@ -16,9 +20,12 @@ def check_plane(scene: SceneData, part: Part | None = None) -> None:
         return
     spatial = ", ".join(f'"{name}"' for name, kind in built_in().items() if kind.dim == 3)
     remedy = f"let it stay in the plane, or take spatial elements: {spatial}"
-    plane = f'leaves the plane z = 0 of the {planar.element} cable "{planar.name}"'
-    if part is None and scene.gravity[2]:
+    own = planar.plane
+    plane = f'leaves {called(own)} of the {planar.element} cable "{planar.name}"'
+    gravity = scene.gravity if own is None else aligned(own.into(np.array(scene.gravity)))
+    if part is None and gravity[2]:
         raise SceneError("scene", f"gravity {show(scene.gravity, 'm/s²')} {plane}", remedy)
     for each in scene.parts() if part is None else [part]:
-        for what in each.off_plane():
-            raise SceneError(each.where, f"{what} {plane}", remedy)
+        seen = each if own is None else turned_alone(scene, own, each)
+        for what in seen.off_plane():
+            raise SceneError(each.where, f"{what} {plane}" + ", in whose axes it is" * (own is not None), remedy)

@@ -30,7 +30,7 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
     rider = placed_attachment(scene, slide.rider, slide.where, "body: ")
     cable = cable_at(scene, slide.along, slide.where, slide.s)
     place = {"body_s": rider.s} if rider.at is None else {"body_s": None, "at": rider.at}
-    slide = slide.model_copy(update={"s": min(max(slide.s, 0.0), cable.length)} | place)
+    slide = slide.completed({"s": min(max(slide.s, 0.0), cable.length)} | place)
     _check_rider(scene, slide)
     slide = _framed(scene, slide, cable)
     _check_drive(slide, cable)
@@ -94,7 +94,7 @@ def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
         size = np.linalg.norm(scene.gravity)
         up = tuple((-np.array(scene.gravity) / size + 0.0).tolist()) if size > 0 else cable.height_direction
     check_up(up, cable_frame(cable, slide.s)[:, 0], f'cable "{cable.name}"', slide.where)
-    return slide.model_copy(update={"up": up})
+    return slide.completed({"up": up})
 
 
 def _check_drive(slide: Slide, cable: Cable) -> None:

@@ -36,7 +36,9 @@ class Choice(Generic[S]):
     estimate says that the tolerance is kept; error: the estimate, over the largest change of a quantity; cost: the CPU
     seconds that a run is estimated to take; reasons: why, in sentences; table: the alternatives; probes: how many short
     runs that took, seconds: their CPU time with all else; given: cables whose element or mesh was given: what these err
-    by is not in the estimate; planar: what is said of a spatial scene that was chosen planar, else empty.
+    by is not in the estimate; planar: what is said of a spatial scene that was chosen planar, else empty; mesh_error:
+    what of the error is that of the mesh; unchanged: the quantities that stay as they are, so that nothing can be
+    estimated of them.
     """
 
     scene: S
@@ -53,6 +55,8 @@ class Choice(Generic[S]):
     seconds: float = 0.0
     given: list[str] = field(default_factory=list)
     planar: str = ""
+    mesh_error: float = 0.0
+    unchanged: list[str] = field(default_factory=list)
 
     @property
     def table(self) -> list[dict[str, Any]]:
@@ -67,7 +71,9 @@ class Choice(Generic[S]):
         """Return what the messages of a run say of the choice."""
         kept = "" if self.kept else f"; no model at hand keeps it, the estimate is {self.error:.1e}"
         given = f"; what was given of {', '.join(self.given)} is kept, its error not estimated" if self.given else ""
-        return [f"model chosen {self.heading}{kept}{given}", *([self.planar] if self.planar else [])]
+        still = [f"{' and '.join(self.unchanged)} did not change in the short runs: nothing is estimated of that"]
+        return [f"model chosen {self.heading}{kept}{given}", *([self.planar] if self.planar else []),
+                *(still if self.unchanged else [])]
 
     def facts(self) -> dict[str, Any]:
         """Return what the report of a run says of the choice."""

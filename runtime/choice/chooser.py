@@ -5,8 +5,8 @@ the mesh, and that of time, which the integrator bounds by the tolerance that it
 
 1. Each cable gets the elements that know what the scene asks of it (`candidates`): those of a cable, or of a beam.
 2. A ladder of meshes, each of half the element length, is run until the error of the next one can be extrapolated
-   (`mesh_error`). On its second mesh two integrators are compared: generalised-alpha is the cheapest at loose
-   tolerances, but estimates its error by positions alone.
+   (`mesh_error`). On its second mesh two integrators are compared, which tells how loose the steps of the other probes
+   may be (`time_error`). Meshes so close to each other that these steps hide it are run again with shorter ones.
 3. With more than one cable, each is run on half of its elements, the others as they are: that tells whose mesh matters.
 4. What cable elements leave out is estimated on the second mesh, from the energy of shear and the dependence of the
    motion on the bending stiffness (`indicators`).
@@ -17,15 +17,13 @@ the mesh, and that of time, which the integrator bounds by the tolerance that it
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import partial
-from itertools import pairwise
 from typing import Generic
 
 import numpy as np
 
 from ..errors import SceneError
-from ..integrators import AUTO
 from ..parts.cable import Cable
 from ..parts.settings import RunSettings
 from ..results.trajectories import largest_change
@@ -36,13 +34,8 @@ from .indicators import SOFTER, deformation, shear_compliance, softened
 from .mesh_error import MeshError, mesh_error
 from .motion import motion
 from .probes import Probe, Prober, S, Simulate
-from .remaking import remade, with_model
-
-TIME_SHARE = 0.5
-"""Of the tolerance, at most, for the error of generalised-alpha in time; model and mesh get what it leaves."""
-
-ASSUMED = 0.2
-"""Of the tolerance: the error in time of the automatic choice, which is seldom more (tests/benchmarks/README.md)."""
+from .remaking import CableModel, remade, with_model
+from .time_error import ASSUMED, InTime, compared
 
 SHEAR_SAFETY = 2.0
 """The estimate of what shear does is low by up to that."""
@@ -54,17 +47,11 @@ NEGLIGIBLE = 0.03
 STOUT = 0.03
 """Of its bending stiffness: where shear takes more of it, the ladder is run with beams."""
 
-LOOSEST = 3e-3
-"""Tolerance of a probe's time integration at most."""
+UNCLEAR = 2.0
+"""Times what steps bring two probes apart: meshes that are closer are run again with shorter steps."""
 
 MOST_ELEMENTS = 256
 """Of a cable that is chosen; a finer mesh is seldom what is wanted."""
-
-TIGHTEST = 0.05
-"""Of the tolerance: where generalised-alpha needs a smaller one, what it errs by does not follow its tolerance."""
-
-DAMPING = "genalpha"
-"""The integrator that is compared with the automatic choice."""
 
 
 class Chooser(Generic[S]):
@@ -75,56 +62,68 @@ class Chooser(Generic[S]):
         """free: the cables of the scene, with what is to be chosen of them."""
         self.scene, self.settings, self.tol, self.free = scene, settings, settings.tol, list(free)
         self.prober: Prober[S] = Prober(scene, settings, quantities, simulate)
-        self.probe_tol = min(settings.tol, LOOSEST)
         self.reasons: list[str] = []
+        self.time: InTime
         self.kinds = {each.cable.name: each.kinds.slender or each.kinds.finest for each in free}
-        self.integrator, self.time_tol = settings.integrator, settings.tol
-        self.time_error = ASSUMED * self.tol
 
-    def probe(self, level: float, integrator: str | None = None, coarse: Collection[str] = (),
-              soft: str | None = None) -> Probe[S]:
-        """Return the probe of a level; coarse: cables that have half of it, soft: one that is `softened`."""
-        models = {each.cable.name: each.model(self.kinds[each.cable.name],
-                                              level / 2 if each.cable.name in coarse else level) for each in self.free}
-        change = None if soft is None else partial(softened, name=soft)
-        return self.prober.probe(models, self.probe_tol, integrator or self.integrator, change, soft or "")
+    def models(self, level: float, coarse: Collection[str] = ()) -> dict[str, CableModel]:
+        """Return the models of a level; coarse: cables that have half of it."""
+        return {each.cable.name: each.model(self.kinds[each.cable.name],
+                                            level / 2 if each.cable.name in coarse else level) for each in self.free}
+
+    def probe(self, level: float, coarse: Collection[str] = (), soft: Collection[str] = ()) -> Probe[S]:
+        """Return the probe of a level; coarse: cables that have half of it, soft: those that are `softened`."""
+        change = partial(softened, names=soft) if soft else None
+        return self.prober.probe(self.models(level, coarse), self.time.probe_tol, self.time.probed, change,
+                                 ", ".join(soft))
 
     def choose(self) -> Choice[S]:
         """Return the choice. Raises SceneError where no probe runs."""
         begin = time.process_time()
         level = self._first_level()
-        self._compare_integrators(2 * level if self._base else level)
-        shear = self._model_errors(2 * level if self._base else level)
-        levels, probes = self._ladder(level)
-        if probes[-1].run is None:
-            raise SceneError("choose", f"no short run of the scene ends: {probes[-1].failed}",
-                             "run it with elements of your own choice")
-        mesh = self._mesh_error(levels, probes)
-        estimate = Estimate(mesh, self._shares(mesh, levels[-1]), shear, self.time_error, probes, self.free)
+        second = 2 * level if self._base else level
+        self.time = self._in_time(second)
+        shear = self._model_errors(second)
+        mesh, levels = self._ladder(level)
+        probes = [self.probe(at) for at in levels[-2:]]
+        estimate = Estimate(mesh, self._shares(mesh, levels), shear, self.time.error, probes, self.free,
+                            self.time.longer)
         return self._result(estimate, time.process_time() - begin)
 
-    def _ladder(self, level: int) -> tuple[list[int], list[Probe[S]]]:
-        """Return the levels that were run, from coarse to fine, until the mesh that is needed can be extrapolated."""
-        levels, probes = [level], [self.probe(level)]
+    def _ladder(self, level: int) -> tuple[MeshError, list[int]]:
+        """Return the error of the finest mesh that was run, and the levels from coarse to fine: until the mesh that is
+        needed can be extrapolated.
+        """
+        levels, apart = [level], []
         while self._base and 2 * levels[-1] * self._base <= MOST_ELEMENTS:
-            mesh = self._mesh_error(levels, probes)
-            if len(levels) > 1 and mesh.level_for(self.wanted) <= mesh.trusted * mesh.level:
-                break
             levels.append(2 * levels[-1])
-            probes.append(self.probe(levels[-1]))
-        return levels, probes
+            apart.append(self._apart(levels))
+            if self._suffices(mesh_error(levels, apart)):
+                break
+            if apart[-1] < UNCLEAR * self.time.noise and (tightened := self.time.tightened(self.tol)) is not None:
+                self.time = tightened
+                apart[-1] = self._apart(levels)
+                if self._suffices(mesh_error(levels, apart)):
+                    break
+        if self.probe(levels[-1]).run is None:
+            raise SceneError("choose", f"no short run of the scene ends: {self.probe(levels[-1]).failed}",
+                             "run it with elements of your own choice")
+        return mesh_error(levels, apart) if self._base else MeshError(level, 0.0, 1.0), levels
 
-    def _mesh_error(self, levels: Sequence[int], probes: Sequence[Probe[S]]) -> MeshError:
-        """Return the error of the last mesh; none where all meshes are fixed."""
-        if not self._base:
-            return MeshError(levels[-1], 0.0, 1.0)
-        return mesh_error(levels, [self.prober.difference(*pair) for pair in pairwise(probes)])
+    def _apart(self, levels: Sequence[int]) -> float:
+        """Return how far the last two levels are apart."""
+        return self.prober.difference(self.probe(levels[-2]), self.probe(levels[-1]))
+
+    def _suffices(self, mesh: MeshError) -> bool:
+        """Return whether the error of a mesh can be extrapolated to the mesh that is needed, or to the finest."""
+        needed = min(mesh.level_for(self.wanted), MOST_ELEMENTS / self._base)
+        return bool(np.isfinite(mesh.error)) and needed <= mesh.trusted * mesh.level
 
     @property
     def wanted(self) -> float:
         """Return the error that the mesh may have, as long as that of the model is not known."""
-        could_shear = any(each.kinds.slender not in (None, each.kinds.finest) for each in self.free)
-        return (1 - ASSUMED * could_shear) * self.tol - self.time_error
+        could_shear = any(each.could_shear for each in self.free)
+        return (1 - ASSUMED * could_shear) * self.tol - self.time.error
 
     def _first_level(self) -> int:
         """Return the level of the coarsest mesh to start from: two elements at least, and able to follow a curve."""
@@ -145,71 +144,67 @@ class Chooser(Generic[S]):
         """Return the largest number of elements of a coarsest mesh that is not fixed; 0 where all are."""
         return max((each.base for each in self.free if each.fixed is None), default=0)
 
-    def _compare_integrators(self, level: int) -> None:
-        """Take generalised-alpha where it agrees with the automatic choice, if need be with a smaller tolerance, for
-        less work.
-        """
-        if self.settings.integrator != AUTO:
-            self.reasons.append(f"integrator {self.settings.integrator}: as asked for")
-            return
-        found, other = self.probe(level, AUTO), self.probe(level, DAMPING)
-        apart = self.prober.difference(other, found)
-        allowed = min(TIME_SHARE * self.tol * self.probe_tol / max(apart, 1e-300), self.tol)
-        work = other.work * np.sqrt(max(self.probe_tol / allowed, 1.0))  # of second order
-        if found.run is None or allowed < TIGHTEST * self.tol or work >= found.work:
-            why = "is no cheaper" if np.isfinite(apart) else "fails"
-            self.reasons.append(f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on a coarse "
-                                f"mesh is {apart:.1e}, {why}")
-            return
-        self.integrator, self.time_tol = DAMPING, allowed
-        self.time_error = apart * allowed / self.probe_tol
-        self.probe_tol = min(self.probe_tol, allowed)
-        self.reasons.append(f"integrator {DAMPING} with tol {allowed:.2g}: on a coarse mesh within {apart:.1e} of the "
-                            f"automatic choice ({found.run.report['integrator']}), for {work / found.work:.2g} of its "
-                            "work")
+    def _in_time(self, level: int) -> InTime:
+        """Return the integrators of the run and of probes, from runs on the mesh of a level."""
+        models = self.models(level)
+        rubs = any(slide.friction is not None for slide in self.scene.slides.values())
+        found = compared(lambda integrator, tol: self.prober.probe(models, tol, integrator), self.prober.difference,
+                         self.settings.integrator, self.tol, rubs)
+        self.reasons.append(found.why)
+        return found
 
     def _model_errors(self, level: int) -> dict[str, float]:
         """Return what cable elements leave out of each cable that could be a beam, over the largest change."""
-        errors: dict[str, float] = {}
-        stout: list[Free] = []
+        softer: dict[str, float] = {}
         for each in self.free:
-            name, kinds = each.cable.name, each.kinds
-            self.reasons += [f"{each.cable.where}: {why}" for why in kinds.why]
+            self.reasons += [f"{each.cable.where}: {why}" for why in each.kinds.why]
             if each.fixed is not None:
                 self.reasons.append(f"{each.cable.where}: {each.fixed} elements as given: the error of its mesh is not "
                                     "estimated")
-            if kinds.slender is None or kinds.slender == kinds.finest:
-                continue
-            probe = self.probe(level)
-            if probe.run is None:
-                continue
-            softer = shear_compliance(probe.scene.cables[name], probe.run)
-            if softer < NEGLIGIBLE * self.tol:
-                errors[name] = softer
-                self.reasons.append(f"{each.cable.where}: shear softens its bending by {softer:.1e} alone")
-                continue
-            moved = self.prober.difference(self.probe(level, soft=name), probe) / (1 - SOFTER)
-            errors[name] = SHEAR_SAFETY * softer * moved
-            if softer > STOUT and errors[name] > self.tol:
-                stout.append(each)
-            self.reasons.append(f"{each.cable.where}: shear and rotary inertia soften its bending by {softer:.1e}, "
-                                f"which changes the result by about {errors[name]:.1e}")
-        self.kinds |= {each.cable.name: each.kinds.finest for each in stout}  # whose meshes err in another way
-        return errors
+            probe = self.probe(level) if each.could_shear else None
+            if probe is not None and probe.run is not None:
+                softer[each.cable.name] = shear_compliance(probe.scene.cables[each.cable.name], probe.run)
+        moved = self._moved([name for name, by in softer.items() if by >= NEGLIGIBLE * self.tol], softer, level)
+        errors = {name: SHEAR_SAFETY * by * moved[name] if name in moved else by for name, by in softer.items()}
+        for name, by in softer.items():
+            effect = (f"and rotary inertia soften its bending by {by:.1e}, which changes the result by about "
+                      f"{errors[name]:.1e}" if name in moved else f"softens its bending by {by:.1e} alone")
+            self.reasons.append(f"{self.scene.cables[name].where}: shear {effect}")
+        stout = {name for name in moved if softer[name] > STOUT and errors[name] > self.tol}
+        self.kinds |= {each.cable.name: each.kinds.finest for each in self.free if each.cable.name in stout}
+        return errors  # meshes of stout cables err in another way
 
-    def _shares(self, mesh: MeshError, level: int) -> dict[str, float]:
-        """Return what of the error of the finest probe's mesh comes from each cable: those that are alike share it."""
+    def _moved(self, names: Sequence[str], softer: Mapping[str, float], level: int) -> dict[str, float]:
+        """Return the relative change of the result by that of the bending stiffness of each of these cables.
+
+        More than two are softened at once first: if what that changes is little enough for each, it is not told apart.
+        """
+        def by(soft: Sequence[str]) -> float:
+            return self.prober.difference(self.probe(level, soft=soft), self.probe(level)) / (1 - SOFTER)
+
+        if len(names) > 2:
+            together = by(names)
+            if SHEAR_SAFETY * together * sum(softer[name] for name in names) < ASSUMED * self.tol:
+                return dict.fromkeys(names, together)
+        return {name: by([name]) for name in names}
+
+    def _shares(self, mesh: MeshError, levels: Sequence[int]) -> dict[str, float]:
+        """Return what of the error of the finest probe's mesh comes from each cable: those that are alike share it.
+
+        They are told apart on the mesh before the finest, where there are three.
+        """
         groups: dict[tuple, list[str]] = {}
         for each in self.free:
             if each.fixed is None:
                 alike = each.base, each.cable.length, each.cable.section, each.cable.material
                 groups.setdefault(alike, []).append(each.cable.name)
-        shares, fine = dict.fromkeys(self.kinds, 0.0), self.probe(level)
+        shares = dict.fromkeys(self.kinds, 0.0)
+        level = levels[-2] if len(levels) > 2 else levels[-1]
         for names in groups.values():
             apart = mesh.error
             if len(groups) > 1:
-                coarse = self.prober.difference(self.probe(level, coarse=tuple(names)), fine)
-                apart = min(coarse / (2**mesh.order - 1), mesh.error)
+                coarse = self.prober.difference(self.probe(level, coarse=tuple(names)), self.probe(level))
+                apart = min(coarse / (2**mesh.order - 1) * (level / levels[-1]) ** mesh.order, mesh.error)
                 self.reasons.append(f"{', '.join(names)}: adds {apart:.1e} to the error of the mesh")
             shares |= dict.fromkeys(names, apart / len(names))
         return shares
@@ -228,12 +223,17 @@ class Chooser(Generic[S]):
         if not kept:
             self.reasons.append(f"no model at hand keeps tol = {self.tol:g}: the finest is taken, which errs by about "
                                 f"{error:.1e}")
+        unchanged = [name for name, values in estimate.probes[-1].sampled.items() if not largest_change(values) > 0]
+        if unchanged:
+            self.reasons.append(f"{' and '.join(unchanged)} did not change in the short runs: nothing is estimated of "
+                                "that")
         scene = remade(self.scene, models)
-        scene.run_settings = scene.run_settings | {"duration": self.settings.duration, "tol": self.time_tol,
-                                                   "integrator": self.integrator}
-        return Choice(scene, self.tol, self.time_tol, self.integrator, models, error, estimate.cost(models), kept,
+        scene.run_settings = scene.run_settings | {"duration": self.settings.duration, "tol": self.time.tol,
+                                                   "integrator": self.time.integrator}
+        return Choice(scene, self.tol, self.time.tol, self.time.integrator, models, error, estimate.cost(models), kept,
                       self.reasons, estimate.alternatives(models, self.tol), len(self.prober.made), seconds,
-                      [each.cable.name for each in self.free if each.fixed is not None or each.keeps])
+                      [each.cable.name for each in self.free if each.fixed is not None or each.keeps],
+                      mesh_error=estimate.mesh_error(models), unchanged=unchanged)
 
     def _is_stiff(self, cable: Cable, probe: Probe[S]) -> bool:
         """Return whether a cable moves as a rigid body does, but for a part of the tolerance."""

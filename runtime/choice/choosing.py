@@ -15,16 +15,18 @@ from .estimate import Free
 from .planar import Planar, planar_of
 from .probes import S, Simulate
 from .remaking import MOST_PARTS, coarsest, remade
+from .unequal import with_unequal_elements
 
 FREE = ("unset", "all")
 """What is chosen: what was not given, or all."""
 
 
-def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str, simulate: Simulate) -> Choice[S]:
+def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str, simulate: Simulate,
+           unequal: bool = False) -> Choice[S]:
     """Return the models of a scene's cables for the tolerance of the settings.
 
-    quantities: names of results that count, none for the motion; free: see `FREE`; simulate: runs a scene. Raises
-    SceneError.
+    quantities: names of results that count, none for the motion; free: see `FREE`; simulate: runs a scene; unequal:
+    whether elements of unequal lengths are tried, too. Raises SceneError.
     """
     if free not in FREE:
         raise SceneError("choose", f'free must be one of "unset" and "all", got {free!r}')
@@ -32,8 +34,12 @@ def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str
         raise SceneError("choose", "a state to start from fits one mesh alone", 'take initial="drawn" or "equilibrium"')
     planar = _planar(scene, free)
     taken = scene if planar is None or planar.scene is None else planar.scene
-    choice = Chooser(taken, settings, quantities, simulate,
-                     [_free(taken, name, scene.cables[name], free) for name in scene.cables]).choose()
+    chooser = Chooser(taken, settings, quantities, simulate,
+                      [_free(taken, name, scene.cables[name], free) for name in scene.cables])
+    choice = chooser.choose()
+    if unequal:
+        meshed = [each.cable.name for each in chooser.free if each.fixed is None]
+        choice = with_unequal_elements(choice, meshed, chooser.prober, chooser.time.probe_tol, chooser.time.probed)
     if planar is not None:
         choice.reasons.insert(0, str(planar))
         choice.planar = str(planar) if planar.scene is not None else ""
@@ -49,8 +55,8 @@ def _planar(scene: S, free: str) -> Planar[S] | None:
         return None
     models = {}
     for name, cable in scene.cables.items():
-        kinds, elements = kinds_of(scene, cable, scene.dim), cable.given_elements or coarsest(scene, cable) or 1
-        models[name] = kinds.finest.with_elements(elements)
+        elements = coarsest(scene, cable) or 1 if cable.is_open else cable.elements
+        models[name] = kinds_of(scene, cable, scene.dim).finest.with_elements(elements)
     try:
         return planar_of(remade(scene, models))
     except SceneError as error:
@@ -65,7 +71,7 @@ def _keeps(cable: Cable, free: str) -> bool:
 def _free(scene: SceneData, name: str, asked: Cable, free: str) -> Free:
     """Return what is to be chosen of a cable of a scene; asked: the cable as the user gave it."""
     cable = scene.cables[name]
-    given = asked.given_elements if free == "unset" else None
+    given = asked.elements if free == "unset" and not asked.is_open else None
     base = coarsest(scene, cable)
     if not base and given is None:
         raise SceneError(cable.where, f"no mesh of up to {MOST_PARTS} equal elements has nodes at all its supports",

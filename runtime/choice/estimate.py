@@ -27,6 +27,11 @@ class Free:
     fixed: int | None
     keeps: bool = False
 
+    @property
+    def could_shear(self) -> bool:
+        """Return whether it may be made of cable elements, or of beams that know shear."""
+        return self.kinds.slender not in (None, self.kinds.finest)
+
     def model(self, kind: Kind, level: float) -> CableModel:
         """Return its model at a level of the mesh, rounded up."""
         return kind.with_elements(self.fixed or self.base * max(1, int(np.ceil(level - 1e-9))))
@@ -37,7 +42,8 @@ class Estimate:
     """Errors and costs of models, from probes.
 
     mesh: the error of the finest probe's mesh; of_cable: what of it comes from each cable; shear: what cable elements
-    leave out of each; time: the error of the integrator; all over the largest change of a quantity.
+    leave out of each; time: the error of the integrator; all over the largest change of a quantity; longer: how many
+    times the work of a probe a run with its models takes, whose steps are shorter.
     """
 
     mesh: MeshError
@@ -46,27 +52,28 @@ class Estimate:
     time: float
     probes: Sequence[Probe]
     free: Sequence[Free]
+    longer: float = 1.0
 
     def error(self, models: Mapping[str, CableModel]) -> float:
         """Return the error of models of all cables."""
-        total = self.time
-        for each in self.free:
-            name, model = each.cable.name, models[each.cable.name]
-            if each.fixed is None:
-                level = model.elements / each.base
-                total += self.of_cable[name] * (self.mesh.level / level) ** self.mesh.order
-            if not Kind(model.element, model.law).is_beam:
-                total += self.shear.get(name, 0.0)
-        return total
+        left_out = [self.shear.get(name, 0.0) for name, model in models.items()
+                    if not Kind(model.element, model.law).is_beam]
+        return self.time + self.mesh_error(models) + sum(left_out)
+
+    def mesh_error(self, models: Mapping[str, CableModel]) -> float:
+        """Return what of the error of models comes from their meshes."""
+        levels = {each.cable.name: models[each.cable.name].elements / each.base for each in self.free
+                  if each.fixed is None}
+        return sum(self.of_cable[name] * (self.mesh.level / level) ** self.mesh.order for name, level in levels.items())
 
     def cost(self, models: Mapping[str, CableModel]) -> float:
         """Return the CPU seconds of a run: those of the finest probe, by its elements, their work, and its steps."""
         probe = self.probes[-1]
         if not self.free:
-            return probe.seconds
+            return probe.seconds * self.longer
         ratio = _work(models) / _work(probe.models)
         finer = sum(model.elements for model in models.values()) / sum(m.elements for m in probe.models.values())
-        return probe.seconds * ratio * finer ** self._growth()
+        return probe.seconds * self.longer * ratio * finer ** self._growth()
 
     def _growth(self) -> float:
         """Return the power of the number of elements by which the steps of a run grow."""

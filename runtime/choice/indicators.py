@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from ..parts.cable import Cable
@@ -46,12 +48,14 @@ def shear_compliance(cable: Cable, run: Run) -> float:
     return bending / shear * float(np.sum(slope * slope)) / energy * (1 + rotary)
 
 
-def softened(scene: S, name: str) -> S:
-    """Return a scene in which one cable, of cable elements, has `SOFTER` times its bending stiffness."""
-    cable = scene.cables[name]
-    section = GeneralSection(area=cable.section.moments()[0],
-                             second_moment_about_z=SOFTER * cable.section.second_moment_about_z)
-    return scene.with_parts(Cable(**cable.entries() | {"section": section}) if part is cable else part
+def softened(scene: S, names: Collection[str]) -> S:
+    """Return a scene in which some cables, of cable elements, have `SOFTER` times their bending stiffness."""
+    def soft(cable: Cable) -> Cable:
+        section = GeneralSection(area=cable.section.moments()[0],
+                                 second_moment_about_z=SOFTER * cable.section.second_moment_about_z)
+        return Cable(**cable.entries() | {"section": section})
+
+    return scene.with_parts(soft(part) if isinstance(part, Cable) and part.name in names else part
                             for part in scene.parts())
 
 
@@ -67,12 +71,7 @@ def deformation(cable: Cable, run: Run) -> float:
     """
     points = along(cable, run[f"{cable.name}.nodal_vectors"])
     drawn = points[0] - points[0].mean(axis=0)
-    worst = 0.0
-    for now in points[1:]:
-        moved = now - now.mean(axis=0)
-        u, _, vt = np.linalg.svd(drawn.T @ moved)
-        u[:, -1] *= np.sign(np.linalg.det(u @ vt)) or 1.0
-        worst = max(worst, float(np.linalg.norm(drawn @ (u @ vt) - moved, axis=-1).max()))
-    return worst
-
-
+    moved = points[1:] - points[1:].mean(axis=1, keepdims=True)
+    u, _, vt = np.linalg.svd(drawn.T @ moved)
+    u[:, :, -1] *= np.where(np.linalg.det(u @ vt) < 0, -1.0, 1.0)[:, None]
+    return float(np.linalg.norm(drawn @ (u @ vt) - moved, axis=-1).max(initial=0.0))

@@ -50,8 +50,10 @@ def mesh_error(levels: Sequence[int], differences: Sequence[float]) -> MeshError
     finite = [difference for difference in differences if np.isfinite(difference)]
     if not finite:
         return MeshError(levels[-1], np.inf, FIRST_ORDER)
-    ratios = np.log2(np.divide(finite[:-1], np.maximum(finite[1:], 1e-300)))
-    orders = np.clip(ratios, *ORDERS)[-2:]
+    ratios = np.log2(np.divide(finite[:-1], np.maximum(finite[1:], 1e-300)))[-2:]
+    orders = np.clip(ratios, *ORDERS)
     order = float(orders[-1]) if len(orders) else FIRST_ORDER
+    if len(ratios) > 1 and ratios[0] < 0:  # differences grew just before: they fall by chance in part
+        order = float(orders.mean())
     steady = len(orders) > 1 and float(np.ptp(orders)) < SAME
     return MeshError(levels[-1], finite[-1] / (2**order - 1), order, FAR if steady else NEAR)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import SceneError, near
 from ..kernels.libraries import kernels_of
+from ..kernels.mesh import Mesh
 from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
 from ..results.run import Run
@@ -51,30 +52,37 @@ def along(cable: Cable, nodal_vectors: np.ndarray, parts: int = STATIONS, deriva
 
     nodal_vectors: (time, node, vector, 3); derivative: 0, 1 or 2.
     """
-    element, N = _stations(cable.library, cable.element, cable.elements, cable.length / cable.elements, parts,
+    element, N = _stations(cable.library, cable.element, cable.elements, cable.length, cable.uneven_nodes, parts,
                            derivative)
     vectors = np.concatenate([nodal_vectors[:, element], nodal_vectors[:, element + 1]], axis=2)
     return np.einsum("pk,tpkd->tpd", N, vectors.reshape(len(nodal_vectors), parts + 1, -1, 3))
 
 
 @lru_cache(maxsize=256)
-def _stations(library: str | None, kind: str, elements: int, length: float, parts: int,
-              derivative: int) -> tuple[np.ndarray, np.ndarray]:
+def _stations(library: str | None, kind: str, elements: int, total: float, nodes: tuple[float, ...],
+              parts: int, derivative: int) -> tuple[np.ndarray, np.ndarray]:
     """Return (parts + 1,) the elements at equal distances and (parts + 1, shapes) their shape functions there, or a
-    derivative of them; length: of an element.
+    derivative of them; total: length of the cable; nodes: their arc-lengths where elements are not equal.
     """
     kernel = getattr(kernels_of(library), f"{kind}_on_axis")
+    if nodes:
+        mesh = Mesh.of_nodes(np.array(nodes))
+        on, x = mesh.place(np.arange(parts + 1) / parts * total)
+        return on, np.array([_shapes(kernel, *each, derivative) for each in zip(mesh.lengths[on], x, strict=True)])
+    length = total / elements
     at = np.arange(parts + 1) / parts * elements
     element = np.minimum((at * (1 + 1e-12)).astype(int), elements - 1)
     return element, np.array([_shapes(kernel, length, x, derivative) for x in length * (at - element)])
 
 
 def _shapes(kernel: Callable, length: float, x: float, derivative: int) -> np.ndarray:
-    """Return the shape functions on the axis at x in an element, or a derivative of them; the second by difference,
-    of the slopes, which are polynomials of low degree.
+    """Return the shape functions on the axis at x in an element, or a derivative of them."""
+    return kernel(length, x)[derivative] if derivative < 2 else second_derivative(kernel, length, x)
+
+
+def second_derivative(kernel: Callable, length: float, x: float) -> np.ndarray:
+    """Return the second derivative of the shape functions on the axis at x in an element, by difference of the first.
     """
-    if derivative < 2:
-        return kernel(length, x)[derivative]
     d = 1e-3 * length
     low, high = max(x - d, 0.0), min(x + d, length)
     return (kernel(length, high)[1] - kernel(length, low)[1]) / (high - low)

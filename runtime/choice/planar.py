@@ -1,13 +1,13 @@
-"""Spatial scenes that stay in the plane z = 0, and the same scenes of planar elements.
+"""Spatial scenes that stay in a plane, and the same scenes of planar elements.
 
-A scene that the reflection z -> -z leaves as it is has a motion in the plane. Planar elements have that motion, with
-two thirds or fewer of the unknowns. What a small disturbance out of the plane would make of it, such as lateral
+A scene that the reflection in a plane leaves as it is has a motion in that plane. Planar elements have that motion,
+with two thirds or fewer of the unknowns. What a small disturbance out of the plane would make of it, such as lateral
 buckling, they do not show.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Generic
 
@@ -16,7 +16,10 @@ import numpy as np
 from ..errors import SceneError
 from ..kernels.libraries import of_library
 from ..parts.cable import Cable
+from ..parts.laid import laid_into
+from ..parts.load import DistributedForce, Force
 from ..parts.part import Part
+from ..parts.plane import Plane, aligned, called, normal_of
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
 from ..parts.section import GeneralSection, Rectangle, Section
@@ -33,40 +36,111 @@ class Planar(Generic[S]):
     """A scene of planar elements with the motion of a spatial one, or why there is none.
 
     scene: of planar elements, None where the spatial one has another motion or leaves the plane; reasons: what leaves
-    the plane, or differs there, a line each; elements: of each cable, the planar element in place of its own.
+    the plane, or differs there, a line each; elements: of each cable, the planar element in place of its own; plane:
+    that the scene stays in, None of z = 0.
     """
 
     scene: S | None
     reasons: tuple[str, ...] = ()
     elements: tuple[tuple[str, str], ...] = ()
+    plane: Plane | None = None
 
     def __str__(self) -> str:
         """Return what was found, in a line."""
         if self.scene is None:
             return "the scene is spatial: " + "; ".join(self.reasons)
         changed = ", ".join(f"{name} of {element}" for name, element in self.elements)
-        return (f"the scene stays in the plane z = 0: {changed}; what would leave the plane, such as lateral buckling, "
-                "is not in it")
+        return (f"the scene stays in {called(self.plane)}: {changed}; what would leave the plane, such as lateral "
+                "buckling, is not in it")
 
 
 def planar_of(scene: S) -> Planar[S]:
     """Return the scene with planar elements in place of spatial ones, where that has the same motion.
 
-    The motion of a scene in the plane z = 0 is the same, but for rounding, for cable elements, for beams with the
-    structural law, and for beams of the other laws with a Poisson ratio of 0.
+    The motion of a scene in a plane is the same, but for rounding, for cable elements, for beams with the structural
+    law, and for beams of the other laws with a Poisson ratio of 0.
     """
     if not scene.cables or scene.dim == 2:
         return Planar(None, ("it has no cables of spatial elements",))
-    reasons = [f"gravity {show(scene.gravity, 'm/s²')} leaves the plane z = 0"] if scene.gravity[2] else []
-    for part in scene.parts():
-        reasons += [f"{part.where}: {reason}" for reason in _reasons(scene, part)]
+    found = _planar_in(scene, None)
+    if found.scene is None and (plane := likely_plane(scene)) is not None:
+        return _planar_in(scene, plane)
+    return found
+
+
+def _planar_in(scene: S, plane: Plane | None) -> Planar[S]:
+    """Return the scene with planar elements in a plane, None for z = 0."""
+    try:
+        flat = scene if plane is None else laid_into(scene, plane)
+    except SceneError as error:
+        return Planar(None, (str(error),))
+    following = {id(given): _on_planar_cable(flat, seen)
+                 for given, seen in zip(scene.parts(), flat.parts(), strict=True)
+                 if isinstance(seen, Force | DistributedForce) and _follows_cable(scene, seen)}
+    reasons = [f"gravity {show(scene.gravity, 'm/s²')} leaves {called(plane)}"] if flat.gravity[2] else []
+    for given, seen in zip(scene.parts(), flat.parts(), strict=True):
+        found = _reasons(flat, following.get(id(given), seen), called(plane))
+        reasons += [f"{given.where}: {reason}" for reason in found]
     if reasons:
         return Planar(None, tuple(reasons))
     try:
-        made = scene.with_parts(planar_cable(part) if isinstance(part, Cable) else part for part in scene.parts())
+        made = scene.with_parts(_planar(part, seen, plane, following)
+                                for part, seen in zip(scene.parts(), flat.parts(), strict=True))
     except SceneError as error:
         return Planar(None, (str(error),))
-    return Planar(made, (), tuple((name, cable.element) for name, cable in made.cables.items()))
+    return Planar(made, (), tuple((name, cable.element) for name, cable in made.cables.items()), plane)
+
+
+def likely_plane(scene: SceneData) -> Plane | None:
+    """Return the plane that a scene lies in if it lies in any; None of z = 0, and where nothing tells.
+
+    Its normal is such that the first cable's ``up`` is the side of the height of planar elements.
+    """
+    cables = list(scene.cables.values())
+    start = np.array(cables[0].drawn_through[0])
+    forces = [load.value for load in scene.loads.values() if isinstance(load, Force | DistributedForce)
+              and not load.follower]
+    groups = [np.concatenate([np.array(cable.drawn_through) - start for cable in cables]), [scene.gravity],
+              [body.frame[0] - start for body in scene.bodies.values()], [cable.velocity for cable in cables],
+              [body.velocity for body in scene.bodies.values()], forces, [cables[0].up]]
+    normal = normal_of([np.array(group, dtype=float).reshape(-1, 3) for group in groups])
+    if normal is None:
+        return None
+    if np.dot(normal, np.cross(cables[0].axes_at(0.0)[0], cables[0].up)) < 0:
+        normal = -normal
+    plane = Plane.across(aligned(normal), start)
+    return None if abs(plane.normal[2]) == 1.0 and not plane.origin.any() else plane
+
+
+def _follows_cable(scene: SceneData, load: Force | DistributedForce) -> bool:
+    """Return whether a load has components along the height and the width of a cable."""
+    on = load.cable if isinstance(load, DistributedForce) else load.on
+    return load.follower and on in scene.cables and any(load.value[1:])
+
+
+def _on_planar_cable(scene: SceneData, load: Force | DistributedForce) -> Force | DistributedForce:
+    """Return a follower force on a cable with its components along the axes of the planar cable in its place.
+
+    There the height is z x tangent, whatever ``up`` is. The scene is in the axes of the plane.
+    """
+    on, s = (load.cable, load.start) if isinstance(load, DistributedForce) else (load.on, load.s)
+    axes = scene.cables[on].axes_at(s or 0.0)
+    planar = np.array([axes[0], np.cross((0.0, 0.0, 1.0), axes[0]), (0.0, 0.0, 1.0)])
+    return load.model_copy(update={"value": tuple(aligned(planar @ axes.T @ load.value).tolist())})
+
+
+def _planar(part: Part, seen: Part, plane: Plane | None, following: Mapping[int, Part]) -> Part:
+    """Return a part of the planar scene; seen: in the axes of the plane; following: forces that turn with cables, by
+    the identity of the given ones.
+    """
+    if not isinstance(part, Cable) or not isinstance(seen, Cable):
+        return following.get(id(part), part)
+    if plane is None:
+        return planar_cable(part)
+    height = np.cross((0.0, 0.0, 1.0), seen.axes_at(0.0)[0])
+    made = planar_cable(seen)
+    return Cable(**part.entries() | {"element": made.element, "section": made.section,
+                                     "up": tuple(plane.out(height).tolist())})
 
 
 def planar_element(cable: Cable) -> str | None:
@@ -100,12 +174,12 @@ def _height_is_in_plane(cable: Cable) -> bool:
     return not np.any(cable.axes_at(cable.node_s)[:, 1, 2])
 
 
-def _reasons(scene: SceneData, part: Part) -> Iterator[str]:
-    """Yield what of a part leaves the plane, or is another thing in planar elements."""
+def _reasons(scene: SceneData, part: Part, plane: str) -> Iterator[str]:
+    """Yield what of a part leaves the plane, or is another thing in planar elements; both in the axes of the plane."""
     for what in part.off_plane():
-        yield f"{what} leaves the plane z = 0"
+        yield f"{what} leaves {plane}" + ", in whose axes it is" * (scene.plane_axes is not None)
     if isinstance(part, Cable):
-        yield from _reasons_of_cable(part)
+        yield from _reasons_of_cable(part, plane)
     elif isinstance(part, RigidBody):
         (_, _, xz), (_, _, yz), _ = part.inertia
         if xz or yz:
@@ -114,13 +188,13 @@ def _reasons(scene: SceneData, part: Part) -> Iterator[str]:
         yield "a rigid corner of spatial elements is softer than that of planar ones"
 
 
-def _reasons_of_cable(cable: Cable) -> Iterator[str]:
+def _reasons_of_cable(cable: Cable, plane: str) -> Iterator[str]:
     """Yield what of a cable leaves the plane, or is another thing in planar elements."""
     if np.any(cable.nodal_vectors[:, 0, 2]) or np.any(cable.rest_nodal_vectors[:, 0, 2]):
-        yield "its line leaves the plane z = 0"
+        yield f"its line leaves {plane}"
         return
     if cable.velocity[2] or cable.angular_velocity[0] or cable.angular_velocity[1]:
-        yield "its velocity leaves the plane z = 0"
+        yield f"its velocity leaves {plane}"
     if planar_element(cable) is None:
         yield f"{cable.element} has no planar form"
         return
@@ -130,9 +204,9 @@ def _reasons_of_cable(cable: Cable) -> Iterator[str]:
     if not cable.kind_of_element.is_cable:
         axes = cable.axes_at(cable.node_s)
         if np.any(np.abs(axes[:, 1, 2] * axes[:, 2, 2]) > ALONG):
-            yield "up is neither in the plane z = 0 nor across it: bending leaves the plane"
+            yield f"up is neither in {plane} nor across it: bending leaves the plane"
         elif not _height_is_in_plane(cable) and turned(cable.section) is None:
-            yield "up lies across the plane z = 0, where the section's width bends: draw its height in the plane"
+            yield f"up lies across {plane}, where the section's width bends: draw its height in the plane"
 
 
 def _is_in_line(scene: SceneData, tie: Tie) -> bool:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeVar
+
+import numpy as np
 
 from ..errors import FunicularWarning
 from ..parts.cable import EXACT, Cable
@@ -27,15 +29,20 @@ FEW_PARTS = 12
 
 @dataclass(frozen=True)
 class CableModel:
-    """What is chosen of a cable: its element, its law, and the number of its elements."""
+    """What is chosen of a cable: its element, its law, and the number of its elements; their nodes where unequal."""
 
     element: str
     law: str
     elements: int
+    nodes: tuple[float, ...] = ()
 
     def __str__(self) -> str:
         """Return it in a few words."""
-        return f"{self.elements} {self.element}, {self.law}"
+        return f"{self.elements} {'unequal ' if self.nodes else ''}{self.element}, {self.law}"
+
+    def halved(self, nodes: np.ndarray) -> CableModel:
+        """Return it with every element halved; nodes: of these halves, arc-lengths in m."""
+        return replace(self, elements=2 * self.elements, nodes=tuple(nodes.tolist()) if self.nodes else ())
 
 
 def remade(scene: S, models: Mapping[str, CableModel]) -> S:
@@ -49,7 +56,8 @@ def remade(scene: S, models: Mapping[str, CableModel]) -> S:
 def with_model(cable: Cable, model: CableModel) -> Cable:
     """Return a cable with another model. Raises SceneError where its section or shape do not suit that."""
     given = {name: value for name, value in cable.entries().items() if name not in ("strain", "curvature", "membrane")}
-    return Cable(**given | {"element": model.element, "law": model.law, "elements": model.elements})
+    mesh = {"nodes": model.nodes, "elements": None} if model.nodes else cable.mesh_entries(model.elements)
+    return Cable(**given | {"element": model.element, "law": model.law} | mesh)
 
 
 def coarsest(scene: SceneData, cable: Cable) -> int:
@@ -58,16 +66,26 @@ def coarsest(scene: SceneData, cable: Cable) -> int:
 
     Every multiple of it has them, too. 0 where no mesh of at most `MOST_PARTS` elements has them.
     """
-    needed = [support.s for support in scene.supports if support.cable == cable.name]
-    for tie in scene.ties.values():
-        needed += [s for name, s in ((tie.cable, tie.s), (tie.to, tie.at)) if name == cable.name]
-    needed += [event.s for event in scene.events.values() if event.s is not None and _watches(event, cable)]
+    needed = _needed(scene, cable)
     count = _common(needed, cable.length)
+    on_nodes = _common(node_places(scene, cable), cable.length)
+    return on_nodes if 0 < on_nodes <= max(count, FEW_PARTS) else count
+
+
+def node_places(scene: SceneData, cable: Cable) -> list[float]:
+    """Return the arc-lengths of a cable's supports, ties, watched nodes, point loads and joints, in m."""
     wanted = [load.s for load in scene.loads.values()
               if isinstance(load, Force | Moment) and load.on == cable.name and load.s is not None]
     wanted += [end.arc_length for end in scene.attachments() if end.on == cable.name]
-    on_nodes = _common([*needed, *wanted], cable.length)
-    return on_nodes if 0 < on_nodes <= max(count, FEW_PARTS) else count
+    return [*_needed(scene, cable), *wanted]
+
+
+def _needed(scene: SceneData, cable: Cable) -> list[float]:
+    """Return the arc-lengths at which a cable must have nodes: those of supports, ties and watched nodes, in m."""
+    needed = [support.s for support in scene.supports if support.cable == cable.name]
+    for tie in scene.ties.values():
+        needed += [s for name, s in ((tie.cable, tie.s), (tie.to, tie.at)) if name == cable.name]
+    return needed + [event.s for event in scene.events.values() if event.s is not None and _watches(event, cable)]
 
 
 def _watches(event: Event, cable: Cable) -> bool:

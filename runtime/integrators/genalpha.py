@@ -17,6 +17,7 @@ class GeneralisedAlpha(Integrator):
     name, order, error_overestimate = "genalpha", 2, 2.0
     default_spectral_radius = 0.9
     loses_energy_by_spectral_radius = True
+    cost_of_evaluation = 2.8
 
     @classmethod
     def of(cls, spectral_radius: float) -> Integrator:

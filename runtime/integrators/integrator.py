@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cache
 from typing import ClassVar
 
 import numpy as np
@@ -67,12 +68,19 @@ class Integrator(ABC):
     @classmethod
     def of(cls, spectral_radius: float) -> Integrator:
         """Return the integrator with this spectral radius at infinite frequency, if it has one."""
-        return cls()
+        return _made(cls)
 
     cost_of_evaluation: ClassVar[float] = 1.0
-    """Of an evaluation of eq 38 with its share of the other work of a step, in evaluations alone."""
+    """Of an evaluation of eq 38, or of an iteration where these are not counted, with its share of the other work of a
+    step, in evaluations alone."""
 
     @classmethod
     def cost(cls, demands: Demands) -> tuple[float, str] | None:
         """Return what a second of a scene costs, in evaluations of eq 38, and why; None: "auto" does not take it."""
         return None
+
+
+@cache
+def _made(kind: type[Integrator]) -> Integrator:
+    """Return the integrator of a kind without parameters: its coefficients are the same in every run."""
+    return kind()

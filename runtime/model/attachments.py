@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from ..checks.frames import draws_section
 from ..parts.attachment import Attachment
 from ..parts.modal_body import ModalBody
+from ..parts.rigid_body import largest_moment
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 
@@ -55,8 +57,8 @@ class AttachmentBuilder:
     def element(self, cable: str, s: float) -> tuple[int, float]:
         """Return the element that s is in, and x in it."""
         model = self.cables[self.cable_index[cable]]
-        element = min(max(int(s // model.length), 0), model.n_elements - 1)
-        return element, s - element * model.length
+        element = int(model.mesh.element_at(s))
+        return element, s - model.mesh.start(element)
 
     def model(self, attachment: Attachment, axes: np.ndarray | None = None,
               up: tuple[float, ...] | np.ndarray | None = None) -> AttachmentModel:
@@ -69,8 +71,8 @@ class AttachmentBuilder:
             return AttachmentModel(-1, -1, 0, -1, attachment.point, none, none, 0.0, 0.0, axes=axes)
         if attachment.on in self.body_index:
             body = self.bodies[self.body_index[attachment.on]]
-            length = float(np.sqrt(np.max(np.linalg.eigvalsh(body.inertia)) / body.mass))
             part = self.scene.bodies[attachment.on]
+            length = math.sqrt(largest_moment(body.inertia) / body.mass)
             if isinstance(part, ModalBody):
                 return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, (0.0,) * 3, none, none, body.mass,
                                        length, axes=axes, modal=self._modal(part.attachment_modes(attachment.point)))
@@ -80,9 +82,10 @@ class AttachmentBuilder:
                                draws_section(self.scene.cables[attachment.on]))
         found.element, x = self.element(attachment.on, attachment.arc_length)
         model = self.cables[found.cable]
-        found.N = model.kernel("on_axis")(model.length, x)[0]
+        length = model.mesh.length(found.element)
+        found.N = model.kernel("on_axis")(length, x)[0]
         if axes is not None:
-            slopes = model.kernel("slopes")(model.length, x)
+            slopes = model.kernel("slopes")(length, x)
             found.S = np.array([slopes[k, 0] if k >= 0 else 0 * found.N for k in found.slopes])
         return found
 
@@ -99,7 +102,7 @@ class AttachmentBuilder:
                   section: bool) -> AttachmentModel:
         """Return an attachment with the frame of the section, or of the tangent with the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
-        length = self.cables[index].length
+        length = self.cables[index].mesh.mean
         mass = cable.material.density * cable.section.area * length
         director = cable.kind_of_element.director
         if up is None and not director:  # any direction does where the tangent is all that is held

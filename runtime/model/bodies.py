@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..parts.modal_body import ModalBody
-from ..parts.rigid_body import RigidBody
+from ..parts.rigid_body import RigidBody, largest_moment
 from ..parts.scene_data import SceneData
 from ..rotations import cross, rotate
 from .model import BodyModel, ShapeModel
@@ -60,7 +60,7 @@ def velocity_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
     if isinstance(body, ModalBody):
         modes = np.zeros(body.shape.n)
     else:
-        velocity = velocity + rotate(body.orientation, cross(turning, body.centre))
+        velocity = velocity + rotate(body.orientation, tuple(cross(turning, body.centre).tolist()))
     return np.concatenate([velocity[:dim], turning[2 if dim == 2 else 0 :], modes])
 
 
@@ -68,8 +68,7 @@ def body_weights(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
     """Return (dofs,): 1 for the origin, the largest radius of gyration for turns, the root mean square of displacement
     for modes.
     """
-    inertia = np.array(body.inertia)
-    largest = inertia[2, 2] if dim == 2 else np.max(np.linalg.eigvalsh(inertia))
+    largest = body.inertia[2][2] if dim == 2 else largest_moment(body.inertia)
     modes = np.sqrt(np.diag(body.shape.modal_mass) / body.mass) if isinstance(body, ModalBody) else np.zeros(0)
     return np.concatenate([np.ones(dim), np.full(1 if dim == 2 else 3, np.sqrt(largest / body.mass)), modes])
 

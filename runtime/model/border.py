@@ -25,7 +25,7 @@ def elimination(model: Model, system: str) -> Elimination:
     if m > DENSE:
         return _Border(model, system).graph.eliminate()
     chains = len(model.chains) - 1
-    return dense(m, np.stack([np.repeat(np.arange(m), chains), np.tile(np.arange(chains), m)], axis=1))
+    return dense(m, np.array(np.divmod(np.arange(m * chains), max(chains, 1))).T)
 
 
 class _Place:

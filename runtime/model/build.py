@@ -21,7 +21,11 @@ from .unknowns import Node, supports
 
 
 def build(scene: SceneData) -> Model:
-    """Number the coordinates of a scene and evaluate the constants of its elements. Raises SceneError."""
+    """Number the coordinates of a scene and evaluate the constants of its elements. Raises SceneError.
+
+    A scene of planar elements lies in the plane z = 0 (see parts/laid.py).
+    """
+    assert scene.plane is None, "a scene in another plane is laid into z = 0 first"
     dim, gravity = scene.dim, np.array(scene.gravity)[: scene.dim]
     drawn, described = list(scene.cables.values()), list(scene.bodies.values())
     cables: list[CableModel] = []
@@ -63,6 +67,7 @@ def build(scene: SceneData) -> Model:
         chains=numbering.chains,
         nodes=nodes,
         tables=[tables_of(name) for name in scene.libraries],
+        plane_axes=scene.plane_axes,
     )
     model.newton, model.accelerations = elimination(model, NEWTON), elimination(model, ACCELERATIONS)
     return model

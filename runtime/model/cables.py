@@ -15,22 +15,24 @@ from .unknowns import Reduction, as_supports_leave
 
 def cable_model(cable: Cable, first: int) -> CableModel:
     """Make the model of a cable whose coordinates begin at ``first``."""
-    element, law, length = cable.element, cable.kernel_law, cable.length / cable.elements
+    element, law, mesh = cable.element, cable.kernel_law, cable.mesh
     kernels, vectors = kernels_of(cable.library), cable.kind_of_element.nodal_vectors
-    m = getattr(kernels, f"{element}_mass")(length, cable.material.density, cable.section.mass_moments())
+    mass, moments = getattr(kernels, f"{element}_mass"), cable.section.mass_moments()
+    m = np.array([mass(length, cable.material.density, moments) for length in mesh.lengths])
     return CableModel(
-        cable.name, element, law, cable.elements, first, length, cable.material.damping_time,
+        cable.name, element, law, mesh, first, cable.material.damping_time,
         cable.material.mass_damping, m, constants(cable), (cable.elements + 1, len(vectors), cable.dim), vectors,
         cable.library)
 
 
 def cable_gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray:
     """Return (coordinates,): generalised weight of a cable; two elements meet at an inner node."""
-    first, second = model.kernel("gravity")(model.length, cable.material.density, cable.section.mass_moments(),
-                                            gravity).reshape(2, *model.shape[1:])
+    kernel, moments = model.kernel("gravity"), cable.section.mass_moments()
+    each = np.array([kernel(length, cable.material.density, moments, gravity).reshape(2, *model.shape[1:])
+                     for length in model.mesh.lengths])
     weight = np.zeros(model.shape)
-    weight[:-1] += first
-    weight[1:] += second
+    weight[:-1] += each[:, 0]
+    weight[1:] += each[:, 1]
     return weight.ravel()
 
 
@@ -41,8 +43,13 @@ def cable_rates(scene: SceneData, reduction: Reduction) -> np.ndarray:
 
 
 def cable_weights(cable: Cable) -> np.ndarray:
-    """Return how far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes."""
+    """Return how far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes, of the
+    longer one of the elements at the node.
+    """
     area, iyy, izz = cable.section.moments()[:3]
-    unit = gauge(cable.kind_of_element.nodal_vectors, cable.length / cable.elements, np.sqrt(iyy / area),
-                 np.sqrt(izz / area))
-    return np.repeat(np.tile(list(unit), cable.elements + 1), cable.dim)
+    across, lengths = np.sqrt([iyy / area, izz / area]), cable.mesh.lengths
+    vectors = cable.kind_of_element.nodal_vectors
+    if len(lengths) == 1:
+        return np.repeat(np.tile(list(gauge(vectors, lengths[0], *across)), cable.elements + 1), cable.dim)
+    longer = np.maximum(np.append(lengths[0], lengths), np.append(lengths, lengths[-1]))
+    return np.repeat([unit for length in longer for unit in gauge(vectors, length, *across)], cable.dim)

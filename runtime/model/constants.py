@@ -20,16 +20,18 @@ PLANAR = 4
 
 
 def constants(cable: Cable, axial: float = 1.0) -> np.ndarray:
-    """Return (1, n), or (elements, n) where they differ because the stress-free shape is curved; axial: a factor of EA,
-    of a cable's law alone.
+    """Return (1, n), or (elements, n) where they differ because the stress-free shape is curved or the elements are not
+    equal; axial: a factor of EA, of a cable's law alone.
     """
-    length = cable.length / cable.elements
+    lengths = cable.mesh.lengths
     S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
     if axial != 1.0:
         S = S * [axial, 1.0, axial][: len(S)]  # of EA, EI, and EA of the upper modes of an assumed strain
     reference = cable.reference
-    shapes = [None] if reference is None else reference if cable.is_curved else reference[:1]
-    return np.array([element_constants(cable.library, cable.element, cable.kernel_law, length, S, e0) for e0 in shapes])
+    n = cable.elements if cable.is_curved and reference is not None else len(lengths)
+    shapes = [None] * n if reference is None else reference[:n]
+    return np.array([element_constants(cable.library, cable.element, cable.kernel_law, float(length), S, e0)
+                     for length, e0 in zip(np.broadcast_to(lengths, n), shapes, strict=True)])
 
 
 def element_constants(library: str | None, element: str, law: str, length: float, S: np.ndarray,

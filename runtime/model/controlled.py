@@ -13,7 +13,8 @@ from .model import BodyModel, CableModel, Model, SlideModel
 
 COUNTED = {"rigid_body": ("position", "orientation"), "modal_body": ("position", "orientation", "modal_coordinates"),
            "cable": ("position", "nodal_vectors"), "slide": ("s",)}
-"""Results whose errors are estimated, by kind of part; a position may be one of its components, "A.position.y"."""
+"""Results whose errors are estimated, by kind of part; a position may be one of its components, "A.position.y".
+In a plane that is turned against the ground's axes, all components of a position count with one of them."""
 
 
 def controlled_weights(quantities: Sequence[str], scene: SceneData, model: Model) -> np.ndarray:
@@ -26,6 +27,7 @@ def controlled_weights(quantities: Sequence[str], scene: SceneData, model: Model
     weights = np.zeros(model.n_dof)
     for quantity in quantities:
         name, what, axis = _parsed(quantity, scene)
+        axis = _in_plane(model, axis, f'quantities: "{quantity}"')
         if name in scene.slides:
             _count_slide(model, model.slides[list(scene.slides).index(name)], weights)
         elif name in scene.cables:
@@ -48,11 +50,25 @@ def _parsed(quantity: str, scene: SceneData) -> tuple[str, str, str]:
     what, _, axis = rest.partition(".")
     if f"{name}.{what}" not in known:
         raise SceneError("run", f'quantities: the error of "{quantity}" is not estimated', near(quantity, known))
-    if axis and (what != "position" or axis not in AXES[: scene.dim]):
+    if axis and (what != "position" or axis not in (AXES[: scene.dim] if scene.plane_axes is None else AXES)):
         raise SceneError("run", f'quantities: the error of "{quantity}" is not estimated',
                          f"{name}.{what} has no component {axis}; take {name}.{what}" if what != "position" else
                          f"take {', '.join(f'{name}.position.{one}' for one in AXES[: scene.dim])} or all of it")
     return name, what, axis
+
+
+def _in_plane(model: Model, axis: str, where: str) -> str:
+    """Return the axis of the model along an axis of the ground; all of them, "", where it lies along none.
+
+    Raises SceneError for one across the plane of the model.
+    """
+    if not axis or model.plane_axes is None:
+        return axis
+    along = np.abs(model.plane_axes.plane.axes[AXES.index(axis)])
+    if not np.any(along[: model.dim]):
+        raise SceneError("run", f"{where} is always the same: the scene lies in a plane across {axis}",
+                         "take another component")
+    return AXES[int(np.argmax(along))] if np.count_nonzero(along) == 1 else ""
 
 
 def _components(start: int, dim: int, axis: str) -> Iterable[int]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from heapq import heapify, heappop, heappush
 from typing import Any
 
@@ -117,7 +118,14 @@ class BorderGraph:
             self.on_chain.setdefault(chain, set()).add(group)
 
     def eliminate(self) -> Elimination:
-        """Return the order of elimination: one front, or those of minimum degree where they take fewer operations."""
+        """Return the order of elimination: one front, or those of minimum degree where they take fewer operations.
+
+        It is analysed once for all scenes whose graphs are equal, as those of one topology are; the arrays are shared.
+        """
+        return eliminated(tuple(tuple(own.tolist()) for own in self.unknowns), tuple(map(frozenset, self.beside)),
+                          _frozen(self.on_chain), _frozen(self.waits))
+
+    def _eliminated(self) -> Elimination:
         pairs = [(int(unknown), chain) for chain, groups in self.on_chain.items() for group in groups
                  for unknown in self.unknowns[group]]
         strips = np.array(sorted(pairs), dtype=int).reshape(-1, 2)
@@ -128,43 +136,14 @@ class BorderGraph:
 
     def _fronts(self) -> tuple[list[list[int]], list[set[int]]]:
         """Return the groups and the neighbours of each front, in the order of elimination, by minimum degree."""
-        size = [len(own) for own in self.unknowns]
-        beside = [set(groups) for groups in self.beside]
-        waits = {group: set(of) for group, of in self.waits.items()}
-        degree = [sum(size[other] for other in groups) for groups in beside]
-        # of equals the one that was touched last: chains are eliminated from their ends
-        waiting = [(degree[group], 0, group) for group in range(len(size)) if not waits.get(group)]
-        heapify(waiting)
-        gone = [False] * len(size)
+        graph = _Remaining([len(own) for own in self.unknowns], self.beside, self.waits)
         fronts: list[list[int]] = []
         neighbours: list[set[int]] = []
-        while waiting:
-            of, _, pivot = heappop(waiting)
-            if gone[pivot] or of != degree[pivot]:
-                continue
-            around = beside[pivot]
-            constraints = [group for group in around if group in waits]
-            if len(constraints) == 1:  # all that lies behind it is attached by it alone, and gone
-                waits[constraints[0]] = set()
-            for group in around:
-                beside[group] |= around
-                beside[group] -= {group, pivot}
-            # what has no other neighbours costs nothing more
-            together = [pivot, *(group for group in sorted(around)
-                                 if len(beside[group]) == len(around) - 1 and not waits.get(group, set()) - {pivot})]
-            around = around.difference(together)
-            for group in together:
-                gone[group] = True
-            for group in around:
-                beside[group].difference_update(together)
-                degree[group] = sum(size[other] for other in beside[group])
-                if group in waits:
-                    waits[group].difference_update(together)
-                if not waits.get(group):
-                    heappush(waiting, (degree[group], -len(fronts), group))
+        while (pivot := graph.next_pivot()) is not None:
+            together, around = graph.eliminate(pivot)
             fronts.append(together)
             neighbours.append(around)
-        assert all(gone), "every constraint is on bodies that are eliminated"
+        assert all(graph.gone), "every constraint is on bodies that are eliminated"
         return fronts, neighbours
 
     def _merged(self, fronts: list[list[int]], neighbours: list[set[int]]) -> tuple[list[list[int]], list[set[int]]]:
@@ -216,6 +195,80 @@ class BorderGraph:
         return Elimination(m, np.cumsum(starts) - starts, np.cumsum(lengths) - lengths, pivots, neighbours,
                            np.concatenate([part for pair in zip(own, around, strict=True) for part in pair]),
                            np.concatenate(in_parent), parent, child, sibling, front, place, strips)
+
+
+class _Remaining:
+    """What is left of a graph while its groups are eliminated, those first that connect the fewest unknowns."""
+
+    def __init__(self, size: list[int], beside: list[set[int]], waits: dict[int, set[int]]):
+        self.size = size
+        self.beside = [set(groups) for groups in beside]
+        self.waits = {group: set(of) for group, of in waits.items()}
+        self.gone = [False] * len(size)
+        self.eliminations = 0
+        self.degree = [self._degree(group) for group in range(len(size))]
+        # of equals the one that was touched last: chains are eliminated from their ends
+        self.waiting = [(of, 0, group) for group, of in enumerate(self.degree) if not self.waits.get(group)]
+        heapify(self.waiting)
+
+    def next_pivot(self) -> int | None:
+        """Return a group of the least degree that waits for none; None where all are gone."""
+        while self.waiting:
+            of, _, group = heappop(self.waiting)
+            if not self.gone[group] and of == self.degree[group]:
+                return group
+        return None
+
+    def eliminate(self, pivot: int) -> tuple[list[int], set[int]]:
+        """Return the groups that go with a pivot, itself among them, and those that this connects."""
+        around = self.beside[pivot]
+        constraints = [group for group in around if group in self.waits]
+        if len(constraints) == 1:  # all that lies behind it is attached by it alone, and gone
+            self.waits[constraints[0]] = set()
+        for group in around:
+            self.beside[group] |= around
+            self.beside[group] -= {group, pivot}
+        together = [pivot, *sorted(group for group in around if self._costs_nothing(group, pivot, len(around)))]
+        around = around.difference(together)
+        for group in together:
+            self.gone[group] = True
+        for group in around:
+            self._update(group, together)
+        self.eliminations += 1
+        return together, around
+
+    def _costs_nothing(self, group: int, pivot: int, around: int) -> bool:
+        """Return whether a neighbour of a pivot has no others than the pivot has, and waits for no other."""
+        return len(self.beside[group]) == around - 1 and not self.waits.get(group, set()) - {pivot}
+
+    def _update(self, group: int, gone: list[int]) -> None:
+        """Take what is gone from a group's neighbours, and let it wait for its turn unless it waits for others."""
+        self.beside[group].difference_update(gone)
+        self.degree[group] = self._degree(group)
+        if group in self.waits:
+            self.waits[group].difference_update(gone)
+        if not self.waits.get(group):
+            heappush(self.waiting, (self.degree[group], -self.eliminations, group))
+
+    def _degree(self, group: int) -> int:
+        """Return how many unknowns a group's neighbours have."""
+        return sum(self.size[other] for other in self.beside[group])
+
+
+def _frozen(sets: dict[int, set[int]]) -> tuple[tuple[int, frozenset[int]], ...]:
+    return tuple((key, frozenset(sets[key])) for key in sorted(sets))
+
+
+@lru_cache(maxsize=32)
+def eliminated(unknowns: tuple[tuple[int, ...], ...], beside: tuple[frozenset[int], ...],
+               on_chain: tuple[tuple[int, frozenset[int]], ...],
+               waits: tuple[tuple[int, frozenset[int]], ...]) -> Elimination:
+    """Return the order of elimination of a `BorderGraph`, given by its attributes; it stays for equal ones."""
+    graph = BorderGraph()
+    graph.unknowns, graph.beside = [np.array(own, dtype=int) for own in unknowns], [set(groups) for groups in beside]
+    graph.on_chain = {chain: set(groups) for chain, groups in on_chain}
+    graph.waits = {group: set(groups) for group, groups in waits}
+    return graph._eliminated()
 
 
 def _parents(fronts: list[list[int]], neighbours: list[set[int]]) -> list[int]:

@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 from ..errors import SceneError, near
 from ..parts.cable import Cable
 from ..parts.modal_body import ModalBody
+from ..parts.plane import called
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
 from ..parts.validation import EXACT, show, shown
@@ -81,6 +82,14 @@ class InitialState(Mapping[str, np.ndarray]):
 
     def start(self, model: Model, scene: SceneData) -> None:
         """Put a freshly built model of the scene into this state. Raises SceneError."""
+        if model.plane_axes is not None:
+            InitialState({name: model.as_in_model(name, values) for name, values in self.items()},
+                         self.time)._start(model, scene)
+        else:
+            self._start(model, scene)
+
+    def _start(self, model: Model, scene: SceneData) -> None:
+        """Put a model into this state, which is along its axes. Raises SceneError."""
         drawn, moving = model.q.copy(), model.v.copy()
         for cable in model.cables:
             self._place_cable(model, cable, scene.cables[cable.name])
@@ -102,7 +111,7 @@ class InitialState(Mapping[str, np.ndarray]):
                 vectors = _along_spline(_of_shape(self[name], (cable.shape[0], 3), name), cable, drawn, name)
             else:
                 continue
-            _check_plane(vectors, cable.shape[2], name)
+            _check_plane(vectors, model, name)
             into[cable.coordinates] = vectors[..., : cable.shape[2]].ravel()
 
     def _place_body(self, model: Model, body: BodyModel, drawn: RigidBody | ModalBody) -> None:
@@ -111,7 +120,7 @@ class InitialState(Mapping[str, np.ndarray]):
                  for name in MODAL[len(BODY):] if f"{body.name}.{name}" in self}
         if not given and not modes:
             return
-        q, v = _frame(body, drawn, given, model.dim)
+        q, v = _frame(body, drawn, given, model)
         if body.modes:
             q[-body.modes:] = modes.get("modal_coordinates", q[-body.modes:])
             v[-body.modes:] = modes.get("modal_velocities", v[-body.modes:])
@@ -128,7 +137,7 @@ def names_of(scene: SceneData) -> Iterator[str]:
 
 
 def _frame(body: BodyModel, drawn: RigidBody | ModalBody, given: dict[str, np.ndarray],
-           dim: int) -> tuple[np.ndarray, np.ndarray]:
+           model: Model) -> tuple[np.ndarray, np.ndarray]:
     """Return configuration and rates of a body that starts elsewhere than drawn."""
     position, orientation = drawn.frame
     at = {"position": position, "orientation": orientation, "velocity": np.array(drawn.velocity),
@@ -136,11 +145,13 @@ def _frame(body: BodyModel, drawn: RigidBody | ModalBody, given: dict[str, np.nd
     given = {name: _of_shape(values, at[name].shape, f"{body.name}.{name}") for name, values in given.items()}
     moved = RigidBody(name=body.name, mass=body.mass, inertia=np.eye(3).tolist(), centre=body.centre.tolist(),
                       **{name: values.tolist() for name, values in (at | given).items()})
-    if dim == 2:
+    if model.dim == 2:
         for what in moved.off_plane():
-            raise SceneError("initial", f"{body.name}: {what}, but the scene lies in the plane z = 0")
+            own = ", in whose axes it is" * (model.plane_axes is not None)
+            raise SceneError("initial", f"{body.name}: {what}, but the scene lies in {_plane(model)}{own}")
     modes = np.zeros(body.modes)
-    return (np.concatenate([configuration_of(moved, dim), modes]), np.concatenate([velocity_of(moved, dim), modes]))
+    return (np.concatenate([configuration_of(moved, model.dim), modes]),
+            np.concatenate([velocity_of(moved, model.dim), modes]))
 
 
 def _along_spline(points: np.ndarray, cable: CableModel, drawn: Cable, name: str) -> np.ndarray:
@@ -149,7 +160,7 @@ def _along_spline(points: np.ndarray, cable: CableModel, drawn: Cable, name: str
     if not set(cable.vectors) <= set(orders):
         raise SceneError("initial", f'"{name}" does not say how the sections of {drawn.where} are turned',
                          f'give "{cable.name}.nodal_vectors" or "{cable.name}.nodal_velocity"')
-    s = cable.length * np.arange(cable.shape[0])
+    s = cable.mesh.node_s
     ends = "not-a-knot" if len(s) > 2 else "natural"
     spline = CubicSpline(s, points, bc_type=ends)
     return np.stack([spline(s, orders[vector]) for vector in cable.vectors], axis=1)
@@ -162,9 +173,14 @@ def _of_shape(values: np.ndarray, shape: tuple[int, ...], name: str) -> np.ndarr
     return values
 
 
-def _check_plane(vectors: np.ndarray, dim: int, name: str) -> None:
-    if dim == 2 and np.any(vectors[..., 2]):
-        raise SceneError("initial", f'"{name}" leaves the plane z = 0, in which the scene lies')
+def _check_plane(vectors: np.ndarray, model: Model, name: str) -> None:
+    if model.dim == 2 and np.any(vectors[..., 2]):
+        raise SceneError("initial", f'"{name}" leaves {_plane(model)}, in which the scene lies')
+
+
+def _plane(model: Model) -> str:
+    """Return how messages name the plane of a planar model."""
+    return called(None if model.plane_axes is None else model.plane_axes.plane)
 
 
 def _check_supports(model: Model, change: np.ndarray, does: str, unit: str) -> None:
@@ -178,7 +194,7 @@ def _check_supports(model: Model, change: np.ndarray, does: str, unit: str) -> N
     change = change[cables]
     expected = as_supports_leave(change, model.unknown_of_dof[cables], model.combinations)
     wrong = np.abs(change - expected) * model.weight[cables]
-    if np.any(wrong > EXACT * max(cable.length * cable.n_elements for cable in model.cables)):
+    if np.any(wrong > EXACT * max(cable.mesh.total for cable in model.cables)):
         dof = int(np.argmax(wrong))
         where, k = next((node.where, k) for nodes in model.nodes.values() for k, node in enumerate(nodes)
                         if node.first <= dof < node.first + node.vectors.size)

@@ -136,8 +136,9 @@ class LoadBuilder:
         model = self.cables[self.cable_index[load.cable]]
         points = []
         for element in range(model.n_elements):
-            start = max(load.start - element * model.length, 0.0)
-            stop = min(load.stop - element * model.length, model.length)
+            begin = model.mesh.start(element)
+            start = max(load.start - begin, 0.0)
+            stop = min(load.stop - begin, model.mesh.length(element))
             if stop > start:
                 points += [(element, (start + stop) / 2 + (stop - start) / 2 * x, (stop - start) / 2 * w)
                            for x, w in zip(*GAUSS, strict=True)]
@@ -154,7 +155,7 @@ class LoadBuilder:
         total = np.zeros(int(np.prod(model.shape)))
         for element, x, weight in points:
             at = element * model.shape[1] * dim
-            N = model.kernel("on_axis")(model.length, x)[0]
+            N = model.kernel("on_axis")(model.mesh.length(element), x)[0]
             total[at : at + len(N) * dim] += weight * np.outer(N, value[:dim]).ravel()
         used = np.flatnonzero(total)
         self.dead.append(DeadLoadModel(number, list(model.first + used), list(total[used]), type="dead load"))

@@ -12,7 +12,9 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..kernels.libraries import kernels_of
+from ..kernels.mesh import Mesh
 from ..parts.body_shape import Shape
+from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
 from .elimination import Elimination
@@ -35,14 +37,16 @@ class Kernel(Protocol):
 
 @dataclass
 class CableModel:
-    """One cable: constants of its elements and where its coordinates are; A (1 or elements, constants)."""
+    """One cable: constants of its elements and where its coordinates are.
+
+    m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements, constants).
+    """
 
     name: str
     element: str
     law: str
-    n_elements: int
+    mesh: Mesh
     first: int
-    length: float
     tau: float
     mass_damping: float
     m: np.ndarray
@@ -50,6 +54,11 @@ class CableModel:
     shape: tuple[int, int, int]
     vectors: tuple[str, ...]
     library: str | None
+
+    @property
+    def n_elements(self) -> int:
+        """Return the number of its elements."""
+        return self.mesh.n_elements
 
     @property
     def coordinates(self) -> slice:
@@ -132,9 +141,13 @@ class SlideModel(CouplingModel):
 
     def place_at(self, s: float, cable: CableModel) -> None:
         """Put the slide at arc-length s (m) of its cable, on the element there; at a node the one that it is on."""
-        self.s, at = s, s / cable.length
-        if not self.element <= at <= self.element + 1:
-            self.element = min(max(int(at), 0), cable.n_elements - 1)
+        mesh, self.s = cable.mesh, s
+        if mesh.is_even:
+            at = s / mesh.mean
+            if not self.element <= at <= self.element + 1:
+                self.element = min(max(int(at), 0), cable.n_elements - 1)
+        elif not mesh.start(self.element) <= s <= mesh.start(self.element) + mesh.length(self.element):
+            self.element = int(mesh.element_at(s))
 
 
 @dataclass
@@ -153,7 +166,8 @@ class MotionModel:
 class Model:
     """Arrays that the engine reads; engine/include/ says what they mean. tables: addresses of further kernels.
 
-    newton, accelerations: how the borders of Newton's systems and of those of eq 38 are eliminated.
+    newton, accelerations: how the borders of Newton's systems and of those of eq 38 are eliminated; plane_axes: what
+    turns results into the ground's axes, None where the model is in these.
     """
 
     dim: int
@@ -179,6 +193,7 @@ class Model:
     chains: np.ndarray
     nodes: dict[str, list[Node]]
     tables: list[int] = field(default_factory=list)
+    plane_axes: PlaneAxes | None = None
     newton: Elimination = field(init=False)
     accelerations: Elimination = field(init=False)
 
@@ -186,6 +201,17 @@ class Model:
     def couplings(self) -> list[CouplingModel]:
         """Return all couplings in the engine's order, which adds up what they give in it."""
         return [*self.loads, *self.slides, *self.joints, *self.point_forces]
+
+    def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Return results of a part by quantity, in three dimensions, along the ground's axes."""
+        axes = self.plane_axes
+        return found if axes is None else {name: axes.out(part, name, values) for name, values in found.items()}
+
+    def as_in_model(self, name: str, values: np.ndarray) -> np.ndarray:
+        """Return a result by its name along the axes of the model: what `results` has done undone."""
+        axes = self.plane_axes
+        part, _, quantity = name.rpartition(".")
+        return values if axes is None else axes.into(part, quantity, values)
 
     @property
     def is_damped(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, triu
@@ -39,25 +40,34 @@ class Touches:
 def as_drawn(elements: np.ndarray, unknown_of_dof: np.ndarray) -> Numbering:
     """Return the numbering of unknowns in the order of the dofs that they are.
 
-    elements (n, 2): first dof and number of dofs of each; unknown_of_dof: the number of an unknown or -1.
+    elements (n, 2): first dof and number of dofs of each; unknown_of_dof: the number of an unknown, which increases, or
+    -1.
     """
-    dofs, element = _dofs(elements), np.repeat(np.arange(len(elements)), elements[:, 1])
-    unknown = unknown_of_dof[dofs]
-    free, n = unknown >= 0, int(unknown_of_dof.max(initial=-1)) + 1
-    return _numbering(Touches(element[free], unknown[free], len(elements)), np.arange(n), n)
+    before = np.append(0, np.cumsum(unknown_of_dof >= 0))  # unknowns before a dof
+    n = int(before[-1])
+    return _numbering(before[elements[:, 0]], before[elements[:, 0] + elements[:, 1]] - 1, np.arange(n), n)
 
 
 def cheapest(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> Numbering:
     """Return the numbering of the unknowns, as drawn or in another order, that takes the fewest operations.
 
     elements (n, 2): first dof and number of dofs of each; made_of (k, 2): a dof, an unknown of it; shape: the numbers
-    of dofs and of unknowns.
+    of dofs and of unknowns. It is sought once for all scenes that ask alike, as those of one topology do; the arrays
+    are shared.
     """
+    return ordered(elements.tobytes(), made_of.tobytes(), shape)
+
+
+@lru_cache(maxsize=32)
+def ordered(of_elements: bytes, of_dofs: bytes, shape: tuple[int, int]) -> Numbering:
+    """Return `cheapest` of arrays given by their bytes; it stays for equal ones."""
+    elements, made_of = (np.frombuffer(given, dtype=int).reshape(-1, 2) for given in (of_elements, of_dofs))
     touches = _touches(elements, made_of, shape)
     entry = touches.tocoo()
     entries = Touches(entry.row, entry.col, len(elements))
     orders = ((np.arange(shape[1]), shape[1]), _near(touches), _strung(touches))
-    return min((_numbering(entries, *order) for order in orders), key=lambda one: _operations(one, entries))
+    return min((_numbering(*_extents(entries, *order), *order) for order in orders),
+               key=lambda one: _operations(one, entries))
 
 
 def _dofs(elements: np.ndarray) -> np.ndarray:
@@ -133,15 +143,13 @@ def _extents(touches: Touches, number: np.ndarray, n_band: int) -> tuple[np.ndar
     return low, high
 
 
-def _numbering(touches: Touches, number: np.ndarray, n_band: int) -> Numbering:
-    """Return a numbering with its band."""
-    low, high = _extents(touches, number, n_band)
-    banded = high >= 0
-    ties = np.zeros(n_band + 1, dtype=int)  # elements that tie a row to the one before
-    np.add.at(ties, low[banded] + 1, 1)
-    np.add.at(ties, high[banded] + 1, -1)
-    chains = np.append(np.flatnonzero(np.cumsum(ties[:-1]) == 0), n_band)
-    return Numbering(number, n_band, int(np.max(high[banded] - low[banded], initial=0)), chains)
+def _numbering(low: np.ndarray, high: np.ndarray, number: np.ndarray, n_band: int) -> Numbering:
+    """Return a numbering with its band; low, high: `_extents` of the elements, low beyond high where there is none."""
+    banded = low <= high
+    low, high = low[banded], high[banded]
+    ties = np.bincount(low + 1, minlength=n_band + 1) - np.bincount(high + 1, minlength=n_band + 1)
+    chains = np.append(np.flatnonzero(np.cumsum(ties[:n_band]) == 0), n_band)  # no element ties a row to the one before
+    return Numbering(number, n_band, int(np.max(high - low, initial=0)), chains)
 
 
 def _operations(numbering: Numbering, touches: Touches) -> float:

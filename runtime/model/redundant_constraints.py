@@ -15,6 +15,12 @@ SAME, NEARLY = 1e-12, 1e-8
 """Of the compliance of an equation: what is left of it where others constrain the same motion; or nearly, if a run
 failed."""
 
+FEW, SUSPECT = 100, 1e-6
+"""Equations up to which a dense factorisation is quicker; what is left of a compliance where its rounding may count."""
+
+EPSILON = float(np.finfo(float).eps)
+"""Rounding of S. Of what is left of an equation it is as much, times the square of the sum of the shares of others."""
+
 SHARE = 1e-6
 """Of another equation in one that follows: less is none."""
 
@@ -132,29 +138,43 @@ def _compliance(engine: Engine, rows: np.ndarray) -> np.ndarray | None:
 
 
 def _following(S: np.ndarray) -> dict[int, list[int]]:
-    """Return rows that are combinations of rows before them, and of which: by Cholesky's factors of S, row by row."""
+    """Return rows that are combinations of rows before them, and of which: by Cholesky's factors of S, row by row.
+
+    A row of L begins where that of S does, so that the rows of chains and of what hangs from them cost no more the more
+    there are; those that close loops take all rows of the loop.
+    """
     used = np.flatnonzero(np.diag(S) > 0)
     scale = 1 / np.sqrt(np.diag(S)[used])
     S = scale[:, None] * S[np.ix_(used, used)] * scale
-    try:
-        if np.min(np.diag(np.linalg.cholesky(S)), initial=1.0) ** 2 > SAME:
-            return {}
-    except np.linalg.LinAlgError:
-        pass
+    if len(S) <= FEW and _is_definite(S):
+        return {}
     L = np.zeros_like(S)
-    kept: list[int] = []
+    kept, before = np.zeros(len(S), dtype=int), np.zeros(len(S) + 1, dtype=int)  # before: each row, how many are kept
+    begins = (S != 0).argmax(axis=1)
     found: dict[int, list[int]] = {}
-    for row in range(len(S)):
-        n = len(kept)
-        factor = solve_triangular(L[:n, :n], S[kept, row], lower=True) if n else np.zeros(0)
+    n = 0
+    for row, begin in enumerate(begins):
+        before[row] = n
+        first = before[begin]
+        window, near = L[first:n, first:n], S[kept[first:n], row]
+        factor = solve_triangular(window, near, lower=True, check_finite=False) if n > first else np.zeros(0)
         left = 1 - factor @ factor
-        if left > SAME:
-            L[n, :n], L[n, n] = factor, np.sqrt(left)
-            kept.append(row)
-        else:
-            share = np.abs(solve_triangular(L[:n, :n].T, factor))
-            found[int(used[row])] = [int(used[k]) for k, part in zip(kept, share, strict=True) if part > SHARE]
+        if left < SUSPECT:  # rows before the window have shares, too: through those in it
+            share = np.abs(solve_triangular(L[:n, :n].T, np.pad(factor, (first, 0)), check_finite=False))
+            if left <= max(SAME, EPSILON * (1 + share.sum()) ** 2):
+                found[int(used[row])] = [int(used[k]) for k, part in zip(kept[:n], share, strict=True) if part > SHARE]
+                continue
+        L[n, first:n], L[n, n], kept[n] = factor, np.sqrt(left), row
+        n += 1
     return found
+
+
+def _is_definite(S: np.ndarray) -> bool:
+    """Return whether no row of a matrix with a unit diagonal is a combination of others."""
+    try:
+        return bool(np.min(np.diag(np.linalg.cholesky(S)), initial=1.0) ** 2 > SUSPECT)
+    except np.linalg.LinAlgError:
+        return False
 
 
 def _owners(model: Model) -> list[str]:

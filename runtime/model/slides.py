@@ -29,13 +29,13 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
     """Make the model of a slide; signal(s): number of a signal."""
     along, dim = scene.cables[slide.along], scene.dim
     axes = along.axes_at(slide.s)
-    at = slide.s / along.length * along.elements
     node = along.node_at(slide.s)
     body = scene.bodies.get(slide.body or "")
     rider_is_rigid = isinstance(body, RigidBody)
+    element = along.element_at(slide.s)
     if node is not None:  # on a node: the element that the rider moves into
         forward = body is None or np.dot(axes[0], body.velocity) >= 0
-        at = node if forward else node - 1
+        element = node if forward else node - 1
     rider = attachments.model(slide.rider)
     driven, ends, friction = slide.prescribed is not None, (slide.at_start, slide.at_end), slide.friction
     may_be_locked = (driven or (friction is not None and friction.sticks)
@@ -49,7 +49,7 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
         rider_is_rigid,
         dim == 3 and not along.kind_of_element.director,
         slide.s,
-        int(np.clip(np.floor(at), 0, along.elements - 1)),
+        min(max(element, 0), along.elements - 1),
         axes[1],
         RESISTANCES[dim] * resists,
         **_friction(friction),

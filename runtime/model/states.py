@@ -1,4 +1,7 @@
-"""The state of a model, read, in three dimensions whatever the scene's: bodies, joints, point forces, reactions."""
+"""The state of a model, read, in three dimensions whatever the scene's: bodies, joints, point forces, reactions.
+
+All is along the axes of the model, in which the plane of a planar one is z = 0, but for `connection_states`.
+"""
 
 from __future__ import annotations
 
@@ -152,13 +155,14 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
     """Return forces and moments of supports, ties, joints and forces between points, by group, label and quantity.
 
     Of a slide it is the moment that keeps its rider's axes. All arguments have the time first: q (time, n_q), reaction
-    (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3).
+    (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3). They are along the
+    ground's axes.
     """
     def reactions(supports: Iterable[Support]) -> dict[str, dict[str, np.ndarray]]:
         return {support.label: support_reaction(model, scene, support, reaction, q) for support in supports}
 
     of_joints = [(joint, joint_state(joint, joints[:, k])) for k, joint in enumerate(model.joints)]
-    return {
+    found: dict[str, dict[str, dict[str, np.ndarray]]] = {
         "slides": {joint.slide: {"moment": state["moment"]} for joint, state in of_joints if joint.slide is not None},
         "pins": {label: {"force": of["force"]} for label, of in reactions(scene.pins).items()},
         "clamps": reactions(scene.clamps),
@@ -168,3 +172,5 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
         PointForce.group: {force.name: point_force_state(model, force, point_forces[:, k], q)
                            for k, force in enumerate(model.point_forces)},
     }
+    return found if model.plane_axes is None else {
+        group: {label: model.results(label, values) for label, values in of.items()} for group, of in found.items()}

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -160,6 +161,8 @@ class Supports:
 
     def tie_nodes(self, ties: list[tuple[Node, Node, bool]], supported: list[Node]) -> None:
         """Join the nodes of ties (node, node, rigid), from the supported ones on and then from others."""
+        if not ties:
+            return
         done = {node.first for node in supported}
         # a node with directors can give the slopes of one without, not the other way round
         starts = sorted((node for tie in ties for node in tie[:2] if node.first not in done),
@@ -212,7 +215,7 @@ class Supports:
             values += list(row.free.values())
             count += 1
         shape = count, max(n, 1)
-        combinations = csr_array((values, (rows, columns)), shape=shape) if count else csr_array(shape)
+        combinations = csr_array((values, (rows, columns)), shape=shape) if count else _none(shape[1])
         prescribed = [(dof, part) for dof, row in self.rows.items() for part in row.prescribed]
         return Reduction(unknown_of_dof.astype(int), combinations, n, numbering, prescribed)
 
@@ -224,6 +227,12 @@ class Supports:
         made_of = [(dof, drawn[of]) for dof, row in combined.items() for of in row.free]
         return cheapest(elements, np.concatenate([np.stack([free, drawn[free]], axis=1), made_of]),
                         (len(drawn), len(free)))
+
+
+@lru_cache(maxsize=64)
+def _none(columns: int) -> csr_array:
+    """Return the combinations of a scene without any: (0, columns), made once, since SciPy takes long for it."""
+    return csr_array((0, columns))
 
 
 def _shared(master: Node, slave: Node) -> dict[str, list[dict[int, float]]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, cast
 
 from .attachment import Attachment
 from .cable import Cable
@@ -34,25 +34,38 @@ def on_cables(part: Part) -> Iterator[tuple[str, str, float]]:
             yield keyword, on, s
 
 
-def following(scene: SceneData, changes: Mapping[int, Mapping[str, Any]]) -> dict[int, dict[str, Any]]:
-    """Return changes of a scene's parts, with arc-lengths on cables that change in length: they keep their part of it.
+def remade(part: Part, changes: Mapping[str, Any]) -> Part:
+    """Return a part with other values, by keyword, as it is before the nodes of a cable follow its length. Raises
+    SceneError.
+    """
+    if isinstance(part, Cable) and part.nodes is not None and "nodes" not in changes:
+        changes = {**changes, "nodes": None}
+    return part.remade(changes)
 
-    changes: values by keyword, by the number of the part. Values that are changed already stay so. A cable that hangs
-    as it is drawn, and becomes shorter than its span, is drawn straight. Raises SceneError.
+
+def following(scene: SceneData, changes: Mapping[int, Mapping[str, Any]]) -> dict[int, dict[str, Any]]:
+    """Return changes of a scene's parts, with arc-lengths on cables that change in length: they keep their part of it,
+    and so do the cable's own nodes.
+
+    changes: values by keyword, by the number of the part. What a scene has found itself it finds anew. Values that are
+    changed already stay so. A cable that hangs as it is drawn, and becomes shorter than its span, is drawn straight.
+    Raises SceneError.
     """
     parts = list(scene.parts())
     stretch = {}
     found = {k: dict(entries) for k, entries in changes.items()}
     for k, entries in found.items():
         if isinstance(part := parts[k], Cable) and entries:
-            changed = type(part)(**{**part.entries(), **entries})
-            stretch[part.name] = changed.length / part.length
+            changed = cast(Cable, remade(part, entries))
+            ratio = stretch[part.name] = changed.length / part.length
+            if part.nodes is not None and ratio != 1.0:
+                entries.setdefault("nodes", [s * ratio for s in part.nodes])
             if changed.shape == "hanging" and not hangs(changed.drawn_length, changed.length):
                 entries["shape"] = "straight"
     stretch = {name: ratio for name, ratio in stretch.items() if ratio != 1.0}
     if not stretch:
         return found
-    for k, part in enumerate(parts):
+    for k, part in enumerate(part.as_made() for part in parts):
         moved: dict[str, Any] = {keyword: s * stretch[on] for keyword, on, s in on_cables(part) if on in stretch}
         for name, value in part:
             if isinstance(value, Attachment) and value.on in stretch and value.s is not None:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Mapping
+from typing import Any, Protocol
 
 from ..kernels.elements import ElementKind, LawTraits, built_in
+from ..kernels.libraries import of_library
 from .material import Material
 from .section import GeneralSection, Section
-from .section_stiffness import kernel_law, law_of_measures, variants
+from .section_stiffness import kernel_law, law_of_measures, measures_of_law, variants
 from .validation import EXACT, show, shown
 
 MEMBRANES = ("full", "assumed", "reduced", "tension_only")
 """How an element of a cable represents its axial strain, see `Cable`; the first is the default."""
+
+
+MEASURES = ("strain", "curvature", "membrane")
+"""The keywords that name a cable's law by its measures."""
 
 
 class Described(Protocol):
@@ -81,6 +87,20 @@ def chosen(kind: ElementKind, data: dict) -> str | None:
     if law not in possible and _are_measures(strain, curvature, membrane):  # else the checks of these say it better
         raise ValueError(f'law "{law}" is not possible for {element}', "possible: " + ", ".join(possible))
     return law
+
+
+def changed(kind: ElementKind, law: str, changes: Mapping[str, Any], library: str | None) -> dict[str, Any]:
+    """Return what becomes of the entries that name the law of a cable where others of its entries change: None for
+    those that are left out.
+
+    Where a measure changes, the others stay. Where the element changes to one without such a law, its default follows
+    from the default.
+    """
+    element = changes["element"] or "beam24" if "element" in changes else None
+    other = (of_library(library).get(element) if isinstance(element, str) else None) or kind
+    if any(name in changes for name in MEASURES):
+        return {"law": None} | (measures_of_law(law) if other.is_cable else {})
+    return {"law": None} if law == possible_laws(kind)[0] and law not in possible_laws(other) else {}
 
 
 def _are_measures(strain: str | None, curvature: str | None, membrane: str | None) -> bool:

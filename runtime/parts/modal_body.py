@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import PrivateAttr, model_validator
 
 from ..errors import SceneError
-from ..rotations import rotate
+from ..rotations import quaternion, rotate
 from .cable import Cable
 from .material import Material
 from .part import Part
@@ -212,16 +212,3 @@ class ModalBody(Part):
             yield f"mode {1 + int(np.argmax(self.shape.modes[..., 2].any(axis=1)))}"
         yield from across("velocity", self.velocity, "m/s")
         yield from in_plane("angular_velocity", self.angular_velocity, self.angular_velocity, "rad/s")
-
-
-def quaternion(A: np.ndarray) -> np.ndarray:
-    """Return (4,): unit quaternion of a rotation matrix (3, 3), by its largest component."""
-    squares = np.array([A.trace(), *(2 * np.diag(A) - A.trace())]) + 1
-    k = int(np.argmax(squares))
-    skew = np.array([A[2, 1] - A[1, 2], A[0, 2] - A[2, 0], A[1, 0] - A[0, 1]])
-    if k == 0:
-        q = np.concatenate([squares[:1], skew])
-    else:
-        q = np.concatenate([skew[k - 1 : k], (A + A.T)[k - 1]])
-        q[k] = squares[k]
-    return q / np.linalg.norm(q)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
@@ -134,6 +134,28 @@ class Part(BaseModel, metaclass=_TranslatingType):
         """Return what it could be made with, by keyword: all that is set, defaults too."""
         given = {keyword: getattr(self, field) for keyword, field in self.keywords().items()}
         return {keyword: value for keyword, value in given.items() if value is not None}
+
+    def remade(self, changes: Mapping[str, Any]) -> Self:
+        """Return a part like this one but for some changes, by keyword; None leaves an entry out."""
+        return type(self)(**self.entries_with(changes))
+
+    def entries_with(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what a part like this one but for some changes is made with, by keyword; None leaves an entry out."""
+        return {keyword: value for keyword, value in {**self.as_made().entries(), **changes}.items()
+                if value is not None}
+
+    def completed(self, found: Mapping[str, Any]) -> Self:
+        """Return this part with what a scene has found for it, by field; what was left out still counts as that."""
+        made = self.model_copy(update=dict(found))
+        made.model_fields_set.intersection_update(self.model_fields_set)
+        return made
+
+    def as_made(self) -> Self:
+        """Return this part without what a scene has found for it, but with its name: another scene finds it anew."""
+        found = [name for name, field in type(self).model_fields.items()
+                 if name != "name" and name not in self.model_fields_set and field.default_factory is None
+                 and field.default is None and getattr(self, name) is not None]
+        return self.completed(dict.fromkeys(found)) if found else self
 
     @property
     def given_name(self) -> str | None:

@@ -115,7 +115,7 @@ def changes_of(scene: SceneData, values: Mapping[Path, Any]) -> dict[int, dict[s
     changes: dict[int, dict[str, Any]] = {}
     for path, value in values.items():
         if path.part is not None:
-            _put(path, changes.setdefault(path.part, {}), parts[path.part].entries(), value)
+            _put(path, changes.setdefault(path.part, {}), parts[path.part].as_made().entries(), value)
     return changes
 
 

@@ -1,12 +1,136 @@
-"""What leaves the plane z = 0, in words, for scenes of planar elements."""
+"""Planes in space with axes of their own, and what leaves the plane z = 0, in words, for scenes of planar elements."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
+from ..rotations import cross
 from .validation import show
+
+FLAT = 1e-12
+"""Of their size: as far as points and directions may be off a plane, by rounding."""
+
+SKEW = 1e-6
+"""Sine of the angle from which on two directions tell the plane that they lie in."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """A plane in space other than z = 0, with axes of its own: x and y in it, z along its normal.
+
+    axes (3, 3): unit vectors along the ground's axes, as columns; origin (3,): its point nearest to the ground's
+    origin, in m.
+    """
+
+    axes: np.ndarray
+    origin: np.ndarray
+
+    @classmethod
+    def across(cls, normal: np.ndarray, point: np.ndarray) -> Plane:
+        """Return the plane through a point (3,) across a unit normal (3,).
+
+        Its x axis lies along the ground's axis most nearly in the plane, the first one of equals.
+        """
+        x = np.eye(3)[int(np.argmin(np.abs(normal)))]
+        x = x - np.dot(x, normal) * normal
+        x /= np.linalg.norm(x)
+        axes = np.column_stack([x, cross(normal, x), normal])
+        return cls(axes + 0.0, np.dot(point, normal) * normal + 0.0)  # no -0
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Return (3,): its unit normal."""
+        return self.axes[:, 2]
+
+    def into(self, directions: np.ndarray) -> np.ndarray:
+        """Return directions (..., 3) along its axes."""
+        return _combined(np.asarray(directions), self.axes)
+
+    def points_into(self, points: np.ndarray) -> np.ndarray:
+        """Return points (..., 3), in m, in its axes."""
+        return _combined(np.asarray(points) - self.origin, self.axes)
+
+    def out(self, directions: np.ndarray) -> np.ndarray:
+        """Return directions (..., 2 or 3) along its axes along the ground's."""
+        return _combined(directions, self.axes.T)
+
+    def points_out(self, points: np.ndarray) -> np.ndarray:
+        """Return points (..., 2 or 3) in its axes, in m, in the ground's."""
+        return self.out(points) + self.origin
+
+    def contains(self, points: np.ndarray) -> bool:
+        """Return whether points (n, 3), in m, lie in it, but for rounding."""
+        off = np.abs(self.points_into(points)[:, 2])
+        return bool(np.all(off <= FLAT * np.abs(points).max(initial=0.0)))
+
+    def is_same(self, other: Plane) -> bool:
+        """Return whether another plane has the same normal, but for rounding; where both lie is not compared."""
+        return float(np.linalg.norm(self.normal - other.normal)) <= 1e-9
+
+    def has_same_axes(self, other: Plane) -> bool:
+        """Return whether another plane has the same axes and origin, but for rounding."""
+        off = np.linalg.norm(self.origin - other.origin)
+        return bool(np.abs(self.axes - other.axes).max() <= 1e-9 and off <= 1e-9 * np.linalg.norm(other.origin))
+
+
+def _combined(factors: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return (..., 3): the sums of factors (..., 2 or 3) times vectors (3, 3), as rows.
+
+    Not a product of matrices, whose rounding depends on the number of rows: files of results are the same bit for bit
+    however many rows are written at once.
+    """
+    made = factors[..., :1] * vectors[0]
+    for k in range(1, factors.shape[-1]):
+        made = made + factors[..., k : k + 1] * vectors[k]
+    return made
+
+
+def normal_of(groups: Iterable[np.ndarray]) -> np.ndarray | None:
+    """Return the unit vector (3,) across the first two directions that groups of vectors (n, 3) give; None of fewer.
+
+    Of a group the longest vector counts, and across that the one that makes the largest angle with it.
+    """
+    first = None
+    for vectors in groups:
+        sizes = np.linalg.norm(vectors, axis=1)
+        directions = vectors[sizes > 0] / sizes[sizes > 0, None]
+        if not len(directions):
+            continue
+        if first is None:
+            first = vectors[np.argmax(sizes)] / sizes.max()
+        across = np.cross(first, directions)
+        sines = np.linalg.norm(across, axis=1)
+        if sines.max() > SKEW:
+            return across[np.argmax(sines)] / sines.max()
+    return None
+
+
+def called(plane: Plane | None) -> str:
+    """Return how messages name a plane; None is z = 0."""
+    if plane is None:
+        return "the plane z = 0"
+    axis = int(np.argmax(np.abs(plane.normal)))
+    if abs(plane.normal[axis]) == 1.0:
+        return f"the plane {'xyz'[axis]} = {plane.origin[axis]:.9g}"
+    return f"the plane through {show(plane.origin, 'm')} across {show(plane.normal)}"
+
+
+def flattened(vectors: np.ndarray, size: float = 0.0) -> np.ndarray:
+    """Return vectors (..., 3) whose z is zero where it is but rounding of the largest, or of a larger size."""
+    made = np.array(vectors, dtype=float)
+    least = FLAT * max(size, float(np.abs(made).max(initial=0.0)))
+    made[..., 2] = np.where(np.abs(made[..., 2]) <= least, 0.0, made[..., 2])
+    return made
+
+
+def aligned(vector: np.ndarray) -> np.ndarray:
+    """Return a vector (3,) whose components are zero where they are but rounding of its size."""
+    made = np.array(vector, dtype=float)
+    made[np.abs(made) <= FLAT * np.abs(made).max(initial=0.0)] = 0.0
+    return made
 
 
 def across(name: str, value: tuple[float, ...] | np.ndarray | None, unit: str = "") -> Iterator[str]:

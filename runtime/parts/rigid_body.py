@@ -52,6 +52,12 @@ def unit_quaternion(value: Any) -> Quaternion:
     return w / norm, x / norm, y / norm, z / norm
 
 
+def largest_moment(inertia: np.ndarray | tuple[Vector, Vector, Vector]) -> float:
+    """Return the largest principal moment of inertia (3, 3), in kg m²."""
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia
+    return float(np.linalg.eigvalsh(inertia)[-1]) if xy or xz or yz else max(xx, yy, zz)
+
+
 class RigidBody(Part):
     """A rigid body.
 

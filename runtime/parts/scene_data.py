@@ -15,6 +15,8 @@ from .kinds import KINDS
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
 from .part import Part
+from .plane import Plane
+from .plane_axes import PlaneAxes
 from .point_force import PointForce
 from .rigid_body import RigidBody
 from .slide import Slide
@@ -45,6 +47,10 @@ class SceneData:
     loads: dict[str, Force | DistributedForce | Moment]
     point_forces: dict[str, PointForce]
     events: dict[str, Event]
+    plane_axes: PlaneAxes | None = None
+    """Of a scene that `laid.laid` made in the axes of a plane: what turns its results into the ground's axes."""
+    drawn: SceneData | None = None
+    """Of such a scene: the one that it was made of."""
 
     def __init__(self, gravity: Any = (0, -9.81, 0)):
         """Make an empty scene; gravity: 3 numbers in m/s². Raises SceneError."""
@@ -69,6 +75,16 @@ class SceneData:
     def dim(self) -> int:
         """Return 2 if its cables are planar, else 3."""
         return min((cable.dim for cable in self.cables.values()), default=3)
+
+    @property
+    def plane(self) -> Plane | None:
+        """Return the plane in which its planar cables lie; None of z = 0, and of spatial scenes."""
+        return next((cable.plane for cable in self.cables.values() if cable.dim == 2), None)
+
+    @property
+    def as_drawn(self) -> SceneData:
+        """Return the scene as the user drew it: this one, unless it was made of that in the axes of its plane."""
+        return self.drawn or self
 
     @property
     def libraries(self) -> tuple[str, ...]:
@@ -127,7 +143,7 @@ class SceneData:
         scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
         scene.relax_settings = dict(self.relax_settings)
         for part in parts:
-            scene.add(part)
+            scene.add(part.as_made())
         return scene
 
     def changed(self, changes: Iterable[tuple[Part, Mapping[str, Any]]], gravity: Any = None) -> Self:
@@ -137,13 +153,16 @@ class SceneData:
         Raises SceneError.
         """
         values = {id(part): each for part, each in changes}
-        return self.with_parts((type(each)(**{**each.entries(), **values[id(each)]}) if id(each) in values else each
+        return self.with_parts((each.remade(values[id(each)]) if id(each) in values else each
                                 for each in self.parts()), gravity)
 
     def remeshed(self, elements: Callable[[Cable], int]) -> Self:
-        """Return the scene with other numbers of elements of its cables, checked as any scene is. Raises SceneError."""
-        return self.with_parts(Cable(**part.entries() | {"elements": elements(part)}) if isinstance(part, Cable)
-                               else part for part in self.parts())
+        """Return the scene with other numbers of elements of its cables, checked as any scene is. Raises SceneError.
+
+        See `Cable.mesh_entries` for those with unequal ones.
+        """
+        return self.with_parts(part.remade(part.mesh_entries(elements(part))) if isinstance(part, Cable) else part
+                               for part in self.parts())
 
     def copied(self) -> Self:
         """Return a scene of the same parts, to which parts can be added while this one stays as it is."""
@@ -152,6 +171,15 @@ class SceneData:
             if isinstance(value, dict | list):
                 setattr(made, name, value.copy())
         return made
+
+    def replaced(self, made: Callable[[Part], Part]) -> Self:
+        """Return a scene with other parts of the same kinds and names, made of each of its own, without checks."""
+        scene = self.copied()
+        for name in _groups():
+            group = getattr(scene, name)
+            setattr(scene, name, {key: made(part) for key, part in group.items()} if isinstance(group, dict)
+                    else [made(part) for part in group])
+        return scene
 
     def check_name(self, part: Part) -> None:
         """Raise SceneError where the name of a part is taken."""

@@ -192,6 +192,11 @@ class GeneralSection(Section):
         """See `Section.moments`; not known, hence NaN, are those of order 4."""
         return np.array([self.area_, self.about_z, self.about_y, nan, nan, nan])
 
+    def entries(self) -> dict[str, Any]:
+        """Return what it could be made with; the second moment that follows from the other one is left out."""
+        left = set() if "about_y" in self.model_fields_set else {"second_moment_about_y"}
+        return {name: value for name, value in super().entries().items() if name not in left}
+
     @property
     def has_rotary(self) -> bool:
         """Return whether its rotary inertia is given apart from its stiffness."""

@@ -57,6 +57,12 @@ def law_of_measures(strain: str, curvature: str, membrane: str) -> str:
     return "_".join([strain, curvature, *([membrane] if membrane != "full" else [])])
 
 
+def measures_of_law(law: str) -> dict[str, str]:
+    """Return the measures of a cable's law by keyword, those of `law_of_measures`; empty for another law."""
+    measures = dict(zip(("strain", "curvature", "membrane"), (*law.split("_"), "full"), strict=False))
+    return measures if len(measures) == 3 and law_of_measures(**measures) == law else {}
+
+
 STABILISATION = 0.01
 """Part of the axial stiffness that the upper modes of a reduced axial strain have."""
 

@@ -45,7 +45,7 @@ class RunSettings(Part):
     output times and where a signal is not smooth; output_step in s, a hundredth of the duration if not given;
     integrator: "explicit" (Runge-Kutta of order 8), "radau" (implicit, order 5, for stiff scenes), "genalpha"
     (implicit, order 2, with control of the dissipation), "energy" (order 2, keeps energy and momenta to rounding),
-    or "auto": the cheaper of the first two for this scene and tol, genalpha where step or spectral_radius is given;
+    or "auto": the cheapest of the first three for this scene and tol, genalpha where step or spectral_radius is given;
     spectral_radius of genalpha (0.9 if not given) and energy (1) at infinity: 1 keeps and 0 removes the fastest
     vibrations, energy's of the cables, counted as dissipated with what their algorithmic stresses hold at the time;
     model: "given", the cables' elements as they are, or "auto": those that were not given, and the integrator, are

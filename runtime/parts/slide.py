@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
@@ -79,8 +79,6 @@ class Slide(Part):
             return data | {"body": None, "at": body}
         if body is None:
             raise ValueError("body is missing", "give a body, (cable, s), or a point (x, y, z) of the ground")
-        if body is None:
-            raise ValueError("body is missing", "give a body, (cable, s), or a point (x, y, z) of the ground")
         return data
 
     @model_validator(mode="after")
@@ -104,6 +102,12 @@ class Slide(Part):
         """Return what it could be made with; of an eyelet its point as the body."""
         entries = super().entries()
         return entries if self.body is not None else {"body": self.at} | {k: v for k, v in entries.items() if k != "at"}
+
+    def entries_with(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what a slide like this one is made with; another rider has its own point."""
+        other = changes.get("body")
+        point = ("at", "body_s") if other is not None and other != self.entries()["body"] else ()
+        return super().entries_with(dict.fromkeys(point) | {**changes})
 
     @property
     def rider(self) -> Attachment:

@@ -59,7 +59,7 @@ class Spring(PointForce):
 
     def at_distance(self, distance: float) -> Self:
         """Return the spring with its length, the distance of its points at the start if not given."""
-        return self.model_copy(update={"length": distance}) if self.length is None else self
+        return self.completed({"length": distance}) if self.length is None else self
 
     @model_validator(mode="after")
     def _has_a_law(self) -> Self:

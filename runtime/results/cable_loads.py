@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..kernels.libraries import kernels_of
+from ..kernels.mesh import Mesh
 from ..model.attachments import CARRIED, UP, AttachmentModel
 from ..model.loads import GAUSS
 from ..model.model import CableModel, Kernel, Model
@@ -61,8 +62,7 @@ class Spread:
 
 def at_element(cable: CableModel, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Return the elements that arc-lengths s are in, and x in them; at a node the element that begins there."""
-    element = np.clip((np.asarray(s) // cable.length).astype(int), 0, cable.n_elements - 1)
-    return element, s - element * cable.length
+    return cable.mesh.place(s)
 
 
 def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarray | None = None) -> np.ndarray:
@@ -76,10 +76,16 @@ def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarr
     return np.concatenate([nodal[:, :-1], nodal[:, 1:]], axis=2)
 
 
-def shape_on_axis(cable: CableModel, x: ArrayLike) -> np.ndarray:
-    """Return (..., vectors): shape functions at places x of an element's centreline."""
+def shape_on_axis(cable: CableModel, element: ArrayLike, x: ArrayLike) -> np.ndarray:
+    """Return (..., vectors): shape functions at places x (...) of the centrelines of elements (...)."""
     at = np.asarray(x, dtype=float)
-    return rows(cable.kernel("on_axis"), at.size, cable.length, at.ravel())[0].reshape(*at.shape, -1)
+    found = rows(cable.kernel("on_axis"), at.size, lengths_of_rows(cable.mesh, element, at.shape), at.ravel())[0]
+    return found.reshape(*at.shape, -1)
+
+
+def lengths_of_rows(mesh: Mesh, element: ArrayLike, shape: tuple[int, ...]) -> ArrayLike:
+    """Return the lengths of elements (...) in m as `rows` takes them: one for all, or one for each entry of a shape."""
+    return mesh.mean if mesh.is_even else np.broadcast_to(mesh.each_length(element), shape).ravel()
 
 
 def rows(kernel: Kernel, n: int, *given: ArrayLike) -> Any:
@@ -129,14 +135,15 @@ class CableLoads:
                  c: np.ndarray) -> np.ndarray:
         """Return (T, vectors, dim): of a load that turns with the section."""
         e = element_coordinates(cable, self.at.q, np.broadcast_to(element, self.times))
-        return rows(cable.kernel(kernel), self.times, cable.length, x, e, c)[0]
+        length = lengths_of_rows(cable.mesh, element, (self.times,))
+        return rows(cable.kernel(kernel), self.times, length, x, e, c)[0]
 
     def _force(self, cable: CableModel, element: np.ndarray | int, x: np.ndarray | float, value: np.ndarray,
                follower: bool) -> np.ndarray:
         """Return (T, vectors, dim): of a force along the ground's axes, or the local ones."""
         if follower:
             return self._turning(cable, "follower_force", element, x, value[: self._follower_components(cable)])
-        f = np.outer(shape_on_axis(cable, x), value[: self.dim])
+        f = np.outer(shape_on_axis(cable, element, x), value[: self.dim])
         return np.broadcast_to(f, (self.times, *f.shape))
 
     @staticmethod
@@ -148,8 +155,9 @@ class CableLoads:
         assert load.start is not None and load.stop is not None, f"{load.where} is not complete"
         is_r = positions(cable)
         for element in range(cable.n_elements):
-            start = max(load.start - element * cable.length, 0.0)
-            stop = min(load.stop - element * cable.length, cable.length)
+            begin = cable.mesh.start(element)
+            start = max(load.start - begin, 0.0)
+            stop = min(load.stop - begin, cable.mesh.length(element))
             if stop <= start:
                 continue
             half = (stop - start) / 2
@@ -164,8 +172,8 @@ class CableLoads:
         for slide in self.model.slides:
             force, s = self.at.value(f"{slide.name}.force"), self.at.value(f"{slide.name}.s")
             cable = self.model.cables[slide.cable]
-            element, x = at_element(cable, np.clip(s, 0.0, cable.length * cable.n_elements))
-            N = shape_on_axis(cable, x)
+            element, x = at_element(cable, np.clip(s, 0.0, cable.mesh.total))
+            N = shape_on_axis(cable, element, x)
             self._add(slide.cable, element, x, -N[:, :, None] * force[:, None, : self.dim])
             self._on_end(slide.rider, force, None)
         for joint in self.model.joints:
@@ -174,7 +182,7 @@ class CableLoads:
             moment = self.at.value(f"{joint.slide}.moment")
             slide = next(each for each in self.model.slides if each.name == joint.slide)
             cable = self.model.cables[slide.cable]
-            s = np.clip(self.at.value(f"{joint.slide}.s"), 0.0, cable.length * cable.n_elements)
+            s = np.clip(self.at.value(f"{joint.slide}.s"), 0.0, cable.mesh.total)
             element, x = at_element(cable, s)
             f = self._couple(cable, joint.attachments[0], element, x, -moment)
             self._add(slide.cable, element, x, f)
@@ -225,7 +233,8 @@ class CableLoads:
                 moment: np.ndarray) -> np.ndarray:
         """Return (T, vectors, dim): of a moment (T, 3) on the frame that an end has of its cable, T' m."""
         e = element_coordinates(cable, self.at.q, element)
-        S = rows(cable.kernel("slopes"), self.times, cable.length, x)[:, :, 0]  # (T, xyz, vectors)
+        length = lengths_of_rows(cable.mesh, element, (self.times,))
+        S = rows(cable.kernel("slopes"), self.times, length, x)[:, :, 0]  # (T, xyz, vectors)
         e_local = e - np.where(positions(cable)[:, None], e[:, :1], 0.0)
         vectors = []
         for slope in end.slopes:
@@ -246,14 +255,14 @@ class CableLoads:
         """Return x of an attachment in its element, from its shape functions: those of positions and slopes weigh a
         line's points.
         """
-        straight = np.zeros(len(end.N))
+        straight, length = np.zeros(len(end.N)), cable.mesh.length(end.element)
         names = [*cable.vectors, *cable.vectors]
         for k, name in enumerate(names):
             if name == "r_x":
                 straight[k] = 1.0
             elif name == "r" and k >= len(cable.vectors):
-                straight[k] = cable.length
-        return float(np.clip(end.N @ straight, 0.0, cable.length))
+                straight[k] = length
+        return float(np.clip(end.N @ straight, 0.0, length))
 
 
 def positions(cable: CableModel) -> np.ndarray:

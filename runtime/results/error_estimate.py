@@ -66,6 +66,7 @@ def error_estimate(scene: S, run: Run, settings: RunSettings, from_a_state: bool
     tight = _try(found, "steps", lambda: scene, lambda other: again(other, steps))
     if tight is not None:
         found.time = relative(scene, motion, tight)
+        found.messages += _beyond(found.time, settings)
     if not scene.cables:
         found.mesh, found.both = 0.0, found.time
     elif from_a_state:
@@ -78,6 +79,14 @@ def error_estimate(scene: S, run: Run, settings: RunSettings, from_a_state: bool
             found.mesh, found.both = relative(scene, tight, finer), relative(scene, motion, finer)
     found.cpu_s = time.process_time() - begin
     return found
+
+
+def _beyond(error: float, settings: RunSettings) -> list[str]:
+    """Return a note where the error of the steps is more than tol allows of the motion."""
+    if settings.step is not None or settings.quantities or settings.absolute_tol or not error > settings.tol:
+        return []
+    return [f"the error of the steps is {error:.2g} of the largest motion, more than tol = {settings.tol:g}: take a "
+            "smaller one"]
 
 
 def _try(found: ErrorEstimate, what: str, make: Callable[[], S],

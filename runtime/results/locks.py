@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 from .. import operating_system
+from ..errors import ResultFileError
 from ..operating_system import BYTES, NO_LINK
 
 _NEW = os.O_RDWR | os.O_CREAT | BYTES | NO_LINK
@@ -49,6 +50,30 @@ def claimed(path: str | os.PathLike) -> int:
             os.close(descriptor)
             raise
         os.close(descriptor)  # renamed or removed by the one who had it until now
+
+
+def claimed_for(part: Path, path: Path, writer: str) -> int:
+    """Return a descriptor of the part file of a file, which becomes it when it is whole; see `claimed`.
+
+    writer: what writes such files, in messages: a run, or a sweep. Raises ResultFileError.
+    """
+    try:
+        return claimed(part)
+    except Taken:
+        raise being_written(path, writer) from None
+    except NoLocks:
+        raise ResultFileError(f"{path}: another {writer} may be writing it: there is {part.name}, and this file system "
+                              f"has no locks; delete {part.name} if there is none") from None
+    except OSError as error:
+        if error.errno == errno.ELOOP:
+            raise ResultFileError(f"{path}: {part.name} beside it is a link; delete the link") from None
+        raise ResultFileError(f"{path}: the results cannot be written here: {error.strerror}; give another path"
+                              ) from None
+
+
+def being_written(path: Path, writer: str) -> ResultFileError:
+    """Return the error where another one writes a file."""
+    return ResultFileError(f"{path}: another {writer} is writing it; wait for its end, or give another name")
 
 
 def lock(descriptor: int) -> bool:

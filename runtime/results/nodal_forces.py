@@ -35,7 +35,7 @@ def element_forces(scene: SceneData, model: Model, at: Instants, loads: CableLoa
     accelerations = np.zeros_like(at.v) if at_rest else _accelerations(model, at, forces)
     of = model.cables[cable]
     a = element_coordinates(of, accelerations)
-    given = forces[cable] + np.einsum("kl,teld->tekd", of.m, a)
+    given = forces[cable] + mass_times(of, a)
     inertia = a + of.mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
     return ElementForces(given, inertia, element_coordinates(of, at.q))
 
@@ -59,20 +59,27 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
     law = f"{cable.law}_"
     moving = cable.tau > 0 and np.any(v)
 
-    def forces(e: np.ndarray, v: np.ndarray, A: np.ndarray) -> np.ndarray:
-        found = rows(cable.kernel(law + "elastic_force"), len(e), cable.length, e, A)
+    def forces(length: float, e: np.ndarray, v: np.ndarray, A: np.ndarray) -> np.ndarray:
+        found = rows(cable.kernel(law + "elastic_force"), len(e), length, e, A)
         if moving:
-            found = found + rows(cable.kernel(law + "damping_force"), len(e), cable.length, e, v, A, cable.tau)
+            found = found + rows(cable.kernel(law + "damping_force"), len(e), length, e, v, A, cable.tau)
         return found
 
     if len(cable.A) == 1:
         shape = e.shape
-        f = forces(e.reshape(-1, *shape[2:]), v.reshape(-1, *shape[2:]), cable.A[0]).reshape(shape)
-    else:  # a constant a element: a curved stress-free shape
-        f = np.stack([forces(e[:, k], v[:, k], A) for k, A in enumerate(cable.A)], axis=1)
+        f = forces(cable.mesh.mean, e.reshape(-1, *shape[2:]), v.reshape(-1, *shape[2:]), cable.A[0]).reshape(shape)
+    else:  # constants of each element: a curved stress-free shape, or unequal lengths
+        f = np.stack([forces(cable.mesh.length(k), e[:, k], v[:, k], A) for k, A in enumerate(cable.A)], axis=1)
     if cable.mass_damping > 0:
-        f = f + cable.mass_damping * np.einsum("kl,teld->tekd", cable.m, v)
+        f = f + cable.mass_damping * mass_times(cable, v)
     return f
+
+
+def mass_times(cable: CableModel, a: np.ndarray) -> np.ndarray:
+    """Return (T, elements, vectors, dim): the mass matrices of the elements times vectors of that shape."""
+    if len(cable.m) == 1:
+        return np.einsum("kl,teld->tekd", cable.m[0], a)
+    return np.einsum("ekl,teld->tekd", cable.m, a)
 
 
 def _uniform(cable: CableModel, acceleration: np.ndarray) -> np.ndarray:
@@ -84,7 +91,8 @@ def _external(model: Model, number: int, at: Instants, loads: CableLoads) -> np.
     """Return (T, elements, vectors, dim): gravity, and all that acts between nodes."""
     cable = model.cables[number]
     f = np.zeros((len(at.time), cable.n_elements, 2 * cable.shape[1], cable.shape[2]))
-    f += np.einsum("kl,ld->kd", cable.m, _uniform(cable, loads.gravity))
+    weight = np.einsum("ekl,ld->ekd", cable.m, _uniform(cable, loads.gravity))
+    f += weight[0] if len(weight) == 1 else weight
     instants = np.arange(len(at.time))
     for load in loads.points.get(number, []):
         f[instants, load.element] += load.f

@@ -56,23 +56,24 @@ def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
     cables = {}
     for cable in model.cables:
         at, shape = cable.coordinates, (len(q), *cable.shape)
-        cables[cable.name] = {
-            "nodal_vectors": spatial(q[:, at].reshape(shape)),
-            "nodal_velocity": spatial(v[:, at].reshape(shape)),
-            "node_s": cable.length * np.arange(cable.shape[0]),
+        vectors = {"nodal_vectors": spatial(q[:, at].reshape(shape)),
+                   "nodal_velocity": spatial(v[:, at].reshape(shape))}
+        cables[cable.name] = model.results(cable.name, vectors) | {
+            "node_s": cable.mesh.node_s,
             "vector_names": cable.vectors,
         }
     bodies, modal = {}, {}
     for body in model.bodies:
         state = body_state(model, body, q)
-        bodies[body.name] = state | body_rates(model, body, state["orientation"], v, a)
+        bodies[body.name] = model.results(body.name, state | body_rates(model, body, state["orientation"], v, a))
         if body.modes:
-            modal[body.name] = modal_state(model, body, state, q, v)
+            modal[body.name] = model.results(body.name, modal_state(model, body, state, q, v))
     forces = connection_states(model, scene, q, rows["reaction"], rows["joint"], rows["point_force"])
     slides = {}
     for k, slide in enumerate(model.slides):
         own = {"s": rows["s"][:, k], **engine.slide_row(rows["slide"][:, k])}
         own["residual"] = np.linalg.norm(own["residual"], axis=-1)
+        own = model.results(slide.name, own)
         slides[slide.name] = own | forces["slides"].get(slide.name, {})
     parts = {"bodies": bodies, **forces, "slides": slides}
     energy = {name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")}
@@ -132,7 +133,7 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
         case "end_of_cable":
             slide = model.slides[engine.stopped_slide]
             cable = model.cables[slide.cable]
-            middle = 0.5 * cable.n_elements * cable.length
+            middle = 0.5 * cable.mesh.total
             end = "end" if engine.stopped_s > middle else "start"
             return (
                 f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; '

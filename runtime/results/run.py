@@ -15,6 +15,7 @@ import numpy as np
 from ..errors import FunicularWarning, ResultFileError, UnknownResultError, near
 from ..named_arrays import NamedArrays
 from ..parts.cable import Cable
+from ..parts.laid import laid
 from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
@@ -269,10 +270,13 @@ class Run(Viewable, NamedArrays):
 
     @cached_property
     def model(self) -> Model:
-        """Return the model of the scene, as it was drawn: numbers of its coordinates, what holds and joins them."""
+        """Return the model of the scene, as it was drawn: numbers of its coordinates, what holds and joins them.
+
+        That of planar cables is in the axes of their plane.
+        """
         from ..model.build import build  # brings SciPy, which results alone do not need
 
-        return build(self.scene)
+        return build(laid(self.scene))
 
     def section_forces(self, cable: Cable | str, s: ArrayLike | Slide | None = None, *, method: str = "balance",
                        side: str = "after") -> xarray.Dataset:

@@ -21,7 +21,7 @@ import numpy as np
 from ..model.model import CableModel
 from ..model.states import spatial
 from ..parts.cable import EXACT, Cable
-from .cable_loads import CableLoads, Spread, positions, rows, shape_on_axis
+from .cable_loads import CableLoads, Spread, lengths_of_rows, positions, rows, shape_on_axis
 from .nodal_forces import ElementForces
 
 
@@ -32,16 +32,18 @@ class Cuts:
     """
 
     def __init__(self, cable: CableModel, s: np.ndarray, after: bool):
-        total = cable.length * cable.n_elements
+        mesh = cable.mesh
+        total = mesh.total
         self.near = EXACT * total
         self.s = np.clip(s, 0.0, total)
         self.after = np.where(self.s <= self.near, True, np.where(self.s >= total - self.near, False, after))
-        node = np.rint(self.s / cable.length)
-        on_node = np.abs(self.s - node * cable.length) <= self.near
-        element = np.where(on_node, node - ~self.after, np.floor(self.s / cable.length)).astype(int)
+        node, within = mesh.nearest_node(self.s), mesh.element_at(self.s)
+        on_node = np.abs(self.s - mesh.node_s[node]) <= self.near
+        element = np.where(on_node, node - ~self.after, within).astype(int)
         self.element = np.clip(element, 0, cable.n_elements - 1)
-        self.x = np.clip(self.s - self.element * cable.length, 0.0, cable.length)
-        self.x = np.where(on_node, np.where(self.after, 0.0, cable.length), self.x)
+        length = mesh.each_length(self.element)
+        self.x = np.clip(self.s - mesh.each_start(self.element), 0.0, length)
+        self.x = np.where(on_node, np.where(self.after, 0.0, length), self.x)
 
 
 def resultants(f: np.ndarray, e: np.ndarray, is_r: np.ndarray, about: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -72,7 +74,7 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: Cabl
     force, moment = (-value[instants, element] for value in at_node)
     taken = _of_inertia(cable, model, cuts, e, inertia)
     force, moment = force + taken[0], moment + taken[1]
-    change = cable.material.density * cable.section.area * _at(_shape(model, cuts.x), inertia)
+    change = cable.material.density * cable.section.area * _at(shape_on_axis(model, cuts.element, cuts.x), inertia)
     for spread in loads.spreads.get(number, []):
         inside = (cuts.element == spread.element) & (cuts.x > spread.start)
         columns = np.flatnonzero(inside.any(axis=0))
@@ -89,12 +91,8 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: Cabl
         before = (element == load.element[:, None]) & (load.x[:, None] <= x + near)
         for total, value in zip((force, moment), jump, strict=True):
             total -= before[..., None] * value[:, None]
-    r = np.einsum("tnk,tnkd->tnd", _shape(model, cuts.x), e)
+    r = np.einsum("tnk,tnkd->tnd", shape_on_axis(model, cuts.element, cuts.x), e)
     return force, moment - np.cross(r, force), change
-
-
-def _shape(model: CableModel, x: np.ndarray) -> np.ndarray:
-    return shape_on_axis(model, x)
 
 
 def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: np.ndarray) -> tuple[np.ndarray,
@@ -111,12 +109,13 @@ def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: n
     across = [(k, I) for k, (name, I) in enumerate((("r_y", yy), ("r_z", zz)), start=1) if name in model.vectors]
     for place, weight in zip((1 + places) / 2, weights / 2, strict=True):
         x = cuts.x * place
-        N, share = _shape(model, x), (weight * density * cuts.x)[..., None]
+        N, share = shape_on_axis(model, cuts.element, x), (weight * density * cuts.x)[..., None]
         pull = share * area * _at(N, a)
         force = force + pull
         moment = moment + np.cross(_at(N, e), pull)
         if across:
-            slopes = rows(model.kernel("slopes"), x.size, model.length, x.ravel())[:, :, 0].reshape(*x.shape, 3, -1)
+            lengths = lengths_of_rows(model.mesh, cuts.element, x.shape)
+            slopes = rows(model.kernel("slopes"), x.size, lengths, x.ravel())[:, :, 0].reshape(*x.shape, 3, -1)
         for k, I in across:
             moment = moment + share * I * np.cross(_at(slopes[..., k, :], e), _at(slopes[..., k, :], a))
     return force, moment
@@ -141,7 +140,7 @@ def _of_spread(model: CableModel, spread: Spread, x: np.ndarray, e: np.ndarray) 
         at = spread.start + place * length
         share = _density(spread, at) * (weight * length)[..., None]
         force = force + share
-        moment = moment + np.cross(_at(_shape(model, at), e), share)
+        moment = moment + np.cross(_at(shape_on_axis(model, spread.element, at), e), share)
     return force, moment, _density(spread, x)
 
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..parts.cable import Cable
 from .section_balance import Cuts
 from .section_layer import Kink, beside, line_bending
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
 SHOWN = 1e-4
 """Of a kink: where the mesh draws no more of it as an arc, nothing is put in its place."""
@@ -48,8 +52,8 @@ def components(cable: Cable, force: np.ndarray, moment: np.ndarray, axes: np.nda
     return _named(cable, along, force - along[..., None] * axes[..., 0, :], moment, axes, strain)
 
 
-def unresolved(cable: Cable, force: np.ndarray) -> np.ndarray:
-    """Return (T, n): how much of a kink the mesh draws as an arc, from 0, nothing, to 1, all.
+def unresolved(cable: Cable, force: np.ndarray, length: ArrayLike) -> np.ndarray:
+    """Return (T, n): how much of a kink elements of a length (m) draw as an arc, from 0, nothing, to 1, all.
 
     Under an axial force N a cable bends beside a point force over sqrt(E I / N) alone, a cubic over an element of
     length l. N l^2 is what tension has of the stiffness against a kink, 12 E I what bending has: with their ratio x it
@@ -57,7 +61,7 @@ def unresolved(cable: Cable, force: np.ndarray) -> np.ndarray:
     """
     yy, zz = cable.section.moments()[1:3]
     bending = 12 * cable.material.youngs_modulus * (yy if cable.dim == 2 else max(yy, zz))
-    x = np.linalg.norm(force, axis=-1) * (cable.length / cable.elements) ** 2 / bending
+    x = np.linalg.norm(force, axis=-1) * np.square(length) / bending
     return x**2 / (1 + x**2)
 
 
@@ -69,7 +73,7 @@ def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.n
     Nil where the mesh shows all, and in compression.
     """
     pulls = np.einsum("tsi,tsi->ts", force, axes[..., 0, :]) > 0
-    if not np.any(pulls & (unresolved(cable, force) > SHOWN)):
+    if not np.any(pulls & (unresolved(cable, force, cable.mesh.each_length(cuts.element)) > SHOWN)):
         return np.zeros_like(force)
     E, (yy, zz) = cable.material.youngs_modulus, cable.section.moments()[1:3]
 
@@ -87,7 +91,7 @@ def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.n
 
 
 def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], law: tuple[np.ndarray, np.ndarray],
-                        taut: np.ndarray, axes: np.ndarray, strain: np.ndarray) -> dict[str, np.ndarray]:
+                        taut: np.ndarray, axes: np.ndarray, strain: np.ndarray, cuts: Cuts) -> dict[str, np.ndarray]:
     """Return force, moment and components in balance; (force, moment) of the balance and of the elastic law, (T, n, 3).
 
     Where a mesh cannot show how a taut cable bends, its tangent beside a kink is off, and so are the points of its
@@ -96,7 +100,7 @@ def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], la
     and the moment across the tangent is that of `taut_bending`. A force's size and direction, and torque, stay.
     """
     force, moment = balance
-    w, tangent = unresolved(cable, force), axes[..., 0, :]
+    w, tangent = unresolved(cable, force, cable.mesh.each_length(cuts.element)), axes[..., 0, :]
 
     def parts(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         along = np.einsum("tsi,tsi->ts", vector, tangent)

@@ -11,13 +11,14 @@ from ..errors import FunicularError, UnknownResultError, near
 from ..kernels.libraries import kernels_of
 from ..model.model import Model
 from ..parts.cable import EXACT, Cable
+from ..parts.laid import laid
 from ..parts.load import DistributedForce
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
 from ..parts.slide import Slide
 from ..parts.validation import show
 from ..solve.rest_state import RestState
-from .cable_loads import CableLoads, Instants, rows
+from .cable_loads import CableLoads, Instants, lengths_of_rows, rows
 from .nodal_forces import element_forces
 from .section_balance import Cuts, balanced
 from .section_components import balanced_components, components, labels, taut_bending
@@ -67,15 +68,19 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[n
     nodal_vectors: (T, nodes, vectors, 3). Force and moment are along the ground's axes.
     """
     kernel = getattr(kernels_of(cable.library), f"{cable.element}_{cable.kernel_law}_section_forces")
-    dim, reference = cable.dim, cable.reference
+    dim, reference, plane = cable.dim, cable.reference, cable.plane
+    nodal_vectors = cable.in_plane(nodal_vectors)
     S = section_stiffness(cable.stiffness_law, cable.section, cable.material, dim)
     shape = len(nodal_vectors), cuts.s.shape[1]
     element, x = np.broadcast_to(cuts.element, shape), np.broadcast_to(cuts.x, shape)
     instants = np.arange(shape[0])[:, None]
-    e = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=2)[..., :dim]
+    e = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=2)
     e0 = [] if reference is None else [reference[element].reshape(-1, *reference.shape[1:])]
-    found = rows(kernel, x.size, cable.length / cable.elements, x.ravel(), e.reshape(-1, *e.shape[2:]), S, *e0)
-    return tuple(values.reshape(*shape, *values.shape[1:]) for values in found)
+    lengths = lengths_of_rows(cable.mesh, element, x.shape)
+    found = rows(kernel, x.size, lengths, x.ravel(), e.reshape(-1, *e.shape[2:]), S, *e0)
+    force, moment, axes, strain = (values.reshape(*shape, *values.shape[1:]) for values in found)
+    return (force, moment, axes, strain) if plane is None else (plane.out(force), plane.out(moment), plane.out(axes),
+                                                                strain)
 
 
 def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.ndarray, *, method: str = "balance",
@@ -97,21 +102,22 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
     taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
         cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
-    return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain)
+    return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
 
 
 def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",
            side: str = "after") -> dict[str, np.ndarray]:
     """Return `cut_forces` of a run at the chosen times; s: (1 or T, n)."""
+    scene, model = laid(run.scene), run.model
     time = run.time[chosen]
     numbers = np.arange(len(run.time))[chosen]
     found: list[dict] = []
     block = max(1, AT_ONCE // max(1, s.shape[1], sum(cable.elements for cable in run.scene.cables.values())))
     for first in range(0, len(time), block):
         part = numbers[first : first + block]
-        found.append(cut_forces(run.scene, run.model, _instants(run, part), name,
+        found.append(cut_forces(scene, model, _instants(run, part), name,
                                 s if len(s) == 1 else s[first : first + block], method=method, side=side))
-    return {key: np.concatenate([each[key] for each in found]) for key in found[0]}
+    return model.results(name, {key: np.concatenate([each[key] for each in found]) for key in found[0]})
 
 
 def _instants(run: Results, numbers: np.ndarray) -> Instants:
@@ -120,7 +126,7 @@ def _instants(run: Results, numbers: np.ndarray) -> Instants:
 
     def value(name: str) -> np.ndarray:
         if name not in kept:
-            kept[name] = run[name][chosen]
+            kept[name] = model.as_in_model(name, run[name][chosen])
         return kept[name]
 
     q, v = np.zeros((len(numbers), model.n_q)), np.zeros((len(numbers), model.n_dof))
@@ -133,13 +139,15 @@ def _instants(run: Results, numbers: np.ndarray) -> Instants:
 def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = "balance",
                    side: str = "after") -> dict[str, np.ndarray]:
     """Return `cut_forces` of a state of rest: T = 1; s: (1, n)."""
-    return cut_forces(state.scene, state.model, rest_instants(state), name, s, method=method, side=side, at_rest=True)
+    return state.model.results(name, cut_forces(laid(state.scene), state.model, rest_instants(state), name, s,
+                                                method=method, side=side, at_rest=True))
 
 
 def rest_instants(state: RestState) -> Instants:
     """Return a state of rest as one instant, with as much of the loads as it has."""
     return Instants(np.zeros(1), state.static_state["q"][None], np.zeros((1, state.model.n_dof)),
-                    lambda quantity: state[quantity][None], state.load_fraction, state.gravity_fraction)
+                    lambda quantity: state.model.as_in_model(quantity, state[quantity][None]), state.load_fraction,
+                    state.gravity_fraction)
 
 
 def jumps(scene: SceneData, name: str) -> np.ndarray:
@@ -162,7 +170,7 @@ def jumps(scene: SceneData, name: str) -> np.ndarray:
 
 def even(cable: Cable) -> np.ndarray:
     """Return the places along all of a cable, its nodes among them."""
-    return np.linspace(0, cable.length, PLACES * cable.elements + 1)
+    return cable.divided(PLACES)
 
 
 def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:

@@ -36,12 +36,12 @@ def _of_points(cable: Cable, model: CableModel, forces: ElementForces, loads: Ca
     points, is_r = loads.points.get(number, []), positions(model)
     if not points:
         return []
-    s = np.stack([load.element * model.length + load.x for load in points], axis=1)
+    s = np.stack([model.mesh.each_start(load.element) + load.x for load in points], axis=1)
     inside = (s > 1e-9 * cable.length) & (s < (1 - 1e-9) * cable.length)
     before, instants, found = force_at(s, False), np.arange(len(s)), []
     for k, load in enumerate(points):
         e = forces.e[instants, load.element]
-        at = spatial(np.einsum("tk,tkd->td", shape_on_axis(model, load.x), e))
+        at = spatial(np.einsum("tk,tkd->td", shape_on_axis(model, load.element, load.x), e))
         jump, moment = resultants(load.f, e, is_r, at)
         one_side = np.where(inside[:, k], 1.0, 2.0)[:, None]  # of an end: it has one
         found.append(Kink(s[:, k], before[:, k], before[:, k] - np.where(inside[:, k, None], jump, 0.0),
@@ -63,7 +63,7 @@ def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: Element
             directed[node] = directed.get(node, False) or keeps
     times = len(forces.e)
     for node, is_directed in directed.items():
-        s = np.full(times, node * model.length)
+        s = np.full(times, model.mesh.node_s[node])
         first, last = node == 0, node == cable.elements
         element, at = (node - 1, len(model.vectors)) if last else (node, 0)
         direction = _normal(model, spatial(forces.e[:, element, at : at + len(model.vectors)]))

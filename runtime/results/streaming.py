@@ -7,7 +7,6 @@ state that a checkpoint holds in full at all of them. Runs that end by themselve
 
 from __future__ import annotations
 
-import errno
 import os
 import shutil
 import time
@@ -25,7 +24,7 @@ from ..solve.pauses import Pauses
 from ..solve.row_notes import RowNotes
 from .checkpoints import Checkpoint, DamagedCheckpointError, Facts, checkpoint_of
 from .files import check_writable, create_file, file_text, open_file, over_time
-from .locks import NoLocks, Taken, claimed, is_at, lock
+from .locks import Taken, being_written, claimed_for, is_at, lock
 from .netcdf import File
 from .opening import opened
 from .quantities import Variable, labelled
@@ -39,6 +38,8 @@ CHECKPOINT_INTERVAL = 0.5
 """Seconds between two checkpoints, at least, where the buffer lasts so long."""
 REPORT_SPARE = 8192
 """Bytes for what the report will say at the end."""
+RUN = "run"
+"""What writes such files, in messages."""
 GOES_ON = ("unfinished", "interrupted")
 """What the status of a run is that can be resumed."""
 
@@ -56,6 +57,7 @@ class Stream:
         self._state, self._part = checkpoint_of(self._path), _part_of(self._path)
         self._scene, self._settings, self._read_scene = scene, settings, read_scene
         self._opened: File | None = None
+        self._has_name = self._may_begin_anew = False
         self._new = self._older = -1  # descriptors of the part file, and of the file that it will take the place of
         self._taken = 0
         self._resumed: list[float] = []
@@ -63,7 +65,7 @@ class Stream:
         self._facts = facts_of(scene, settings)
         try:
             if not resume:
-                self._new = self._claim(self._part)
+                self._new = claimed_for(self._part, self._path, RUN)
             self._older = self._claim_older()
             self._kept = self._to_resume() if resume else None
         except BaseException:
@@ -79,7 +81,7 @@ class Stream:
         self._let_go()
 
     def _let_go(self) -> None:
-        if self._new >= 0:  # no file was made of it
+        if self._new >= 0 or (self._opened is not None and not self._has_name):  # it did not become the file
             self._part.unlink(missing_ok=True)
         for descriptor in (self._new, self._older):
             if descriptor >= 0:
@@ -108,19 +110,23 @@ class Stream:
         """Return the bytes that the file can have: those that are free, and those of the one that is there."""
         return shutil.disk_usage(self._path.parent).free + (self._path.stat().st_size if self._path.exists() else 0)
 
-    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict], row_notes: RowNotes) -> None:
-        """Make the file, with the first row, or go on where the checkpoint was taken.
+    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict], row_notes: RowNotes,
+              on_trial: bool) -> None:
+        """Follow a run from its first row, or make it go on where the checkpoint was taken.
 
-        events: those that have happened, a list to which more are added; row_notes: sees all rows.
+        events: those that have happened, a list to which more are added; row_notes: sees all rows; on_trial: whether
+        the run may begin anew, with another call of `start`. Until it is `settled`, rows stay in the engine or, if they
+        are too many, go to a file without a name: an older file stays what it is.
         """
         self._model, self._engine, self._pace, self._events = model, engine, pace, events
         self._row_notes = row_notes
         self._begin = time.monotonic()
         self._facts |= {"start": start_of(model), "integrator": engine.integrator}
+        self._may_begin_anew = on_trial
         if self._kept is None:
-            self._make(labelled(self._rows()))
-            self._clear()
-            self._checkpoint()
+            self._forget()
+            if not on_trial:
+                self._name()
             return
         facts, state = self._kept
         self._compare(facts, "start", "from another state")
@@ -136,16 +142,31 @@ class Stream:
         self._report(self._unfinished())  # first: the older one may tell the number of times
         self._written(lambda: self._file.truncate(self._taken))
 
+    def settled(self) -> None:
+        """Let the rows so far be those of the run, which does not begin anew: they get the file at the next pause."""
+        self._may_begin_anew = False
+
+    @property
+    def has_begun(self) -> bool:
+        """Return whether the file is there, and a checkpoint from which the run can go on."""
+        return self._has_name
+
     def pause(self) -> None:
         """Write rows and a checkpoint if it is time to, or if the buffer does not last to the next pause."""
+        if not (self._has_name or self._may_begin_anew):
+            self._name()
+            return
         free_rows = self._pace.capacity - (self._engine.n_rows - self._taken)
-        if time.monotonic() - self._checked > CHECKPOINT_INTERVAL or free_rows < self._pace.every + 1:
+        due = self._has_name and time.monotonic() - self._checked > CHECKPOINT_INTERVAL
+        if due or free_rows < self._pace.every + 1:
             self._take()
-            self._checkpoint()
+            if self._has_name:
+                self._checkpoint()
 
     def between(self) -> None:
         """Write rows if it is time to."""
-        if time.monotonic() - self._added > ROWS_INTERVAL and self._engine.n_rows > self._taken:
+        if (self._has_name and time.monotonic() - self._added > ROWS_INTERVAL
+                and self._engine.n_rows > self._taken):
             self._take()
 
     def _rows(self) -> Rows:
@@ -170,12 +191,11 @@ class Stream:
         last = Run.from_recording(recording, self._scene, self._settings, self._read_scene)
         if self._resumed:
             last.report["resumed_at_s"] = self._resumed
-        if self._opened is None:
-            if not len(recording.time):
-                return last
-            self._make((last.variables, last.coords))
-        else:
-            self._add(recording)
+        if self._opened is None and not len(recording.time):
+            return last
+        self._add(recording)
+        if not self._has_name:
+            self._rename()
         self._report(last.report, self._file.rows)
         if recording.status not in GOES_ON:
             self._state.unlink(missing_ok=True)
@@ -193,29 +213,43 @@ class Stream:
         return {"status": "unfinished", "message": "the run goes on, or was killed", "resumed_at_s": self._resumed,
                 "messages": self._scene.messages, "settings": self._settings.model_dump()}
 
-    def _make(self, arrays: tuple[Mapping[str, Variable], Mapping[str, Variable]]) -> None:
-        """Make a new file with these rows, which replaces an older one; the checkpoint of that goes first."""
-        variables, coords = arrays
+    def _name(self) -> None:
+        """Give the rows so far the name of the file, in place of an older one, and write the first checkpoint."""
+        self._take()
+        self._rename()
+        self._checkpoint()
 
-        def make() -> None:
-            self._replace(coords, variables, self._unfinished())
-            self._file.write(0, over_time(coords, variables))
+    def _rename(self) -> None:
+        """Let the part file take the place of an older one, whose checkpoint goes first."""
+        def rename() -> None:
             self._state.unlink(missing_ok=True)
             self._file.rename(self._path)
 
-        self._written(make)
-        self._taken = self._file.rows
+        self._written(rename)
+        self._has_name = True
+
+    def _forget(self) -> None:
+        """Remove the rows of a run that begins anew."""
+        self._taken = 0
+        if self._opened is not None:
+            self._written(lambda: self._file.truncate(0))
 
     def _replace(self, coords: Mapping[str, Variable], variables: Mapping[str, Variable], report: dict,
                  rows: int | None = None) -> None:
         """Replace the older file by the part file, whole but for its rows."""
-        descriptor, self._new = self._new if self._new >= 0 else self._claim(self._part), -1
+        descriptor, self._new = self._new if self._new >= 0 else claimed_for(self._part, self._path, RUN), -1
         self._opened = create_file(self._part, coords, variables, dumps(self._scene), file_text(report, rows),
                                  REPORT_SPARE, descriptor)
 
     def _add(self, rows: Rows) -> None:
         variables, coords = labelled(rows)
-        self._written(lambda: self._file.write(self._taken, over_time(coords, variables)))
+
+        def add() -> None:
+            if self._opened is None:
+                self._replace(coords, variables, self._unfinished())
+            self._file.write(self._taken, over_time(coords, variables))
+
+        self._written(add)
         self._taken = self._file.rows
 
     def _report(self, report: dict, rows: int | None = None) -> None:
@@ -246,23 +280,9 @@ class Stream:
         try:
             write()
         except OSError as error:
-            whole = f"its first {self._file.rows} times are whole; " if self._opened and self._path.exists() else ""
+            whole = f"its first {self._file.rows} times are whole; " if self._has_name and self._path.exists() else ""
             raise ResultFileError(f"{self._path}: the results could not be written: {error.strerror}; {whole}"
                                   "make room, and go on with resume where there is a checkpoint") from error
-
-    def _claim(self, path: Path) -> int:
-        """Return a descriptor of a file that is this run's alone."""
-        try:
-            return claimed(path)
-        except Taken:
-            raise self._taken_already() from None
-        except NoLocks:
-            raise self._refused(f"another run may be writing it: there is {path.name}, and this file system has no "
-                                "locks", f"delete {path.name} if there is none") from None
-        except OSError as error:
-            if error.errno == errno.ELOOP:
-                raise self._refused(f"{path.name} beside it is a link", "delete the link") from None
-            raise self._unwritable(error) from None
 
     def _claim_older(self) -> int:
         """Return a descriptor of the file that is there already, which no other run can then write; -1 where there is
@@ -279,7 +299,7 @@ class Stream:
                 lock(descriptor)
             except Taken:
                 os.close(descriptor)
-                raise self._taken_already() from None
+                raise being_written(self._path, RUN) from None
             if is_at(descriptor, self._path):
                 return descriptor
             os.close(descriptor)  # replaced while it was opened
@@ -287,9 +307,6 @@ class Stream:
 
     def _unwritable(self, error: OSError) -> ResultFileError:
         return self._refused(f"the results cannot be written here: {error.strerror}", "give another path")
-
-    def _taken_already(self) -> ResultFileError:
-        return self._refused("another run is writing it", "wait for its end, or give another name")
 
     def _refused(self, cause: str, remedy: str = "start the run anew, without resume") -> ResultFileError:
         return ResultFileError(f"{self._path}: {cause}; {remedy}")
@@ -313,7 +330,7 @@ class Stream:
         self._compare(kept.facts, "scene", "with another scene")
         self._compare(kept.facts, "programs", "with another version of funicular, NumPy or SciPy")
         descriptor, self._older = self._older, -1
-        self._opened = File(self._path, descriptor=descriptor)
+        self._opened, self._has_name = File(self._path, descriptor=descriptor), True
         if kept.facts.rows > self._file.rows:
             raise self._refused(f"it has {self._file.rows} times, but its checkpoint is of the one after "
                                 f"{kept.facts.rows}")

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError, near
-from ..kernels.element_line import ElementLine
 from ..parts.cable import EXACT
 from ..parts.paths import COMPONENTS
 from .equilibrium import Equilibrium
@@ -48,8 +47,7 @@ class Target:
             cable = state.scene.cables[self.cable]
             s = self.along * cable.length
             if self.quantity == "position":
-                vectors = state[f"{self.cable}.nodal_vectors"][..., : cable.dim]
-                value = ElementLine(cable.library, cable.element, cable.length / cable.elements, vectors).point(s)
+                value = cable.point_between(state[f"{self.cable}.nodal_vectors"], s)
             else:
                 value = state.section_forces(self.cable, s=[s])[self.quantity].values[0]
         else:

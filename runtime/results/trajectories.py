@@ -75,9 +75,10 @@ def trajectory(scene: SceneData, run: Run, name: str) -> np.ndarray:
         raise KeyError(name)
     cable, s = place
     described = scene.cables[cable]
-    length = described.length / described.elements
-    element = min(int(s / length * (1 + 1e-12)), described.elements - 1)
-    N = getattr(kernels_of(described.library), f"{described.element}_on_axis")(length, s - element * length)[0]
+    mesh = described.mesh
+    element = int(mesh.element_at(s * (1 + 1e-12)))
+    N = getattr(kernels_of(described.library), f"{described.element}_on_axis")(mesh.length(element),
+                                                                              s - mesh.start(element))[0]
     vectors = run[f"{cable}.nodal_vectors"][:, element : element + 2]
     return np.einsum("k,tkd->td", N, vectors.reshape(len(vectors), len(N), 3))
 

@@ -21,6 +21,8 @@ import numpy as np
 from ..errors import EquilibriumError, FunicularWarning, SceneError
 from ..model.build import with_point_force
 from ..model.model import Model
+from ..parts.laid import laid
+from ..parts.plane import called
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from ..parts.spring import Spring
@@ -60,13 +62,25 @@ class _Search(Generic[S]):
     def __init__(self, parameters: Parameters, settings: EquilibriumSettings, made: type[S], read: Reader):
         self.parameters, self.settings, self.made, self.read = parameters, settings, made, read
 
+    def laid(self, scene: SceneData) -> SceneData:
+        """Return a scene of the search in the axes of its plane, which are those of the scene that it began with.
+
+        Raises SceneError where they are others: the coordinates of a state would mean another place.
+        """
+        first, plane = self.parameters.scene.plane, scene.plane
+        if (first is None) != (plane is None) or (first is not None and plane is not None
+                                                  and not plane.has_same_axes(first)):
+            raise SceneError("equilibrium", f"what is adjusted moves or turns {called(first)}, in which the "
+                             "scene lies", "adjust what leaves its planar elements in their plane")
+        return laid(scene)
+
     def state(self, problem: StaticState) -> S:
         """Return the state of a problem, whose stability is not looked at."""
         return self.made.of(problem, Stability(0, 0, known=False))
 
     def begin(self, rest: RestState) -> _Found[S]:
         """Return the state of rest from which the parameters are adjusted."""
-        problem = StaticProblem(rest.scene, self.settings)
+        problem = StaticProblem(self.laid(rest.scene), self.settings)
         problem.restore(rest.static_state)
         return _Found(problem, self.parameters.values, self.read(self.state(problem)))
 
@@ -92,10 +106,10 @@ class _Search(Generic[S]):
         p = at.p.copy()
         p[k] += change
         if (name := self.parameters.law_of(k)) is not None:
-            scene = self.parameters.with_law(at.problem.scene, k, p[k])
+            scene = laid(self.parameters.with_law(at.problem.scene.as_drawn, k, p[k]))
             other = StaticState(scene, self.settings, with_point_force(at.problem.model, scene, name))
         else:
-            other = StaticState(self.parameters.scene_at(p), self.settings)
+            other = StaticState(self.laid(self.parameters.scene_at(p)), self.settings)
         self.check_same(at.problem.model, other.model, k)
         other.restore(fitted(kept, other.model))
         return other
@@ -110,7 +124,7 @@ class _Search(Generic[S]):
         """Return the state of rest beside another one, or why there is none, in words."""
         p = at.p + step
         try:
-            problem = StaticProblem(self.parameters.scene_at(p), self.settings)
+            problem = StaticProblem(self.laid(self.parameters.scene_at(p)), self.settings)
         except SceneError as error:
             return str(error)
         problem.iterations = at.problem.iterations
@@ -137,7 +151,7 @@ def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState |
                          + ", ".join(to), "adjust as many parameters as there are targets, or more")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)  # that of the state returned counts
-        rest = equilibrium(scene, settings, start, made)
+        rest = equilibrium(laid(scene), settings, start, made)
     read, in_metres = reader(rest, list(to))
     search = _Search(parameters, settings, made, read)
     at = search.begin(rest)
@@ -186,10 +200,10 @@ def _with_all_taut(search: _Search[S], to: Mapping[str, float], scales: np.ndarr
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)  # as above
-            rest = equilibrium(both, settings, None, search.made)
+            rest = equilibrium(laid(both), settings, None, search.made)
         found = _approach(pushing, pushing.begin(rest), to, scales)
         at = found.at
-        problem = StaticProblem(search.parameters.scene_at(at.p), settings)
+        problem = StaticProblem(search.laid(search.parameters.scene_at(at.p)), settings)
     except (EquilibriumError, SceneError):
         return None
     problem.restore(fitted(at.problem.keep(), problem.model))

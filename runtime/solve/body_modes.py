@@ -60,7 +60,7 @@ def _integrals(model: CableModel, fields: np.ndarray) -> tuple[np.ndarray, np.nd
     S, X = np.zeros((len(fields), 3)), np.zeros((len(fields), len(fields), 3, 3))
     for element in range(model.n_elements):
         d = fields[:, element : element + 2].reshape(len(fields), -1, 3)
-        md = np.einsum("ab,kbi->kai", model.m, d)
+        md = np.einsum("ab,kbi->kai", model.m[0], d)
         S += np.einsum("a,kai->ki", ones, md)
         X += np.einsum("kai,laj->klij", d, md)
     return S, X

@@ -81,6 +81,9 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
 
 def _too_large(engine: Engine, settings: RunSettings) -> str:
     size = f"tol {settings.tol:g}" if settings.step is None else f"step {settings.step:g} s"
+    coarsest = 0.0 if settings.step is not None else settings.absolute_tol or 0.0
+    if coarsest and coarsest > settings.tol * engine.controlled_motion:
+        size = f"absolute_tol {coarsest:.3g} m"
     others = "" if settings.step is None else ", or none, so that tol chooses it"
     stable = ""
     if INTEGRATORS[engine.integrator].stability is not None:
@@ -99,7 +102,7 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
         return f'slide "{failed.name}" on cable "{model.cables[failed.cable].name}"'
     if (found := _node(model, dof)) is not None:
         cable, node = found
-        return f'cable "{cable.name}" at s = {node * cable.length:.6g} m'
+        return f'cable "{cable.name}" at s = {cable.mesh.node_s[node]:.6g} m'
     return [f'body "{body.name}"' for body in model.bodies if body.dof <= dof][-1]
 
 
@@ -120,7 +123,7 @@ def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str
         return speed, False
     cable, node = found
     r = q[cable.coordinates].reshape(cable.shape)[:, 0]
-    stretch = np.linalg.norm(np.diff(r, axis=0), axis=1)[max(node - 1, 0) : node + 1] / cable.length
+    stretch = (np.linalg.norm(np.diff(r, axis=0), axis=1) / cable.mesh.lengths)[max(node - 1, 0) : node + 1]
     worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
     fair = FOLDED < worst < STRETCHED
     notes = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "
@@ -162,6 +165,17 @@ def _coarse_for_little_motion(engine: Engine, settings: RunSettings) -> list[str
         return []
     return [f"errors of {allowed:.2g} m were allowed for the size of the scene, beside a largest motion of "
             f"{motion:.2g} m: give absolute_tol, in m, if that is too much"]
+
+
+def genalpha_alone(scene: SceneData, engine: Engine, settings: RunSettings) -> list[str]:
+    """Return a note where "genalpha" chose its steps in a scene with friction, of which its estimate sees nothing."""
+    rubbing = [f'"{slide.name}"' for slide in scene.slides.values()
+               if slide.friction is not None and (slide.friction.coefficient or slide.friction.rolling)]
+    if engine.integrator != "genalpha" or settings.step is not None or not rubbing or not engine.moves:
+        return []
+    return [f'integrator "genalpha" chooses its steps by the error of positions alone, which does not see the friction '
+            f"of slide{'s' * (len(rubbing) > 1)} {' and '.join(rubbing)}: errors may be 10 times tol and more. Take "
+            f'integrator="{stable_at(fixed_step=False).name}", or give estimate=True, which measures them']
 
 
 def trapped(scene: SceneData, engine: Engine) -> list[str]:

@@ -60,10 +60,10 @@ class State:
 
     def __getitem__(self, name: str) -> np.ndarray | float:
         """Return position, orientation, velocity, angular_velocity of a body (3 or 4,); nodal_vectors, nodal_velocity
-        of a cable (nodes, vectors, 3); s of a slide. Raises KeyError.
+        of a cable (nodes, vectors, 3); s of a slide, along the ground's axes. Raises KeyError.
         """
         of, _, quantity = name.partition(".")
-        found = self._all(of)
+        found = self._model.results(of, self._all(of))
         if quantity not in found:
             raise KeyError(f'the state has no "{name}"; {near(quantity, found) if found else "known: "}'
                            + ("" if found else ", ".join(self.names())))

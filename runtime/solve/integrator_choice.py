@@ -13,7 +13,7 @@ from scipy.sparse.linalg import splu
 
 from ..engine import Engine
 from ..errors import SceneError
-from ..integrators import AUTO, INTEGRATORS, Demands, Integrator, stable_at
+from ..integrators import AUTO, INTEGRATORS, Demands, Explicit, Integrator, Radau, stable_at
 from ..kernels.libraries import of_library
 from ..model.model import Model
 from ..parts.scene_data import SceneData
@@ -35,12 +35,43 @@ WORTH_A_TRIAL = 3000.0
 """Evaluations of eq 38 that the explicit method takes at least where it is a rival to one on trial."""
 
 
+LOOSE = 4e-3
+"""The tol from which on the method of low order begins: it is the cheaper one at errors above 1e-3 of the motion."""
+
+LOOSE_FOR_FRICTION = 4e-2
+"""The same where slides rub: at tighter ones the error of genalpha can be many times tol there."""
+
+PART_OF_TOL = 0.25
+"""What the method of low order gets of tol, as its error can be some times as large (tests/benchmarks/choice.py)."""
+
+LOW_ORDER_MOST = 3.0
+"""Times the cost that is expected of radau: what the method of low order may cost."""
+
+LOW_ORDER_EVALUATIONS = 42.0
+"""Evaluations of eq 38 that a radian of the motion as a whole costs with genalpha at tol = 1, by
+tests/benchmarks/exudyn_side_by_side.py; they grow with the square root of 1/tol."""
+
+LOW_ORDER_MARGIN = 1.3
+"""Times the cost that is expected of genalpha: what radau may cost before genalpha takes its place."""
+
+LOW_ORDER_TIGHTEST = 1e-5
+"""The tol down to which genalpha may take radau's place."""
+
+LOW_ORDER_WORTH = 1500.0
+"""Evaluations of eq 38 that the explicit method takes at least where the method of low order is tried before it."""
+
+FAST_TURNS = 10.0
+"""Times the rate of the motion as a whole: bodies that turn faster make errors that the method of low order does not
+see."""
+
+
 @dataclass(frozen=True)
 class Rival:
-    """Another integrator for a run, and what the whole run costs with it, in evaluations of eq 38."""
+    """Another integrator for a run, the work from which on it is taken, in evaluations of eq 38, and its own rival."""
 
     method: Integrator
     cost: float
+    rival: Rival | None = None
 
 
 def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine,
@@ -55,7 +86,20 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
         return *_asked_for(settings, scene, model, engine), None
     if resumed in INTEGRATORS:
         return INTEGRATORS[resumed].of(settings.spectral_radius), "as the run began", None
-    return cheapest(demands_of(settings, scene, model, engine), settings.duration)
+    demands = demands_of(settings, scene, model, engine)
+    found = cheapest(demands, settings.duration)
+    if not suits_low_order(demands, scene, model):
+        return found
+    with_low_order = begin_with_low_order if demands.tol >= LOOSE else end_with_low_order
+    return with_low_order(demands, settings.duration, *found)
+
+
+def tol_of(settings: RunSettings, method: Integrator) -> float:
+    """Return the tolerance that a run's steps are chosen by: less than its tol where the method of low order was chosen
+    and not asked for.
+    """
+    own = settings.integrator == AUTO and settings.step is None and "spectral_radius" not in settings.model_fields_set
+    return settings.tol * PART_OF_TOL if own and method.name == stable_at(fixed_step=True).name else settings.tol
 
 
 def _asked_for(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
@@ -85,6 +129,46 @@ def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival 
     if not worth and said[stable][0] > sure:
         return _made(limited), why, None
     return _made(stable), why, Rival(_made(limited), sure * duration) if worth else None
+
+
+def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
+    """Return whether the error of positions that genalpha estimates is the one that counts: not where supports are
+    moved, slides rub at a tight tol or bodies turn fast, nor where there are bodies alone.
+    """
+    fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
+    return (bool(model.cables) and not model.motions
+            and (demands.tol >= LOOSE_FOR_FRICTION or not demands.friction)
+            and fastest <= FAST_TURNS * demands.slow)
+
+
+def begin_with_low_order(demands: Demands, duration: float, method: Integrator, why: str,
+                         rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
+    """Return genalpha on trial, why, and the method that was chosen without it as its rival; that method itself where
+    the explicit one is cheap.
+
+    The rival is sure where the explicit method's cost is the least. What radau costs is expected alone.
+    """
+    explicit, radau = Explicit.cost(demands)[0], Radau.cost(demands)[0]
+    if explicit * duration < LOW_ORDER_WORTH:
+        return method, why, rival
+    low = _made(stable_at(fixed_step=True))
+    most = duration * min(explicit, LOW_ORDER_MOST * radau)
+    return low, f"{why}; tol is loose: {low.name} has the cheapest steps", Rival(method, most, rival)
+
+
+def end_with_low_order(demands: Demands, duration: float, method: Integrator, why: str,
+                       rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
+    """Return the method that was chosen without genalpha, why, and genalpha as its rival where that is radau: where
+    slides cross many elements, its steps are many at any tol.
+
+    The rival gives way where it costs four times what is expected of it.
+    """
+    expected = duration * LOW_ORDER_EVALUATIONS * demands.slow / math.sqrt(PART_OF_TOL * demands.tol)
+    most = LOW_ORDER_MARGIN * expected
+    if not isinstance(method, Radau) or demands.tol < LOW_ORDER_TIGHTEST or (rival is not None and rival.cost < most):
+        return method, why, rival
+    last = Rival(method, 4.0 * expected) if rival is None or rival.cost > 4.0 * expected else rival
+    return method, why, Rival(_made(stable_at(fixed_step=True)), most, last)
 
 
 def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
@@ -200,5 +284,5 @@ def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]
 
 @cache
 def _made(kind: type[Integrator]) -> Integrator:
-    """Return the integrator of a kind without parameters: its coefficients are the same in every run."""
+    """Return the integrator of a kind with the parameters that it has by itself: they are the same in every run."""
     return kind()

@@ -44,6 +44,8 @@ class LongRun:
         self._meter(reached)
         now = time.monotonic()
         self._marks.append((now, reached, self._steps))
+        if self._steps < PREDICTED_AFTER:
+            return
         while len(self._marks) > 2 and now - self._marks[1][0] > WINDOW:
             self._marks.popleft()
         since, start, before = self._marks[0]
@@ -74,7 +76,7 @@ class LongRun:
 
     @property
     def _steps(self) -> int:
-        return self._engine.statistics["steps"]
+        return self._engine.n_steps
 
     def _why(self) -> str:
         """Return what rules the step, and what makes it larger."""

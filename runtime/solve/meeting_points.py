@@ -43,7 +43,8 @@ class MeetingPoints:
             a, b = (attachment_points(self._model, end, rows["q"]) for end in part.ends)
             met = np.flatnonzero(np.linalg.norm(b - a, axis=1) <= MET * part.start)
             if len(met):
-                place = a[met[0]].round(DECIMALS) + 0.0  # no -0
+                place = self._model.results(part.where, {"position": a[met[0]]})["position"]
+                place = place.round(DECIMALS) + 0.0  # no -0
                 self.found.setdefault(part.where, [float(rows["time"][met[0]]), place.tolist()])
 
     def notes(self) -> list[str]:

@@ -263,6 +263,10 @@ def _named(model: Model, q: np.ndarray, squares: np.ndarray, dofs: np.ndarray, e
         shapes[f"{body.name}.rotation"] = turn if model.dim == 3 else np.pad(turn, ((0, 0), (2, 0)))
     for body in modal:
         shapes[f"{body.name}.nodes"] = _nodes(model, body, q, dofs)
+    if (axes := model.plane_axes) is not None:
+        for name, values in shapes.items():
+            part, _, quantity = name.rpartition(".")
+            shapes[name] = axes.out(part, quantity, values, moves=True)
     return Modes(np.abs(roots.real), np.abs(roots.imag), shapes, uncertainty)
 
 

@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from ..errors import FunicularWarning, SceneError
-from ..parts.arc_lengths import following
+from ..parts.arc_lengths import following, remade
 from ..parts.cable import Cable
 from ..parts.paths import Path, changes_of, path_of, unit_of, value_at
 from ..parts.point_force import PointForce
@@ -71,7 +71,7 @@ class Parameters(Generic[S]):
             return False
         part = self.parts[path.part]
         try:
-            type(part)(**{**part.entries(), **changes_of(self.scene, {path: -LEAST * value})[path.part]})
+            remade(part, changes_of(self.scene, {path: -LEAST * value})[path.part])
         except SceneError:
             return True
         return False

@@ -25,7 +25,7 @@ class ReducedStrain:
         """Take further output rows."""
         for cable in self._cables:
             nodes = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
-            strain = (np.linalg.norm(np.diff(nodes, axis=1), axis=-1) / cable.length - 1).min(axis=1)
+            strain = (np.linalg.norm(np.diff(nodes, axis=1), axis=-1) / cable.mesh.lengths - 1).min(axis=1)
             k = int(np.argmin(strain))
             if cable.name not in self.found or strain[k] < self.found[cable.name][0]:
                 self.found[cable.name] = [float(strain[k]), float(rows["time"][k])]

@@ -12,7 +12,7 @@ from __future__ import annotations
 import logging
 import warnings
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -181,41 +181,71 @@ def relax(scene: SceneData, settings: RelaxationSettings, made: type[S]) -> S:
 
     made: what the state is. Raises EquilibriumError, which keeps the state reached.
     """
-    problem = StaticProblem(scene, EquilibriumSettings())
-    motion, sticking = _Motion(scene, problem), [n for n, slide in scene.slides.items() if slide.friction is not None]
-    last: _Place | None = None
-    near, branch, pushes, force = NEAR, None, 0, np.zeros(0)
-    while motion.report.steps < settings.max_steps and motion.step > SHORTEST_STEP * motion.time:
-        leg = motion.leg()
-        rows = leg.engine.rows()
-        if leg.from_rest and len(rows["acceleration"]):
-            force, here = motion.force(rows["acceleration"][0]), leg.begin
-            here.energy = motion.energy(rows, here.q)
-            if last and motion.has_energy and here.energy > last.energy + ROUNDED * abs(last.energy):
-                motion.step *= REJECTED
-                motion.put(last.q, last.s)
-                continue
-            last = here
-            left = float(np.max(force, initial=0.0)) / (motion.largest_load or 1.0)
-            motion.report.note(here.energy, left * (motion.largest_load or 1.0))
-            if sticking and left <= settings.tol:
-                return _held(problem, motion, here, sticking, made)
-            if not sticking and left <= near and (left <= VERY_NEAR or _is_away(problem, here, branch)):
-                found = _polished(problem, here)
-                if found is not None and not (found.unstable and pushes < MOST_PUSHES):
-                    return _finished(problem, motion, found, pushes, made)
-                if found is not None:
-                    pushes, branch = pushes + 1, problem.keep()
-                    problem.move(PUSH * problem.size * lowest_direction(problem))
-                    pushed = problem.keep()
-                    motion.put(pushed["q"], pushed["s"])
-                    last = None
+    return _Search(scene, settings, made).found()
+
+
+class _Search(Generic[S]):
+    """A damped motion that is taken to rest, and looked at wherever its velocities have been set to zero."""
+
+    def __init__(self, scene: SceneData, settings: RelaxationSettings, made: type[S]):
+        self.settings, self.made = settings, made
+        self.problem = StaticProblem(scene, EquilibriumSettings())
+        self.motion = _Motion(scene, self.problem)
+        self.sticking = [n for n, slide in scene.slides.items() if slide.friction is not None]
+        self.last: _Place | None = None
+        self.near, self.pushes, self.force = NEAR, 0, np.zeros(0)
+        self.branch: dict | None = None
+
+    def found(self) -> S:
+        """Return the state at rest, or raise EquilibriumError."""
+        motion = self.motion
+        while motion.report.steps < self.settings.max_steps and motion.step > SHORTEST_STEP * motion.time:
+            leg = motion.leg()
+            rows = leg.engine.rows()
+            if leg.from_rest and len(rows["acceleration"]):
+                self.force, here = motion.force(rows["acceleration"][0]), leg.begin
+                here.energy = motion.energy(rows, here.q)
+                if self.last and motion.has_energy and here.energy > self.last.energy + ROUNDED * abs(self.last.energy):
+                    motion.step *= REJECTED
+                    motion.put(self.last.q, self.last.s)
                     continue
-                if left <= settings.tol:
-                    return _unpolished(problem, motion, here, made)
-                near /= 3.0
-        _go_on(motion, leg, last)
-    raise _not_at_rest(problem, motion, force, last, settings, made)
+                self.last = here
+                found = self._rest_at(here)
+                if found is not None:
+                    return found
+                if self.last is None:  # pushed off a state that is unstable
+                    continue
+            _go_on(motion, leg, self.last)
+        raise _not_at_rest(self.problem, motion, self.force, self.last, self.settings, self.made)
+
+    def _rest_at(self, here: _Place) -> S | None:
+        """Return the state at rest that a place is, or is near to; None where the motion has to go on."""
+        motion, load = self.motion, self.motion.largest_load or 1.0
+        left = float(np.max(self.force, initial=0.0)) / load
+        motion.report.note(here.energy, left * load)
+        if self.sticking:
+            return _held(self.problem, motion, here, self.sticking, self.made) if left <= self.settings.tol else None
+        if not (left <= self.near and (left <= VERY_NEAR or _is_away(self.problem, here, self.branch))):
+            return None
+        found = _polished(self.problem, here)
+        if found is None:
+            if left <= self.settings.tol:
+                return _unpolished(self.problem, motion, here, self.made)
+            self.near /= 3.0
+            return None
+        if not (found.unstable and self.pushes < MOST_PUSHES):
+            return _finished(self.problem, motion, found, self.pushes, self.made)
+        self._push()
+        return None
+
+    def _push(self) -> None:
+        """Move the scene off an unstable state, along its lowest direction, and forget the last place."""
+        problem = self.problem
+        self.pushes, self.branch = self.pushes + 1, problem.keep()
+        problem.move(PUSH * problem.size * lowest_direction(problem))
+        pushed = problem.keep()
+        self.motion.put(pushed["q"], pushed["s"])
+        self.last = None
 
 
 def _go_on(motion: _Motion, leg: _Leg, last: _Place | None) -> None:

@@ -17,6 +17,7 @@ from ..model.states import (
 )
 from ..named_arrays import NamedArrays
 from ..parts.paths import path_of, value_at
+from ..parts.plane import called
 from ..parts.scene_data import SceneData
 from .stability import Stability
 from .static_problem import StaticState
@@ -32,8 +33,8 @@ def in_loads(fraction: float) -> str:
 
 def layout(scene: SceneData) -> dict[str, list]:
     """Return what must be the same in two scenes for a state of one to be a state of the other."""
-    return {"cables": [(c.name, c.element, c.elements, c.length) for c in scene.cables.values()],
-            "bodies": list(scene.bodies), "slides": list(scene.slides),
+    return {"cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes) for c in scene.cables.values()],
+            "plane": [called(scene.plane)], "bodies": list(scene.bodies), "slides": list(scene.slides),
             "joints": [(j.name, j.joint_kind) for j in scene.joints.values()], "point_forces": list(scene.point_forces)}
 
 
@@ -134,11 +135,12 @@ class RestState(NamedArrays):
         left = problem.residual()
         units = np.where(problem.weight > 0, problem.weight, np.inf)
         engine = problem.engine
-        state = cls(problem.scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
+        scene = problem.scene.as_drawn
+        state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
                     problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
                     problem.fraction if problem.settings.scale_gravity else 1.0, heading)
         state.quantities = state._quantities()
-        state.path, state.layout = [state], layout(problem.scene)
+        state.path, state.layout = [state], layout(scene)
         return state
 
     def __repr__(self) -> str:
@@ -208,7 +210,7 @@ class RestState(NamedArrays):
             fixed = model.unknown_of_dof[own] == -1
             fixed[[motion.dof for motion in model.motions if motion.dof < own.stop]] = False
             moved = np.abs(self.static_state["q"][own] - model.q[own]) * model.weight[own] * fixed
-            if np.max(moved) > 1e-6 * max(cable.length * cable.n_elements for cable in model.cables):
+            if np.max(moved) > 1e-6 * max(cable.mesh.total for cable in model.cables):
                 raise SceneError("scene", f"the state to start from has a support {np.max(moved):.3g} m from where it "
                                  "is here", "take an equilibrium of this scene")
 
@@ -224,15 +226,17 @@ class RestState(NamedArrays):
         found = {}
         for cable in model.cables:
             vectors = spatial(q[0, cable.coordinates].reshape(cable.shape))
+            vectors = model.results(cable.name, {"nodal_vectors": vectors})["nodal_vectors"]
             found[f"{cable.name}.nodal_vectors"] = vectors
             found[f"{cable.name}.position"] = vectors[:, cable.vectors.index("r")]
         for body in model.bodies:
             state = body_state(model, body, q)
             state |= modal_state(model, body, state, q) if body.modes else {}
-            found |= {f"{body.name}.{name}": value[0] for name, value in state.items()}
+            found |= {f"{body.name}.{name}": value[0] for name, value in model.results(body.name, state).items()}
         for k, slide in enumerate(model.slides):
             found[f"{slide.name}.s"] = self.static_state["s"][k]
-            found[f"{slide.name}.force"] = self.static_state["force"][k]
+            found |= {f"{slide.name}.{name}": value for name, value in
+                      model.results(slide.name, {"force": self.static_state["force"][k]}).items()}
         forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
                                    self.static_state["point_force"][None])
         return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()

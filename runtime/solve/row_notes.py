@@ -11,6 +11,7 @@ from ..parts.scene_data import SceneData
 from .fast_turns import FastTurns
 from .meeting_points import MeetingPoints
 from .reduced_strain import ReducedStrain
+from .sensitivity import Sensitivity
 from .straight_struts import StraightStruts
 
 
@@ -30,9 +31,11 @@ class RowNotes:
     """What is noted of output rows, which are seen as they come, a batch after the other."""
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0):
+        self.sensitivity = Sensitivity(scene, model)
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
-            "meeting points": MeetingPoints(scene, model), "fast turns": FastTurns(model, step)}
+            "sensitivity": self.sensitivity, "meeting points": MeetingPoints(scene, model),
+            "fast turns": FastTurns(model, step)}
 
     def see(self, rows: dict[str, np.ndarray]) -> None:
         """Take further rows of the engine, by name, time first."""

@@ -22,14 +22,17 @@ from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from .diagnosis import notes, trapped
+from .diagnosis import genalpha_alone, notes, trapped
 from .event_watcher import EventWatcher
-from .integrator_choice import choose
+from .integrator_choice import choose, tol_of
 from .long_runs import LongRun
 from .pauses import Pauses, pauses
 from .progress import Meter
 from .row_notes import RowNotes
+from .sensitivity import sensitive
+from .shared_trials import SharedTrials
 from .signal_steps import unresolved
+from .sink import Sink
 from .threads import share_elements
 from .trial_run import on_trial
 
@@ -48,31 +51,6 @@ class Start(Protocol):
 
     def start(self, model: Model, scene: SceneData) -> None:
         """Put a freshly built model of the scene into this state. Raises SceneError."""
-
-
-class Sink(Protocol):
-    """Takes the rows of a run as they come, so that the engine keeps the last ones only."""
-
-    @property
-    def elapsed(self) -> float:
-        """Return the seconds that the run took before it was resumed."""
-
-    @property
-    def integrator(self) -> str | None:
-        """Return the name of the integrator of a run that is resumed, None where one begins."""
-
-    @property
-    def free(self) -> int:
-        """Return the bytes that it can take."""
-
-    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict], row_notes: RowNotes) -> None:
-        """Take the first row, or bring the engine to where the run is resumed."""
-
-    def pause(self) -> None:
-        """Take the rows that the engine has at a pause, and write a checkpoint if it is time to."""
-
-    def between(self) -> None:
-        """Take the rows that the engine has between pauses, if it is time to."""
 
 
 @dataclass
@@ -98,79 +76,87 @@ class Simulation:
 
 
 def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initial: Start | None = None,
-             stream: Sink | None = None) -> Simulation:
+             stream: Sink | None = None, trials: SharedTrials | None = None) -> Simulation:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
 
-    initial: a state of this scene to start from; stream: takes the rows as they
-    come, so that only the last ones are in what is returned.
+    initial: a state of this scene to start from; stream: takes the rows as they come, so that only the last ones are in
+    what is returned; trials: of other scenes of this shape.
     """
     begin = time.perf_counter()
-    model, engine, watcher, said = _prepared(scene, settings, initial)
-    _check_size(engine.row_bytes, settings, stream)
-    pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, engine.row_bytes)
-    messages = implausible(scene) + said
+    ready = _prepared(scene, settings, initial)
+    _check_size(ready.engine.row_bytes, settings, stream)
+    pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
+    messages = implausible(scene) + ready.messages
     if initial is not None:
         messages += [f"state to start from: {message}" for message in initial.messages]
     messages += _divided_step(settings)
-    method, reason, rival = choose(settings, scene, model, engine, None if stream is None else stream.integrator)
+    choice = choose(settings, scene, ready.model, ready.engine, stream.integrator if stream else None)
+    method, reason, rival = choice if trials is None else trials.of(scene, *choice)
     set_up, clock = time.perf_counter() - begin, time.thread_time if settings.threads == 1 else time.process_time
     cpu = clock()
-    LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, model.n_dof,
+    LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, ready.model.n_dof,
              method.name, reason, set_up)
-    capacity = None if stream is None else pace.capacity
-    status, changed = _start(scene, settings, model, engine, method, capacity)
-    stopped, kept = False, 0.0
-    if status is None and rival is not None:
-        kept = time.perf_counter()
-        status, lost = on_trial(engine, rival, method, settings.duration, pace.every,
-                                LongRun(model, engine, settings, watcher, on_progress), discard=stream is not None)
+    run = _begun(scene, settings, ready, method, pace, on_progress, stream, on_trial=rival is not None)
+    while rival is not None and run.status is None:
+        run.status, lost = on_trial(run.engine, rival, method, settings.duration, pace.every, run.follow, stream)
         if lost:
-            method, reason = rival.method, f"{reason}; {lost}"
-        stopped, kept = status == "interrupted", time.perf_counter() - kept
-        if lost or stream is not None:  # whose rows were not kept: the trial is a part of the start
-            kept = 0.0
-            model, engine, watcher, _ = _prepared(scene, settings, initial)
-            status, changed = _start(scene, settings, model, engine, method, capacity)
-    messages += changed.gaps + _warned(_broken_velocities(model, changed.velocities)
-                                       + velocity_jumps(scene, settings.duration) + unresolved(scene, settings))
-    row_notes = RowNotes(scene, model, settings.step_taken or 0.0)
-    started = time.perf_counter() - begin - set_up - kept
-    long_run = LongRun(model, engine, settings, watcher, on_progress)
-    if stream is not None and status is None:
-        stream.start(model, engine, pace, watcher.happened, row_notes)
-    status = "interrupted" if stopped else status
+            if trials is not None:
+                trials.note(scene, method, rival)
+            method, reason, rival = rival.method, f"{reason}; {lost}", rival.rival
+            run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream,
+                         on_trial=rival is not None)
+        elif stream is not None:
+            stream.settled()
+    messages += run.changed.gaps + _warned(_broken_velocities(run.model, run.changed.velocities)
+                                           + velocity_jumps(scene.as_drawn, settings.duration)
+                                           + unresolved(scene.as_drawn, settings))
+    started, status = run.began - begin - set_up, run.status
     if status in (None, "running"):
-        status = engine.advance(long_run, pace.every, stream)
-    messages += long_run.notes()
+        status = run.engine.advance(run.follow, pace.every, stream)
+    if status == "interrupted" and stream is not None and not stream.has_begun:  # it gets a checkpoint to go on from
+        run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream)
+    messages += run.follow.notes()
     cpu, ended = clock() - cpu, time.perf_counter()
-    row_notes.see(engine.rows())
-    messages += _controlled_alone(engine, settings)
+    run.row_notes.see(run.engine.rows())
+    messages += _controlled_alone(run.engine, settings)
     if status == "completed":
-        messages += _warned([*notes(engine, settings), *trapped(scene, engine), *row_notes.notes()])
+        grows = [] if settings.estimate else [*sensitive(run.engine, settings, run.row_notes.sensitivity),
+                                              *genalpha_alone(scene, run.engine, settings)]
+        messages += _warned([*notes(run.engine, settings), *trapped(scene, run.engine), *run.row_notes.notes(), *grows])
     noted = time.perf_counter() - ended
     total = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
     for message in messages:
         LOG.info("run: %s", message)
-    return Simulation(model, engine, watcher, status, messages, reason, set_up, started, noted, total, cpu)
+    return Simulation(run.model, run.engine, run.watcher, status, messages, reason, set_up, started, noted, total, cpu)
 
 
 def _warned(messages: list[str]) -> list[str]:
     """Return messages, each of them given as a warning, too."""
     for message in messages:
-        warnings.warn(message, FunicularWarning, stacklevel=5)
+        warnings.warn(message, FunicularWarning, stacklevel=6)
     return messages
 
 
-def _prepared(scene: SceneData, settings: RunSettings,
-              initial: Start | None) -> tuple[Model, Engine, EventWatcher, list[str]]:
-    """Return the model of a scene, an engine that is not started, what watches its events, and messages on them."""
+@dataclass
+class _Prepared:
+    """The model of a scene, an engine that is not started, what watches its events, and messages on them."""
+
+    model: Model
+    engine: Engine
+    watcher: EventWatcher
+    messages: list[str]
+
+
+def _prepared(scene: SceneData, settings: RunSettings, initial: Start | None) -> _Prepared:
+    """Return what a run of a scene begins with."""
     model = build(scene)
     if initial is not None:
         initial.start(model, scene)
     engine, watcher = Engine(model), EventWatcher(scene, model)
     engine.watch(watcher)
-    return model, engine, watcher, drop_redundant_rows(model, engine) + share_elements(engine, settings.threads)
+    return _Prepared(model, engine, watcher,
+                     drop_redundant_rows(model, engine) + share_elements(engine, settings.threads))
 
 
 @dataclass
@@ -181,18 +167,47 @@ class _Changed:
     velocities: np.ndarray
 
 
+@dataclass
+class _Begun:
+    """A run at its start: how it has ended there, None where it goes on, what the start has changed, what follows its
+    steps and its rows, and when they began, in s.
+    """
+
+    model: Model
+    engine: Engine
+    watcher: EventWatcher
+    status: str | None
+    changed: _Changed
+    follow: LongRun
+    row_notes: RowNotes
+    began: float
+
+
+def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: Integrator, pace: Pauses, meter: Meter,
+           stream: Sink | None, on_trial: bool = False) -> _Begun:
+    """Return a run of what is prepared, which the stream takes; on_trial: it may begin anew with another method."""
+    model, engine, watcher = ready.model, ready.engine, ready.watcher
+    status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
+    row_notes = RowNotes(scene, model, settings.step_taken or 0.0)
+    if stream is not None and status is None:
+        stream.start(model, engine, pace, watcher.happened, row_notes, on_trial)
+    follow = LongRun(model, engine, settings, watcher, meter)
+    return _Begun(model, engine, watcher, status, changed, follow, row_notes, time.perf_counter())
+
+
 def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
            capacity: int | None) -> tuple[str | None, _Changed]:
     """Start the engine; returns how the run ended, None where it goes on. Raises SceneError for a singular start."""
+    tol = tol_of(settings, method)
     status, change = engine.start(
         duration=settings.duration,
         output_step=settings.output_step,
-        tol=settings.tol,
+        tol=tol,
         step=settings.step or 0.0,
         **_control(settings, scene, model),
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
-        knots=knots(model, settings.duration, settings.tol, turns=settings.step is None),
+        knots=knots(model, settings.duration, tol, turns=settings.step is None),
         capacity=capacity,
     )
     if status == "singular" and engine.self_locking >= 0:

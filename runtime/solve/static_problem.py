@@ -100,7 +100,7 @@ class StaticProblem(StaticState):
     def _extent(self) -> float:
         """Return the scene's size in m."""
         model = self.model
-        lengths = [cable.length * cable.n_elements for cable in model.cables]
+        lengths = [cable.mesh.total for cable in model.cables]
         lengths += [float(np.linalg.norm(model.q[b.configuration : b.configuration + model.dim])) for b in model.bodies]
         gaps = [np.subtract(*(attachment_points(model, end, model.q[None]) for end in force.attachments))
                 for force in model.point_forces]
@@ -177,8 +177,7 @@ class StaticProblem(StaticState):
 
     def on_cables(self) -> bool:
         """Return whether no slide is past an end of its cable, where the last element would go on for ever."""
-        ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
-                         for j in self.model.slides])
+        ends = np.array([self.model.cables[j.cable].mesh.total for j in self.model.slides])
         s = self.engine.state()["s"]
         past = np.maximum(-s, s - ends)
         return bool(np.all(past <= self.settings.tolerance * self.size))

@@ -19,6 +19,9 @@ from .inertia import inertia
 STRAIGHT = 1e-9
 """Of the length: nodes that are nearer to the line between the ends lie on it."""
 
+BENT = 1e-12
+"""Of the squared length: what the middle node's squared distance from that line is above where it does not, by far."""
+
 
 class StraightStruts:
     """Each cable that was perfectly straight at two output times on end, when it was compressed most.
@@ -38,14 +41,14 @@ class StraightStruts:
             if part.is_curved:
                 continue
             r = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
-            straight = _straight(r)
             before, worst = self.found.get(cable.name, (False, None))
+            straight = _straight(r, before)
             at = np.flatnonzero(straight & np.append(before, straight[:-1]))  # else something bends it
             if len(at):
-                shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.length
+                shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.mesh.lengths
                 forces = part.material.youngs_modulus * part.section.moments()[0] * shortening.max(axis=1)
                 k, force = at[np.argmax(forces)], float(forces.max())
-                length = cable.length * cable.n_elements
+                length = cable.mesh.total
                 weakest = part.material.youngs_modulus * min(part.section.moments()[1:3])
                 least = weakest / length**2  # a cantilever, the weakest of struts, buckles at 2.47 times this
                 if force >= least and (worst is None or force > worst[0]):
@@ -72,14 +75,24 @@ class StraightStruts:
         return notes
 
 
-def _straight(r: np.ndarray) -> np.ndarray:
-    """Return (times,): whether nodes r (times, nodes, dim) lie on a line, one after the other.
+def _straight(r: np.ndarray, before: bool) -> np.ndarray:
+    """Return (times,): whether nodes r (times, nodes, dim) lie on a line, one after the other, as they did at the time
+    before or do at the next one; before: whether they did before the first.
 
     The middle node shows of most states that they do not: only of the others all nodes are looked at.
     """
-    on_line = _on_line(r[:, [0, r.shape[1] // 2, -1]]) if r.shape[1] > 3 else np.ones(len(r), dtype=bool)
-    on_line[on_line] = _on_line(r[on_line])
-    return on_line
+    chord, middle = r[:, -1] - r[:, 0], r[:, r.shape[1] // 2] - r[:, 0]
+    square = (chord * chord).sum(axis=1)
+    off = (middle * middle).sum(axis=1) * square - (middle * chord).sum(axis=1) ** 2  # squared, times the square
+    straight = ~(off > BENT * square**2)
+    beside = np.ones(len(r), dtype=bool)  # and of the last time, for the row to come
+    beside[:-1] = straight[1:]
+    beside[1:] |= straight[:-1]
+    beside[0] |= before
+    straight &= beside
+    if straight.any():
+        straight[straight] = _on_line(r[straight])
+    return straight
 
 
 def _on_line(r: np.ndarray) -> np.ndarray:

@@ -1,9 +1,9 @@
 """A trial of the integrator that a scene's data let expect to be the cheaper one: its cost is measured as it runs.
 
 What steps must follow, an estimate by a scene's stiffness and tolerance cannot know: how much of a motion is vibration.
-What stability asks of the explicit method is known beforehand. So the run begins with the implicit one, and where what
-remains would cost more at its present rate than the whole run by the other, it begins anew with that. Costs are counted
-in evaluations of eq 38 and not in seconds: a run takes the same course on any machine.
+What stability asks of the explicit method is known beforehand. So the run begins with an implicit one, and where what
+remains would cost more at its present rate than the rival may cost, it begins anew with that, on trial itself where it
+has a rival. Costs are counted in evaluations of eq 38 and not in seconds: a run takes the same course on any machine.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from ..engine import Engine
 from ..integrators import Integrator
 from .integrator_choice import Rival
 from .long_runs import LongRun
+from .sink import Sink
 
 PART = 0.25
 """Of the duration: what is run on trial."""
@@ -23,24 +24,14 @@ SHARE = 0.05
 SETTLED = 4
 """Shares after which the rate counts as it is: the motion may begin with a shock."""
 
-CLEARLY = 3.0
+CLEARLY = 10.0
 """Times the other's cost that what remains must take before."""
 
 
-class Discarding:
-    """Takes the rows of an engine at its pauses, and keeps none."""
-
-    def __init__(self, engine: Engine):
-        self.pause = engine.take_rows
-
-    def between(self) -> None:
-        """Take nothing between pauses."""
-
-
-def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, every: int,
-             follow: LongRun, discard: bool) -> tuple[str, str]:
-    """Run a started engine as far as it takes to judge its method by its cost; every: rows between pauses, of which the
-    engine keeps none where they are to be discarded.
+def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, every: int, follow: LongRun,
+             stream: Sink | None) -> tuple[str, str]:
+    """Run a started engine as far as it takes to judge its method by its cost; every: rows between pauses, at which the
+    stream may take them.
 
     Returns the status that the run has come to, "running" where there is more of it, and why the rival is the cheaper
     one, or "" where it is not. The first share of the cost, in which steps find their size, does not count.
@@ -49,7 +40,7 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
     before, shares = engine.time, 0
     while True:
         shares += 1
-        status = engine.advance(follow, every, Discarding(engine) if discard else None, most_evaluations=shares * share)
+        status = engine.advance(follow, every, stream, most_evaluations=shares * share)
         time = engine.time
         if status != "running" or time >= PART * duration:
             return status, ""
@@ -57,5 +48,5 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
         if shares > 1 and remains > (CLEARLY if shares < SETTLED else 1.0):
             spent = shares * SHARE * rival.cost
             return status, (f"{method.name} on trial took work like {spent:.3g} to t = {time:.3g} s: what remains "
-                            f"would cost {remains:.2g} times as much as all by {rival.method.name}")
+                            f"would take {remains:.2g} times the work that calls for {rival.method.name}")
         before = time

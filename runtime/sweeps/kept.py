@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import inspect
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from numbers import Real
@@ -17,6 +16,7 @@ from ..parts.scene_data import SceneData
 from ..parts.validation import shown
 from ..results.quantities import ENERGIES, QUANTITIES, Variable
 from ..results.run import Run
+from .identity import identity_of
 from .parameters import SWEEP
 
 TIME = "time"
@@ -63,7 +63,7 @@ class Keep:
     @property
     def digest(self) -> str:
         """Return the digest of the names, and of what functions do."""
-        texts = [f"{name} {what if isinstance(what, str) else text_of(what)}" for name, what in self.wanted.items()]
+        texts = [f"{name} {what if isinstance(what, str) else identity_of(what)}" for name, what in self.wanted.items()]
         return hashlib.sha256("\n".join(texts).encode()).hexdigest()
 
     def check(self, scene: SceneData) -> None:
@@ -84,15 +84,6 @@ class Keep:
         dims = {dim for variable in variables.values() for dim in variable.dims}
         coords = {dim: run.coords[dim] for dim in run.coords if dim in dims and dim != TIME}
         return Kept(variables, coords, run.time if TIME in dims else None)
-
-
-def text_of(function: Callable[..., Any]) -> str:
-    """Return the text of a function, by which another one is told from it; what it calls is not looked at."""
-    try:
-        return inspect.getsource(function)
-    except (OSError, TypeError, SyntaxError):  # of one made on the fly, what it does; of an object, what it is
-        code = getattr(function, "__code__", None)
-        return f"{code.co_code!r} {code.co_names}" if code else type(function).__qualname__
 
 
 def known_results(scene: SceneData) -> list[str]:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from ..errors import FunicularError
 from ..results.run import Run
 from ..scene import Scene
+from ..solve.threads import one_blas_thread
 from .kept import Keep, Kept
 
 FAILED = "failed"
@@ -35,7 +36,8 @@ def run_points(scenes: Sequence[Scene], keep: Keep) -> list[Outcome]:
 
     An error of one does not stop the rest; Ctrl-C does, as KeyboardInterrupt.
     """
-    return [_run_point(scene, keep) for scene in scenes]
+    with one_blas_thread:  # for all at once: each would set and reset it
+        return [_run_point(scene, keep) for scene in scenes]
 
 
 def _run_point(scene: Scene, keep: Keep) -> Outcome:

@@ -7,7 +7,6 @@ number of rows in the header is raised once all before it are whole.
 
 from __future__ import annotations
 
-import errno
 import json
 import os
 import shutil
@@ -21,7 +20,7 @@ import numpy as np
 from ..errors import ResultFileError
 from ..operating_system import BYTES
 from ..results.files import check_writable
-from ..results.locks import NoLocks, Taken, claimed, lock
+from ..results.locks import Taken, being_written, claimed_for, lock
 from ..results.netcdf import MOST_ROW, File, create
 from ..results.netcdf_header import last_report
 from .layout import POINT, STATUS, Layout
@@ -102,7 +101,7 @@ def stored(path: str | os.PathLike, facts: Mapping[str, Any]) -> Store | None:
         lock(descriptor)
     except Taken:
         os.close(descriptor)
-        raise _being_written(resolved) from None
+        raise being_written(resolved, SWEEP) from None
     try:
         file = File(resolved, descriptor=descriptor)
     except (OSError, ValueError) as error:
@@ -135,11 +134,11 @@ def new_store(path: str | os.PathLike | None, layout: Layout, facts: Mapping[str
     else:
         resolved = check_writable(path)
         part = os.fspath(resolved.with_name(f".{resolved.name}.part"))
-        descriptor = _claim(Path(part), resolved)
+        descriptor = claimed_for(Path(part), resolved, SWEEP)
         if resolved.exists():  # of another sweep, which made it just now
             os.close(descriptor)
             os.unlink(part)
-            raise _being_written(resolved)
+            raise being_written(resolved, SWEEP)
     free = shutil.disk_usage(resolved.parent).free
     if layout.row_bytes * number > free:
         os.close(descriptor)
@@ -157,24 +156,6 @@ def new_store(path: str | os.PathLike | None, layout: Layout, facts: Mapping[str
     except OSError as error:
         raise ResultFileError(f"{resolved}: the results cannot be written here: {error.strerror}") from error
     return Store(file, facts, np.zeros(number, bool))
-
-
-def _claim(part: Path, path: Path) -> int:
-    """Return a descriptor of the part file, which becomes the file when it is whole. Raises ResultFileError."""
-    try:
-        return claimed(part)
-    except Taken:
-        raise _being_written(path) from None
-    except NoLocks:
-        raise ResultFileError(f"{path}: another sweep may be writing it: there is {part.name}, and this file system "
-                              f"has no locks; delete {part.name} if there is none") from None
-    except OSError as error:
-        cause = f"{part.name} beside it is a link" if error.errno == errno.ELOOP else error.strerror
-        raise ResultFileError(f"{path}: the results cannot be written here: {cause}") from None
-
-
-def _being_written(path: Path) -> ResultFileError:
-    return ResultFileError(f"{path}: another sweep is writing it; wait for its end, or give another name")
 
 
 def facts_in(file: File) -> dict[str, Any]:

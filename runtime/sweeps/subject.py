@@ -13,12 +13,12 @@ from typing import Any, Protocol
 
 from ..errors import FunicularWarning, SceneError, near
 from ..parts.paths import Path, changed, path_of, unit_of
-from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.validation import shown
 from ..results.run import Run
 from ..scene import Scene
-from .kept import Keep, of_dict, text_of
+from .identity import identity_of, identity_of_scene
+from .kept import Keep, of_dict
 from .parameters import SWEEP
 from .points import RETURNED, Outcome, failure, outcome_of, run_points
 
@@ -50,8 +50,8 @@ class SceneSubject:
 
     @property
     def digest(self) -> str:
-        """Return the digest of the scene's text."""
-        return hashlib.sha256(dumps(self.scene).encode()).hexdigest()
+        """Return the digest of the scene's text, and of the functions that it watches."""
+        return hashlib.sha256(identity_of_scene(self.scene).encode()).hexdigest()
 
     def scene_at(self, point: Mapping[str, Any]) -> Scene:
         """Return the scene with the values of a point. Raises SceneError."""
@@ -121,8 +121,8 @@ class FunctionSubject:
 
     @property
     def digest(self) -> str:
-        """Return the digest of the function's text, and of the settings."""
-        text = text_of(self.function)
+        """Return the digest of the function, of the values that it takes from around it, and of the settings."""
+        text = identity_of(self.function)
         return hashlib.sha256(f"{text}\n{sorted(self.settings.items())!r}".encode()).hexdigest()
 
     def compute(self, points: Sequence[Mapping[str, Any]]) -> list[Outcome]:

@@ -1,7 +1,7 @@
 """Error against time, side by side with Exudyn, interleaved in one run, one thread each.
 
     pip install '.[bench]' && python tests/benchmarks/exudyn_side_by_side.py [--out FILE.csv] [--plot FILE.png]
-        [--cases pendulum] [--repetitions 3] [--limit 20]
+        [--cases pendulum] [--elements 8] [--repetitions 3] [--limit 20] [--resume]
 
 Scenes: the flexible pendulum (case D0) and the sliding mass (case S1), with Exudyn's cable, which is cable12 here with
 strain="engineering", but for three Gauss points where here are five for the bending. Compared is a path, the tip's or
@@ -12,7 +12,13 @@ far each is converged: ours by another tolerance, theirs by the limit that is fo
 
 Set are fixed steps there, tolerances and fixed steps here. Times are CPU seconds of the solver, set-up apart, medians
 of repetitions that take turns. Ours contains the 50 outputs, theirs none. A time to reach an error is interpolated on
-the curve; one in brackets was not reached and is extrapolated from the two finest points.
+the curve; one in brackets was not reached and is extrapolated from the two finest points. "setting" and "their steps"
+are those of the first point that reaches the error. "auto/best" compares integrator="auto", with the tolerance that
+reaches the error, to the best of the others; where it takes another integrator from one tolerance to the next, nothing
+is interpolated.
+
+Each case is printed, and added to FILE.csv and FILE.points.csv (all settings, errors and times), when it is done.
+--resume leaves out those that FILE.csv has.
 """
 
 import os
@@ -20,6 +26,7 @@ import os
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import csv
 import time
 import warnings
 from collections.abc import Callable
@@ -31,7 +38,7 @@ from statistics import median
 import exudyn_models as peer
 import numpy as np
 from funicular import FunicularError, FunicularWarning, Scene
-from funicular.integrators import INTEGRATORS
+from funicular.integrators import AUTO, INTEGRATORS
 from funicular.results.trajectories import distance, largest_change
 from pendulum import pendulum
 from sliding import sliding_mass
@@ -40,6 +47,7 @@ from table import parser, show
 DURATION, OUTPUTS = 1.0, 50
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 TOLS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+AUTO_TOLS = (1e-1, 3e-2, 1e-2, 4e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)
 STEPS = (50, 100, 200, 500, 1000, 2000, 4000, 8000, 16000, 32000, 64000)
 REFERENCE_TOLS = (1e-6, 1e-8)
 
@@ -79,14 +87,15 @@ class TooLongError(Exception):
 
 @dataclass
 class Point:
-    """One setting of one code: how it is run, its times and its error."""
+    """One setting of one code: how it is run, its times and its error, and the integrator that it takes."""
 
     method: str
     setting: float
-    run: Callable[[], tuple[np.ndarray | None, float]]
+    run: Callable[[], tuple[np.ndarray | None, float, str]]
     path: np.ndarray | None = None
     times: list[float] = field(default_factory=list)
     error: float = np.nan
+    taken: str = ""
 
     @property
     def seconds(self) -> float:
@@ -94,8 +103,8 @@ class Point:
         return median(self.times)
 
 
-def integrate(case: Case, limit: float, **settings) -> tuple[np.ndarray, float]:
-    """Path and CPU seconds here. Raises TooLongError, FunicularError."""
+def integrate(case: Case, limit: float, **settings) -> tuple[np.ndarray, float, str]:
+    """Path, CPU seconds and integrator here. Raises TooLongError, FunicularError."""
     begin = time.process_time()
 
     def watch(reached: float) -> None:
@@ -103,12 +112,12 @@ def integrate(case: Case, limit: float, **settings) -> tuple[np.ndarray, float]:
             raise TooLongError
 
     run = case.ours().run(DURATION, output_step=DURATION / OUTPUTS, progress=watch, **settings)
-    return case.path(run), run.report["time_s"]["solve_cpu"]
+    return case.path(run), run.report["time_s"]["solve_cpu"], run.report["integrator"]
 
 
-def their_turn(case: Case, steps: int) -> tuple[None, float]:
+def their_turn(case: Case, steps: int) -> tuple[None, float, str]:
     """CPU seconds there; the path is taken apart, since sensors take time."""
-    return None, peer.cpu_seconds(case.theirs, DURATION, steps)
+    return None, peer.cpu_seconds(case.theirs, DURATION, steps), "exudyn"
 
 
 def curve(settings, make: Callable[[float], Point], limit: float) -> list[Point]:
@@ -117,7 +126,7 @@ def curve(settings, make: Callable[[float], Point], limit: float) -> list[Point]
     for setting in settings:
         point = make(setting)
         try:
-            path, seconds = point.run()
+            path, seconds, point.taken = point.run()
         except TooLongError:
             print(f"  {point.method} {setting:g}: over the limit", flush=True)
             break
@@ -132,10 +141,10 @@ def curve(settings, make: Callable[[float], Point], limit: float) -> list[Point]
 
 
 def our_curves(case: Case, limit: float) -> dict[str, list[Point]]:
-    """Work and precision here: each integrator by its tolerance, generalised-alpha by its step as well."""
+    """Work and precision here: each integrator and "auto" by its tolerance, generalised-alpha by its step as well."""
     curves = {}
-    for integrator in INTEGRATORS:
-        curves[integrator] = curve(TOLS, lambda tol, name=integrator: Point(
+    for integrator in (*INTEGRATORS, AUTO):
+        curves[integrator] = curve(AUTO_TOLS if integrator == AUTO else TOLS, lambda tol, name=integrator: Point(
             f"{name} tol", tol, partial(integrate, case, limit, integrator=name, tol=tol)), limit)
     curves["genalpha step"] = curve((DURATION / n for n in STEPS), lambda step: Point(
         "genalpha step", step, partial(integrate, case, limit, integrator="genalpha", step=step)), limit)
@@ -177,23 +186,47 @@ def converged(case: Case) -> tuple[np.ndarray, float]:
     return tight, distance(loose, tight)
 
 
-def time_to(points: list[Point], target: float) -> tuple[float, bool]:
-    """CPU seconds to reach an error, on the lower envelope of points; whether that was reached."""
-    ordered, best = sorted(points, key=lambda p: p.seconds), []
-    for point in ordered:
+def envelope(points: list[Point]) -> list[Point]:
+    """Points that no other one beats in time and error, from the fastest on."""
+    best: list[Point] = []
+    for point in sorted(points, key=lambda p: p.seconds):
         if not best or point.error < best[-1].error:
             best.append(point)
-    if not best:
-        return np.nan, False
-    if target >= best[0].error:
-        return best[0].seconds, True
-    errors, seconds = np.log([p.error for p in best]), np.log([p.seconds for p in best])
-    if target >= best[-1].error:
-        return float(np.exp(np.interp(-np.log(target), -errors, seconds))), True
+    return best
+
+
+def time_to(points: list[Point], target: float) -> tuple[float, bool]:
+    """CPU seconds to reach an error, on the lower envelope of points; whether that was reached."""
+    best = envelope(points)
+    there = next((k for k, point in enumerate(best) if point.error <= target), None)
+    if there == 0 or (there is not None and best[there].taken != best[there - 1].taken):
+        return best[there].seconds, True
     if len(best) < 2:
         return np.nan, False
-    slope = (seconds[-1] - seconds[-2]) / (errors[-2] - errors[-1])
-    return float(np.exp(seconds[-1] + slope * (errors[-1] - np.log(target)))), False
+    before, after = best[-2:] if there is None else best[there - 1 : there + 1]
+    part = np.log(before.error / target) / np.log(before.error / after.error)
+    return float(before.seconds * (after.seconds / before.seconds) ** part), there is not None
+
+
+def setting_to(points: list[Point], target: float) -> float:
+    """The setting of the fastest point that has no larger an error, not a number where there is none."""
+    return next((point.setting for point in envelope(points) if point.error <= target), np.nan)
+
+
+def row_of(case: Case, target: float, ours: dict[str, list[Point]], theirs: list[Point]) -> dict:
+    """Times to reach an error, of all curves."""
+    found = {name: time_to(points, target) for name, points in ours.items()}
+    reached = {name: seconds for name, (seconds, there) in found.items() if there and name != AUTO}
+    peer_seconds, there = time_to(theirs, target)
+    best = min(reached, key=lambda name: reached[name], default="")
+    seconds = reached.get(best, np.nan)
+    own, own_there = found[AUTO]
+    return {"case": case.name, "elements": case.elements, "error": target,
+            **{f"{name} / s": _bracketed(*found[name]) for name in found},
+            "exudyn / s": _bracketed(peer_seconds, there), "best": best,
+            "setting": setting_to(ours[best], target) if best else np.nan,
+            "their steps": DURATION / setting_to(theirs, target),
+            "times faster": peer_seconds / seconds, "auto/best": own / seconds if own_there else np.nan}
 
 
 def compare(case: Case, repetitions: int, limit: float) -> tuple[list[dict], dict, dict[str, list[Point]]]:
@@ -212,16 +245,7 @@ def compare(case: Case, repetitions: int, limit: float) -> tuple[list[dict], dic
             point.error = distance(point.path, exact) / motion
     for point in theirs:
         point.error = distance(point.path, their_exact) / motion
-    rows = []
-    for target in TARGETS:
-        found = {name: time_to(points, target) for name, points in ours.items()}
-        reached = {name: seconds for name, (seconds, there) in found.items() if there}
-        peer_seconds, there = time_to(theirs, target)
-        best = min(reached, key=reached.get, default=None)
-        rows.append({"case": case.name, "elements": case.elements, "error": target,
-                     **{f"{name} / s": _bracketed(*found[name]) for name in found},
-                     "exudyn / s": _bracketed(peer_seconds, there), "best": best or "",
-                     "times faster": peer_seconds / reached[best] if best else np.nan})
+    rows = [row_of(case, target, ours, theirs) for target in TARGETS]
     check = {"case": case.name, "elements": case.elements, "theirs from ours": distance(exact, their_exact) / motion,
              "theirs uncertain by": their_agreement / motion, "ours uncertain by": agreement / motion}
     return rows, check, ours | {"exudyn": theirs}
@@ -262,28 +286,61 @@ def draw(curves: dict[tuple[str, int], dict[str, list[Point]]], path: Path) -> N
         figure.savefig(path, dpi=110)
 
 
+def append(rows: list[dict], out: Path) -> None:
+    """Add rows of equal keys to a table, under a header where it is new."""
+    new = not out.exists()
+    with out.open("a", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, rows[0])
+        if new:
+            writer.writeheader()
+        writer.writerows(rows)
+
+
+def points_of(case: Case, curves: dict[str, list[Point]]) -> list[dict]:
+    """All points of a case as rows."""
+    return [{"case": case.name, "elements": case.elements, "curve": name, "setting": point.setting,
+             "taken": point.taken, "error": point.error, "seconds": point.seconds}
+            for name, points in curves.items() for point in points]
+
+
+def done(out: Path | None) -> set[tuple[str, int]]:
+    """The cases that a table has."""
+    if out is None or not out.exists():
+        return set()
+    with out.open(newline="", encoding="utf-8") as file:
+        return {(row["case"], int(row["elements"])) for row in csv.DictReader(file)}
+
+
 def main() -> None:
     """Measure, print, draw."""
     options = parser(__doc__, repetitions=(3, "of each run, but for those that take longer than a tenth of the limit"),
                      limit=(20, "CPU seconds that a run may take"))
     options.add_argument("--cases", default="", metavar="TEXT", help="only those with TEXT in their name")
     options.add_argument("--elements", type=int, help="only this number of elements")
+    options.add_argument("--resume", action="store_true", help="leave out the cases that FILE.csv of --out has")
     options.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the picture")
     options = options.parse_args()
     warnings.simplefilter("ignore", FunicularWarning)  # coarse steps are meant
-    rows, checks, curves = [], [], {}
+    before = done(options.out) if options.resume else set()
+    if options.out is not None and not options.resume:
+        for old in (options.out, options.out.with_suffix(".points.csv")):
+            old.unlink(missing_ok=True)
+    curves = {}
     for case in cases():
-        if options.cases in case.name and options.elements in (None, case.elements):
+        if (options.cases in case.name and options.elements in (None, case.elements)
+                and (case.name, case.elements) not in before):
             print(f"{case.name}, {case.elements} elements", flush=True)
             try:
-                found, check, each = compare(case, options.repetitions, options.limit)
+                rows, check, each = compare(case, options.repetitions, options.limit)
             except TooLongError as error:
                 print(f"  left out: {error}; give a larger --limit", flush=True)
                 continue
             curves[case.name, case.elements] = each
-            rows, checks = rows + found, [*checks, check]
-    show(rows, options.out)
-    show(checks)
+            show(rows)
+            show([check])
+            if options.out is not None:
+                append(rows, options.out)
+                append(points_of(case, each), options.out.with_suffix(".points.csv"))
     if options.plot:
         draw(curves, options.plot)
         print(f"written: {options.plot}")

@@ -1,4 +1,4 @@
-"""Scenes a second: variants of one scene by themselves, by `fu.run_many`, and by Exudyn's ParameterVariation.
+"""Scenes a second: variants of one scene by themselves, by `fu.run_many`, `fu.sweep`, and Exudyn's ParameterVariation.
 
     pip install '.[bench]' && python tests/benchmarks/many_scenes.py [--out FILE.csv] [--scenes 200] [--repetitions 3]
         [--theirs 100]
@@ -147,6 +147,8 @@ def our_methods(n: int) -> list[Method]:
         locked = locked_seconds(make, settings)
         methods.append(Method(name, f"{integrator}, each by itself", n, lambda make=make, settings=settings: [
             scene.run(**settings) for scene in variants(make, n)], error, locked))
+        methods.append(Method(name, f"{integrator}, sweep of A.mass, workers = 0", n, partial(
+            sweep, make, n, settings), error, locked))
         for threads in (1, 2):
             methods.append(Method(name, f"{integrator}, run_many, threads = {threads}", n, partial(
                 run_all, make, n, threads, settings), error, locked))
@@ -157,6 +159,12 @@ def run_all(make: Callable[[float], fu.Scene], n: int, threads: int, settings: d
     """Run n scenes by run_many, and keep of each the path of the rider."""
     for kept in fu.run_many(variants(make, n), threads=threads, keep=["A.position"], **settings):
         assert isinstance(kept, dict), kept
+
+
+def sweep(make: Callable[[float], fu.Scene], n: int, settings: dict) -> None:
+    """Run n scenes as the points of a sweep of one of them, in this process, and keep of each the path of the rider."""
+    found = fu.sweep(make(1.0), {"A.mass": masses(n)}, keep=["A.position"], workers=0, progress=False, **settings)
+    assert (found["status"] == "completed").all()
 
 
 def their_methods(n: int, ours: float) -> list[Method]:

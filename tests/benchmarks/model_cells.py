@@ -10,14 +10,17 @@ import json
 import os
 import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import funicular as fu
 import numpy as np
 from funicular.choice.motion import motion
+from funicular.choice.planar import planar_of
 from funicular.choice.remaking import CableModel, coarsest, remade
+from funicular.kernels.elements import built_in
 from funicular.results.trajectories import distance, largest_change
 from model_scenes import SCENES
 
@@ -59,6 +62,17 @@ class Cell:
     failed: str = ""
 
 
+@lru_cache
+def drawn(name: str, dim: int) -> fu.Scene | None:
+    """A scene with cables of a dimension: a spatial one that stays in its plane may have planar ones, else None."""
+    scene = SCENES[name].make()
+    if scene.dim == dim:
+        return scene
+    if scene.dim == 2:
+        return None
+    return planar_of(remade(scene, models(scene, *able(scene, FINEST[3])[0], 4))).scene
+
+
 def models(scene: fu.Scene, element: str, law: str, mesh: int) -> dict[str, CableModel]:
     """One model for all cables of a scene."""
     return {name: CableModel(element, law, mesh * coarsest(scene, cable)) for name, cable in scene.cables.items()}
@@ -67,7 +81,8 @@ def models(scene: fu.Scene, element: str, law: str, mesh: int) -> dict[str, Cabl
 def simulate(name: str, chosen: dict[str, CableModel] | None, **settings) -> fu.Run:
     """A run of a scene with these models of its cables."""
     subject = SCENES[name]
-    scene = subject.make()
+    dim = 3 if chosen is None else max(built_in()[model.element].dim for model in chosen.values())
+    scene = subject.make() if chosen is None else drawn(name, dim)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
         scene = scene if chosen is None else remade(scene, chosen)
@@ -75,16 +90,22 @@ def simulate(name: str, chosen: dict[str, CableModel] | None, **settings) -> fu.
                          **{"progress": False} | settings)
 
 
-def kinds(name: str, wanted: dict) -> list[tuple[str, str]]:
+def able(scene: fu.Scene, wanted: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """Those elements and laws that the cables of a scene can have."""
-    scene, able = SCENES[name].make(), []
-    for element, law in wanted[scene.dim]:
+    found = []
+    for element, law in wanted:
         try:
             remade(scene, models(scene, element, law, 4))
         except fu.SceneError:
             continue
-        able.append((element, law))
-    return able
+        found.append((element, law))
+    return found
+
+
+def kinds(name: str) -> list[tuple[str, str]]:
+    """Those elements and laws that a scene is run with by brute force, planar ones too where it stays in its plane."""
+    scenes = {dim: scene for dim in (3, 2) if (scene := drawn(name, dim)) is not None}
+    return [kind for dim, scene in scenes.items() for kind in able(scene, KINDS[dim])]
 
 
 def reference(name: str, cache: Path = CACHE) -> tuple[np.ndarray, float, str]:
@@ -99,11 +120,11 @@ def reference(name: str, cache: Path = CACHE) -> tuple[np.ndarray, float, str]:
 
 
 def _reference(name: str) -> tuple[np.ndarray, float, str]:
-    element, law = kinds(name, FINEST)[0]
+    scene = SCENES[name].make()
+    element, law = able(scene, FINEST[scene.dim])[0]
     before, converged = None, np.inf
     for mesh in REFERENCE_MESHES[element]:
-        made = models(SCENES[name].make(), element, law, mesh)
-        run = simulate(name, made, tol=1e-6)
+        run = simulate(name, models(scene, element, law, mesh), tol=1e-6)
         exact = motion(run.scene, run)
         if before is not None:
             converged = distance(before, exact) / largest_change(exact)
@@ -131,7 +152,7 @@ def brute_force(name: str, cache: Path = CACHE) -> Iterator[Cell]:
     known = known_cells(name, cache)
     for tol in TOLS:
         cheapest = np.inf
-        for element, law in kinds(name, KINDS):
+        for element, law in kinds(name):
             for integrator in INTEGRATORS:
                 for mesh in MESHES:
                     key = element, law, mesh, integrator, tol
@@ -164,8 +185,8 @@ def measured(name: str, exact: np.ndarray, element: str, law: str, mesh: int, in
     cost = set_up = np.inf
     try:
         for _ in range(3):
-            run = simulate(name, models(SCENES[name].make(), element, law, mesh), tol=tol, integrator=integrator,
-                           progress=Stopwatch())
+            chosen = models(drawn(name, built_in()[element].dim), element, law, mesh)
+            run = simulate(name, chosen, tol=tol, integrator=integrator, progress=Stopwatch())
             cost = min(cost, run.report["time_s"]["solve_cpu"])
             set_up = min(set_up, run.report["time_s"]["set_up"])
             if cost > 0.1:

@@ -1,6 +1,6 @@
 """How true the choice of a model is to its tolerance, and what it costs: every scene of model_scenes.py with every tol.
 
-    python tests/benchmarks/model_choice.py [--only WORDS] [--cache DIR] [--brute-force none|cached|all]
+    python tests/benchmarks/model_choice.py [--only WORDS] [--cache DIR] [--brute-force none|cached|all] [--full-length]
         [--out FILE.csv]
 
 ``error/tol`` is the largest error of a motion, of stations along cables and of bodies at 20 output times, against the
@@ -9,6 +9,9 @@ says of it. ``resolved`` is how far the reference itself is converged, over tol:
 ``ms`` is the CPU time of the integration, ``cheapest`` that of the cheapest model that keeps tol, found by brute force
 over elements, laws, meshes and integrators. ``choice`` is the CPU time of the choice over that of the run, set-up
 included. References and brute force are computed once and kept in the cache; the choice is made anew.
+
+``--full-length`` runs the bundled scenes over the durations of their files. Their errors are against a run on twice as
+fine a mesh with a tenth of the time tolerance.
 """
 
 from __future__ import annotations
@@ -16,16 +19,19 @@ from __future__ import annotations
 import statistics
 import time
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import funicular as fu
 from funicular.choice.motion import motion
+from funicular.choice.remaking import remade
 from funicular.results.trajectories import distance, largest_change
 from model_cells import CACHE, TIMES, TOLS, brute_force, known_cells, reference
 from model_scenes import SCENES
 from table import parser, show
 
 REPETITIONS = 3
+BUNDLED = ("paper51", "paper52_rigid", "paper52_modal", "paper52_ancf", "zip_line", "cable_car")
 LONG = 0.2
 """CPU seconds from which on a run is not repeated."""
 
@@ -75,6 +81,25 @@ def row(name: str, tol: float, cache: Path, brute: str) -> dict:
             "best": f"{best.mesh} {best.element}, {best.law}, {best.integrator}" if best else "none"}
 
 
+def full_length(name: str, tol: float) -> dict:
+    """One line of the table of bundled scenes at full length."""
+    scene = fu.load_scene(name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        choice = scene.choose(tol, free="all")
+        duration = choice.scene.run_settings["duration"]
+        begin = time.process_time()
+        run = choice.scene.run(output_step=duration / TIMES, progress=False)
+        total = time.process_time() - begin
+        finer = remade(choice.scene, {cable: replace(model, elements=2 * model.elements)
+                                      for cable, model in choice.models.items()})
+        exact = finer.run(output_step=duration / TIMES, tol=choice.time_tol / 10, progress=False)
+    reference = motion(finer, exact)
+    return {"scene": name, "s": duration, "tol": tol, "choice": choice.seconds / total, "run ms": 1e3 * total,
+            "error/tol": distance(motion(run.scene, run), reference) / largest_change(reference) / tol,
+            "estimate": choice.error / tol, "probes": choice.probes, "chosen": choice.heading.partition(": ")[2]}
+
+
 def summary(rows: list[dict]) -> list[str]:
     """How many cells meet each goal."""
     true = [one for one in rows if one["resolved"] <= 1]
@@ -94,7 +119,12 @@ def main() -> None:
     options.add_argument("--cache", type=Path, default=CACHE, help="folder of references and runs by brute force")
     options.add_argument("--brute-force", choices=("none", "cached", "all"), default="all",
                          help="runs of the cheapest model: none, those in the cache, all")
+    options.add_argument("--full-length", action="store_true", help="the bundled scenes at full length")
     options = options.parse_args()
+    if options.full_length:
+        rows = [full_length(name, tol) for name in BUNDLED if options.only in name for tol in TOLS[:2]]
+        show(rows, options.out)
+        return
     rows = []
     for name in SCENES:
         for tol in TOLS if options.only in name else ():

@@ -9,8 +9,8 @@
 static fu_elements elements_from(const fu_cable *cable, const double *q, const double *v, int k)
 {
     const long at = cable->first + (long)k * cable->per_node;
-    return (fu_elements){cable->length, cable->tau,      q + at, v ? v + at : 0, cable->A + (long)k * cable->A_stride,
-                         cable->per_node, cable->A_stride};
+    return (fu_elements){cable->lengths + (long)k * cable->l_stride, cable->tau, q + at, v ? v + at : 0,
+                         fu_element_constants(cable, k), cable->per_node, cable->A_stride, cable->l_stride};
 }
 
 /* Returns how many of n elements a block kernel takes; the others go one by one. */
@@ -25,39 +25,41 @@ static int chunk(const fu_cable *cable, int k)
     return cable->n_elements - k < CHUNK ? cable->n_elements - k : CHUNK;
 }
 
-/* Makes what n elements give, one behind the other. */
-typedef void (*work_on)(const fu_cable *cable, int n, const fu_elements *of, double *out);
+/* Makes what n elements of a cable give, from the first on, one behind the other. */
+typedef void (*work_on)(const fu_cable *cable, int first, int n, const fu_elements *of, double *out);
 
-static void elastic_forces(const fu_cable *cable, int n, const fu_elements *of, double *f)
+static void elastic_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
 {
+    (void)first;
     const fu_block block = cable->blocks ? cable->blocks->elastic_force : 0;
     int k = in_blocks(block, n);
     if (k) block(k, of, f);
     for (; k < n; ++k)
-        cable->law->elastic_force(of->l, of->e + k * of->per_node, of->A + (long)k * of->A_stride,
+        cable->law->elastic_force(of->l[k * of->l_stride], of->e + k * of->per_node, of->A + (long)k * of->A_stride,
                                   f + k * cable->coordinates);
 }
 
-static void damping_forces(const fu_cable *cable, int n, const fu_elements *of, double *f)
+static void damping_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
 {
+    (void)first;
     const fu_block block = cable->blocks ? cable->blocks->damping_force : 0;
     int k = in_blocks(block, n);
     if (k) block(k, of, f);
     for (; k < n; ++k)
-        cable->law->damping_force(of->l, of->e + k * of->per_node, of->v + k * of->per_node,
+        cable->law->damping_force(of->l[k * of->l_stride], of->e + k * of->per_node, of->v + k * of->per_node,
                                   of->A + (long)k * of->A_stride, of->tau, f + k * cable->coordinates);
 }
 
 /* Makes M v. */
-static void inertia_forces(const fu_cable *cable, int n, const fu_elements *of, double *f)
+static void inertia_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
 {
     for (int k = 0; k < n; ++k)
-        cable->kernel->inertia_force(cable->m, of->v + k * of->per_node, f + k * cable->coordinates);
+        cable->kernel->inertia_force(fu_element_mass(cable, first + k), of->v + k * of->per_node, f + k * cable->coordinates);
 }
 
-static void mass_damping_forces(const fu_cable *cable, int n, const fu_elements *of, double *f)
+static void mass_damping_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
 {
-    inertia_forces(cable, n, of, f);
+    inertia_forces(cable, first, n, of, f);
     for (int i = 0; i < n * cable->coordinates; ++i) f[i] *= cable->mass_damping;
 }
 
@@ -67,7 +69,7 @@ static void elastic_tangents(const fu_cable *cable, int n, const fu_elements *of
     int k = in_blocks(block, n);
     if (k) block(k, of, K);
     for (; k < n; ++k)
-        cable->law->elastic_tangent(of->l, of->e + k * of->per_node, of->A + (long)k * of->A_stride,
+        cable->law->elastic_tangent(of->l[k * of->l_stride], of->e + k * of->per_node, of->A + (long)k * of->A_stride,
                                     K + k * cable->coordinates * cable->coordinates);
 }
 
@@ -112,7 +114,7 @@ static void add_part(const void *what, int part, int parts)
         n = chunk(job->cable, k);
         const fu_elements of = elements_from(job->cable, job->q, job->v, k);
         for (int which = 0; which < 2 && job->forces[which]; ++which) {
-            job->forces[which](job->cable, n, &of, out);
+            job->forces[which](job->cable, k, n, &of, out);
             add_group(job, k, n, out, part && k == range.first ? on_first_node(job, part, which) : 0);
         }
     }
@@ -168,7 +170,7 @@ void fu_discrete_forces(const fu_model *model, const double *q, const double *q_
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            cable->law->discrete_force(cable->length, q + at, q_next + at, cable->A + (long)k * cable->A_stride, part);
+            cable->law->discrete_force(fu_element_length(cable, k), q + at, q_next + at, fu_element_constants(cable, k), part);
             for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
         }
     }
@@ -187,13 +189,14 @@ void fu_rate_forces(const fu_model *model, const double *q, const double *v, dou
     fu_bodies_forces(model, q, v, f);
 }
 
-/* Adds mass M of an element to K. */
-static void add_mass(const fu_cable *cable, double mass, double *K)
+/* Adds mass M of the k-th element to K. */
+static void add_mass(const fu_cable *cable, int k, double mass, double *K)
 {
+    const double *m = fu_element_mass(cable, k);
     const int n = cable->coordinates, dim = cable->kernel->dim, vectors = n / dim;
     for (int j = 0; j < vectors; ++j)
         for (int i = 0; i < vectors; ++i)
-            for (int d = 0; d < dim; ++d) K[(j * dim + d) * n + i * dim + d] += mass * cable->m[j * vectors + i];
+            for (int d = 0; d < dim; ++d) K[(j * dim + d) * n + i * dim + d] += mass * m[j * vectors + i];
 }
 
 /* Adds K over n dofs from `first` on to a system. */
@@ -244,12 +247,12 @@ static void complete(const matrix *job, int k, double *K)
         for (int i = 0; i < size; ++i) K[i] = 0.0;
     else {
         if (cable->tau > 0.0) {
-            cable->law->damping_tangent(of.l, of.e, of.v, of.A, of.tau, job->rate, Q);
+            cable->law->damping_tangent(of.l[0], of.e, of.v, of.A, of.tau, job->rate, Q);
             for (int i = 0; i < size; ++i) K[i] += Q[i];
         }
         for (int i = 0; i < size; ++i) K[i] *= job->stiffness;
     }
-    add_mass(cable, job->mass, K);
+    add_mass(cable, k, job->mass, K);
 }
 
 /* Adds a part of the elements. Where threads share the work, the first of each part, which another thread's has a node with,
@@ -309,7 +312,7 @@ double fu_kinetic_energy(const fu_model *model, const double *q, const double *v
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            cable->kernel->inertia_force(cable->m, v + at, part);
+            cable->kernel->inertia_force(fu_element_mass(cable, k), v + at, part);
             for (int i = 0; i < cable->coordinates; ++i) total += 0.5 * part[i] * v[at + i];
         }
     }
@@ -324,7 +327,7 @@ double fu_elastic_energy(const fu_model *model, const fu_state *state)
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            cable->law->energy(cable->length, q + at, cable->A + (long)k * cable->A_stride, &part);
+            cable->law->energy(fu_element_length(cable, k), q + at, fu_element_constants(cable, k), &part);
             total += part;
         }
     }
@@ -353,12 +356,12 @@ double fu_dissipation(const fu_model *model, const fu_state *state, const fu_acc
         if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
             if (cable->tau > 0.0) {
-                cable->law->dissipation(cable->length, q + at, v + at, cable->A + (long)k * cable->A_stride, cable->tau,
-                                        part);
+                cable->law->dissipation(fu_element_length(cable, k), q + at, v + at, fu_element_constants(cable, k),
+                                        cable->tau, part);
                 total += part[0];
             }
             if (cable->mass_damping > 0.0) {
-                cable->kernel->inertia_force(cable->m, v + at, part);
+                cable->kernel->inertia_force(fu_element_mass(cable, k), v + at, part);
                 for (int i = 0; i < cable->coordinates; ++i) total += cable->mass_damping * part[i] * v[at + i];
             }
         }
@@ -370,11 +373,12 @@ double fu_dissipation(const fu_model *model, const fu_state *state, const fu_acc
 double fu_length(const fu_model *model, int slide)
 {
     const fu_cable *cable = &model->cables[model->slides[slide].cable];
-    return cable->n_elements * cable->length;
+    return cable->nodes ? cable->nodes[cable->n_elements] : cable->n_elements * cable->length;
 }
 
 /* Returns the arc-length at the first node of an element of a slide's cable, m. */
 double fu_element_start(const fu_model *model, int slide, int element)
 {
-    return element * model->cables[model->slides[slide].cable].length;
+    const fu_cable *cable = &model->cables[model->slides[slide].cable];
+    return cable->nodes ? cable->nodes[element] : element * cable->length;
 }

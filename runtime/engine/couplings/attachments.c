@@ -36,7 +36,8 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     double every[9 * FU_MAX_COORDINATES];
     memset(w->rows, 0, sizeof(double) * 2 * (size_t)(dim * n_own));
     if (on_slide)
-        cable->kernel->slopes(cable->length, state->s[on->slide] - fu_element_start(model, on->slide, element), every);
+        cable->kernel->slopes(fu_element_length(cable, element),
+                              state->s[on->slide] - fu_element_start(model, on->slide, element), every);
     for (int k = 0; k < 2; ++k) {
         const double *fixed = on->slopes[k] == FU_CARRIED ? fu_slide_numbers_of(model, state, on->slide)->director : on->up;
         for (int d = 0; d < dim; ++d) {
@@ -96,12 +97,14 @@ static void point_of(const fu_model *model, const fu_attachment *on, const fu_st
     const int dim = model->dim, n = out->n;
     for (int d = 0; d < 3; ++d) out->v[d] = out->bias[d] = 0.0;
     memcpy(out->p, on->u, sizeof out->p);
-    memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
     if (on->body >= 0) {
         const fu_body *body = &model->bodies[on->body];
         body->kernel->point(state->q + body->configuration, on->u, state->v + body->dof, out->p, out->P, out->v,
                             out->bias);
-    } else if (on->cable >= 0 && on->slide < 0) {
+        return;
+    }
+    memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
+    if (on->cable >= 0 && on->slide < 0) {
         const fu_cable *cable = &model->cables[on->cable];
         const int first = cable->first + on->element * cable->per_node;
         for (int d = 0; d < dim; ++d) {

@@ -1,7 +1,15 @@
 /* What a joint does as a coupling. Its own unknowns are its multipliers; their equations are phi = 0. */
 #include "engine.h"
 
+#include "lanes.h"
+
 #include <string.h>
+
+/* Adds n numbers times a factor. */
+FU_INLINE void add_row(int n, double factor, const double *row, double *restrict to)
+{
+    for (int i = 0; i < n; ++i) to[i] += row[i] * factor;
+}
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
                      double *own)
@@ -9,20 +17,24 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     const fu_joint *joint = (const fu_joint *)coupling;
     const fu_state *next = equations->next;
     const double *multipliers = next->forces + coupling->force, scale = equations->weights.stiffness;
-    double phi[6], J[6 * 2 * FU_ATTACHMENT_COORDINATES];
-    int at[2 * FU_ATTACHMENT_COORDINATES];
+    fu_joint_rows_at at;
     if (fu_joint_is_inactive(model, joint, next)) {
         for (int r = 0; r < joint->kernel->rows; ++r) own[coupling->unknown + r] = -scale * multipliers[r];
         return;
     }
-    const int n = fu_joint_equations(model, joint, next, phi, at, J);
+    fu_joint_equations(model, joint, next, &at);
     for (int r = 0; r < joint->kernel->rows; ++r) {
-        if (joint->redundant_rows >> r & 1) phi[r] = 0.0;
-        own[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * phi[r];
-        for (int i = 0; i < n; ++i) {
-            const double pull = J[r * n + i] * multipliers[r];
-            if (at[i] < model->n_dof) f[at[i]] += pull;
-            else if (fu_joint_moves(model, joint, next, at[i])) own[at[i] - model->n_dof] -= scale * pull;
+        if (joint->redundant_rows >> r & 1) at.phi[r] = 0.0;
+        own[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * at.phi[r];
+        for (int e = 0; e < 2; ++e) {
+            const int n = at.n[e], last = n - 1, on_slide = joint->attachments[e].slide >= 0;
+            if (!n) continue; /* the ground */
+            const double *J = at.J[e] + r * n;
+            double *on = f + at.at[e][0]; /* an attachment's coordinates stand together, but s, the last of them on a slide */
+            if (n == FU_FRAME_DOFS && !on_slide) add_row(FU_FRAME_DOFS, multipliers[r], J, on); /* a loop without remainder */
+            else add_row(n - on_slide, multipliers[r], J, on);
+            if (on_slide && fu_joint_moves(model, joint, next, at.at[e][last]))
+                own[at.at[e][last] - model->n_dof] -= scale * (J[last] * multipliers[r]);
         }
     }
 }
@@ -35,54 +47,50 @@ static void unit_rows(const fu_model *model, const fu_joint *joint, int which, d
         if (which >> r & 1) fu_add(model, system, first + r, first + r, fu_row_unit(inertia, joint->base.scale[r]));
 }
 
-/* Makes derivatives by the coordinates of both attachments those by psi. */
-static void turn_ends(const fu_model *model, const fu_joint *joint, const double *psi, double *rows, int n_rows, int n,
-                      int n_first)
-{
-    for (int e = 0; e < 2; ++e) fu_turn_attachment(model, &joint->attachments[e], psi, rows, n_rows, n, e ? n_first : 0);
-}
-
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, fu_system *system)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
-    const fu_state *next = equations->next;
     const fu_weights w = equations->weights;
-    const int rows = joint->kernel->rows, first = fu_extra(model, coupling->unknown);
-    double J[6 * 2 * FU_ATTACHMENT_COORDINATES], K[4 * FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], unit[6];
-    int at[2 * FU_ATTACHMENT_COORDINATES], unused[FU_ATTACHMENT_COORDINATES];
-    if (fu_joint_is_inactive(model, joint, next)) {
+    const int rows = joint->kernel->rows;
+    fu_joint_derivatives by;
+    int at[6];
+    if (fu_joint_is_inactive(model, joint, equations->next)) {
         unit_rows(model, joint, ~0, w.inertia, system);
         return;
     }
-    const int n = fu_joint_tangent(model, joint, next, at, J, K);
-    const int n_first = fu_attachment_coordinates(model, &joint->attachments[0], next, unused);
-    for (int r = 0; r < rows; ++r)
-        if (joint->redundant_rows >> r & 1) memset(J + r * n, 0, sizeof(double) * (size_t)n);
+    fu_joint_tangent(model, joint, equations->next, &by);
     unit_rows(model, joint, joint->redundant_rows, w.inertia, system);
-    for (int r = 0; r < rows; ++r) unit[r] = fu_row_unit(w.inertia, coupling->scale[r]);
-    for (int r = 0; r < rows; ++r)
-        for (int i = 0; i < n; ++i)
-            if (J[r * n + i] != 0.0 && fu_joint_moves(model, joint, next, at[i]))
-                fu_add(model, system, at[i], first + r, unit[r] * J[r * n + i]);
-    turn_ends(model, joint, equations->psi, J, rows, n, n_first);
-    turn_ends(model, joint, equations->psi, K, n, n, n_first);
-    for (int i = 0; i < n; ++i) {
-        for (int r = 0; r < rows; ++r)
-            if (J[r * n + i] != 0.0) fu_add(model, system, first + r, at[i], unit[r] * J[r * n + i]);
-        if (!fu_joint_moves(model, joint, next, at[i])) continue;
-        for (int m = 0; m < n; ++m) {
-            /* what is between two cables would widen the band: Newton converges without */
-            if (K[i * n + m] == 0.0 || (fu_between_cables(joint) && (i < n_first) != (m < n_first))) continue;
-            fu_add(model, system, at[i], at[m], w.stiffness * K[i * n + m]);
+    for (int r = 0; r < rows; ++r) at[r] = fu_extra(model, coupling->unknown) + r;
+    const fu_side own = {rows, at, 1};
+    fu_side columns[2], moving[2]; /* those that have a row of their own: s of a slide that does not slide has another */
+    for (int e = 0; e < 2; ++e) {
+        columns[e] = moving[e] = (fu_side){by.n[e], by.at[e], joint->attachments[e].body >= 0};
+        if (by.n[e]) moving[e].n -= !fu_joint_moves(model, joint, equations->next, by.at[e][by.n[e] - 1]);
+    }
+    for (int e = 0; e < 2; ++e) {
+        const int n = by.n[e];
+        double *J = by.J[e], scaled[6 * FU_ATTACHMENT_COORDINATES], unit[6];
+        for (int r = 0; r < rows; ++r) {
+            unit[r] = joint->redundant_rows >> r & 1 ? 0.0 : fu_row_unit(w.inertia, coupling->scale[r]);
+            for (int i = 0; i < n; ++i) scaled[r * n + i] = unit[r] * J[r * n + i];
         }
+        fu_add_block(model, system, moving[e], own, 1.0, scaled, 1, n);
+        fu_turn_attachment(model, &joint->attachments[e], equations->psi, J, rows + by.n[0] + by.n[1], n, 0);
+        for (int r = 0; r < rows; ++r)
+            for (int i = 0; i < n; ++i) J[r * n + i] *= unit[r];
+        fu_add_block(model, system, own, columns[e], 1.0, J, n, 1);
+        fu_add_block(model, system, moving[e], columns[e], w.stiffness, by.K[e][e], n, 1);
+        /* what is between two cables would widen the band: Newton converges without */
+        if (by.across && !fu_between_cables(joint))
+            fu_add_block(model, system, moving[!e], columns[e], w.stiffness, by.K[!e][e], n, 1);
     }
 }
 
 static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *phi)
 {
-    double J[6 * 2 * FU_ATTACHMENT_COORDINATES];
-    int at[2 * FU_ATTACHMENT_COORDINATES];
-    fu_joint_equations(model, (const fu_joint *)coupling, state, phi, at, J);
+    fu_joint_rows_at at;
+    fu_joint_equations(model, (const fu_joint *)coupling, state, &at);
+    memcpy(phi, at.phi, sizeof(double) * (size_t)coupling->n_forces);
 }
 
 static int may_start_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)

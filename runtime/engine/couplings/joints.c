@@ -3,6 +3,8 @@
  */
 #include "engine.h"
 
+#include "lanes.h"
+
 #include <string.h>
 
 enum { MOVES = 9 }; /* gap, turn of the first attachment, turn of the second: as many in space, fewer in the plane */
@@ -10,64 +12,65 @@ enum { MOVES = 9 }; /* gap, turn of the first attachment, turn of the second: as
 /* A joint at a state. */
 typedef struct {
     fu_attachment_state at[2];
+    const double *A[2]; /* axes of both; nil where the joint does not see turns */
     double gap[3], c[3], rate, second;
-    double B[MOVES * 2 * FU_ATTACHMENT_COORDINATES]; /* derivatives of gap and turns by the coordinates of both */
-    int moves, used, n; /* columns of the kernel's derivatives, and of these the first that are not nil */
+    int moves, turns; /* columns of the kernel's derivatives; those of each turn, 0 where the joint does not see them */
 } joint_view;
+
+static const double nil[9] = {0.0};
 
 static void look(const fu_model *model, const fu_joint *joint, const fu_state *state, const double s_rate[2],
                  joint_view *view)
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
-    for (int e = 0; e < 2; ++e)
+    for (int e = 0; e < 2; ++e) {
         fu_attachment_at(model, &joint->attachments[e], state, s_rate ? s_rate[e] : 0.0,
                          joint->of_points ? FU_POINT : FU_POINT | FU_AXES, &view->at[e]);
-    const fu_attachment_state *one = &view->at[0], *two = &view->at[1];
-    const int n1 = one->n, n2 = two->n, n = n1 + n2;
-    view->n = n;
-    view->moves = dim + 2 * turns;
-    view->used = joint->of_points ? dim : view->moves;
-    for (int e = 0; e < 2 && joint->of_points; ++e) {
-        memset(view->at[e].A, 0, sizeof view->at[e].A);
-        memset(view->at[e].omega, 0, sizeof view->at[e].omega);
-        memset(view->at[e].alpha, 0, sizeof view->at[e].alpha);
+        view->A[e] = joint->of_points ? nil : view->at[e].A;
     }
-    for (int d = 0; d < 3; ++d) view->gap[d] = two->p[d] - one->p[d];
+    view->moves = dim + 2 * turns;
+    view->turns = joint->of_points ? 0 : turns;
+    for (int d = 0; d < 3; ++d) view->gap[d] = view->at[1].p[d] - view->at[0].p[d];
     view->rate = view->second = 0.0;
     view->c[0] = joint->c0;
     if (joint->signal >= 0)
         view->c[0] += fu_signal_at(&model->signals[joint->signal], state->t, &view->rate, &view->second);
     view->c[1] = cos(view->c[0]);
     view->c[2] = sin(view->c[0]);
-    memset(view->B, 0, sizeof(double) * (size_t)(view->used * n));
-    for (int d = 0; d < dim; ++d) {
-        for (int i = 0; i < n1; ++i) view->B[d * n + i] = -one->P[d * n1 + i];
-        for (int i = 0; i < n2; ++i) view->B[d * n + n1 + i] = two->P[d * n2 + i];
-    }
-    for (int d = 0; d < turns && !joint->of_points; ++d) {
-        memcpy(view->B + (dim + d) * n, one->T + d * n1, sizeof(double) * (size_t)n1);
-        memcpy(view->B + (dim + turns + d) * n + n1, two->T + d * n2, sizeof(double) * (size_t)n2);
+}
+
+/* Adds a value times a row of n numbers to another. */
+FU_INLINE void add_row(int n, double value, const double *row, double *restrict to)
+{
+    for (int i = 0; i < n; ++i) to[i] += value * row[i];
+}
+
+/* Does what over_coordinates does, for n coordinates. */
+FU_INLINE void over_n(int n, int dim, const joint_view *view, int e, int rows, const double *by_moves, double *J)
+{
+    const fu_attachment_state *at = &view->at[e];
+    const int first = dim + e * view->turns;
+    for (int r = 0; r < rows; ++r, by_moves += view->moves, J += n) {
+        for (int i = 0; i < n; ++i) J[i] = 0.0;
+        for (int d = 0; d < dim; ++d)
+            if (by_moves[d] != 0.0) add_row(n, e ? by_moves[d] : -by_moves[d], at->P + d * n, J);
+        for (int d = 0; d < view->turns; ++d)
+            if (by_moves[first + d] != 0.0) add_row(n, by_moves[first + d], at->T + d * n, J);
     }
 }
 
-/* Makes J (rows x n) over coordinates from that over gap and turns. */
-static void over_coordinates(const joint_view *view, int rows, const double *by_moves, double *J)
+/* Makes J (rows x n) over an attachment's n coordinates from that over gap and turns. */
+static void over_coordinates(int dim, const joint_view *view, int e, int rows, const double *by_moves, double *J)
 {
-    const int n = view->n;
-    memset(J, 0, sizeof(double) * (size_t)(rows * n));
-    for (int r = 0; r < rows; ++r)
-        for (int m = 0; m < view->used; ++m) {
-            const double value = by_moves[r * view->moves + m];
-            if (value == 0.0) continue;
-            for (int i = 0; i < n; ++i) J[r * n + i] += value * view->B[m * n + i];
-        }
+    const int n = view->at[e].n;
+    if (n == FU_FRAME_DOFS) over_n(FU_FRAME_DOFS, dim, view, e, rows, by_moves, J); /* its loops have no remainders */
+    else over_n(n, dim, view, e, rows, by_moves, J);
 }
 
-static int coordinates(const joint_view *view, int *at)
+static void take_coordinates(const joint_view *view, int e, int *n, int *at)
 {
-    memcpy(at, view->at[0].at, sizeof(int) * (size_t)view->at[0].n);
-    memcpy(at + view->at[0].n, view->at[1].at, sizeof(int) * (size_t)view->at[1].n);
-    return view->n;
+    *n = view->at[e].n;
+    for (int i = 0; i < *n; ++i) at[i] = view->at[e].at[i];
 }
 
 /* Returns whether the slide that a joint is on has left its cable. */
@@ -80,16 +83,17 @@ int fu_joint_is_inactive(const fu_model *model, const fu_joint *joint, const fu_
     return 0;
 }
 
-/* Makes phi and its derivatives J over the joint's coordinates, with the numbers of these for fu_add; returns how many they are. */
-int fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J)
+/* Makes a joint's equations at a state. */
+void fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_rows_at *out)
 {
     double by_moves[6 * MOVES], K[MOVES * MOVES];
-    const double *multipliers = state->forces + joint->base.force;
     joint_view view;
     look(model, joint, state, 0, &view);
-    joint->kernel->force(view.gap, view.at[0].A, view.at[1].A, view.c, multipliers, phi, by_moves, K);
-    over_coordinates(&view, joint->kernel->rows, by_moves, J);
-    return coordinates(&view, at);
+    joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, state->forces + joint->base.force, out->phi, by_moves, K);
+    for (int e = 0; e < 2; ++e) {
+        take_coordinates(&view, e, &out->n[e], out->at[e]);
+        over_coordinates(model->dim, &view, e, joint->kernel->rows, by_moves, out->J[e]);
+    }
 }
 
 /* Returns whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature
@@ -121,37 +125,52 @@ static int any(int n, const double *numbers)
     return 0;
 }
 
-/* Makes J, and K, the derivative of J' multipliers, over the joint's coordinates, with their numbers; returns how many they are. */
-int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K)
+/* Adds to K (n_f x n_e) what an attachment f has of the derivative by the coordinates of e, of which that of the work by the moves
+ * is `half` (moves x n_e). */
+static void add_elastic(int dim, const joint_view *view, int f, int n_e, const double *half, double *K)
 {
-    const int rows = joint->kernel->rows, dim = model->dim, turns = dim == 3 ? 3 : 1;
-    double phi[6], by_moves[6 * MOVES], of_moves[MOVES * MOVES], g[MOVES] = {0.0};
-    double half[MOVES * 2 * FU_ATTACHMENT_COORDINATES];
+    const fu_attachment_state *at = &view->at[f];
+    for (int d = 0; d < dim + view->turns; ++d) {
+        const double *by = d < dim ? at->P + d * at->n : at->T + (d - dim) * at->n;
+        const double *row = half + (d < dim ? d : d + f * view->turns) * n_e;
+        for (int i = 0; i < at->n; ++i)
+            if (by[i] != 0.0) add_row(n_e, d < dim && !f ? -by[i] : by[i], row, K + i * n_e);
+    }
+}
+
+/* Makes a joint's derivatives at a state. */
+void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out)
+{
+    const int rows = joint->kernel->rows, dim = model->dim;
+    double phi[6], by_moves[6 * MOVES], of_moves[MOVES * MOVES], g[MOVES] = {0.0}, half[MOVES * FU_ATTACHMENT_COORDINATES];
     const double *multipliers = state->forces + joint->base.force;
     joint_view view;
     look(model, joint, state, 0, &view);
-    const int n = coordinates(&view, at), n1 = view.at[0].n;
-    joint->kernel->force(view.gap, view.at[0].A, view.at[1].A, view.c, multipliers, phi, by_moves, of_moves);
-    over_coordinates(&view, rows, by_moves, J);
-    over_coordinates(&view, view.used, of_moves, half);
+    joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, multipliers, phi, by_moves, of_moves);
+    out->across = any(view.moves * view.moves, of_moves);
     for (int r = 0; r < rows; ++r)
         for (int m = 0; m < view.moves; ++m) g[m] += by_moves[r * view.moves + m] * multipliers[r];
-    memset(K, 0, sizeof(double) * (size_t)(n * n));
-    for (int m = 0; m < view.used; ++m)
-        for (int i = 0; i < n && any(view.moves, of_moves + m * view.moves); ++i) {
-            const double by = view.B[m * n + i];
-            for (int j = 0; j < n && by != 0.0; ++j) K[i * n + j] += by * half[m * n + j];
-        }
     for (int e = 0; e < 2; ++e) {
-        double pull[3], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-        const int m = view.at[e].n, from = e ? n1 : 0;
-        for (int d = 0; d < dim; ++d) pull[d] = e ? g[d] : -g[d];
-        memset(part, 0, sizeof(double) * (size_t)(m * m));
-        fu_geometric_stiffness(model, &joint->attachments[e], state, pull, joint->of_points ? 0 : g + dim + e * turns, m, part);
-        for (int i = 0; i < m; ++i)
-            for (int j = 0; j < m; ++j) K[(from + i) * n + from + j] += part[i * m + j];
+        take_coordinates(&view, e, &out->n[e], out->at[e]);
+        over_coordinates(dim, &view, e, rows, by_moves, out->J[e]);
     }
-    return n;
+    for (int e = 0; e < 2; ++e) {
+        const int n = out->n[e];
+        double pull[3], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+        for (int d = 0; d < dim; ++d) pull[d] = e ? g[d] : -g[d];
+        for (int f = 0; f < 2; ++f) {
+            out->K[f][e] = out->J[e] + (rows + (f ? out->n[0] : 0)) * n;
+            memset(out->K[f][e], 0, sizeof(double) * (size_t)(out->n[f] * n));
+        }
+        fu_geometric_stiffness(model, &joint->attachments[e], state, pull, view.turns ? g + dim + e * view.turns : 0, n,
+                               out->K[e][e]);
+        if (!out->across) continue;
+        over_coordinates(dim, &view, e, view.moves, of_moves, half);
+        add_elastic(dim, &view, !e, n, half, out->K[!e][e]);
+        memset(part, 0, sizeof(double) * (size_t)(n * n));
+        add_elastic(dim, &view, e, n, half, part);
+        for (int i = 0; i < n * n; ++i) out->K[e][e][i] += part[i];
+    }
 }
 
 static const fu_rows *rows_of_slide(const fu_model *model, const fu_joint *joint, int e, const fu_accelerator *work)
@@ -160,32 +179,30 @@ static const fu_rows *rows_of_slide(const fu_model *model, const fu_joint *joint
 }
 
 /* Makes H and W over the joint's coordinates those over the dofs: s of an attachment on a slide follows (eq 24, 31, 37). */
-static void replace_s(const fu_model *model, const fu_joint *joint, const joint_view *view, const double *J,
-                      const fu_accelerator *work, fu_rows *rows)
+static void replace_s(const fu_model *model, const fu_joint *joint, const joint_view *view,
+                      double J[2][6 * FU_ATTACHMENT_COORDINATES], const fu_accelerator *work, fu_rows *rows)
 {
     const int m = joint->kernel->rows;
-    int every[2 * FU_ATTACHMENT_COORDINATES], column[2 * FU_ATTACHMENT_COORDINATES], n = 0;
-    coordinates(view, every);
-    for (int i = 0; i < view->n; ++i)
-        if (every[i] < model->n_dof) {
-            column[n] = i;
-            rows->at[n++] = every[i];
-        }
+    int n = 0, own[2]; /* coordinates that are dofs: all but s, which is the last */
+    for (int e = 0; e < 2; ++e) {
+        own[e] = view->at[e].n - (joint->attachments[e].slide >= 0);
+        for (int i = 0; i < own[e]; ++i) rows->at[n++] = view->at[e].at[i];
+    }
     rows->n = n;
     for (int e = 0; e < 2; ++e)
         if (joint->attachments[e].slide >= 0) rows->n += rows_of_slide(model, joint, e, work)->n;
     for (int r = 0; r < m; ++r)
-        for (int i = 0; i < n; ++i) rows->H[r * rows->n + i] = J[r * view->n + column[i]];
+        for (int e = 0; e < 2; ++e)
+            memcpy(rows->H + r * rows->n + (e ? own[0] : 0), J[e] + r * view->at[e].n, sizeof(double) * (size_t)own[e]);
     for (int e = 0, to = n; e < 2; ++e) {
         const int slide = joint->attachments[e].slide;
         if (slide < 0) continue;
         const fu_rows *of = rows_of_slide(model, joint, e, work);
         const fu_slide_state *slide_state = fu_slide_state_of(model, work, slide);
-        const int s = (e ? view->n : view->at[0].n) - 1;
         rows->slide = slide;
         memcpy(rows->at + to, of->at, sizeof(int) * (size_t)of->n);
         for (int r = 0; r < m; ++r) {
-            const double by_s = J[r * view->n + s];
+            const double by_s = J[e][(r + 1) * view->at[e].n - 1];
             rows->by_s[r] = joint->redundant_rows >> r & 1 ? 0.0 : by_s;
             for (int i = 0; i < of->n; ++i) rows->H[r * rows->n + to + i] = by_s * slide_state->G[i];
             rows->W[r] -= by_s * slide_state->s_bias;
@@ -201,7 +218,7 @@ void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_
     const fu_joint *joint = (const fu_joint *)coupling;
     fu_rows *rows = &work->rows[coupling->row];
     const int m = joint->kernel->rows, dim = model->dim;
-    double by_moves[6 * MOVES], K[MOVES * MOVES], J[6 * 2 * FU_ATTACHMENT_COORDINATES], s_rate[2], gap_rate[3];
+    double by_moves[6 * MOVES], K[MOVES * MOVES], J[2][6 * FU_ATTACHMENT_COORDINATES], s_rate[2], gap_rate[3];
     joint_view view;
     if (fu_joint_is_inactive(model, joint, state)) {
         rows->n = rows->rows = 0;
@@ -213,19 +230,18 @@ void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_
     }
     look(model, joint, state, s_rate, &view);
     const fu_attachment_state *one = &view.at[0], *two = &view.at[1];
-    joint->kernel->force(view.gap, one->A, two->A, view.c, state->forces + joint->base.force, rows->C,
-                        by_moves, K);
-    over_coordinates(&view, m, by_moves, J);
+    const double *turning[2] = {joint->of_points ? nil : one->omega, joint->of_points ? nil : two->omega};
+    joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, state->forces + joint->base.force, rows->C, by_moves, K);
+    for (int e = 0; e < 2; ++e) over_coordinates(dim, &view, e, m, by_moves, J[e]);
     for (int d = 0; d < 3; ++d) gap_rate[d] = two->v[d] - one->v[d];
     const double driving[2] = {view.rate, view.second};
     double Q_d[6];
-    joint->kernel->motion(view.gap, one->A, two->A, view.c, gap_rate, one->omega, two->omega, driving, rows->rate, Q_d);
-    double bias[MOVES];
-    const int turns = dim == 3 ? 3 : 1;
+    joint->kernel->motion(view.gap, view.A[0], view.A[1], view.c, gap_rate, turning[0], turning[1], driving, rows->rate, Q_d);
+    double bias[MOVES] = {0.0};
     for (int d = 0; d < dim; ++d) bias[d] = two->bias[d] - one->bias[d];
-    for (int d = 0; d < turns; ++d) {
+    for (int d = 0; d < view.turns; ++d) {
         bias[dim + d] = one->alpha[d];
-        bias[dim + turns + d] = two->alpha[d];
+        bias[dim + view.turns + d] = two->alpha[d];
     }
     for (int r = 0; r < m; ++r) {
         rows->W[r] = -Q_d[r];
@@ -261,7 +277,7 @@ void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_sta
     *out = (fu_joint_output){0};
     if (fu_joint_is_inactive(model, joint, state)) return;
     look(model, joint, state, 0, &view);
-    joint->kernel->force(view.gap, view.at[0].A, view.at[1].A, view.c, multipliers, phi, by_moves, K);
+    joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, multipliers, phi, by_moves, K);
     for (int r = 0; r < joint->kernel->rows; ++r) {
         const double *J = by_moves + r * view.moves;
         out->residual = fmax(out->residual, fabs(phi[r]));

@@ -43,7 +43,7 @@ static int generalised(const fu_model *model, const fu_load *load, const double 
         const fu_cable *cable = &model->cables[load->on];
         *first = cable->first + load->element * cable->per_node;
         (load->kind == FU_CABLE_MOMENT ? cable->kernel->moment : cable->kernel->follower_force)(
-            cable->length, load->x, q + *first, c, g, K);
+            fu_element_length(cable, load->element), load->x, q + *first, c, g, K);
         return cable->coordinates;
     }
     const fu_body *body = &model->bodies[load->on];

@@ -16,7 +16,7 @@ static fu_path path(const fu_model *model, const fu_coupling *coupling, const fu
 {
     const fu_cable *cable = &model->cables[slide_of(coupling)->cable];
     const int left = fu_slide_flags_of(model, state, coupling->index)->mode == FU_LEFT;
-    return (fu_path){left ? 0 : cable->n_elements, cable->length};
+    return (fu_path){left ? 0 : cable->n_elements, cable->length, cable->nodes};
 }
 
 static double rate(const fu_model *model, const fu_coupling *coupling, const fu_state *state)

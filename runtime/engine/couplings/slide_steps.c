@@ -17,7 +17,8 @@ static void discrete_gradient(const fu_model *model, const fu_coupling *coupling
     const fu_state *now = step->now, *next = step->next;
     const int j = coupling->index;
     const double start = fu_element_start(model, j, now->piece[j]);
-    slide->kernel->discrete_gradient(model->cables[slide->cable].length, now->s[j] - start, next->s[j] - start,
+    const double length = fu_element_length(&model->cables[slide->cable], now->piece[j]);
+    slide->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start,
                                      now->q + first, next->q + first, rider_at(model, now, slide),
                                      rider_at(model, next, slide), G);
 }
@@ -33,7 +34,7 @@ void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, cons
     int at[FU_SLIDE_COORDINATES + 1];
     fu_slide_coordinates(model, next, j, at);
     discrete_gradient(model, coupling, step, at[0], G);
-    slide->kernel->residual(model->cables[slide->cable].length, next->s[j] - start, next->q + at[0],
+    slide->kernel->residual(fu_element_length(&model->cables[slide->cable], step->now->piece[j]), next->s[j] - start, next->q + at[0],
                             rider_at(model, next, slide), slide->rider.u, force, phi, unused);
     own += coupling->unknown;
     for (int d = 0; d < slide->kernel->dim; ++d) {
@@ -53,13 +54,14 @@ void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupli
     const fu_state *next = step->next;
     const fu_body *rider = &model->bodies[slide->rider.body];
     const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1, dim = slide->kernel->dim;
-    const int turns = model->cables[slide->cable].coordinates;
+    const fu_cable *cable = &model->cables[slide->cable];
+    const int turns = cable->coordinates;
     const double start = fu_element_start(model, j, step->now->piece[j]);
     double G[3 * FU_MAX_COORDINATES], J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     int at[FU_SLIDE_COORDINATES + 1];
     fu_slide_coordinates(model, next, j, at);
     discrete_gradient(model, coupling, step, at[0], G);
-    slide->kernel->tangent(model->cables[slide->cable].length, next->s[j] - start, next->q + at[0],
+    slide->kernel->tangent(fu_element_length(cable, step->now->piece[j]), next->s[j] - start, next->q + at[0],
                            rider_at(model, next, slide), slide->rider.u, next->forces + coupling->force, J, K);
     fu_cayley_columns(rider->kernel, J, dim, n, turns, step->psi + rider->dof);
     fu_cayley_columns(rider->kernel, K, n, n, turns, step->psi + rider->dof);

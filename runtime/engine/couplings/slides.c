@@ -21,7 +21,7 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
     const fu_slide *slide = &model->slides[j];
     const fu_cable *cable = &model->cables[slide->cable];
     const int at = cable->first + state->piece[j] * cable->per_node;
-    view->length = cable->length;
+    view->length = fu_element_length(cable, state->piece[j]);
     view->x = state->s[j] - fu_element_start(model, j, state->piece[j]);
     view->e = state->q + at;
     view->v = state->v + at;

@@ -3,6 +3,9 @@
 INDICES = 2**31 - 1  # of C's int
 MACHINE_MEMORY = machine_memory()
 
+cdef size_t CHUNK = 1 << 16  # bytes from which small arrays are taken, one behind the other
+cdef size_t ALIGNED = 64  # bytes of a cache line, at which each begins
+
 
 cdef class Arrays:
     """Keeps them as long as it lives; `arrays` are those with names.
@@ -10,46 +13,86 @@ cdef class Arrays:
     They never take more than the machine has: a system that lends more than that ends the process when it is used.
     """
 
-    cdef list kept
+    cdef list named
     cdef readonly dict arrays
     cdef double bytes_kept
+    cdef void **chunks
+    cdef size_t n_chunks, left
+    cdef char *at
 
     def __cinit__(self, *args, **kwargs):
-        self.kept, self.arrays, self.bytes_kept = [], {}, 0.0
+        self.named, self.arrays, self.bytes_kept = [], {}, 0.0
 
-    cdef _keep(self, array):
-        self.bytes_kept += array.nbytes
+    def __dealloc__(self):
+        cdef size_t k
+        for k in range(self.n_chunks):
+            free(self.chunks[k])
+        free(self.chunks)
+
+    cdef int _count(self, double size) except -1:
+        """Count so many bytes as kept."""
+        self.bytes_kept += size
         if self.bytes_kept > MACHINE_MEMORY:
             raise MemoryError
-        self.kept.append(array)
+        return 0
+
+    cdef char *_chunk(self, size_t size) except NULL:
+        """Return new memory, zeros: pages that nothing is written to are not taken from the machine."""
+        cdef void **more = <void **>realloc(self.chunks, (self.n_chunks + 1) * sizeof(void *))
+        if not more:
+            raise MemoryError
+        self.chunks = more
+        cdef char *begin = <char *>calloc(1, size + ALIGNED)
+        if not begin:
+            raise MemoryError
+        self.chunks[self.n_chunks] = begin
+        self.n_chunks += 1
+        return begin + ALIGNED - <size_t>begin % ALIGNED
+
+    cdef void *_memory(self, double size) except NULL:
+        """Return memory for an array of so many bytes, of zeros."""
+        self._count(size)
+        cdef size_t bytes = (<size_t>size // ALIGNED + 1) * ALIGNED
+        if bytes > CHUNK // 4:
+            return self._chunk(bytes)
+        if bytes > self.left:
+            self.at, self.left = self._chunk(CHUNK), CHUNK
+        cdef char *array = self.at
+        self.at, self.left = array + bytes, self.left - bytes
+        return array
 
     cdef double *_doubles(self, values) except NULL:
-        array = np.array(values, dtype=float, order="C").ravel()
-        if array.size == 0:
-            array = np.zeros(1)
-        cdef double[::1] view = array
-        self._keep(array)
-        return &view[0]
+        cdef const double[::1] given = np.asarray(values, dtype=float, order="C").ravel()
+        cdef size_t size = given.shape[0] * sizeof(double)
+        cdef double *array = <double *>self._memory(size)
+        if size:
+            memcpy(array, &given[0], size)
+        return array
 
     cdef double *_zeros(self, double size) except NULL:
-        # kept as they come: memory that nothing is written to is not taken from the machine
-        if size > INDICES or 8.0 * size > MACHINE_MEMORY:
+        if size > INDICES:
             raise MemoryError
-        array = np.zeros(max(1, int(size)))
-        cdef double[::1] view = array
-        self._keep(array)
-        return &view[0]
+        return <double *>self._memory(size * sizeof(double))
 
     cdef int *_ints(self, values) except NULL:
-        array = np.array(values, dtype=np.intc).ravel()
-        if array.size == 0:
-            array = np.zeros(1, dtype=np.intc)
-        cdef int[::1] view = array
-        self._keep(array)
-        return &view[0]
+        cdef const int[::1] given = np.asarray(values, dtype=np.intc, order="C").ravel()
+        cdef size_t size = given.shape[0] * sizeof(int)
+        cdef int *array = <int *>self._memory(size)
+        if size:
+            memcpy(array, &given[0], size)
+        return array
+
+    cdef int *_int_zeros(self, double size) except NULL:
+        if size > INDICES:
+            raise MemoryError
+        return <int *>self._memory(size * sizeof(int))
 
     cdef double *_named(self, name, shape) except NULL:
-        array = np.zeros(shape)
-        cdef double *pointer = self._doubles(array)
-        self.arrays[name] = self.kept[-1].reshape(shape) if array.size else array
-        return pointer
+        """Make an array with a name, which lives as long as whoever reads it."""
+        size = prod(shape)
+        self._count(8.0 * size)
+        array = np.zeros(max(1, size))
+        cdef double[::1] view = array
+        self.named.append(array)
+        self.arrays[name] = array[:size].reshape(shape)
+        return &view[0]

@@ -46,8 +46,10 @@ cdef extern from "engine.h" nogil:
         const fu_element_kernels *kernel
         const fu_law_kernels *law
         const fu_law_blocks *blocks
-        int n_elements, first, coordinates, per_node, A_stride, dissipation_state
+        int n_elements, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state
         double length, tau, mass_damping
+        const double *lengths
+        const double *nodes
         const double *m
         const double *A
     ctypedef struct fu_matter:
@@ -337,7 +339,11 @@ cdef extern from "engine.h" nogil:
                           fu_joint_output *out)
     int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
     int fu_between_cables(const fu_joint *joint)
-    int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K)
+    ctypedef struct fu_joint_derivatives:
+        int n[2]
+        int **at
+        double *K[2][2]
+    void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out)
     int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)

@@ -38,6 +38,11 @@ cdef class Report(Statics):
         """Number of output rows since the start."""
         return self.run.record.n
 
+    @property
+    def n_steps(self):
+        """Number of steps since the start, which `statistics` has with much else."""
+        return self.run.statistics.steps
+
     def slide_row(self, slides):
         """Split slides' numbers (..., numbers of a slide) by name; see fu_slide_output."""
         ends = np.cumsum(list(SLIDE_OUTPUTS.values()))
@@ -86,7 +91,7 @@ cdef class Report(Statics):
     @property
     def memory(self):
         """Bytes of the engine's arrays; recorded rows count only after `start`."""
-        return sum(array.nbytes for array in self.kept)
+        return int(self.bytes_kept)
 
     @property
     def time(self):

@@ -171,11 +171,32 @@ cdef class Statics(Translation):
         """The same as an array (n, n), which is quicker where there are few unknowns."""
         cdef int total = self.run.newton.n + self.run.newton.m
         self._weigh(inertia, rate, stiffness)
-        row, column, value = self._entries()
         full = np.zeros((total, total))
-        full[row, column] = value
+        self._fill(full)
         between = self._between_cables() if stiffness else None
         return full if between is None else full + stiffness * between.toarray()
+
+    cdef _fill(self, double[:, ::1] full):
+        """Put the entries of the unfactored Newton matrix into an array of zeros."""
+        cdef const fu_system *system = &self.run.newton
+        cdef const fu_fronts *fronts = system.fronts
+        cdef int n = system.n, width = system.width, k, i, j, p, s, row
+        cdef const double *D
+        cdef const int *at
+        for j in range(n):
+            for row in range(max(0, j - 2 * width), min(n, j + width + 1)):
+                full[row, j] = system.K[<long>j * (3 * width + 1) + row - j + 2 * width]
+        for k in range(fronts.n if system.m else 0):
+            D, at, p, s = system.D + fronts.start[k], fronts.unknown + fronts.first[k], fronts.pivots[k], fronts.neighbours[k]
+            for j in range(p):
+                for i in range(p + s):
+                    full[n + at[i], n + at[j]] = D[j * (p + s) + i]
+                for i in range(s):
+                    full[n + at[j], n + at[p + i]] = D[p * (p + s) + i * p + j]
+        for k in range(system.n_strips):
+            j = n + system.strips[k].k
+            for row in range(system.chains[system.strips[k].chain], system.chains[system.strips[k].chain + 1]):
+                full[row, j], full[j, row] = system.B[system.strips[k].at + row], system.C[system.strips[k].at + row]
 
     cdef _weigh(self, double inertia, double rate, double stiffness):
         cdef fu_weights weights
@@ -189,24 +210,22 @@ cdef class Statics(Translation):
             return None
         from scipy.sparse import coo_array, csr_array
 
-        cdef int[::1] at = np.zeros(2 * FU_ATTACHMENT_COORDINATES, dtype=np.intc)
-        cdef double[::1] J = np.zeros(6 * 2 * FU_ATTACHMENT_COORDINATES), K = np.zeros(4 * FU_ATTACHMENT_COORDINATES ** 2)
+        cdef fu_joint_derivatives by
         cdef fu_joint *joint
-        cdef int k, i, n, first, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
+        cdef int k, i, e, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
         whole = n_dof + self.model.n_extra
         stiffness = csr_array((whole, whole))
         for k in joints:
             joint = <fu_joint *>self.couplings[k]
-            first = fu_attachment_coordinates(&self.model, &joint.attachments[0], &self.run.next, &at[0])
-            n = fu_joint_tangent(&self.model, joint, &self.run.next, &at[0], &J[0], &K[0])
-            block = np.array(K[:n * n]).reshape(n, n)
-            block[:first, :first] = block[first:, first:] = 0
-            places = np.array([at[i] for i in range(n)])
-            for i in range(n):  # an s that is held has no equilibrium of its own
-                if not fu_joint_moves(&self.model, joint, &self.run.next, places[i]):
-                    block[i] = block[:, i] = 0
-            rows, columns = np.repeat(places, n), np.tile(places, n)
-            stiffness = stiffness + coo_array((block.ravel(), (rows, columns)), shape=(whole, whole)).tocsr()
+            fu_joint_tangent(&self.model, joint, &self.run.next, &by)
+            places = [np.array([by.at[e][i] for i in range(by.n[e])]) for e in range(2)]
+            for e in range(2):
+                block = np.array([by.K[1 - e][e][i] for i in range(by.n[0] * by.n[1])]).reshape(by.n[1 - e], by.n[e])
+                # an s that is held has no equilibrium of its own
+                moves = [[fu_joint_moves(&self.model, joint, &self.run.next, at) for at in side] for side in places]
+                block = block * np.outer(moves[1 - e], moves[e])
+                rows, columns = np.repeat(places[1 - e], by.n[e]), np.tile(places[e], by.n[1 - e])
+                stiffness = stiffness + coo_array((block.ravel(), (rows, columns)), shape=(whole, whole)).tocsr()
         if not stiffness.nnz:
             return None
         if self.spreads is None:

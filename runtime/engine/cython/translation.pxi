@@ -63,7 +63,7 @@ cdef class Translation(Arrays):
         m.combination_unknown = self._ints(model.combinations.indices)
         m.combination_value = self._doubles(model.combinations.data)
         m.threads = NULL
-        m.gravity, m.zero = self._doubles(model.gravity), self._doubles(np.zeros(model.n_dof))
+        m.gravity, m.zero = self._doubles(model.gravity), self._zeros(model.n_dof)
         self._work_space(model)
 
     def _bodies_and_cables(self, model, list tables, blocks):
@@ -73,7 +73,10 @@ cdef class Translation(Arrays):
             c.kernel = <const fu_element_kernels *>_found(tables, "element", cable.element)
             c.law = <const fu_law_kernels *>_found(tables, "law", f"{cable.element}_{cable.law}")
             c.blocks = fu_blocks_of(c.law.name) if blocks and cable.library is None else NULL
-            c.n_elements, c.first, c.length = cable.n_elements, cable.first, cable.length
+            mesh = cable.mesh
+            c.n_elements, c.first, c.length = mesh.n_elements, cable.first, mesh.mean
+            c.lengths, c.l_stride = self._doubles(mesh.lengths), 0 if mesh.is_even else 1
+            c.nodes = NULL if mesh.is_even else self._doubles(mesh.node_s)
             c.tau, c.mass_damping = cable.tau, cable.mass_damping
             c.per_node = c.kernel.vectors * c.kernel.dim
             c.coordinates = c.kernel.nodes * c.per_node
@@ -81,6 +84,7 @@ cdef class Translation(Arrays):
                 raise ValueError(f"{cable.element}: more coordinates than the engine's {FU_MAX_COORDINATES}")
             c.m, c.A = self._doubles(cable.m), self._doubles(cable.A)
             c.A_stride = cable.A.shape[1] if len(cable.A) > 1 else 0
+            c.m_stride = cable.m[0].size if len(cable.m) > 1 else 0
             if c.law.rates > FU_MAX_RATES:
                 raise ValueError(f"{cable.element}: more rates of strain than the engine's {FU_MAX_RATES}")
             c.dissipation_state, numbers = numbers, numbers + c.n_elements * (c.law.rates + 1)
@@ -105,8 +109,8 @@ cdef class Translation(Arrays):
         h.mass = self._doubles(np.einsum("klii->kl", shape.X)[1:, 1:])
         h.stiffness, h.damping = self._doubles(shape.stiffness), self._doubles(shape.damping)
         dofs = r.kernel.velocity + n
-        h.zero, h.matrices = self._doubles(np.zeros(dofs)), self._doubles(np.zeros(3 * dofs * dofs))
-        h.sums = self._doubles(np.zeros(3 * (n + 1) * r.kernel.dim * r.kernel.dim))
+        h.zero, h.matrices = self._zeros(dofs), self._zeros(3 * dofs * dofs)
+        h.sums = self._zeros(3 * (n + 1) * r.kernel.dim * r.kernel.dim)
         for k in range(len(shape.gravity)):
             h.g[k] = shape.gravity[k]
         return 0
@@ -268,10 +272,9 @@ cdef class Translation(Arrays):
         factors.most_numbers = min(SPARE * (sizes ** 2).sum(), INDICES)
         factors.most_unknowns = min(2 * SPARE * sizes.sum(), INDICES)
         factors.numbers, factors.x = self._zeros(factors.most_numbers), self._zeros(2.0 * m)
-        factors.unknowns, factors.map = self._ints(np.zeros(factors.most_unknowns)), self._ints(np.zeros(m))
-        factors.start, factors.first = self._ints(np.zeros(n)), self._ints(np.zeros(n))
-        factors.size, factors.pivots, factors.done = (self._ints(np.zeros(n)), self._ints(np.zeros(n)),
-                                                      self._ints(np.zeros(n)))
+        factors.unknowns, factors.map = self._int_zeros(factors.most_unknowns), self._int_zeros(m)
+        factors.start, factors.first = self._int_zeros(n), self._int_zeros(n)
+        factors.size, factors.pivots, factors.done = self._int_zeros(n), self._int_zeros(n), self._int_zeros(n)
 
     cdef _strips(self, fu_system *system, model, strips):
         """Fill in what of the border touches which chains, with the memory for it."""
@@ -288,10 +291,10 @@ cdef class Translation(Arrays):
         system.chain_start = self._ints(np.searchsorted(chain[on_chain], np.arange(chains + 1)))
         system.B, system.C = self._zeros(system.n_strip_rows), self._zeros(system.n_strip_rows)
         system.X = self._zeros(self._counted(ends_of_x[-1] if n else 0))
-        system.span_B, system.span_C = <fu_span *>self._ints(np.zeros(2 * 2 * n)), <fu_span *>self._ints(np.zeros(2 * 2 * n))
-        system.columns, system.rows = <fu_piece *>self._ints(np.zeros(4 * 2 * n)), <fu_piece *>self._ints(np.zeros(4 * 2 * n))
-        system.n_columns, system.n_rows = self._ints(np.zeros(chains)), self._ints(np.zeros(chains))
-        system.constant_columns, system.constant_rows = self._ints(np.zeros(chains)), self._ints(np.zeros(chains))
+        system.span_B, system.span_C = <fu_span *>self._int_zeros(2 * 2 * n), <fu_span *>self._int_zeros(2 * 2 * n)
+        system.columns, system.rows = <fu_piece *>self._int_zeros(4 * 2 * n), <fu_piece *>self._int_zeros(4 * 2 * n)
+        system.n_columns, system.n_rows = self._int_zeros(chains), self._int_zeros(chains)
+        system.constant_columns, system.constant_rows = self._int_zeros(chains), self._int_zeros(chains)
 
     cdef int _counted(self, double n) except -1:
         """Return a number of numbers as C's int. Raises MemoryError where it is none."""
@@ -310,7 +313,7 @@ cdef class Translation(Arrays):
         system.half = self._ints(np.searchsorted(np.sort([*model.chains[:-1], *middles]), np.arange(n), "right") - 1)
         system.D, system.mirror = self._zeros(elimination.size + 1.0), self._zeros(n)
         system.L = self._zeros((width + 1.0) * (n + <double>FU_BAND_MORE(width) * chains))
-        system.pivot_band, system.pivot_border = self._ints(np.zeros(n)), self._ints(np.zeros(m))
+        system.pivot_band, system.pivot_border = self._int_zeros(n), self._int_zeros(m)
 
     cdef _state(self, fu_state *state, model):
         """Give a state its arrays (state.h), and in them the model as it is drawn."""
@@ -326,7 +329,7 @@ cdef class Translation(Arrays):
         if array.is_real:
             fu_state_attach(state, k, self._zeros(array.items))
         else:
-            fu_state_attach(state, k, self._ints(np.zeros(array.items)))
+            fu_state_attach(state, k, self._int_zeros(array.items))
         return 0
 
     cdef _view(self, const fu_state *state, str name):
@@ -366,10 +369,10 @@ cdef class Translation(Arrays):
         a.scratch = self._zeros(self.model.n_scratch)
         a.multipliers = self._zeros(model.n_multipliers)
         a.self_locking = -1
-        a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
-        a.prescribed = self._doubles(np.zeros(n_dof))
+        a.force, a.work = self._zeros(n_dof), self._zeros(n_dof)
+        a.prescribed = self._zeros(n_dof)
         run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(width))
-        run.psi, run.force = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
-        run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
-        run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._zeros(self.model.n_coordinates)
+        run.psi, run.force = self._zeros(n_dof), self._zeros(n_dof)
+        run.work, run.before = self._zeros(n_dof), self._zeros(n_dof)
+        run.first, run.s_slope = self._zeros(model.n_q), self._zeros(self.model.n_coordinates)
         self._watch([])

@@ -5,6 +5,8 @@
 #include "coupling_events.h"
 
 double fu_boundary_tolerance(fu_path path);
+double fu_boundary(fu_path path, int k);
+double fu_piece_length(fu_path path, int k);
 double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side);
 int fu_stop_at_boundaries(const fu_model *model);
 double fu_time_to_boundary(const fu_run *run);

@@ -12,10 +12,14 @@ typedef struct {
     int first;        /* first dof and first entry in q */
     int coordinates;  /* of an element */
     int per_node;     /* coordinates of a node */
-    double length;    /* of an element, m */
+    double length;    /* of an element, m; the mean where they differ */
+    const double *lengths; /* of the elements, m */
+    const double *nodes;   /* arc-lengths of the nodes, m; null where the elements are equal */
     double tau;       /* Kelvin-Voigt retardation time, s */
     double mass_damping; /* 1/s */
-    const double *m;  /* mass matrix of an element over nodal vectors */
+    const double *m;  /* mass matrix of the first element over nodal vectors */
+    int l_stride;     /* from one element's length to the next's: zero where they are equal */
+    int m_stride;     /* from one element's mass matrix to the next's: zero where they are equal */
     const double *A;  /* constants of the law, of the first element */
     int A_stride;     /* from one element's to the next's: zero where they are equal */
     int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
@@ -33,5 +37,23 @@ double fu_potential_energy(const fu_model *model, const double *q);
 double fu_dissipation(const fu_model *model, const fu_state *state, const struct fu_accelerator *work);
 double fu_length(const fu_model *model, int slide);
 double fu_element_start(const fu_model *model, int slide, int element);
+
+/* Returns the length of an element, m. */
+static inline double fu_element_length(const fu_cable *cable, int element)
+{
+    return cable->lengths[(long)element * cable->l_stride];
+}
+
+/* Returns the mass matrix of an element over nodal vectors. */
+static inline const double *fu_element_mass(const fu_cable *cable, int element)
+{
+    return cable->m + (long)element * cable->m_stride;
+}
+
+/* Returns the constants of the law of an element. */
+static inline const double *fu_element_constants(const fu_cable *cable, int element)
+{
+    return cable->A + (long)element * cable->A_stride;
+}
 
 #endif

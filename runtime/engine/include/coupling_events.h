@@ -7,11 +7,13 @@
 #include "coupling.h"
 #include "events.h"
 
-/* The path of a coupling's coordinate: n pieces of one length, m, with boundaries between them at which the equations are not
- * smooth. state->piece tells on which piece a coupling is. n is zero while the coupling is on none of them. */
+/* The path of a coupling's coordinate: n pieces, of one length, m, or between given boundaries, m, where the length is their
+ * mean and boundaries is not null. At the boundaries the equations are not smooth. state->piece tells on which piece a
+ * coupling is. n is zero while the coupling is on none of them. */
 typedef struct {
     int n;
     double length;
+    const double *boundaries;
 } fu_path;
 
 struct fu_coupling_events {
@@ -48,7 +50,7 @@ struct fu_coupling_events {
 static inline fu_path fu_path_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_coupling_events *events = coupling->type->events;
-    return events && events->path ? events->path(model, coupling, state) : (fu_path){0, 0.0};
+    return events && events->path ? events->path(model, coupling, state) : (fu_path){0, 0.0, 0};
 }
 
 #endif

@@ -1,20 +1,57 @@
 /* Gaussian elimination by fronts (Duff & Reid 1983) with threshold pivoting, for real and for complex numbers:
  * linear/fronts.c, linear/complex_fronts.c. A file that includes this has defined NUMBER, PREFIX(name), SIZE(x),
  * DIVIDE(x, by), TIMES(a, b), ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), APPLY, which makes a column what pivots
- * leave of it, and BACK, which makes the first unknowns of a front from the others.
+ * leave of it, FORWARD, which does that to a right side with all pivots of a front, and BACK, which makes the first unknowns of a
+ * front from the others.
  *
  * A pivot is taken from the rows and columns that have all their entries, if it is not much smaller than what its column
  * has elsewhere. What finds none is left to the parent front. The last front has no other rows: LAPACK factors it.
  * Pivots are kept as their inverses. */
 #define THRESHOLD 1e-5 /* of a column's largest entry: less is no pivot. Rounding grows by no more than its inverse. */
 
-static NUMBER *PREFIX(front)(const fu_factors *f, int k)
+FU_INLINE NUMBER *PREFIX(front)(const fu_factors *f, int k)
 {
     return (NUMBER *)f->numbers + f->start[k];
 }
 
+/* Copies what the matrix has of a front of n unknowns, of which `delayed` ones stand between its own p and their s neighbours. */
+FU_INLINE void PREFIX(copy)(const NUMBER *from, int p, int s, int delayed, NUMBER *F)
+{
+    const int q = p + delayed, n = q + s;
+    for (int j = 0; j < p; ++j, F += n, from += p + s) {
+        for (int i = 0; i < p; ++i) F[i] = from[i];
+        for (int i = p; i < q; ++i) F[i] = ZERO;
+        for (int i = 0; i < s; ++i) F[q + i] = from[p + i];
+    }
+    for (int i = 0; i < delayed * n; ++i) *F++ = ZERO;
+    for (int j = 0; j < s; ++j, F += n, from += p) {
+        for (int i = 0; i < p; ++i) F[i] = from[i];
+        for (int i = p; i < n; ++i) F[i] = ZERO;
+    }
+}
+
+/* Adds to front k what its child c has left; next: where its pivots that were put off go. p: own pivots of k. */
+FU_INLINE void PREFIX(add_child)(const fu_fronts *t, fu_factors *f, int k, int c, int p, int next)
+{
+    const int n = f->size[k], delayed = f->pivots[k] - p;
+    const int size = f->size[c], done = f->done[c], left = f->pivots[c] - done, rest = size - done;
+    const int *in_parent = t->in_parent + t->first[c] + t->pivots[c] - left, *of_rows = f->unknowns + f->first[c] + done;
+    int *rows = f->unknowns + f->first[k], *columns = rows + n;
+    for (int i = 0; i < left; ++i) {
+        rows[next] = of_rows[i];
+        columns[next] = of_rows[size + i];
+        f->map[i] = next++;
+    }
+    for (int i = left; i < rest; ++i) f->map[i] = in_parent[i] < p ? in_parent[i] : in_parent[i] + delayed;
+    const NUMBER *column = PREFIX(front)(f, c) + done * size + done;
+    for (int j = 0; j < rest; ++j, column += size) {
+        NUMBER *to = PREFIX(front)(f, k) + f->map[j] * n;
+        for (int i = 0; i < rest; ++i) ADD(to[f->map[i]], column[i]);
+    }
+}
+
 /* Makes a front of the matrix and of what its children have left; returns 0, or 1 where there is no memory for it. */
-static int PREFIX(assemble)(const fu_fronts *t, const NUMBER *matrix, fu_factors *f, int k)
+FU_INLINE int PREFIX(assemble)(const fu_fronts *t, const NUMBER *matrix, fu_factors *f, int k)
 {
     const int p = t->pivots[k], s = t->neighbours[k];
     int delayed = 0;
@@ -25,41 +62,17 @@ static int PREFIX(assemble)(const fu_fronts *t, const NUMBER *matrix, fu_factors
     f->size[k] = n;
     f->pivots[k] = q;
     if (f->start[k] > f->most_numbers - n * n || f->first[k] > f->most_unknowns - 2 * n) return 1;
-    NUMBER *F = PREFIX(front)(f, k);
-    const NUMBER *from = matrix + t->start[k];
     int *rows = f->unknowns + f->first[k], *columns = rows + n;
-    for (int i = 0; i < p + s; ++i)
-        rows[i < p ? i : i + delayed] = columns[i < p ? i : i + delayed] = t->unknown[t->first[k] + i];
-    for (int i = 0; i < n * n; ++i) F[i] = ZERO;
-    for (int j = 0; j < p; ++j, from += s) {
-        for (int i = 0; i < p; ++i) F[j * n + i] = *from++;
-        for (int i = 0; i < s; ++i) F[j * n + q + i] = from[i];
-    }
-    for (int j = q; j < n; ++j)
-        for (int i = 0; i < p; ++i) F[j * n + i] = *from++;
-    int next = p;
-    for (int c = t->child[k]; c >= 0; c = t->sibling[c]) {
-        const int size = f->size[c], done = f->done[c], left = f->pivots[c] - done;
-        const int *in_parent = t->in_parent + t->first[c] + t->pivots[c], *of_rows = f->unknowns + f->first[c];
-        for (int i = 0; i < left; ++i) {
-            rows[next] = of_rows[done + i];
-            columns[next] = of_rows[size + done + i];
-            f->map[i] = next++;
-        }
-        for (int i = left; i < size - done; ++i) {
-            const int at = in_parent[i - left];
-            f->map[i] = at < p ? at : at + delayed;
-        }
-        for (int j = 0; j < size - done; ++j) {
-            const NUMBER *column = PREFIX(front)(f, c) + (done + j) * size + done;
-            NUMBER *to = F + f->map[j] * n;
-            for (int i = 0; i < size - done; ++i) ADD(to[f->map[i]], column[i]);
-        }
-    }
+    const int *unknown = t->unknown + t->first[k];
+    for (int i = 0; i < p; ++i) rows[i] = columns[i] = unknown[i];
+    for (int i = 0; i < s; ++i) rows[q + i] = columns[q + i] = unknown[p + i];
+    PREFIX(copy)(matrix + t->start[k], p, s, delayed, PREFIX(front)(f, k));
+    for (int c = t->child[k], next = p; c >= 0; next += f->pivots[c] - f->done[c], c = t->sibling[c])
+        PREFIX(add_child)(t, f, k, c, p, next);
     return 0;
 }
 
-static void PREFIX(swap)(NUMBER *a, NUMBER *b, int n, int stride)
+FU_INLINE void PREFIX(swap)(NUMBER *a, NUMBER *b, int n, int stride)
 {
     for (int i = 0; i < n * stride; i += stride) {
         const NUMBER kept = a[i];
@@ -68,7 +81,7 @@ static void PREFIX(swap)(NUMBER *a, NUMBER *b, int n, int stride)
     }
 }
 
-static void PREFIX(swap_unknowns)(int *unknowns, int a, int b)
+FU_INLINE void PREFIX(swap_unknowns)(int *unknowns, int a, int b)
 {
     const int kept = unknowns[a];
     unknowns[a] = unknowns[b];
@@ -76,7 +89,7 @@ static void PREFIX(swap_unknowns)(int *unknowns, int a, int b)
 }
 
 /* Returns the row of the largest entry of a column among those from k to q, -1 where that is no pivot; n: its length. */
-static int PREFIX(pivot)(const NUMBER *column, int k, int q, int n)
+FU_INLINE int PREFIX(pivot)(const NUMBER *column, int k, int q, int n)
 {
     double largest = 0.0, elsewhere = 0.0;
     int row = -1;
@@ -91,7 +104,7 @@ static int PREFIX(pivot)(const NUMBER *column, int k, int q, int n)
 
 /* Eliminates as many of the first q unknowns of a front as find a pivot; returns how many. updated: work space of n, how many
  * pivots each column has been changed by. */
-static int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns, int *updated)
+FU_INLINE int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns, int *updated)
 {
     int k = 0;
     for (int j = 0; j < n; ++j) updated[j] = 0;
@@ -124,7 +137,7 @@ static int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns, i
 }
 
 /* Factors the matrix; returns 0, or 1 + the unknown at which it is singular or needs more memory than there is. */
-static int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factors *f, const fu_lapack *lapack)
+FU_INLINE int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factors *f, const fu_lapack *lapack)
 {
     for (int k = 0; k < t->n; ++k) {
         if (PREFIX(assemble)(t, matrix, f, k)) return 1 + t->unknown[t->first[k]];
@@ -144,13 +157,13 @@ static int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factors *
 }
 
 /* Solves in place: y is the right side, then the solution. */
-static void PREFIX(solve)(const fu_fronts *t, const fu_factors *f, NUMBER *y)
+FU_INLINE void PREFIX(solve)(const fu_fronts *t, const fu_factors *f, NUMBER *y)
 {
     NUMBER *x = (NUMBER *)f->x, *local = x + t->m;
     for (int k = 0; k < t->n; ++k) {
         const int n = f->size[k], done = f->done[k], *rows = f->unknowns + f->first[k];
         for (int i = 0; i < n; ++i) local[i] = y[rows[i]];
-        APPLY(PREFIX(front)(f, k), n, 0, done, local);
+        FORWARD(PREFIX(front)(f, k), n, done, local);
         for (int i = 0; i < n; ++i) y[rows[i]] = local[i];
     }
     for (int k = t->n - 1; k >= 0; --k) {

@@ -23,10 +23,24 @@ typedef struct {
 } fu_joint_output;
 _Static_assert(sizeof(fu_joint_output) == 7 * sizeof(double), "rows of output are arrays of doubles");
 
+/* A joint's equations at a state: phi; of both attachments the numbers of their n coordinates for fu_add, and the derivatives J
+ * of phi by these (rows x n). */
+typedef struct {
+    int n[2], at[2][FU_ATTACHMENT_COORDINATES];
+    double phi[6], J[2][6 * FU_ATTACHMENT_COORDINATES];
+} fu_joint_rows_at;
+
+/* Derivatives of both attachments likewise; K[f][e]: those of J[f]' multipliers by the coordinates of e (n[f] x n[e]), which are
+ * stored behind J[e]; nil between two attachments unless `across`. */
+typedef struct {
+    int n[2], at[2][FU_ATTACHMENT_COORDINATES], across;
+    double *K[2][2], J[2][(6 + 2 * FU_ATTACHMENT_COORDINATES) * FU_ATTACHMENT_COORDINATES];
+} fu_joint_derivatives;
+
 int fu_joint_is_inactive(const fu_model *model, const fu_joint *joint, const fu_state *state);
-int fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J);
+void fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_rows_at *out);
 void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
-int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K);
+void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out);
 void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                       fu_joint_output *out);
 int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at);

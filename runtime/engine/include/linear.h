@@ -109,6 +109,7 @@ void fu_band_forward(int n, int width, const double *A, int first, double *x);
 void fu_band_backward(int n, int width, const double *A, double *x);
 void fu_band_solve(int n, int width, const double *A, int first, double *x);
 
+int fu_fronts_block(const fu_fronts *fronts, int row, int column, int *stride);
 int fu_fronts_at(const fu_fronts *fronts, int row, int column);
 void fu_fronts_add_product(const fu_fronts *fronts, const double *matrix, int columns, const double *x, double *y);
 int fu_fronts_factor(const fu_fronts *fronts, const double *matrix, fu_factors *factors, const fu_lapack *lapack);

@@ -104,7 +104,7 @@ static double element_force(const moving *m, int k, const double *relaxed, doubl
     double v[FU_MAX_COORDINATES];
     memcpy(v, m->v + entry_of(cable, k), sizeof(double) * (size_t)cable->coordinates);
     if (cable->law->spins) turn(m, k, back, v);
-    cable->law->algorithmic_force(cable->length, m->q + entry_of(cable, k), v, cable->A + (long)k * cable->A_stride,
+    cable->law->algorithmic_force(fu_element_length(cable, k), m->q + entry_of(cable, k), v, fu_element_constants(cable, k),
                                   m->weight, relaxed, f, dE);
     return dot(cable->coordinates, f, v);
 }
@@ -175,8 +175,8 @@ static moving without_turn(const fu_run *run, const fu_cable *cable, const doubl
             M[d] += dot(cable->coordinates, f, turns[d]);
         }
         for (int d = 0; d < 3; ++d) {
-            cable->law->algorithmic_force(cable->length, q + entry_of(cable, k), turns[d],
-                                          cable->A + (long)k * cable->A_stride, weight, none, f, dE);
+            cable->law->algorithmic_force(fu_element_length(cable, k), q + entry_of(cable, k), turns[d],
+                                          fu_element_constants(cable, k), weight, none, f, dE);
             for (int i = 0; i < 3; ++i) N[3 * d + i] += dot(cable->coordinates, f, turns[i]);
         }
     }

@@ -120,8 +120,8 @@ static void mean_stress(fu_run *run, double stiffness)
         const fu_cable *cable = &model->cables[c];
         const int dim = cable->kernel->dim, n = cable->coordinates / dim;
         for (int e = 0, at = cable->first; e < cable->n_elements; ++e, at += cable->per_node) {
-            cable->law->step_stiffness(cable->length, run->now.q + at, run->next.q + at,
-                                       cable->A + (long)e * cable->A_stride, k);
+            cable->law->step_stiffness(fu_element_length(cable, e), run->now.q + at, run->next.q + at,
+                                       fu_element_constants(cable, e), k);
             for (int i = 0; i < n; ++i)
                 for (int j = 0; j < n; ++j)
                     for (int d = 0; d < dim; ++d)

@@ -1,6 +1,7 @@
 /* The border of a complex system, front by front. */
 #include "complex_system.h"
 #include "engine.h"
+#include "lanes.h"
 
 #define NUMBER fu_complex
 #define ZERO ((fu_complex){0.0, 0.0})
@@ -11,6 +12,7 @@
 #define DIVIDE(x, by) fu_complex_quotient(x, by)
 #define ADD(to, x) ((to).re += (x).re, (to).im += (x).im)
 #define APPLY eliminated
+#define FORWARD(F, n, done, x) eliminated(F, n, 0, done, x)
 #define BACK substituted
 #define FACTOR zgetrf
 

@@ -1,6 +1,8 @@
 /* The border of a real system, front by front. */
 #include "engine.h"
 
+#include "lanes.h"
+
 #define NUMBER double
 #define ZERO 0.0
 #define ONE 1.0
@@ -10,67 +12,138 @@
 #define DIVIDE(x, by) ((x) / (by))
 #define ADD(to, x) ((to) += (x))
 #define APPLY eliminated
-#define BACK substituted
+#define FORWARD forward
+#define BACK backward
 #define FACTOR dgetrf
 
+/* Subtracts from n numbers the sum of four columns times a number each. */
+FU_INLINE void subtract_four(int n, const double *const column[4], const double factor[4], double *restrict to)
+{
+    const double *a = column[0], *b = column[1], *c = column[2], *d = column[3];
+    const double w = factor[0], x = factor[1], y = factor[2], z = factor[3];
+    int i = 0;
+    for (; i + FU_LANES <= n; i += FU_LANES)
+        *(fu_lanes *)(to + i) -= *(const fu_lanes *)(a + i) * w + *(const fu_lanes *)(b + i) * x +
+                                 *(const fu_lanes *)(c + i) * y + *(const fu_lanes *)(d + i) * z;
+    for (; i < n; ++i) to[i] -= a[i] * w + b[i] * x + c[i] * y + d[i] * z;
+}
+
+/* Subtracts from n numbers a column times a number. */
+FU_INLINE void subtract_one(int n, const double *column, double factor, double *restrict to)
+{
+    int i = 0;
+    for (; i + FU_LANES <= n; i += FU_LANES) *(fu_lanes *)(to + i) -= *(const fu_lanes *)(column + i) * factor;
+    for (; i < n; ++i) to[i] -= column[i] * factor;
+}
+
+/* Makes a column of n what four pivots from k on leave of it. */
+FU_INLINE void eliminate_four(const double *F, int n, int k, double *restrict column)
+{
+    const double *a = F + k * n, *b = a + n, *c = b + n, *d = c + n;
+    const double w = column[k], x = column[k + 1] - a[k + 1] * w, y = column[k + 2] - a[k + 2] * w - b[k + 2] * x;
+    const double z = column[k + 3] - a[k + 3] * w - b[k + 3] * x - c[k + 3] * y;
+    column[k + 1] = x;
+    column[k + 2] = y;
+    column[k + 3] = z;
+    subtract_four(n - k - 4, (const double *const[4]){a + k + 4, b + k + 4, c + k + 4, d + k + 4}, (const double[4]){w, x, y, z},
+                  column + k + 4);
+}
+
+FU_INLINE void eliminate_one(const double *F, int n, int k, double *restrict column)
+{
+    subtract_one(n - k - 1, F + k * n + k + 1, column[k], column + k + 1);
+}
+
 /* Makes a column of n what the pivots from `from` to `to` leave of it; four at once, which need it from memory once. */
-static void eliminated(const double *F, int n, int from, int to, double *restrict column)
+FU_INLINE void eliminated(const double *F, int n, int from, int to, double *restrict column)
 {
     int k = from;
-    for (; k + 4 <= to; k += 4) {
-        const double *a = F + k * n, *b = a + n, *c = b + n, *d = c + n;
-        const double w = column[k], x = column[k + 1] - a[k + 1] * w, y = column[k + 2] - a[k + 2] * w - b[k + 2] * x;
-        const double z = column[k + 3] - a[k + 3] * w - b[k + 3] * x - c[k + 3] * y;
-        column[k + 1] = x;
-        column[k + 2] = y;
-        column[k + 3] = z;
-        for (int i = k + 4; i < n; ++i) column[i] -= a[i] * w + b[i] * x + c[i] * y + d[i] * z;
-    }
-    for (; k < to; ++k) {
-        const double *a = F + k * n, x = column[k];
-        for (int i = k + 1; i < n; ++i) column[i] -= a[i] * x;
-    }
+    for (; k + 4 <= to; k += 4) eliminate_four(F, n, k, column);
+    for (; k < to; ++k) eliminate_one(F, n, k, column);
+}
+
+/* Makes the four pivots before k from their right side, and takes what they have in the right side of those before them. */
+FU_INLINE void substitute_four(const double *F, int n, int k, double *restrict x)
+{
+    const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
+    const double x3 = x[k - 1] * d[k - 1], x2 = (x[k - 2] - d[k - 2] * x3) * c[k - 2];
+    const double x1 = (x[k - 3] - c[k - 3] * x2 - d[k - 3] * x3) * b[k - 3];
+    const double x0 = (x[k - 4] - b[k - 4] * x1 - c[k - 4] * x2 - d[k - 4] * x3) * a[k - 4];
+    x[k - 1] = x3;
+    x[k - 2] = x2;
+    x[k - 3] = x1;
+    x[k - 4] = x0;
+    subtract_four(k - 4, (const double *const[4]){a, b, c, d}, (const double[4]){x0, x1, x2, x3}, x);
+}
+
+FU_INLINE void substitute_one(const double *F, int n, int k, double *restrict x)
+{
+    const double *d = F + (k - 1) * n;
+    x[k - 1] *= d[k - 1];
+    subtract_one(k - 1, d, x[k - 1], x);
 }
 
 /* Makes the first `done` of n unknowns from their right side and the others; four columns at once, as above. */
-static void substituted(const double *F, int n, int done, double *restrict x)
+FU_INLINE void substituted(const double *F, int n, int done, double *restrict x)
 {
     int k = n;
     for (; k - 4 >= done; k -= 4) {
         const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
-        for (int i = 0; i < done; ++i) x[i] -= a[i] * x[k - 4] + b[i] * x[k - 3] + c[i] * x[k - 2] + d[i] * x[k - 1];
+        subtract_four(done, (const double *const[4]){a, b, c, d}, (const double[4]){x[k - 4], x[k - 3], x[k - 2], x[k - 1]}, x);
     }
-    for (; k > done; --k)
-        for (int i = 0; i < done; ++i) x[i] -= F[(k - 1) * n + i] * x[k - 1];
-    for (; k >= 4; k -= 4) {
-        const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
-        const double x3 = x[k - 1] * d[k - 1], x2 = (x[k - 2] - d[k - 2] * x3) * c[k - 2];
-        const double x1 = (x[k - 3] - c[k - 3] * x2 - d[k - 3] * x3) * b[k - 3];
-        const double x0 = (x[k - 4] - b[k - 4] * x1 - c[k - 4] * x2 - d[k - 4] * x3) * a[k - 4];
-        x[k - 1] = x3;
-        x[k - 2] = x2;
-        x[k - 3] = x1;
-        x[k - 4] = x0;
-        for (int i = 0; i < k - 4; ++i) x[i] -= a[i] * x0 + b[i] * x1 + c[i] * x2 + d[i] * x3;
+    for (; k > done; --k) subtract_one(done, F + (k - 1) * n, x[k - 1], x);
+    for (; k >= 4; k -= 4) substitute_four(F, n, k, x);
+    for (; k > 0; --k) substitute_one(F, n, k, x);
+}
+
+/* A link of a chain: a body's unknowns and those of its spherical joint go, those of the next joint stay. Sizes that the compiler
+ * knows take half the instructions. */
+enum { LINK_PIVOTS = FU_FRAME_DOFS + 3, LINK = LINK_PIVOTS + 3 };
+_Static_assert(LINK_PIVOTS == 4 + 4 + 1, "as forward and backward do them");
+
+FU_INLINE void forward(const double *F, int n, int done, double *restrict x)
+{
+    if (n != LINK || done != LINK_PIVOTS) {
+        eliminated(F, n, 0, done, x);
+        return;
     }
-    for (; k > 0; --k) {
-        const double *d = F + (k - 1) * n;
-        x[k - 1] *= d[k - 1];
-        for (int i = 0; i < k - 1; ++i) x[i] -= d[i] * x[k - 1];
+    eliminate_four(F, LINK, 0, x);
+    eliminate_four(F, LINK, 4, x);
+    eliminate_one(F, LINK, 8, x);
+}
+
+FU_INLINE void backward(const double *F, int n, int done, double *restrict x)
+{
+    if (n != LINK || done != LINK_PIVOTS) {
+        substituted(F, n, done, x);
+        return;
     }
+    for (int k = LINK; k > LINK_PIVOTS; --k) subtract_one(LINK_PIVOTS, F + (k - 1) * LINK, x[k - 1], x);
+    substitute_four(F, LINK, 9, x);
+    substitute_four(F, LINK, 5, x);
+    substitute_one(F, LINK, 1, x);
 }
 
 #include "fronts_template.h"
 
-int fu_fronts_factor(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack)
+FU_INLINE void factor(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack, int *info)
 {
-    return real_factor(t, matrix, factors, lapack);
+    *info = real_factor(t, matrix, factors, lapack);
 }
 
-void fu_fronts_solve(const fu_fronts *t, const fu_factors *factors, double *y)
+static void factor_in_lanes(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack, int *info);
+FU_IN_LANES(factor_in_lanes, factor,
+            (const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack, int *info),
+            (t, matrix, factors, lapack, info))
+
+int fu_fronts_factor(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack)
 {
-    real_solve(t, factors, y);
+    int info;
+    factor_in_lanes(t, matrix, factors, lapack, &info);
+    return info;
 }
+
+FU_IN_LANES(fu_fronts_solve, real_solve, (const fu_fronts *t, const fu_factors *factors, double *y), (t, factors, y))
 
 /* Returns the place of an unknown among the neighbours of a front, -1 where it is none of them. */
 static int neighbour(const fu_fronts *t, int k, int unknown)
@@ -86,18 +159,29 @@ static int neighbour(const fu_fronts *t, int k, int unknown)
     return -1;
 }
 
-/* Returns where the storage has an entry of the matrix; behind its end, which is `stray`, what has no place there. */
-int fu_fronts_at(const fu_fronts *t, int row, int column)
+/* Returns where the storage has an entry of the matrix; behind its end, which is `stray`, what has no place there. stride: from it to
+ * that of the next column, where both are in the same front. */
+int fu_fronts_block(const fu_fronts *t, int row, int column, int *stride)
 {
+    *stride = t->m;
     if (t->n == 1) return column * t->m + row;
     const int of_row = t->front[row], of_column = t->front[column], k = of_row < of_column ? of_row : of_column;
     const int p = t->pivots[k], s = t->neighbours[k];
     if (of_column == k) {
         const int below = of_row == k ? 0 : neighbour(t, k, row);
+        *stride = p + s;
         return below < 0 ? t->size : t->start[k] + t->place[column] * (p + s) + (of_row == k ? t->place[row] : p + below);
     }
     const int beside = neighbour(t, k, column);
+    *stride = p;
     return beside < 0 ? t->size : t->start[k] + p * (p + s) + beside * p + t->place[row];
+}
+
+/* Returns where the storage has an entry of the matrix, as above. */
+int fu_fronts_at(const fu_fronts *t, int row, int column)
+{
+    int unused;
+    return fu_fronts_block(t, row, column, &unused);
 }
 
 /* Adds to y the product of the first `columns` columns of a matrix with x. */

@@ -140,15 +140,45 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
             add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
 }
 
+/* Adds the same of a block over the border's unknowns from these on, which stand together in a front, rows and columns both. */
+static void add_together(fu_system *s, int row, int rows, int column, int columns, double factor, const double *restrict values,
+                         int by_row, int by_column)
+{
+    int stride;
+    const int at = fu_fronts_block(s->fronts, row, column, &stride), has_place = at < s->fronts->size;
+    double *restrict to = s->D + at;
+    for (int j = 0; j < columns; ++j, values += by_column) {
+        for (int i = 0; has_place && i < rows; ++i) to[i] += factor * values[i * by_row];
+        for (int i = 0; !has_place && i < rows; ++i) to[0] += fabs(factor * values[i * by_row]);
+        to += has_place ? stride : 0;
+    }
+}
+
+/* Adds T' values T to a system: of row i and column j the factor times values[i by_row + j by_column]. */
+void fu_add_block(const fu_model *model, fu_system *system, fu_side rows, fu_side columns, double factor, const double *values,
+                  int by_row, int by_column)
+{
+    if (!system || !rows.n || !columns.n) return;
+    if (rows.together && columns.together) {
+        const int beyond = model->n_band + model->n_border_dof - model->n_dof;
+        const int i = rows.at[0], j = columns.at[0];
+        const int row = i < model->n_dof ? model->unknown_of_dof[i] : beyond + i;
+        const int column = j < model->n_dof ? model->unknown_of_dof[j] : beyond + j;
+        add_together(system, row - system->n, rows.n, column - system->n, columns.n, factor, values, by_row, by_column);
+        return;
+    }
+    for (int i = 0; i < rows.n; ++i)
+        for (int j = 0; j < columns.n; ++j) {
+            const double value = values[i * by_row + j * by_column];
+            if (value != 0.0) fu_add(model, system, rows.at[i], columns.at[j], factor * value);
+        }
+}
+
 /* Adds an n x n matrix, row by row, over the dofs of a body from `dof` on. */
 void fu_add_body(const fu_model *model, fu_system *s, int dof, int n, const double *values)
 {
-    const fu_fronts *fronts = s->fronts;
-    const int first = model->unknown_of_dof[dof] - s->n, front = fronts->front[first];
-    const int stride = fronts->pivots[front] + fronts->neighbours[front];
-    double *to = s->D + fu_fronts_at(fronts, first, first);
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) to[(long)j * stride + i] += values[i * n + j];
+    const int first = model->unknown_of_dof[dof] - s->n;
+    add_together(s, first, n, first, n, 1.0, values, n, 1);
 }
 
 /* Adds a row of the border and the column that is its transpose: a factor times n values over the dofs `at`. row: as fu_extra

@@ -12,6 +12,30 @@ double fu_boundary_tolerance(fu_path path)
     return TOLERANCE * path.length;
 }
 
+/* Returns where the k-th piece of a path begins and the one before it ends, m. */
+double fu_boundary(fu_path path, int k)
+{
+    return path.boundaries ? path.boundaries[k] : k * path.length;
+}
+
+/* Returns the length of the k-th piece of a path, m. */
+double fu_piece_length(fu_path path, int k)
+{
+    return path.boundaries ? path.boundaries[k + 1] - path.boundaries[k] : path.length;
+}
+
+/* Returns the last of the given boundaries that a coordinate has reached, by bisection: a piece of the path. */
+static double last_reached(fu_path path, double s)
+{
+    int low = 0, high = path.n;
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (path.boundaries[middle] <= s) low = middle;
+        else high = middle;
+    }
+    return low;
+}
+
 static double coordinate_of(const fu_coupling *coupling, const fu_state *state)
 {
     return state->s[coupling->coordinate];
@@ -25,8 +49,9 @@ static int piece_of(const fu_coupling *coupling, const fu_state *state)
 /* Returns how far the coordinate of a coupling lies outside its piece, m, negative inside, and the side that is nearer. */
 double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side)
 {
-    const double length = fu_path_of(model, coupling, state).length;
-    const double x = coordinate_of(coupling, state) - piece_of(coupling, state) * length;
+    const fu_path path = fu_path_of(model, coupling, state);
+    const double length = fu_piece_length(path, piece_of(coupling, state));
+    const double x = coordinate_of(coupling, state) - fu_boundary(path, piece_of(coupling, state));
     *side = x > 0.5 * length ? 1 : -1;
     return *side > 0 ? x - length : -x;
 }
@@ -53,7 +78,8 @@ void fu_choose_pieces(fu_run *run)
         const fu_path path = fu_path_of(model, c, &run->next);
         int side, *piece = &run->next.piece[c->coordinate];
         if (!path.n || !(fu_outside(model, c, &run->next, &side) > fu_boundary_tolerance(path))) continue;
-        const double holds = fmin(fmax(coordinate_of(c, &run->next) / path.length, 0.0), path.n - 1.0);
+        const double s = coordinate_of(c, &run->next);
+        const double holds = path.boundaries ? last_reached(path, s) : fmin(fmax(s / path.length, 0.0), path.n - 1.0);
         if ((int)holds != *piece) run->factored = 0;
         *piece = (int)holds;
     }
@@ -67,8 +93,9 @@ void fu_find_pieces(const fu_model *model, fu_state *state)
         const fu_path path = fu_path_of(model, c, state);
         const double s = path.n ? coordinate_of(c, state) : 0.0;
         int *piece = &state->piece[c->coordinate];
-        if (!path.n || (path.length * *piece <= s && s <= path.length * (*piece + 1))) continue;
-        const double holds = round((s - fmod(s, path.length)) / path.length); /* a quotient may be rounded up */
+        if (!path.n || (fu_boundary(path, *piece) <= s && s <= fu_boundary(path, *piece + 1))) continue;
+        const double holds = path.boundaries ? last_reached(path, s)
+                                             : round((s - fmod(s, path.length)) / path.length); /* a quotient may be rounded up */
         *piece = (int)fmin(fmax(holds, 0.0), path.n - 1.0);
     }
 }
@@ -96,7 +123,7 @@ double fu_time_to_boundary(const fu_run *run)
         const fu_path path = fu_path_of(run->model, c, &run->now);
         if (!path.n) continue;
         const double rate = c->type->events->rate(run->model, c, &run->now);
-        const double end = (piece_of(c, &run->now) + (rate > 0.0)) * path.length;
+        const double end = fu_boundary(path, piece_of(c, &run->now) + (rate > 0.0));
         const double way = fabs(end - coordinate_of(c, &run->now));
         if (way > fu_boundary_tolerance(path)) least = fmin(least, way / fabs(rate));
     }
@@ -111,7 +138,7 @@ static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path
     const double moved = coordinate_of(c, &run->next) - coordinate_of(c, &run->now);
     const double part = 0.5 * rise / (rise - moved), s = coordinate_of(c, &run->now);
     const int up = rise > 0.0, piece = piece_of(c, &run->now);
-    const double ahead = fabs((piece + up) * path.length - s), behind = fabs((piece + !up) * path.length - s);
+    const double ahead = fabs(fu_boundary(path, piece + up) - s), behind = fabs(fu_boundary(path, piece + !up) - s);
     const double forward = (up ? 1.0 : -1.0) * moved;
     const int returns = 0.5 * fabs(rise) * part > ahead + tolerance && forward < ahead;
     const int leaves = behind <= tolerance && forward < -behind - tolerance;
@@ -146,8 +173,10 @@ int fu_are_on_pieces(const fu_model *model, const fu_state *state, double aside)
     for (int k = 0; k < model->n_couplings; ++k) {
         const fu_coupling *c = model->couplings[k];
         const fu_path path = fu_path_of(model, c, state);
-        const double x = path.n ? coordinate_of(c, state) - piece_of(c, state) * path.length : 0.0;
-        if (!(x >= -aside * path.length && x <= (1.0 + aside) * path.length)) return 0;
+        if (!path.n) continue;
+        const double x = coordinate_of(c, state) - fu_boundary(path, piece_of(c, state));
+        const double length = fu_piece_length(path, piece_of(c, state));
+        if (!(x >= -aside * length && x <= (1.0 + aside) * length)) return 0;
     }
     return 1;
 }

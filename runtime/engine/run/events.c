@@ -43,7 +43,7 @@ static double value(const fu_run *run, const fu_state *state, fu_event event)
     if (event.kind == FU_WATCHED) return event.side * watched(run, state, event.which);
     const fu_coupling *c = run->model->couplings[event.which];
     const int boundary = run->now.piece[c->coordinate] + (event.side > 0);
-    return event.side * (state->s[c->coordinate] - boundary * fu_path_of(run->model, c, &run->now).length);
+    return event.side * (state->s[c->coordinate] - fu_boundary(fu_path_of(run->model, c, &run->now), boundary));
 }
 
 /* Returns the event of a watch that passes zero between the value kept and this one, else none. */
@@ -93,7 +93,8 @@ static double landing(const fu_run *run, fu_event event, double range)
     const fu_path path = fu_path_of(run->model, c, &run->now);
     const int next = run->now.piece[c->coordinate] + event.side;
     if (run->fixed_step > 0.0 || next < 0 || next >= path.n) return PRECISE * path.length;
-    return fmax(PRECISE, fmin(LARGEST_MISS, LITTLE * run->allowed / range)) * path.length;
+    const double shorter = fmin(fu_piece_length(path, next), fu_piece_length(path, next - event.side));
+    return fmax(PRECISE * path.length, fmin(LARGEST_MISS, LITTLE * run->allowed / range) * shorter);
 }
 
 /* Returns whether an event is of a watch of a coupling's own, whose value leaves its zero anew after each event. */

@@ -14,10 +14,12 @@ static int approach(fu_run *run, double target)
     return passed ? passed : status;
 }
 
-/* Returns whether the run has taken the evaluations after which it is asked whether it shall go on. */
+/* Returns whether the run has taken the evaluations after which it is asked whether it shall go on; iterations count where
+ * an integrator has no evaluations. */
 int fu_has_worked(const fu_run *run)
 {
-    return run->most_evaluations && run->statistics.evaluations >= run->most_evaluations;
+    const fu_statistics *done = &run->statistics;
+    return run->most_evaluations && (done->evaluations ? done->evaluations : done->newton_iterations) >= run->most_evaluations;
 }
 
 /* Goes on for about so many seconds, or to the pause; returns a status, FU_RUNNING where there is more to do. */

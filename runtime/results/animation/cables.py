@@ -23,7 +23,7 @@ LINE = 0.1
 def stations(cable: Cable) -> np.ndarray:
     """Return the arc-lengths (P,) in m at which a cable is drawn, its nodes among them."""
     of_each = int(np.clip(np.ceil(LEAST / cable.elements), FEWEST, MOST))
-    return np.linspace(0.0, cable.length, of_each * cable.elements + 1)
+    return cable.divided(of_each)
 
 
 def cable_shape(frames: Frames, name: str, notes: list[str]) -> CableShape:
@@ -45,7 +45,7 @@ def section_direction(cable: Cable, s: np.ndarray, nodal: np.ndarray) -> np.ndar
     elif cable.kind_of_element.director:
         height = np.cross(along(cable, s, nodal, slope=2), along(cable, s, nodal, slope=0))
     elif cable.dim == 2:
-        height = np.cross((0.0, 0.0, 1.0), along(cable, s, nodal, slope=0))
+        height = np.cross(cable.normal, along(cable, s, nodal, slope=0))
     else:
         return None
     size = np.linalg.norm(height, axis=-1, keepdims=True)

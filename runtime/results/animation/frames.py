@@ -56,9 +56,9 @@ def weights(cable: Cable, s: np.ndarray, slope: int | None = None) -> tuple[np.n
 
     slope: 0, 1, 2 for those of r_x, r_y, r_z instead of the point's.
     """
-    length = cable.length / cable.elements
-    element = np.clip((s // length).astype(int), 0, cable.elements - 1)
-    x = np.clip(s - element * length, 0.0, length)
+    element, x = cable.mesh.place(s)
+    length = cable.mesh.each_length(element)
+    x = np.clip(x, 0.0, length)
     kernels = kernels_of(cable.library)
     if slope is None:
         return element, getattr(kernels, f"{cable.element}_on_axis").rows(len(s), length, x)[0]

@@ -189,7 +189,7 @@ def _components(frames: Frames, end: Attachment, value: Vector, follower: bool) 
     s = np.array([end.arc_length])
     tangent = _unit(along(cable, s, nodal, slope=0)[:, 0])
     if cable.dim == 2:
-        return value[0] * tangent + value[1] * np.cross((0.0, 0.0, 1.0), tangent)
+        return value[0] * tangent + value[1] * np.cross(cable.normal, tangent)
     if not cable.kind_of_element.director:
         return value[0] * tangent
     director = "xyz".index(cable.kind_of_element.director[-1])

@@ -1,0 +1,92 @@
+"""Where the nodes of a cable are along it: elements of one length, or of a length each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """The elements of a cable.
+
+    lengths: (1,) in m where they are equal, else (elements,); given: (nodes,) arc-lengths in m where they are not.
+    """
+
+    n_elements: int
+    lengths: np.ndarray
+    given: np.ndarray | None = None
+
+    @classmethod
+    def even(cls, length: float, n_elements: int) -> Mesh:
+        """Return the mesh of equal elements of a length, in m."""
+        return cls(n_elements, np.array([length]))
+
+    @classmethod
+    def of_nodes(cls, node_s: np.ndarray) -> Mesh:
+        """Return the mesh with nodes at arc-lengths (nodes,) in m, which increase from 0."""
+        return cls(len(node_s) - 1, np.diff(node_s), node_s)
+
+    @property
+    def is_even(self) -> bool:
+        """Return whether its elements are equal."""
+        return self.given is None
+
+    @property
+    def total(self) -> float:
+        """Return the length of the cable, in m."""
+        return float(self.lengths[0] * self.n_elements if self.given is None else self.given[-1])
+
+    @property
+    def mean(self) -> float:
+        """Return the mean length of an element, in m."""
+        return float(self.lengths[0]) if self.is_even else self.total / self.n_elements
+
+    @property
+    def node_s(self) -> np.ndarray:
+        """Return (nodes,): arc-lengths of the nodes, in m."""
+        return self.lengths[0] * np.arange(self.n_elements + 1) if self.given is None else self.given
+
+    def length(self, element: int) -> float:
+        """Return the length of an element, in m."""
+        return float(self.lengths[0 if self.is_even else element])
+
+    def start(self, element: int) -> float:
+        """Return the arc-length at which an element begins, in m."""
+        return float(element * self.lengths[0] if self.given is None else self.given[element])
+
+    def each_length(self, element: ArrayLike) -> ArrayLike:
+        """Return the lengths of elements (...), in m: one for all where they are equal, else (...)."""
+        return float(self.lengths[0]) if self.is_even else self.lengths[np.asarray(element)]
+
+    def each_start(self, element: ArrayLike) -> np.ndarray:
+        """Return the arc-lengths (...) at which elements (...) begin, in m."""
+        element = np.asarray(element)
+        return element * self.lengths[0] if self.given is None else self.given[element]
+
+    def element_at(self, s: ArrayLike) -> np.ndarray:
+        """Return the elements (...) that arc-lengths s (...) are in; at a node the element that begins there."""
+        s = np.asarray(s, dtype=float)
+        found = s // self.lengths[0] if self.given is None else np.searchsorted(self.given, s, side="right") - 1
+        return np.clip(found, 0, self.n_elements - 1).astype(int)
+
+    def nearest_node(self, s: ArrayLike) -> np.ndarray:
+        """Return the numbers (...) of the nodes nearest to arc-lengths s (...)."""
+        s = np.asarray(s, dtype=float)
+        if self.given is None:
+            return np.clip(np.rint(s / self.lengths[0]), 0, self.n_elements).astype(int)
+        return np.searchsorted((self.given[1:] + self.given[:-1]) / 2, s)
+
+    def place(self, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+        """Return the elements (...) that arc-lengths s (...) are in, and x in them, in m."""
+        element = self.element_at(s)
+        return element, np.asarray(s, dtype=float) - self.each_start(element)
+
+    def divided(self, parts: int) -> np.ndarray:
+        """Return (parts elements + 1,): arc-lengths of the nodes and of points that divide each element alike, in m."""
+        return np.interp(np.arange(parts * self.n_elements + 1) / parts, np.arange(self.n_elements + 1), self.node_s)

@@ -1,0 +1,261 @@
+"""Scenes in the axes of a plane, in which that is z = 0: every part is turned, none is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import singledispatch
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ..errors import SceneError
+from ..rotations import conjugate, product, quaternion, rotate
+from .attachment import Attachment
+from .cable import Cable
+from .combined_signal import combined
+from .curves import shape_through
+from .event import Event
+from .load import DistributedForce, Force, Moment
+from .modal_body import ModalBody
+from .part import Part
+from .plane import FLAT, Plane, aligned, called, flattened
+from .plane_axes import PlaneAxes
+from .rigid_body import RigidBody
+from .scene_data import SceneData
+from .signal import Constant, Signal
+from .slide import Slide
+from .support import Motion, Rotation
+
+S = TypeVar("S", bound=SceneData)
+
+AXES = ("x", "y", "z")
+
+
+def laid(scene: S) -> S:
+    """Return the scene in the axes of the plane that its planar cables lie in; itself where that is z = 0, or spatial.
+
+    Raises SceneError for what cannot be turned.
+    """
+    plane = scene.plane
+    return scene if plane is None else laid_into(scene, plane)
+
+
+def laid_into(scene: S, plane: Plane) -> S:
+    """Return a scene, planar or spatial, in the axes of a plane; it is not checked again.
+
+    Raises SceneError for what cannot be turned.
+    """
+    axes = PlaneAxes(plane, _Unturned(plane, scene.bodies), _size(scene.cables.values()))
+    made = scene.replaced(lambda part: turned(part, axes, scene))
+    made.gravity, made.plane_axes, made.drawn = _direction(axes, scene.gravity), axes, scene
+    return made
+
+
+def turned_alone(scene: SceneData, plane: Plane, part: Part) -> Part:
+    """Return a part, of the scene or about to join it, in the axes of a plane, to look for what leaves that.
+
+    Cables and events are returned as they are: cables lie in planes of their own, events act on nothing. Raises
+    SceneError.
+    """
+    if isinstance(part, Cable | Event):
+        return part
+    planar = next(iter(scene.cables.values()))
+    axes = PlaneAxes(plane, _Unturned(plane, scene.bodies, part), _size([planar]))
+    return turned(part, axes, scene)
+
+
+class _Unturned(Mapping[str, np.ndarray]):
+    """Of each rigid body the unit quaternion (4,) that takes the axes in which it starts unturned in a plane to its
+    own; computed when asked for, as few are needed of many bodies where one part is looked at.
+    """
+
+    def __init__(self, plane: Plane, bodies: Mapping[str, Part], other: Part | None = None):
+        """other: a part that is about to join the bodies."""
+        self._attitude, self._bodies, self._other = quaternion(plane.axes), bodies, other
+        self._found: dict[str, np.ndarray] = {}
+
+    def _body(self, name: object) -> Part | None:
+        if self._other is not None and self._other.given_name == name:
+            return self._other
+        return self._bodies.get(name) if isinstance(name, str) else None
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether there is a rigid body of that name."""
+        return isinstance(self._body(name), RigidBody)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return the quaternion of a rigid body. Raises KeyError."""
+        if name not in self._found:
+            body = self._body(name)
+            if not isinstance(body, RigidBody):
+                raise KeyError(name)
+            self._found[name] = product(conjugate(body.orientation), self._attitude)
+        return self._found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the rigid bodies."""
+        return (name for name in self._bodies if name in self)
+
+    def __len__(self) -> int:
+        """Return the number of rigid bodies."""
+        return sum(1 for _ in self)
+
+
+def _size(cables: Iterable[Cable]) -> float:
+    """Return the largest coordinate in m of points that cables are drawn through."""
+    return max((abs(x) for cable in cables for point in cable.drawn_through for x in point), default=0.0)
+
+
+def _point(axes: PlaneAxes, point: Any) -> tuple[float, ...]:
+    return tuple(flattened(axes.plane.points_into(np.array(point)), axes.size).tolist())
+
+
+def _direction(axes: PlaneAxes, direction: Any) -> tuple[float, ...]:
+    return tuple(aligned(axes.plane.into(np.array(direction))).tolist())
+
+
+def _of_body(axes: PlaneAxes, body: str | None, vector: Any) -> tuple[float, ...]:
+    """Return a vector along a body's axes along those that it has in the plane; modal bodies keep theirs."""
+    if body is None or body not in axes.bodies:
+        return tuple(vector)
+    turned = rotate(conjugate(axes.bodies[body]), np.array(vector))
+    return tuple(aligned(turned).tolist())
+
+
+def _place(axes: PlaneAxes, on: str | None, at: Any) -> Any:
+    """Return a point of the ground or of a body, in its axes in the plane."""
+    if at is None:
+        return None
+    if on is None:
+        return _point(axes, at)
+    return tuple(flattened(np.array(_of_body(axes, on, at)), FLAT * axes.size).tolist())
+
+
+@singledispatch
+def turned(part: Part, axes: PlaneAxes, scene: SceneData) -> Part:
+    """Return a part of a scene in the axes of a plane; by default with its attachments there. Raises SceneError."""
+    changes: dict[str, Any] = {name: value.model_copy(update={"at": _place(axes, value.on, value.at)})
+                               for name, value in part if isinstance(value, Attachment)}
+    changes |= {name: _direction(axes, value) for name in ("axis", "second_axis", "up")
+                if (value := getattr(part, name, None) if name in type(part).model_fields else None) is not None}
+    return part.model_copy(update=changes) if changes else part
+
+
+@turned.register
+def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
+    changes: dict[str, Any] = {name: _point(axes, value) for name in ("start", "end")
+                               if (value := getattr(part, name)) is not None}
+    if part.points is not None:
+        changes["points"] = [_point(axes, point) for point in part.points]
+    changes |= {name: _direction(axes, getattr(part, name)) for name in ("up", "velocity", "angular_velocity")}
+    if part.dim == 2:  # whose height is normal x tangent in z = 0
+        changes["up"] = (0.0, 1.0, 0.0)
+    made = Cable(**part.entries() | changes)
+    if part.shape == "hanging":
+        made = made.hanging_through(_point(axes, point) for point in part.drawn_through)
+    drawn, laid_down = shape_through(part.drawn_through), shape_through(made.drawn_through)
+    if not drawn.straight:  # Akima's pieces, unlike cubic splines, depend on the axes
+        along = np.linspace(0, 1, 8 * len(part.drawn_through))
+        apart = axes.plane.points_into(drawn.point(along * drawn.length)) - laid_down.point(along * laid_down.length)
+        if np.abs(apart).max() > FLAT * max(axes.size, drawn.length):
+            raise SceneError(part.where, f"its curve through the points is another one in the axes of "
+                             f"{called(axes.plane)}", "give more points")
+    return made
+
+
+@turned.register
+def _rigid_body(part: RigidBody, axes: PlaneAxes, scene: SceneData) -> RigidBody:
+    own = rotate(axes.bodies[part.name], np.eye(3)).T  # columns: the axes in the plane along the body's own
+    inertia = own.T @ np.array(part.inertia) @ own
+    inertia[np.abs(inertia) <= FLAT * np.abs(inertia).max()] = 0.0
+    return part.model_copy(update={
+        "position": _point(axes, part.position), "orientation": (1.0, 0.0, 0.0, 0.0),
+        "inertia": tuple(map(tuple, ((inertia + inertia.T) / 2).tolist())),
+        "centre": _place(axes, part.name, part.centre), "velocity": _direction(axes, part.velocity),
+        "angular_velocity": _of_body(axes, part.name, part.angular_velocity)})
+
+
+@turned.register
+def _modal_body(part: ModalBody, axes: PlaneAxes, scene: SceneData) -> ModalBody:
+    changes: dict[str, Any] = {"velocity": _direction(axes, part.velocity)}
+    if part.data is None:
+        changes |= {"start": _point(axes, part.start), "end": _point(axes, part.end), "up": _direction(axes, part.up)}
+    else:
+        changes |= {"position": _point(axes, part.position),
+                    "orientation": tuple(axes.into(part.name, "orientation", np.array(part.orientation)).tolist())}
+    made = ModalBody(**part.entries() | changes)
+    made.__dict__["shape"] = part.shape  # in body axes, which stay: the same modes, with the same signs
+    return made
+
+
+@turned.register
+def _slide(part: Slide, axes: PlaneAxes, scene: SceneData) -> Slide:
+    changes = {"at": _place(axes, part.body, part.at)} if part.body_s is None else {}
+    return part.model_copy(update=changes | ({} if part.up is None else {"up": _direction(axes, part.up)}))
+
+
+@turned.register
+def _force(part: Force, axes: PlaneAxes, scene: SceneData) -> Force:
+    value = _of_body(axes, part.on, part.value) if part.follower else _direction(axes, part.value)
+    return part.model_copy(update={"value": value, "at": _place(axes, part.on, part.at)})
+
+
+@turned.register
+def _distributed(part: DistributedForce, axes: PlaneAxes, scene: SceneData) -> DistributedForce:
+    return part if part.follower else part.model_copy(update={"value": _direction(axes, part.value)})
+
+
+@turned.register
+def _moment(part: Moment, axes: PlaneAxes, scene: SceneData) -> Moment:
+    return part.model_copy(update={"value": _direction(axes, part.value)})
+
+
+@turned.register
+def _motion(part: Motion, axes: PlaneAxes, scene: SceneData) -> Motion:
+    changes: dict[str, Any] = {}
+    if part.displacement is not None:
+        try:
+            changes["displacement"] = tuple(_component(axes.plane, k, part.displacement) for k in range(3))
+        except ValueError as error:
+            raise SceneError(part.where, f"displacement {error}",
+                             f"prescribe or free directions in {called(axes.plane)} and across it") from None
+    if part.rotation is not None:
+        changes["rotation"] = Rotation(axis=_direction(axes, part.rotation.axis), angle=part.rotation.angle)
+    return part.model_copy(update=changes)
+
+
+def _component(plane: Plane, k: int, displacement: tuple[Signal | None, ...]) -> Signal | None:
+    """Return the component of a displacement along an axis of the plane; 0 for what is free across the plane.
+
+    Raises ValueError where that is free in part.
+    """
+    along = aligned(plane.axes[:, k])
+    given = [(float(factor), signal) for factor, signal in zip(along, displacement, strict=True) if factor]
+    prescribed = [(factor, signal) for factor, signal in given if signal is not None]
+    if not prescribed:
+        return None if k < 2 else Constant(constant=0.0)
+    if len(prescribed) < len(given):
+        raise ValueError("leaves a direction free that lies neither in the plane's axes nor across them")
+    factors, signals = zip(*prescribed, strict=True)
+    return combined(factors, signals)
+
+
+@turned.register
+def _event(part: Event, axes: PlaneAxes, scene: SceneData) -> Event:
+    """A threshold on a component along the ground's axes is a function of a state, which has results in those."""
+    if part.quantity is None or part.quantity.partition(".")[0] in scene.slides:
+        return part
+    return part.model_copy(update={"quantity": None, "s": None, "value": 0.0, "function": _passing(part, scene)})
+
+
+def _passing(event: Event, scene: SceneData) -> Callable[[float, Any], float]:
+    """Return the function of time and state that passes zero where the quantity of an event passes its value."""
+    assert event.quantity is not None, f"{event.where} has a function"
+    name, what, axis = event.quantity.split(".")
+    k, value = AXES.index(axis), event.value
+    if name in scene.bodies:
+        return lambda time, state: state[f"{name}.{what}"][k] - value
+    assert event.s is not None, f"{event.where} is not complete"
+    node = scene.cables[name].node(event.s)
+    vectors = "nodal_vectors" if what == "position" else "nodal_velocity"
+    return lambda time, state: state[f"{name}.{vectors}"][node, 0, k] - value

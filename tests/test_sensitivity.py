@@ -1,0 +1,123 @@
+"""Motions in which small errors grow say so where the errors may become more than tol allows, and else do not."""
+
+import warnings
+
+import funicular as fu
+import numpy as np
+import pytest
+from choice import farthest, motion
+from funicular.model.build import build
+from funicular.solve.sensitivity import OF_BODIES, OF_CABLES, Sensitivity
+from hard_cases.case import positions
+
+GROWS = "small differences grow"
+
+
+def stretched(stretch=0.02) -> fu.Scene:
+    """A cable of 1 m, stretched and let go at its end: it buckles as it rebounds."""
+    scene = fu.Scene(gravity=(0, 0, -9.81))
+    scene.cable("c", start=(0, 0, 0), end=(1 + stretch, 0, 0), rest="straight", rest_length=1.0, elements=16,
+                element="cable12", section=fu.Circle(radius=0.003),
+                material=fu.Material(youngs_modulus=1e8, density=1500, poisson_ratio=0.3))
+    scene.pin("c", s=0.0)
+    return scene
+
+
+def double_pendulum() -> fu.Scene:
+    """Two rods that are let go level."""
+    scene = fu.Scene()
+    for name, x in (("u", 0.5), ("l", 1.5)):
+        scene.rigid_body(name, mass=1.0, inertia=(1 / 12, 1e-3, 1 / 12), position=(x, 0, 0))
+    scene.joint("revolute", ("u", (-0.5, 0, 0)), (0, 0, 0), axis=(0, 0, 1), name="top")
+    scene.joint("revolute", ("u", (0.5, 0, 0)), ("l", (-0.5, 0, 0)), axis=(0, 0, 1), name="knee")
+    return scene
+
+
+def noted(run: fu.Run, what: str = GROWS) -> list[str]:
+    return [message for message in run.report["messages"] if what in message]
+
+
+def simulate(scene: fu.Scene, duration: float, **settings) -> fu.Run:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        return scene.run(duration, output_step=duration / 20, progress=False, **settings)
+
+
+@pytest.mark.parametrize("integrator", ["auto", "radau"])
+def test_a_cable_that_buckles_as_it_rebounds(integrator):
+    """Its error is many times tol, which no message said."""
+    run = simulate(stretched(), 0.15, integrator=integrator, tol=1e-3)
+    exact = positions(simulate(stretched(), 0.15, integrator="explicit", tol=1e-9))
+    assert farthest(positions(run), exact) > 5e-3 * motion(exact)
+    [note] = noted(run)
+    assert note.startswith('cable "c" is compressed while it moves, and buckles: from t = 0.0075 s on small ')
+    with pytest.warns(fu.FunicularWarning, match=GROWS):
+        stretched().run(0.05, output_step=0.0025, tol=1e-3, step=None, integrator="radau", progress=False)
+
+
+def test_rods_that_turn_over():
+    run = simulate(double_pendulum(), 8.0, tol=1e-4)
+    exact = positions(simulate(double_pendulum(), 8.0, tol=1e-10))
+    assert farthest(positions(run), exact) > 10 * 1e-4 * motion(exact)
+    [note] = noted(run)
+    assert note.startswith('joint "knee" pushes a body that falls over: from t = ')
+
+
+@pytest.mark.parametrize(("scene", "duration"), [(lambda: stretched(0.002), 0.15), (double_pendulum, 3.0),
+                                                 (lambda: fu.load_scene("paper51"), 0.3)])
+def test_motions_within_tol_say_nothing(scene, duration):
+    assert not noted(simulate(scene(), duration, tol=1e-3))
+
+
+def test_errors_that_were_estimated_are_said_instead():
+    """What is measured takes the place of what may be."""
+    run = simulate(stretched(), 0.15, tol=1e-3, estimate=True)
+    assert not noted(run)
+    assert run.report["errors"]["time"] > 2e-3
+    [note] = noted(run, "the error of the steps is")
+    assert note.endswith("of the largest motion, more than tol = 0.001: take a smaller one")
+
+
+def test_friction_is_not_what_genalpha_sees():
+    scene = fu.load_scene("paper51").replace("trolley", friction=fu.Friction(coefficient=0.2))
+    assert noted(simulate(scene, 0.05, integrator="genalpha"), "does not see the friction of slide \"trolley\"")
+    for settings in ({"integrator": "radau"}, {"integrator": "genalpha", "step": 1e-3}):
+        assert not noted(simulate(scene, 0.05, **settings), "does not see")
+    smooth = scene.replace("trolley", friction=fu.Friction(viscous=1.0))
+    assert not noted(simulate(smooth, 0.05, integrator="genalpha"), "does not see")
+
+
+def test_the_exponent_of_a_strut_is_that_of_its_fastest_wave():
+    """At rest under a compression of 1e-4, for a second; rows come in batches."""
+    scene = stretched(-1e-4)
+    model = build(scene)
+    times = np.linspace(0, 1, 21)
+    rows = {"time": times, "q": np.tile(model.q, (21, 1))}
+    found = Sensitivity(scene, model)
+    for part in (slice(0, 3), slice(3, 21)):
+        found.see({name: values[part] for name, values in rows.items()})
+    radius, strain = 0.003, 1e-4  # k² = strain A / 2 I: as slow as the cable is long allows
+    k = max(np.sqrt(strain * 2) / radius, np.pi)
+    rate = k * np.sqrt(1e8 * (strain - radius**2 / 4 * k**2) / 1500)
+    exponent, where, since = found.worst
+    assert exponent == pytest.approx(OF_CABLES * rate, rel=1e-6)
+    assert where == 'cable "c"'
+    assert since == pytest.approx(0.7 / OF_CABLES / rate, abs=0.05)
+
+
+@pytest.mark.parametrize(("spin", "falls"), [(0.0, True), (2.0, True), (40.0, False)])
+def test_a_body_on_a_joint_falls_over_unless_it_spins(spin, falls):
+    """An upright top of 1 kg, 0.5 m above its foot: it sleeps where its spin is above 2 sqrt(I m g l) / I_s."""
+    scene = fu.Scene(gravity=(0, 0, -9.81))
+    scene.rigid_body("top", mass=1.0, inertia=(0.05, 0.05, 0.1), position=(0, 0, 0.5), angular_velocity=(0, 0, spin))
+    scene.joint("spherical", ("top", (0, 0, -0.5)), (0, 0, 0), name="foot")
+    model = build(scene)
+    q, v, force = np.tile(model.q, (11, 1)), np.tile(model.v, (11, 1)), np.zeros((11, 1, 7))
+    force[:, 0, 2] = -9.81  # on the ground, which is the end b
+    found = Sensitivity(scene, model)
+    found.see({"time": np.linspace(0, 2, 11), "q": q, "v": v, "joint": force})
+    I = 0.05 + 0.25
+    square = 9.81 * 0.5 / I - (0.1 * spin / (2 * I)) ** 2
+    assert (square > 0) == falls
+    assert found.worst[0] == pytest.approx(OF_BODIES * 2 * np.sqrt(max(square, 0.0)))
+    assert (9.81 * 0.5 * 4 * I < (0.1 * spin) ** 2) != falls

@@ -1,0 +1,117 @@
+"""The trial of an integrator at the start of a run: what it takes, what it leaves, and what a saved run keeps of it."""
+
+from itertools import pairwise
+
+import funicular as fu
+import numpy as np
+import pytest
+from choice import farthest, motion, references, simulate
+from funicular.results import streaming
+from hard_cases.case import positions
+from pendulum import pendulum
+from ringing import run_of
+from ringing_scenes import SCENES as RINGING
+from sliding import sliding_mass
+
+
+@pytest.mark.parametrize("name", ["pendulum, 8, E 7e8", "first scene", "flexible link", "steel and rubber",
+                                  "two riders"])
+def test_genalpha_begins_where_tol_is_loose(name):
+    """With a part of tol: its error is within tol, with less work than radau."""
+    run, radau = (simulate(name, tol=1e-2, integrator=integrator) for integrator in ("auto", "radau"))
+    exact = references()[name]
+    assert run.report["integrator"] == "genalpha"
+    assert farthest(positions(run), exact) <= 1e-2 * motion(exact)
+    assert run.report["newton_iterations"] < radau.report["evaluations"]
+
+
+@pytest.mark.parametrize("name", ["friction that stops", "shaken support", "double pendulum", "heavy top on a spring"])
+def test_genalpha_does_not_begin_where_its_estimate_misses_the_error(name):
+    assert simulate(name, tol=1e-2).report["integrator"] != "genalpha"
+
+
+def test_genalpha_takes_the_place_of_radau_where_slides_cross_many_elements():
+    """Counted work says so; the run begins anew, within tol."""
+    settings = {"output_step": 0.02, "progress": False}
+    scene = sliding_mass(48, strain="engineering", youngs_modulus=0.4e9)
+    run, radau = (scene.run(0.2, tol=1e-3, integrator=name, **settings) for name in ("auto", "radau"))
+    exact = scene.run(0.2, integrator="radau", tol=1e-6, **settings)["A.position"]
+    moved = np.linalg.norm(exact - exact[0], axis=1).max()
+    assert run.report["integrator"] == "genalpha" and "radau on trial" in run.report["integrator_reason"]
+    assert np.linalg.norm(run["A.position"] - exact, axis=1).max() <= 1e-3 * moved
+    assert run.report["newton_iterations"] < 0.2 * radau.report["evaluations"]
+
+
+def times_reached(make, **settings) -> tuple[fu.Run, list[float]]:
+    """A run of a second, and the times that it has come to, in their order."""
+    reached: list[float] = []
+    return make().run(1.0, output_step=0.02, progress=reached.append, **settings), reached
+
+
+def long_trial() -> fu.Scene:
+    """A scene whose trial of radau is won."""
+    return pendulum(8, 7e8, 7200)
+
+
+def test_a_won_trial_is_saved_and_not_run_twice(tmp_path):
+    """The times never go back, and the file has the bits of a run in memory."""
+    plain, _ = times_reached(long_trial, tol=1e-4)
+    saved, reached = times_reached(long_trial, tol=1e-4, save=tmp_path / "run.nc")
+    assert saved.report["integrator"] == "radau" and "explicit" in saved.report["integrator_reason"]
+    assert all(before <= after for before, after in pairwise(reached))
+    for name in plain.keys():
+        assert np.array_equal(plain[name], saved[name])
+    assert saved.report["steps"] == plain.report["steps"]
+
+
+@pytest.mark.parametrize("lost", [False, True])
+def test_rows_of_a_trial_that_do_not_fit_in_memory(tmp_path, monkeypatch, lost):
+    """They go to a file without a name, which a run that begins anew writes over; an older file stays until then."""
+    def run(**settings):
+        if lost:
+            return run_of(RINGING["twisted rod, all of its motion"], tol=1e-2, **settings)
+        return times_reached(long_trial, tol=1e-4, **settings)[0]
+
+    plain = run()
+    monkeypatch.setattr("funicular.solve.pauses.BUFFER", 4.0 * max(1, plain["time"].nbytes))
+    taken: list[bool] = []
+    take = streaming.Stream._take
+
+    def watched(stream):
+        taken.append(stream.has_begun)
+        take(stream)
+
+    monkeypatch.setattr(streaming.Stream, "_take", watched)
+    saved = run(save=tmp_path / "run.nc")
+    assert False in taken[:-1]  # of a trial
+    name = "rod0.position" if lost else "wire.nodal_vectors"
+    assert np.array_equal(plain[name], saved[name]) and np.array_equal(plain["time"], saved["time"])
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run.nc"]
+
+
+def test_a_run_stopped_in_its_trial_leaves_a_file_and_goes_on(tmp_path):
+    """Ctrl-C on the way to the first pause after the trial."""
+    def stop(time: float) -> None:
+        if time > 0.1:
+            raise KeyboardInterrupt
+
+    path = tmp_path / "run.nc"
+    stopped = long_trial().run(1.0, output_step=0.02, tol=1e-4, save=path, progress=stop)
+    assert stopped.status == "interrupted"
+    whole = long_trial().run(1.0, output_step=0.02, tol=1e-4, save=path, resume=True, progress=False)
+    plain = long_trial().run(1.0, output_step=0.02, tol=1e-4, progress=False)
+    assert np.array_equal(whole["wire.nodal_vectors"], plain["wire.nodal_vectors"])
+
+
+def test_an_exception_in_a_trial_leaves_the_older_file(tmp_path):
+    path = tmp_path / "run.nc"
+    times_reached(long_trial, tol=1e-2, save=path)
+    before = path.read_bytes()
+
+    def fail(time: float) -> None:
+        raise RuntimeError("stop")
+
+    with pytest.raises(RuntimeError):
+        long_trial().run(1.0, output_step=0.02, tol=1e-4, save=path, progress=fail)
+    assert path.read_bytes() == before
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["run.nc"]
