@@ -6,7 +6,7 @@ import os
 import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
-from typing import TYPE_CHECKING, Any, Never, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Never, Self, TypeVar, cast
 
 from .errors import (
     ConvergenceError,
@@ -96,16 +96,6 @@ class Scene(Viewable, SceneMethods):
         (2.0, 1.0)
         """
         return self.changed([(self._part(part), changes)])
-
-    def changed(self, changes: Iterable[tuple[Part, Mapping[str, Any]]], gravity: Any = None) -> Self:
-        """Return a scene like this one with other values of several of its parts at once, checked as any scene is.
-
-        changes: parts of this scene, each once, with values by keyword; gravity: in m/s², None to keep this one's.
-        Raises SceneError.
-        """
-        values = {id(part): each for part, each in changes}
-        return self.with_parts((each.remade(values[id(each)]) if id(each) in values else each
-                                for each in self.parts()), gravity)
 
     def _part(self, part: Part | str) -> Part:
         """Return the part of a name, or this part where it is the scene's. Raises SceneError."""
@@ -204,6 +194,7 @@ class Scene(Viewable, SceneMethods):
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
         chosen = self._chosen_for(settings)
         scene, settings = (self, settings) if chosen is None else (chosen.scene, chosen.settings_of(settings))
+        scene, state = scene._adjusted(settings, state)
         scene._check_for(settings)
         _check_resume(resume, settings)
         run = scene._simulated(settings, state, resume, progress, chosen, trials)
@@ -211,6 +202,15 @@ class Scene(Viewable, SceneMethods):
         if run.status == "interrupted":
             warnings.warn(run.report["message"], FunicularWarning, stacklevel=3)
         return run
+
+    def _adjusted(self, settings: RunSettings, state: Start | None) -> tuple[Self, Start | None]:
+        """Return the scene and the state that a run starts from: adjusted where it starts from a state of rest for
+        which the scene's file adjusts parameters.
+        """
+        if state is not None or settings.initial != "equilibrium" or not self.equilibrium_settings.get("adjust"):
+            return self, state
+        rest = self.equilibrium()
+        return cast(Self, rest.scene), rest
 
     def choose(self, tol: float | None = None, *, duration: float | None = None, quantities: Sequence[str] = (),
                free: str = "unset", initial: str | None = None, integrator: str | None = None,
@@ -315,6 +315,8 @@ class Scene(Viewable, SceneMethods):
         largest_step: float | None = None,
         seek_stable: bool | None = None,
         scale_gravity: bool | None = None,
+        adjust: Mapping[str, tuple[float, float] | str | None] | Sequence[str] | None = None,
+        to: Mapping[str, float] | None = None,
         start: Equilibrium | None = None,
         **unknown: Never,
     ) -> Equilibrium:
@@ -324,12 +326,20 @@ class Scene(Viewable, SceneMethods):
         ``stable``, in ``messages`` and by a `FunicularWarning`; friction of slides is left out. start: a state of this
         scene, under the same loads or others, from which the search begins instead of as drawn; method "arc_length"
         goes on from its load_fraction in its sense, or, from a state under all its loads, anew from rest without loads.
+
+        adjust, to: parameters, by path with limits or "free", that are changed until the state has given values, by
+        name: ``adjust={"dropper.length": "free"}, to={"wire@20.position.y": 5.3}``. The state's ``scene`` is the
+        adjusted one, from which runs start, ``adjusted`` has the values found, ``adjustment`` more about them. With
+        more parameters than values the least change is taken. Places on a cable whose length is adjusted keep their
+        part of it.
+
         Raises SceneError; EquilibriumError, which keeps the state that was reached.
         """
         _refuse_unknown("equilibrium", unknown, (*EquilibriumSettings.keywords(), "start"))
         given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
-                 "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity}
-        begin = None if start is None else _equilibrium_state(self, start)
+                 "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity,
+                 "adjust": adjust, "to": to}
+        begin = None if start is None else _equilibrium_state(self, start, anew=True)
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
         self.check()
 
@@ -337,7 +347,13 @@ class Scene(Viewable, SceneMethods):
         from .solve.static import equilibrium
 
         with one_blas_thread, enough_memory():
-            return equilibrium(laid(self), settings, begin, Equilibrium)
+            if settings.adjust is None:
+                return equilibrium(laid(self), settings, begin, Equilibrium)
+
+            from .results.targets import reader
+            from .solve.adjustment import adjusted
+
+            return adjusted(self, settings, begin, Equilibrium, reader)
 
     def relax(self, *, tol: float | None = None, max_steps: int | None = None, **unknown: Never) -> Equilibrium:
         """Bring the scene to rest by dynamic relaxation: a motion from the place drawn, damped until it ends; see
@@ -455,11 +471,14 @@ def _state(scene: Scene, given: Equilibrium | Mapping[str, ArrayLike]) -> Start:
     return state
 
 
-def _equilibrium_state(scene: Scene, state: Equilibrium) -> Equilibrium:
+def _equilibrium_state(scene: Scene, state: Equilibrium, *, anew: bool = False) -> Equilibrium:
+    """Return a state to start from, checked against the scene; anew: a search, which may be for other values."""
     from .results.equilibrium import Equilibrium  # brings SciPy; there is a state only where it is loaded already
 
     if not isinstance(state, Equilibrium):
         raise SceneError("scene", "the state to start from must be one that equilibrium() returned, got "
                          + shown(state))
     state.check_fits(scene)
+    if not anew:
+        state.check_adjusted(scene)
     return state

@@ -48,6 +48,7 @@ class SceneMethods(SceneData):
         end: Numbers | None = None,
         points: Points | None = None,
         curve: Callable[..., Any] | None = None,
+        shape: str | None = None,
         elements: int | None = None,
         nodes: Numbers | None = None,
         library: str | os.PathLike[str] | None = None,

@@ -113,6 +113,12 @@ def force_law(space):
     assert list(space["LAW"].parameters) == [name for name in space["Magnet"].model_fields if name not in "name a b"]
 
 
+def given_values(space):
+    rest = space["rest"]
+    assert rest["rope@0.force"][0] == pytest.approx(-20e3)
+    assert rest["dropper.tension"] > 0
+
+
 def held_by_friction(space):
     state, run = space["rest"], space["run"]
     assert 0.315 < float(state["trolley.s"]) < 0.9
@@ -140,6 +146,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "See it"): pages_and_pictures,
               ("runtime/README.md", "Many scenes"): many_scenes,
               ("runtime/README.md", "Statics, modes and section forces"): rest,
+              ("runtime/README.md", "A state with given values"): given_values,
               ("runtime/README.md", "Rest by a damped motion"): held_by_friction,
               ("derive/README.md", "Kernels from Python"): middle_of_an_element,
               ("derive/README.md", "Your own element"): own_element,

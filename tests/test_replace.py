@@ -78,6 +78,10 @@ def test_a_cable_is_drawn_anew():
     assert bent.replace("rope", start=(0, 0, 0), end=(2, 0, 0), points=None).cables["rope"].length == 2
     with pytest.raises(fu.SceneError, match="has points and start or end; give the points alone"):
         bent.replace("rope", start=(0, 0, 0))
+    hung = rope().replace("rope", shape="hanging", rest_length=1.2, elements=8).cables["rope"]
+    assert (hung.rest, hung.drawn_length) == ("straight", pytest.approx(1.2, abs=1e-6))
+    drawn = rope(shape="hanging", rest_length=1.2).replace("rope", points=[(0, 0, 0), (1, 0, 0)], nodes=(0, 0.5, 1.2))
+    assert (drawn.cables["rope"].shape, drawn.cables["rope"].elements) == (None, 2)
 
 
 def test_what_a_scene_has_found_is_found_anew():
@@ -140,7 +144,8 @@ OTHERS = {
               "element": "cable18", "law": "engineering_linear",
               "strain": "green", "curvature": "linear", "membrane": "assumed", "section": fu.Circle(radius=0.02),
               "material": fu.Material(youngs_modulus=2e9, poisson_ratio=0.3, density=1000), "up": (0, 1, 1),
-              "rest": "straight", "rest_length": 1.0, "velocity": (0, 0, 1), "angular_velocity": (0, 1, 0)},
+              "rest": "straight", "rest_length": 1.0, "shape": "straight",
+              "velocity": (0, 0, 1), "angular_velocity": (0, 1, 0)},
     "pin": {"cable": "hook", "s": 0.25}, "clamp": {"cable": "rope", "s": 0.0, "fix": "section"},
     "motion": {"cable": "rope", "s": 0.75, "displacement": (0, 0, 0), "rotation": ((1, 0, 0), 0.1)},
     "tie": {"cable": "hook", "s": 0.0, "to": "rope", "at": 1.0, "rotation": "rigid", "name": "knot_2"},

@@ -29,7 +29,8 @@ from .slide_placement import placed_slide
 
 
 def placed_cable(scene: SceneData, cable: Cable) -> Cable:
-    """Return the cable, sure to be of the dimension of the others and of what is there already."""
+    """Return the cable, drawn as it hangs, sure to be of the dimension of the others and of what is there already."""
+    cable = cable.hanging_under(scene.gravity)
     for other in scene.cables.values():
         if other.dim != cable.dim:
             word = {2: "planar", 3: "spatial"}

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import Field, ValidationInfo, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from ..errors import SceneError, near
 from ..kernels.element_line import ElementLine
@@ -17,6 +17,7 @@ from ..kernels.libraries import of_library, resolved
 from ..kernels.mesh import Mesh
 from ..rotations import cross
 from . import cable_drawing, cable_laws, cable_mesh, curves
+from .hanging import catenary
 from .material import Material
 from .part import Part
 from .plane import Plane
@@ -64,7 +65,9 @@ class Cable(Part):
 
     Drawn, which is how a run starts: from ``start`` to ``end``; or smoothly through ``points`` (x, y, z); or along
     ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m. The tangent
-    must be continuous, the curvature need not: straight, arc, straight will do.
+    must be continuous, the curvature need not: straight, arc, straight will do. ``shape`` "hanging": from ``start`` to
+    ``end`` along the catenary of a cable with this ``rest_length``, longer than the span, that cannot stretch, under
+    the gravity of the scene; its stress-free shape is straight.
     Undeformed: ``rest`` "drawn", the drawn shape, or "straight"; ``rest_length`` in m, the length as drawn if not
     given: a shorter one makes the drawn cable taut, a longer one slack (or compressed, where it is straight).
     All arc-lengths s are of the undeformed cable.
@@ -92,6 +95,8 @@ class Cable(Part):
     arcs: the continuum locks there, unless its elements are about as short as two heights.
     """
 
+    _hanging: tuple[tuple[float, ...], ...] | None = PrivateAttr(None)
+
     kind: ClassVar[str] = "cable"
     group: ClassVar[str] = "cables"
     name: Name
@@ -99,6 +104,7 @@ class Cable(Part):
     end: Annotated[Vector | None, xyz("m")] = None
     points: Annotated[tuple[tuple[float, ...], ...] | None, checked(_points, list_of_lists("m"))] = None
     curve: Annotated[Callable | None, GivenAs(ONLY_PYTHON)] = None  # kept as points, see `_settled`
+    shape: Annotated[str | None, one_of(("straight", "hanging"), optional=True)] = None
     given_elements: Annotated[Count | None, Field(alias="elements")] = None
     nodes: Annotated[tuple[float, ...] | None, cable_mesh.increasing()] = None
     library: Annotated[str | None, checked(_library, {"type": "string"})] = None
@@ -122,7 +128,7 @@ class Cable(Part):
         if not isinstance(data, dict):
             return data
         optional = ("start", "end", "points", "curve", "law", "library", "strain", "curvature", "membrane",
-                    "rest_length", "elements", "nodes")
+                    "rest_length", "elements", "nodes", "shape")
         data = {name: value for name, value in data.items() if value is not None or name not in optional}
         if "curve" in data:
             if "points" in data:
@@ -131,6 +137,8 @@ class Cable(Part):
             if not callable(curve):
                 raise ValueError(f"curve must be a function of u from 0 to 1, got {shown(curve)}", "or give points")
             data["points"] = curves.sample(curve, min(elements, 1000) if isinstance(elements, int) else 1)
+        if data.get("shape") == "hanging":
+            data.setdefault("rest", "straight")
         try:
             known = of_library(_library(data.get("library")))
         except ValueError:  # the check of the library says it
@@ -149,21 +157,53 @@ class Cable(Part):
         if self.points is None and not all(ends):
             missing = "end is" if ends[0] else "start is" if ends[1] else "start and end, or points, are"
             raise ValueError(f"{missing} missing")
+        if self.shape is not None and self.points is not None:
+            raise ValueError(f'has points and shape="{self.shape}"', "give one of them")
+        if self.shape == "hanging" and self.rest_length is None:
+            raise ValueError("hangs with the length that it has, but rest_length is missing")
+        if self.shape == "hanging" and self.rest != "straight":
+            raise ValueError('has shape="hanging", but is to be free of stress as drawn', 'leave rest out, or give the '
+                             "catenary as curve")
         if self.start is not None and self.end is not None and self.start == self.end:
             raise ValueError(
                 f"start and end must be different points, got {show(self.start)} and {show(self.end, 'm')}")
-        if self.dim == 2:
-            cable_drawing.check_plane(self.element, self.drawn_through, self.velocity, self.angular_velocity, self.up)
-        else:
-            cable_drawing.check_height(self.drawn_through, self.up, self._is_round)
         if self.nodes is not None:
             if self.given_elements is not None:
                 raise ValueError(f"has {self.given_elements} elements and {len(self.nodes)} nodes",
                                  "give elements of equal lengths, or the nodes")
             cable_mesh.check_ends(self.nodes, self.length)
+        self._check_drawing()
+        return self
+
+    def _check_drawing(self) -> None:
+        """Raise ValueError where its elements cannot be drawn along its shape."""
+        if self.dim == 2:
+            cable_drawing.check_plane(self.element, self.drawn_through, self.velocity, self.angular_velocity, self.up)
+        else:
+            cable_drawing.check_height(self.drawn_through, self.up, self._is_round)
         if not self.is_open:
             cable_drawing.check_elements(self._shape, self.node_s * self.stretch)
-        return self
+
+    def hanging_under(self, gravity: tuple[float, ...]) -> Cable:
+        """Return the cable drawn as it hangs under gravity (m/s²), where its shape is that. Raises SceneError."""
+        if self.shape != "hanging":
+            return self
+        assert self.start is not None, f"{self.where} has no start"
+        assert self.end is not None, f"{self.where} has no end"
+        try:
+            curve = catenary(self.start, self.end, self.length, gravity)
+            made = self.hanging_through(curves.points(curves.sample(curve, 1 if self.is_open else
+                                                                    min(self.elements, 1000))))
+            made._check_drawing()
+        except ValueError as error:
+            raise SceneError(self.where, *error.args) from None
+        return made
+
+    def hanging_through(self, points: Iterable[tuple[float, ...]]) -> Cable:
+        """Return the cable drawn through points in m, without checks: those of the catenary in which it hangs."""
+        made = self.model_copy()
+        made._hanging = tuple(points)
+        return made
 
     @property
     def _is_round(self) -> bool:
@@ -228,12 +268,14 @@ class Cable(Part):
     def entries_with(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """Return what a cable like this one is made with: drawn anew, or with another law, it keeps nothing of the old
         one, but with another measure it keeps the other measures. Elements take the place of nodes, and nodes that of
-        elements.
+        elements. One that hangs is free of stress where it is straight.
         """
         other = {"elements": "nodes", "nodes": "elements"}
         left: dict[str, Any] = {other[name]: None for name in other if changes.get(name) is not None}
         if any(changes.get(name) is not None for name in ("points", "curve")):
-            left = dict.fromkeys(("start", "end", "points"))
+            left |= dict.fromkeys(("start", "end", "points", "shape"))
+        if changes.get("shape") == "hanging":
+            left["rest"] = None
         if "law" not in changes:
             left |= cable_laws.changed(self.kind_of_element, self.law, changes, self.library)
         elif changes["law"] != self.law:
@@ -285,6 +327,8 @@ class Cable(Part):
     @property
     def drawn_through(self) -> tuple[tuple[float, ...], ...]:
         """Return the points that it is drawn through, in m."""
+        if self.shape == "hanging" and self._hanging is not None:
+            return self._hanging
         ends = tuple(end for end in (self.start, self.end) if end is not None)
         return ends if self.points is None else self.points
 
@@ -357,16 +401,26 @@ class Cable(Part):
 
     def _as_drawn_point(self, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
         """Return (3,) in m: the point at arc-length s, height y and width z of the section, as the elements draw it."""
-        point, plane = self._as_drawn.point(s, y, z), self.plane
+        return self.point_between(self.nodal_vectors, s, y, z)
+
+    def point_between(self, nodal_vectors: np.ndarray, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
+        """Return (3,) in m: the point at arc-length s, height y and width z of the section, as its elements have it
+        between nodes with these vectors (nodes, vectors, 3), along the ground's axes.
+        """
+        point, plane = self._line(nodal_vectors).point(s, y, z), self.plane
         return point if plane is None else plane.points_out(point)
 
     @property
     def _as_drawn(self) -> ElementLine:
         """Return the elements at the start, which interpolate between the nodes, in the axes of its plane."""
-        vectors, plane = self.nodal_vectors, self.plane
+        return self._line(self.nodal_vectors)
+
+    def _line(self, nodal_vectors: np.ndarray) -> ElementLine:
+        """Return its elements between nodes with these vectors (nodes, vectors, 3), in the axes of its plane."""
+        vectors, plane = nodal_vectors, self.plane
         if plane is not None:
-            place = self.kind_of_element.nodal_vectors.index("r")
-            vectors[:, place] -= plane.origin
+            vectors = vectors.copy()
+            vectors[:, self.kind_of_element.nodal_vectors.index("r")] -= plane.origin
         return ElementLine(self.library, self.element, self.mesh, self.in_plane(vectors))
 
     def axes_at(self, s: ArrayLike) -> np.ndarray:

@@ -153,6 +153,8 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
     if part.dim == 2:  # whose height is normal x tangent in z = 0
         changes["up"] = (0.0, 1.0, 0.0)
     made = Cable(**part.entries() | changes)
+    if part.shape == "hanging":
+        made = made.hanging_through(_point(axes, point) for point in part.drawn_through)
     drawn, laid_down = shape_through(part.drawn_through), shape_through(made.drawn_through)
     if not drawn.straight:  # Akima's pieces, unlike cubic splines, depend on the axes
         along = np.linspace(0, 1, 8 * len(part.drawn_through))

@@ -70,6 +70,11 @@ class Plane:
         """Return whether another plane has the same normal, but for rounding; where both lie is not compared."""
         return float(np.linalg.norm(self.normal - other.normal)) <= 1e-9
 
+    def has_same_axes(self, other: Plane) -> bool:
+        """Return whether another plane has the same axes and origin, but for rounding."""
+        off = np.linalg.norm(self.origin - other.origin)
+        return bool(np.abs(self.axes - other.axes).max() <= 1e-9 and off <= 1e-9 * np.linalg.norm(other.origin))
+
 
 def _combined(factors: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Return (..., 3): the sums of factors (..., 2 or 3) times vectors (3, 3), as rows.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from copy import copy
 from typing import Any, Self
 
@@ -149,6 +149,16 @@ class SceneData:
         for part in parts:
             scene.add(part.as_made())
         return scene
+
+    def changed(self, changes: Iterable[tuple[Part, Mapping[str, Any]]], gravity: Any = None) -> Self:
+        """Return a scene like this one with other values of several of its parts at once, checked as any scene is.
+
+        changes: parts of this scene, each once, with values by keyword; gravity: in m/s², None to keep this one's.
+        Raises SceneError.
+        """
+        values = {id(part): each for part, each in changes}
+        return self.with_parts((each.remade(values[id(each)]) if id(each) in values else each
+                                for each in self.parts()), gravity)
 
     def remeshed(self, elements: Callable[[Cable], int]) -> Self:
         """Return the scene with other numbers of elements of its cables, checked as any scene is. Raises SceneError.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Protocol, TypeVar
@@ -26,6 +27,8 @@ from .settings import EquilibriumSettings, RelaxationSettings, RunSettings
 from .signal import Signal
 from .solids import Solid
 
+BARE = re.compile(r"[A-Za-z0-9_-]+")
+"""A key that a scene file need not quote."""
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings, "relax": RelaxationSettings}
 
 TAGS = {Section: "shape", Signal: "form", Stop: "stop", Solid: "kind", Profile: "form"}
@@ -224,7 +227,7 @@ def plain_data(value: Any) -> Any:
 
 
 def _lines(table: dict) -> list[str]:
-    return [f"{name} = {as_toml(value)}" for name, value in table.items()]
+    return [f"{name if BARE.fullmatch(name) else as_toml(name)} = {as_toml(value)}" for name, value in table.items()]
 
 
 def as_toml(value: Any) -> str:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from ..integrators import AUTO, INTEGRATORS, stable_at
 from .part import Part
-from .validation import Count, Flag, names, not_negative, one_of, positive, within
+from .schemas import checked
+from .validation import Count, Flag, names, not_negative, number, one_of, positive, shown, within
 
 SMALLEST_STEP = 1e-12
 """Of the duration, as in engine/run/steps.c."""
@@ -90,6 +92,56 @@ class RunSettings(Part):
         return self.output_step / math.ceil(self.output_step / self.step * (1 - ROUNDED))
 
 
+FREE = "free"
+"""What a parameter without limits is given."""
+Limits = tuple[float, float] | str
+"""The least and the greatest value of a parameter, or "free"."""
+
+
+def _adjust(value: Any) -> dict[str, Limits] | None:
+    """Return limits by path, of a list of paths or of a table. Raises ValueError."""
+    if value is None:
+        return None
+    if isinstance(value, list | tuple):
+        value = dict.fromkeys(value, FREE) if all(isinstance(each, str) for each in value) else {}
+    if not isinstance(value, Mapping) or not value or not all(isinstance(name, str) for name in value):
+        raise ValueError("must name parameters", 'give such as {"dropper.length": (0.5, 1.2)}, or ["dropper.length"]')
+    return {name: _limits(name, each) for name, each in value.items()}
+
+
+def _limits(name: str, value: Any) -> Limits:
+    if value is None or (isinstance(value, str) and value == FREE):
+        return FREE
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise ValueError(f'takes two limits of "{name}", got {shown(value)}', 'give (low, high), or "free"')
+    low, high = number(value[0]), number(value[1])
+    if not low < high:
+        raise ValueError(f'takes limits of "{name}" of which the second is above the first, got {low:g} and {high:g}')
+    return low, high
+
+
+def _to(value: Any) -> dict[str, float] | None:
+    """Return values by name. Raises ValueError."""
+    if value is None:
+        return None
+    if not isinstance(value, Mapping) or not value or not all(isinstance(name, str) for name in value):
+        raise ValueError("must give values by name", 'such as {"wire@2.5.position.y": 5.3}')
+    found = {}
+    for name, each in value.items():
+        try:
+            found[name] = number(each)
+        except ValueError as error:
+            raise ValueError(f'"{name}" {error.args[0]}') from None
+    return found
+
+
+_LIMITS = {"anyOf": [{"const": FREE}, {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}]}
+_ADJUST = {"anyOf": [{"type": "array", "items": {"type": "string"}, "minItems": 1},
+                     {"type": "object", "additionalProperties": _LIMITS, "minProperties": 1}]}
+_TO = {"type": "object", "additionalProperties": {"type": "number"}, "minProperties": 1}
+
+
 class EquilibriumSettings(Part):
     """How a static equilibrium is sought.
 
@@ -99,7 +151,10 @@ class EquilibriumSettings(Part):
     and where they are unstable; largest_step of such a path: what two states that follow each other differ by at most,
     of the load fraction, and of positions relative to the size of the scene; seek_stable: whether "newton" goes on
     where it has come to an unstable state, which else is returned with its label; scale_gravity: whether a load
-    fraction p is p times gravity, too, or whether gravity is whole from the start.
+    fraction p is p times gravity, too, or whether gravity is whole from the start; adjust: parameters of the scene, by
+    the paths that sweeps have, such as "dropper.length", with their limits (low, high) or "free", that are changed
+    until the state has the values ``to``, by name, such as "A.position.y" or "wire@12.5.tension"; tolerance is that of
+    these values, too, relative to their scale.
     """
 
     kind: ClassVar[str] = "equilibrium"
@@ -110,6 +165,18 @@ class EquilibriumSettings(Part):
     largest_step: Annotated[float, within(0, 1, ends=False)] = 0.1
     seek_stable: Flag = True
     scale_gravity: Flag = True
+    adjust: Annotated[dict[str, Limits] | None, checked(_adjust, _ADJUST)] = None
+    to: Annotated[dict[str, float] | None, checked(_to, _TO)] = None
+
+    @model_validator(mode="after")
+    def _adjusts_for_something(self) -> EquilibriumSettings:
+        if self.adjust is not None and self.to is None:
+            raise ValueError("has parameters to adjust, but no values to adjust them for", "give to={...}")
+        if self.to is not None and self.adjust is None:
+            raise ValueError("has values to reach, but no parameters to adjust", "give adjust={...}")
+        if self.adjust is not None and self.method != "newton":
+            raise ValueError("adjusts parameters along no path of equilibria", 'take method="newton"')
+        return self
 
 
 class RelaxationSettings(Part):

@@ -17,10 +17,14 @@ from ..model.states import (
     spatial,
 )
 from ..named_arrays import NamedArrays
+from ..parts.paths import path_of, value_at
 from ..parts.plane import called
 from ..parts.scene_data import SceneData
 from .stability import Stability
-from .static_problem import StaticProblem
+from .static_problem import StaticState
+
+SAME = 1e-12
+"""Of an adjusted value: what rounding may change."""
 
 
 def in_loads(fraction: float) -> str:
@@ -74,6 +78,24 @@ class Relaxation:
                 f"{self.resets} times; {self.residuals[-1]:.3g} N were left over")
 
 
+@dataclass
+class Adjustment:
+    """What was changed in a scene so that its state of rest has given values.
+
+    values: the parameters found, by path; targets: the values of the state asked for, by name; found: those reached;
+    jacobian (targets, parameters): derivatives of the state's values by the parameters, at the state; iterations: of
+    Newton's method on the parameters; misfits: at its states, the largest distance from a target over the scale of that
+    (the scene's size of a position, the larger of target and first value of what else there is).
+    """
+
+    values: dict[str, float]
+    targets: dict[str, float]
+    found: dict[str, float]
+    jacobian: np.ndarray = field(repr=False)
+    iterations: int
+    misfits: list[float] = field(repr=False)
+
+
 @dataclass(repr=False)
 class RestState(NamedArrays):
     """A state of rest of a scene.
@@ -84,7 +106,9 @@ class RestState(NamedArrays):
     the largest force left over, in N; stability: see `Stability`; path: the states of rest on the way, each under its
     load_fraction of all loads, in their order, this one last: what a curve of load and displacement is drawn from;
     critical_points of that path; gravity_fraction: how much of gravity is on, all of it where scale_gravity is off;
-    messages: what the search passed, adjusted or left out; relaxation: how `Scene.relax` came to the state, else None.
+    messages: what the search passed, adjusted or left out; relaxation: how `Scene.relax` came to the state, else None;
+    adjustment: what the search changed in the scene for given values of the state, else None; ``scene`` is the one with
+    the values found, then.
     """
 
     scene: SceneData
@@ -104,9 +128,10 @@ class RestState(NamedArrays):
     messages: list[str] = field(default_factory=list)
     layout: dict[str, list] = field(default_factory=dict, repr=False)
     relaxation: Relaxation | None = None
+    adjustment: Adjustment | None = None
 
     @classmethod
-    def of(cls, problem: StaticProblem, stability: Stability, heading: np.ndarray | None = None) -> Self:
+    def of(cls, problem: StaticState, stability: Stability, heading: np.ndarray | None = None) -> Self:
         """Read the static state of a problem, under the load that is on; heading: of the path there."""
         left = problem.residual()
         units = np.where(problem.weight > 0, problem.weight, np.inf)
@@ -124,6 +149,11 @@ class RestState(NamedArrays):
         stable = "stable" if self.stable else f"{self.unstable_directions} unstable directions"
         return (f"<funicular.Equilibrium: {stable}, under {in_loads(self.load_fraction)}, "
                 f"{len(self.quantities)} results>")
+
+    @property
+    def adjusted(self) -> dict[str, float]:
+        """Return the values of the parameters that the search for the state adjusted, by path; empty without any."""
+        return {} if self.adjustment is None else dict(self.adjustment.values)
 
     @property
     def unstable_directions(self) -> int:
@@ -166,8 +196,28 @@ class RestState(NamedArrays):
                 raise SceneError("scene", f"the state to start from is of another scene: its {kind} are "
                                  f"{self.layout[kind]}, here they are {here}", "take an equilibrium of this scene")
 
+    def check_adjusted(self, scene: SceneData) -> None:
+        """Raise SceneError where the scene lacks the values that were adjusted for the state, as it would not rest."""
+        for name, value in self.adjusted.items():
+            here = value_at(scene, path_of(scene, name, "adjust"))
+            if here is None or abs(here - value) > SAME * abs(value):
+                raise SceneError("scene", f"the state to start from is at rest with {name} = {value:.9g}, to which it "
+                                 f"was adjusted, here it is {here}", "take the state's own scene: rest.scene")
+
+    def check_supports(self, model: Model) -> None:
+        """Raise SceneError where supports are drawn elsewhere in a freshly built model than they are in this state."""
+        if model.cables:
+            own = slice(0, model.cables[-1].coordinates.stop)
+            fixed = model.unknown_of_dof[own] == -1
+            fixed[[motion.dof for motion in model.motions if motion.dof < own.stop]] = False
+            moved = np.abs(self.static_state["q"][own] - model.q[own]) * model.weight[own] * fixed
+            if np.max(moved) > 1e-6 * max(cable.mesh.total for cable in model.cables):
+                raise SceneError("scene", f"the state to start from has a support {np.max(moved):.3g} m from where it "
+                                 "is here", "take an equilibrium of this scene")
+
     def start(self, model: Model, scene: SceneData) -> None:
-        """Put a freshly built model of the scene into this state."""
+        """Put a freshly built model of the scene into this state. Raises SceneError where supports are elsewhere."""
+        self.check_supports(model)
         model.q = self.static_state["q"].copy()
         for slide, s in zip(model.slides, self.static_state["s"], strict=True):
             slide.place_at(float(s), model.cables[slide.cable])

@@ -19,7 +19,7 @@ from .path_following import Critical, Point, follow
 from .rest_state import CriticalPoint, RestState
 from .stability import stability
 from .stable_search import find_rest
-from .static_problem import StaticProblem
+from .static_problem import StaticProblem, fitted
 
 LOG = logging.getLogger(__name__)
 
@@ -43,11 +43,11 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
     """
     problem = StaticProblem(scene, settings)
     if start is not None:
-        problem.restore(start.static_state)
+        problem.restore(fitted(start.static_state, problem.model))
     search = _Search(problem, made)
     reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
     state = search.found
-    _note(problem, state)
+    note(problem, state)
     if reached < 1.0:
         remedy = ('; take method="newton", which goes on to any stable state, or draw the scene nearer to its rest'
                   if settings.method == "arc_length" else
@@ -59,7 +59,7 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
     return state
 
 
-def _note(problem: StaticProblem, state: RestState) -> None:
+def note(problem: StaticProblem, state: RestState) -> None:
     """Complete a state's messages; what a user must know is a warning, too."""
     if rubbing := [name for name, slide in problem.scene.slides.items() if slide.friction is not None]:
         names = " and ".join(f'"{name}"' for name in rubbing)

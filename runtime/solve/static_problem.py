@@ -17,31 +17,66 @@ from ..model.build import build
 from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import attachment_points
+from ..model.unknowns import as_supports_leave
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from .condensation import condensed, fastest
 
 GROWTH = 1e3
 """Of a correction over the least one before: Newton diverges."""
+ROUNDED = 1e-13
+"""Of a coordinate: what it may differ by from what a support makes of it."""
 FREE = 1e-14
 """Of the fastest vibration's square: a stiffness this small is none."""
 
 
-class StaticProblem:
-    """The engine's static state, its residual and tangent, and Newton's method; `load` says how much load is on."""
+class StaticState:
+    """The engine's static state and its residual; `load` says how much load is on."""
 
-    def __init__(self, scene: SceneData, settings: EquilibriumSettings):
+    def __init__(self, scene: SceneData, settings: EquilibriumSettings, model: Model | None = None):
+        """model: of the scene, where it is at hand."""
         self.scene, self.settings = scene, settings
-        self.model = build(scene)
+        self.model = build(scene) if model is None else model
         self.engine = Engine(self.model)
         drop_redundant_rows(self.model, self.engine)
         self.engine.set_state(0.0)
         self.load(1.0)
-        drawn = self.residual()
         unknown = self.model.unknown_of_dof
         free = unknown >= 0
-        self.weight = np.zeros(len(drawn))  # forces and arc-lengths do not count in the size of a correction
+        self.weight = np.zeros(len(self.residual()))  # forces and arc-lengths do not count in the size of a correction
         self.weight[unknown[free]] = self.model.weight[free]
+        self.iterations = 0
+
+    def load(self, fraction: float) -> None:
+        """Put this fraction of all loads on; of gravity, too, unless the settings say that it stays whole."""
+        self.fraction = fraction
+        self.engine.load(fraction, self.settings.scale_gravity)
+
+    def residual(self) -> np.ndarray:
+        """Return R at the static state, under the load that is on: internal less external forces, and constraints."""
+        return self.engine.static_residual()
+
+    def keep(self) -> dict:
+        """Return the static state, as `restore` takes it."""
+        return self.engine.state()
+
+    def restore(self, kept: dict) -> None:
+        """Go back to a state that `keep` returned."""
+        self.engine.set_state(0.0, **kept)
+
+    def move(self, change: np.ndarray) -> None:
+        """Move the state; slides that leave their element enter the next."""
+        self.engine.move(change)
+        if self.model.slides:
+            self.engine.set_state(0.0, **self.engine.state())
+
+
+class StaticProblem(StaticState):
+    """A static state with its tangent, the scales of the scene, and Newton's method."""
+
+    def __init__(self, scene: SceneData, settings: EquilibriumSettings):
+        super().__init__(scene, settings)
+        drawn = self.residual()
         self.size = self._extent()
         self.mass = self.engine.matrix(1.0, 0.0, 0.0)
         # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of
@@ -53,7 +88,6 @@ class StaticProblem:
         own = [n + k for coupling in self.model.couplings for k in coupling.free_coordinates]
         self.coordinates = np.append(np.arange(n), np.array(own, dtype=int))
         self.point_entries = _point_entries(self.model)
-        self.iterations = 0
         self.pushed = False  # off an unstable branch, in a direction that nothing prefers
         self.messages: list[str] = []
 
@@ -71,15 +105,6 @@ class StaticProblem:
         gaps = [np.subtract(*(attachment_points(model, end, model.q[None]) for end in force.attachments))
                 for force in model.point_forces]
         return max([*lengths, *(float(np.linalg.norm(gap)) for gap in gaps)], default=0.0) or 1.0
-
-    def load(self, fraction: float) -> None:
-        """Put this fraction of all loads on; of gravity, too, unless the settings say that it stays whole."""
-        self.fraction = fraction
-        self.engine.load(fraction, self.settings.scale_gravity)
-
-    def residual(self) -> np.ndarray:
-        """Return R at the static state, under the load that is on: internal less external forces, and constraints."""
-        return self.engine.static_residual()
 
     def load_vector(self) -> np.ndarray:
         """Return -dR/dp (n,) at the static state, p the fraction of the loads."""
@@ -128,20 +153,6 @@ class StaticProblem:
         size = float(np.linalg.norm(self.weight * change))
         return size if np.isfinite(size) else np.inf
 
-    def keep(self) -> dict:
-        """Return the static state, as `restore` takes it."""
-        return self.engine.state()
-
-    def restore(self, kept: dict) -> None:
-        """Go back to a state that `keep` returned."""
-        self.engine.set_state(0.0, **kept)
-
-    def move(self, change: np.ndarray) -> None:
-        """Move the state; slides that leave their element enter the next."""
-        self.engine.move(change)
-        if self.model.slides:
-            self.engine.set_state(0.0, **self.engine.state())
-
     def newton(self) -> bool:
         """Run Newton's method under the load that is on, with full steps; returns whether it converged.
 
@@ -170,6 +181,20 @@ class StaticProblem:
         s = self.engine.state()["s"]
         past = np.maximum(-s, s - ends)
         return bool(np.all(past <= self.settings.tolerance * self.size))
+
+
+def fitted(kept: dict, model: Model) -> dict:
+    """Return a static state as the supports of a model have it, which may be drawn elsewhere than where it was found:
+    what they fix is as drawn, what they tie follows, and what is free stays to the bit.
+    """
+    if not model.cables:
+        return kept
+    own = slice(0, model.cables[-1].coordinates.stop)
+    q, drawn = kept["q"].copy(), model.q[own]
+    change = q[own] - drawn
+    left = as_supports_leave(change, model.unknown_of_dof[own], model.combinations)
+    q[own] = np.where(np.abs(left - change) > ROUNDED * (1 + np.abs(q[own])), drawn + left, q[own])
+    return kept | {"q": q}
 
 
 def _point_entries(model: Model) -> np.ndarray:

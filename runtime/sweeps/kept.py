@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from ..errors import SceneError, UnknownResultError, near
+from ..parts.paths import COMPONENTS, label_of
 from ..parts.scene_data import SceneData
 from ..parts.validation import shown
 from ..results.quantities import ENERGIES, QUANTITIES, Variable
 from ..results.run import Run
 from .identity import identity_of
 from .parameters import SWEEP
-from .paths import COMPONENTS, label_of
 
 TIME = "time"
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ..errors import FunicularWarning, SceneError, near
+from ..parts.paths import Path, changed, path_of, unit_of
 from ..parts.settings import RunSettings
 from ..parts.validation import shown
 from ..results.run import Run
@@ -19,7 +20,6 @@ from ..scene import Scene
 from .identity import identity_of, identity_of_scene
 from .kept import Keep, of_dict
 from .parameters import SWEEP
-from .paths import Path, changed, path_of, unit_of
 from .points import RETURNED, Outcome, failure, outcome_of, run_points
 
 

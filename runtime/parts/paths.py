@@ -13,12 +13,10 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from ..errors import SceneError, near
-from ..parts.part import Part
-from ..parts.scene_data import SceneData
-from ..parts.scene_text import SETTINGS, plain_data
-from ..parts.validation import show, shown
-from ..scene import Scene
-from .parameters import SWEEP
+from .part import Part
+from .scene_data import SceneData
+from .scene_text import SETTINGS, plain_data
+from .validation import show, shown
 
 COMPONENTS = {"x": 0, "y": 1, "z": 2}
 GRAVITY = "gravity"
@@ -28,13 +26,19 @@ GRAVITY = "gravity"
 class Path:
     """A path, split: what it begins with, the entries behind it, and the number of the part in the scene's order.
 
-    part: None of gravity and settings.
+    part: None of gravity and settings; use: what takes the path, such as "sweep", as messages call it.
     """
 
     text: str
     head: str
     entries: tuple[str, ...]
     part: int | None
+    use: str = "sweep"
+
+    @property
+    def where(self) -> str:
+        """Return how messages name the path."""
+        return f'{self.use} of "{self.text}"'
 
 
 def label_of(part: Part) -> str | None:
@@ -42,20 +46,22 @@ def label_of(part: Part) -> str | None:
     return part.given_name or getattr(part, "label", None)
 
 
-def path_of(scene: SceneData, text: str) -> Path:
-    """Return the path that a text is in this scene. Raises SceneError where it leads nowhere."""
+def path_of(scene: SceneData, text: str, use: str = "sweep") -> Path:
+    """Return the path that a text is in this scene; use: as in `Path`. Raises SceneError where it leads nowhere."""
+    where = f'{use} of "{text}"'
     heads: dict[str, int | None] = {GRAVITY: None, **dict.fromkeys(SETTINGS)}
     labels = {label: k for k, part in enumerate(scene.parts()) if (label := label_of(part)) is not None}
     head = max((name for name in (*heads, *labels) if text == name or text.startswith(f"{name}.")), key=len, default="")
     if not head:
         known = [*labels, *heads]
         first = text.partition(".")[0]
-        raise SceneError(f'{SWEEP} of "{text}"', f'there is no part "{first}", nor a table of settings of that name',
+        raise SceneError(where, f'there is no part "{first}", nor a table of settings of that name',
                          f"{near(first, known)} (there are {', '.join(known)})")
     if head in heads and head in labels:
-        raise SceneError(f'{SWEEP} of "{text}"', f'"{head}" is a part of the scene and a table of a scene file',
+        raise SceneError(where, f'"{head}" is a part of the scene and a table of a scene file',
                          "name the part otherwise")
-    path = Path(text, head, tuple(text[len(head) + 1:].split(".")) if len(text) > len(head) else (), labels.get(head))
+    path = Path(text, head, tuple(text[len(head) + 1:].split(".")) if len(text) > len(head) else (), labels.get(head),
+                use)
     _check_entry(scene, path)
     return path
 
@@ -70,10 +76,10 @@ def _check_entry(scene: SceneData, path: Path) -> None:
         known = [name for name in _parts(scene)[path.part].keywords() if name != "name"]
     if not path.entries:
         example = f"{path.head}.{next(iter(known))}"
-        raise SceneError(f'{SWEEP} of "{path.text}"', "names no entry", f'write such as "{example}" (known: '
+        raise SceneError(path.where, "names no entry", f'write such as "{example}" (known: '
                          + ", ".join(known) + ")")
     if path.entries[0] not in known:
-        raise SceneError(f'{SWEEP} of "{path.text}"', f'{path.head} has no "{path.entries[0]}"',
+        raise SceneError(path.where, f'{path.head} has no "{path.entries[0]}"',
                          f"{near(path.entries[0], known)} (known: {', '.join(known)})")
 
 
@@ -81,30 +87,50 @@ def _parts(scene: SceneData) -> list[Part]:
     return list(scene.parts())
 
 
-S = TypeVar("S", bound=Scene)
+S = TypeVar("S", bound=SceneData)
 
 
 def changed(scene: S, values: Mapping[Path, Any]) -> S:
     """Return a scene like this one with these values, all changed at once. Raises SceneError."""
     parts = _parts(scene)
-    of_parts: dict[int, dict[str, Any]] = {}
-    settings: dict[str, dict[str, Any]] = {name: {} for name in SETTINGS}
     gravity = list(scene.gravity)
+    settings: dict[str, dict[str, Any]] = {name: {} for name in SETTINGS}
     for path, value in values.items():
-        if path.part is not None:
-            entries = of_parts.setdefault(path.part, {})
-            _put(path, entries, parts[path.part].as_made().entries(), value)
-        elif path.head == GRAVITY:
+        if path.head == GRAVITY:
             gravity[COMPONENTS[path.entries[0]]] = value
             _check_end(path, 1)
-        else:
+        elif path.part is None:
             settings[path.head][path.entries[0]] = value
             _check_end(path, 1)
-    made = scene.changed([(parts[k], entries) for k, entries in of_parts.items()], gravity)
+    made = scene.changed([(parts[k], entries) for k, entries in changes_of(scene, values).items()], gravity)
     for name, table in settings.items():
         if table:
             setattr(made, f"{name}_settings", getattr(scene, f"{name}_settings") | table)
     return made
+
+
+def changes_of(scene: SceneData, values: Mapping[Path, Any]) -> dict[int, dict[str, Any]]:
+    """Return what these values change of parts: by the number of a part, values by keyword. Raises SceneError."""
+    parts = _parts(scene)
+    changes: dict[int, dict[str, Any]] = {}
+    for path, value in values.items():
+        if path.part is not None:
+            _put(path, changes.setdefault(path.part, {}), parts[path.part].as_made().entries(), value)
+    return changes
+
+
+def value_at(scene: SceneData, path: Path) -> Any:
+    """Return what a path leads to in a scene, as plain data; None where the part has no such entry."""
+    if path.part is None:
+        return scene.gravity[COMPONENTS[path.entries[0]]] if path.head == GRAVITY else None
+    data: Any = plain_data(_parts(scene)[path.part].entries().get(path.entries[0]))
+    for entry in path.entries[1:]:
+        if isinstance(data, list):
+            index = COMPONENTS.get(entry, int(entry) if entry.isdecimal() else len(data))
+            data = data[index] if index < len(data) else None
+        else:
+            data = data.get(entry) if isinstance(data, dict) else None
+    return data
 
 
 def _put(path: Path, entries: dict[str, Any], old: Mapping[str, Any], value: Any) -> None:
@@ -127,7 +153,7 @@ def _with(path: Path, data: Any, at: int, value: Any) -> Any:
         case list() | tuple():
             index = COMPONENTS.get(entry, int(entry) if entry.isdecimal() else len(data))
             if index >= len(data):
-                raise SceneError(f'{SWEEP} of "{path.text}"', f"{shown(data)} has no entry \"{entry}\"",
+                raise SceneError(path.where, f"{shown(data)} has no entry \"{entry}\"",
                                  f"write x, y, z, or a number below {len(data)}")
             return [_with(path, each, at + 1, value) if k == index else each for k, each in enumerate(data)]
     _check_end(path, at, data)
@@ -139,7 +165,7 @@ def _check_end(path: Path, at: int, data: Any = None) -> None:
     if len(path.entries) > at:
         what = ".".join([path.head, *path.entries[:at]])
         is_now = "" if data is None else f", {show(data) if isinstance(data, float) else shown(data)},"
-        raise SceneError(f'{SWEEP} of "{path.text}"', f'{what}{is_now} has no entries', f'write "{what}"')
+        raise SceneError(path.where, f'{what}{is_now} has no entries', f'write "{what}"')
 
 
 def unit_of(scene: SceneData, path: Path) -> str:

@@ -1,0 +1,75 @@
+"""Arc-lengths of cables that parts name: where they are when a cable becomes longer or shorter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, cast
+
+from .attachment import Attachment
+from .cable import Cable
+from .hanging import hangs
+from .load import DistributedForce, Force, Moment
+from .part import Part
+from .scene_data import SceneData
+from .slide import Slide
+from .support import Support, Tie
+
+
+def on_cables(part: Part) -> Iterator[tuple[str, str, float]]:
+    """Yield the arc-lengths that a part has as entries: the keyword, the name of the cable or body, and s in m."""
+    named: list[tuple[str, str | None, float | None]] = []
+    match part:
+        case Support():
+            named = [("s", part.cable, part.s)]
+        case Tie():
+            named = [("s", part.cable, part.s), ("at", part.to, part.at)]
+        case DistributedForce():
+            named = [("start", part.cable, part.start), ("stop", part.cable, part.stop)]
+        case Force() | Moment():
+            named = [("s", part.on, part.s)]
+        case Slide():
+            named = [("s", part.along, part.s), ("body_s", part.body, part.body_s)]
+    for keyword, on, s in named:
+        if on is not None and s is not None:
+            yield keyword, on, s
+
+
+def remade(part: Part, changes: Mapping[str, Any]) -> Part:
+    """Return a part with other values, by keyword, as it is before the nodes of a cable follow its length. Raises
+    SceneError.
+    """
+    if isinstance(part, Cable) and part.nodes is not None and "nodes" not in changes:
+        changes = {**changes, "nodes": None}
+    return part.remade(changes)
+
+
+def following(scene: SceneData, changes: Mapping[int, Mapping[str, Any]]) -> dict[int, dict[str, Any]]:
+    """Return changes of a scene's parts, with arc-lengths on cables that change in length: they keep their part of it,
+    and so do the cable's own nodes.
+
+    changes: values by keyword, by the number of the part. What a scene has found itself it finds anew. Values that are
+    changed already stay so. A cable that hangs as it is drawn, and becomes shorter than its span, is drawn straight.
+    Raises SceneError.
+    """
+    parts = list(scene.parts())
+    stretch = {}
+    found = {k: dict(entries) for k, entries in changes.items()}
+    for k, entries in found.items():
+        if isinstance(part := parts[k], Cable) and entries:
+            changed = cast(Cable, remade(part, entries))
+            ratio = stretch[part.name] = changed.length / part.length
+            if part.nodes is not None and ratio != 1.0:
+                entries.setdefault("nodes", [s * ratio for s in part.nodes])
+            if changed.shape == "hanging" and not hangs(changed.drawn_length, changed.length):
+                entries["shape"] = "straight"
+    stretch = {name: ratio for name, ratio in stretch.items() if ratio != 1.0}
+    if not stretch:
+        return found
+    for k, part in enumerate(part.as_made() for part in parts):
+        moved: dict[str, Any] = {keyword: s * stretch[on] for keyword, on, s in on_cables(part) if on in stretch}
+        for name, value in part:
+            if isinstance(value, Attachment) and value.on in stretch and value.s is not None:
+                moved[name] = value.model_copy(update={"s": value.s * stretch[value.on]})
+        if moved:
+            found[k] = moved | found.get(k, {})
+    return found

@@ -1,0 +1,249 @@
+"""Parameters that bring a state of rest to given values: closed forms, derivatives, limits, what cannot be reached."""
+
+import re
+
+import catenary
+import funicular as fu
+import numpy as np
+import pytest
+from funicular.parts.paths import changed, path_of
+
+STEEL = fu.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=9000)
+THIN = fu.Circle(radius=0.005)
+WEIGHT, AXIAL = 9000 * THIN.area * 9.81, 1e11 * THIN.area
+
+
+def wire(elements=40, length=50.3, **settings):
+    scene = fu.Scene()
+    scene.cable("wire", start=(0, 0, 0), end=(50, 0, 0), elements=elements, element="cable12", strain="engineering",
+                section=THIN, material=STEEL, rest_length=length)
+    for s in (0, length):
+        scene.pin("wire", s=s)
+    scene.equilibrium_settings = settings
+    return scene
+
+
+def hung():
+    """Return a body on two springs, side by side, that hangs on a third one."""
+    scene = fu.Scene()
+    scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(0, -1, 0))
+    scene.spring((0, 0, 0), "A", name="spring", stiffness=100.0, length=0.5)
+    return scene
+
+
+def unreached(scene, cause, **given):
+    with pytest.raises((fu.EquilibriumError, fu.SceneError), match=re.escape(cause)) as error:
+        scene.equilibrium(**given)
+    return error.value
+
+
+def test_a_body_on_a_spring_in_closed_form():
+    rest = hung().equilibrium(adjust=["spring.length"], to={"A.position.y": -1.5})
+    assert rest.adjusted == {"spring.length": pytest.approx(1.5 - 2 * 9.81 / 100, abs=1e-9)}
+    assert rest.adjustment.jacobian == pytest.approx(np.array([[-1.0]]), rel=1e-9)
+    assert rest.scene.point_forces["spring"].length == rest.adjusted["spring.length"]
+    stiff = hung().equilibrium(adjust={"spring.stiffness": "free"}, to={"A.position.y": -0.6})
+    assert stiff.adjusted["spring.stiffness"] == pytest.approx(2 * 9.81 / 0.1, rel=1e-9)
+    heavy = hung().equilibrium(adjust=["A.mass"], to={"spring.tension": 30.0})
+    assert heavy.adjusted["A.mass"] == pytest.approx(30 / 9.81, rel=1e-9)
+
+
+def test_tension_by_rest_length_is_that_of_the_elastic_catenary():
+    scene = wire(length=49.9)
+    rest = scene.equilibrium(adjust=["wire.rest_length"], to={"wire@0.force.x": -20e3})
+    length = rest.adjusted["wire.rest_length"]
+    horizontal, _ = catenary.end_forces(50, 0, length, WEIGHT, AXIAL)
+    assert rest["wire@0.force"][0] == pytest.approx(-20e3, rel=1e-9)
+    assert horizontal == pytest.approx(20e3, rel=2e-5)  # the wire resists bending: 49 N m²
+    assert rest.adjustment.iterations <= 5
+    assert rest.residual < 1e-6
+    assert rest.scene.pins[1].s == pytest.approx(length)  # places on the wire went with it
+
+
+def test_sag_by_rest_length():
+    rest = wire().equilibrium(adjust={"wire.rest_length": (50.0, 52.0)}, to={"wire@25.15.position.y": -3.0})
+    H, V = catenary.end_forces(50, 0, rest.adjusted["wire.rest_length"], WEIGHT, AXIAL)
+    sag = H / WEIGHT * (np.hypot(1, V / H) - 1) + V**2 / (2 * WEIGHT * AXIAL)
+    assert sag == pytest.approx(3.0, abs=3e-4)
+    assert rest["wire.position"][20, 1] == pytest.approx(-3.0, abs=1e-7)
+    assert np.all(np.diff(rest.adjustment.misfits) < 0)
+
+
+def test_a_hanging_cable_may_become_shorter_than_its_span():
+    scene = wire()
+    scene = scene.replace("wire", shape="hanging", rest="straight")
+    rest = scene.equilibrium(adjust=["wire.rest_length"], to={"wire@0.force.x": -20e3})
+    assert rest.adjusted["wire.rest_length"] < 50
+    horizontal, _ = catenary.end_forces(50, 0, rest.adjusted["wire.rest_length"], WEIGHT, AXIAL)
+    assert horizontal == pytest.approx(20e3, rel=2e-5)
+    assert rest.scene.equilibrium()["wire@0.force"][0] == pytest.approx(-20e3, rel=1e-8)
+
+
+def test_section_forces_and_points_between_nodes_are_targets():
+    rest = wire().equilibrium(adjust=["wire.rest_length", "wire.section.radius"],
+                              to={"wire@12.3.tension": 2000.0, "wire@31.7.position.y": -2.0})
+    s = 12.3 / 50.3 * rest.adjusted["wire.rest_length"]
+    assert rest.section_forces("wire", s=[s])["tension"].item() == pytest.approx(2000.0, rel=1e-7)
+
+
+def test_the_adjusted_scene_rests_there_by_itself_and_runs_from_there():
+    rest = wire().equilibrium(adjust=["wire.rest_length"], to={"wire@25.15.position.y": -3.0})
+    plain = rest.scene.equilibrium()
+    assert plain["wire.position"] == pytest.approx(rest["wire.position"], abs=1e-8)
+    assert not plain.adjusted
+    run = rest.scene.run(duration=0.05, initial=rest, tol=1e-6)
+    assert np.ptp(run["wire.position"], axis=0).max() < 1e-6
+
+
+def test_the_scene_that_was_not_adjusted_takes_no_start_from_there():
+    scene = hung()
+    rest = scene.equilibrium(adjust=["spring.length"], to={"A.position.y": -1.5})
+    with pytest.raises(fu.SceneError, match=r"take the state's own scene: rest\.scene"):
+        scene.run(duration=0.1, initial=rest)
+    assert scene.equilibrium(start=rest)["A.position"][1] == pytest.approx(-0.5 - 2 * 9.81 / 100)
+
+
+def test_the_jacobian_is_that_of_differences_of_equilibria():
+    scene = wire()
+    scene.force("wire", s=25.15, value=(0, -200.0, 30.0), name="load")
+    names = ["wire.rest_length", "load.value.y", "wire.material.density"]
+    to = {"wire@25.15.position.y": -3.5, "wire@10.06.tension": 2500.0}
+    rest = scene.equilibrium(adjust=names, to=to)
+    for k, name in enumerate(names[1:], 1):  # at the state found; of other lengths the supports would have to move
+        ends = []
+        for sign in (-1, 1):
+            value = rest.adjusted[name] * (1 + sign * 1e-4)
+            other = changed(rest.scene, {path_of(rest.scene, name): value}).equilibrium(tolerance=1e-12)
+            ratio = rest.adjusted["wire.rest_length"] / 50.3
+            ends.append([other["wire.position"][20, 1],
+                         other.section_forces("wire", s=[10.06 * ratio])["tension"].item()])
+        rate = (np.array(ends[1]) - ends[0]) / (2e-4 * rest.adjusted[name])
+        assert rest.adjustment.jacobian[:, k] == pytest.approx(rate, rel=1e-5)
+
+
+def test_more_parameters_than_targets_change_least():
+    scene = hung()
+    scene.spring((0, 0, 0), "A", name="other", stiffness=300.0, length=0.5)
+    rest = scene.equilibrium(adjust=["spring.length", "other.length"], to={"A.position.y": -1.0})
+    changes = [rest.adjusted[f"{name}.length"] - 0.5 for name in ("spring", "other")]
+    assert changes[1] == pytest.approx(3 * changes[0], rel=1e-6)  # along the gradient, the stiffnesses
+
+
+def test_positions_of_supports_and_prescribed_displacements_are_parameters():
+    scene = hung()
+    rest = scene.equilibrium(adjust=["spring.a.y"], to={"A.position.y": -1.5})
+    assert rest.adjusted["spring.a.y"] == pytest.approx(-1.5 + 0.5 + 2 * 9.81 / 100, abs=1e-9)
+    scene = fu.Scene()
+    scene.cable("wire", start=(0, 0, 0), end=(50, 0, 0), elements=40, element="cable12",
+                strain="engineering", section=THIN, material=STEEL)
+    scene.pin("wire", s=0)
+    scene.motion("wire", s=50, displacement=(0.01, 0.5, 0))
+    rest = scene.equilibrium(adjust=["wire@50.displacement.x"], to={"wire@50.force.x": 10e3})
+    end = rest["wire.position"][-1]
+    assert end == pytest.approx([50 + rest.adjusted["wire@50.displacement.x"], 0.5, 0], abs=1e-12)
+    assert catenary.end_forces(*end[:2], 50, WEIGHT, AXIAL)[0] == pytest.approx(10e3, rel=1e-4)
+
+
+def test_limits_stop_parameters_and_the_others_go_on():
+    scene = hung()
+    scene.spring((0, 0, 0), "A", name="other", stiffness=300.0, length=0.5)
+    rest = scene.equilibrium(adjust={"spring.length": "free", "other.length": (0.4, 0.6)}, to={"A.position.y": -1.0})
+    assert rest.adjusted["other.length"] == pytest.approx(0.6)
+    assert rest["A.position"][1] == pytest.approx(-1.0)
+
+
+def test_targets_that_cannot_be_reached_say_which_and_why():
+    scene = hung()
+    error = unreached(scene, '"A.position.y" is -0.69', adjust={"spring.length": (0.4, 0.5001)},
+                      to={"A.position.y": -1.0})
+    assert '"spring.length" is at its limit 0.5001' in str(error)
+    assert error.state["A.position"][1] == pytest.approx(-0.5001 - 2 * 9.81 / 100)
+    error = unreached(scene, '"spring.length" would have to be zero or below', adjust=["spring.length"],
+                      to={"A.position.y": -0.1})
+    scene.rigid_body("B", mass=1.0, inertia=(1, 1, 1), position=(5, -1, 0))
+    scene.spring((5, 0, 0), "B", name="apart", stiffness=100.0, length=0.5)
+    unreached(scene, 'no parameter changes "B.position.y"', adjust=["spring.length"], to={"B.position.y": -1.0})
+    unreached(scene, 'the parameters change "A.position.y" and "spring.length" only together, so that these values '
+              "contradict each other", adjust=["spring.length", "spring.stiffness"],
+              to={"A.position.y": -1.0, "spring.length": 1.5})
+
+
+def test_a_dropper_that_begins_slack_is_made_taut_and_none_pushes():
+    scene = wire(length=49.9)
+    scene.spring((25, 0.2, 0), ("wire", 24.95), name="dropper", stiffness=1e5, length=2.0, tension_only=True)
+    free = scene.equilibrium()
+    assert free["dropper.tension"] == 0.0
+    name = "wire@24.95.position.y"
+    rest = scene.equilibrium(adjust=["dropper.length"], to={name: -0.1})
+    assert rest["wire.position"][20, 1] == pytest.approx(-0.1, abs=1e-7)
+    ends = [rest[f"{pin.label}.force"][1] for pin in rest.scene.pins]
+    assert sum(ends) + rest["dropper.tension"] == pytest.approx(WEIGHT * 49.9, rel=1e-6)
+    assert rest["dropper.tension"] > 1.0
+    unreached(scene, "a part that is slack changes nothing", adjust=["dropper.length"],
+              to={name: free["wire.position"][20, 1] - 0.1})
+
+
+@pytest.mark.parametrize(("given", "cause"), [
+    ({"adjust": ["spring.length"]}, "but no values to adjust them for"),
+    ({"to": {"A.position.y": 1.0}}, "but no parameters to adjust"),
+    ({"adjust": ["spring.lenght"], "to": {"A.position.y": 1.0}}, 'spring has no "lenght"; did you mean "length"?'),
+    ({"adjust": ["spring.a"], "to": {"A.position.y": 1.0}}, "not a number that can be adjusted"),
+    ({"adjust": ["equilibrium.tolerance"], "to": {"A.position.y": 1.0}}, "settings cannot be adjusted"),
+    ({"adjust": ["spring.length"], "to": {"A.position": 1.0}}, "has three components; add .x, .y or .z"),
+    ({"adjust": ["spring.length"], "to": {"spring.tension.x": 1.0}}, "has no components"),
+    ({"adjust": ["spring.length"], "to": {"A.place.y": 1.0}}, "is no value of the state of rest"),
+    ({"adjust": ["spring.length"], "to": {"A.position.y": -1.0, "spring.tension": 20.0}},
+     "2 targets cannot be reached with 1 parameters"),
+    ({"adjust": {"spring.length": (1.0, 2.0)}, "to": {"A.position.y": -1.0}}, "is not within its limits 1 and 2"),
+    ({"adjust": {"spring.length": (2.0, 1.0)}, "to": {"A.position.y": -1.0}}, "the second is above the first"),
+    ({"adjust": ["spring.length"], "to": {"A.position.y": -1.0}, "method": "arc_length"}, 'take method="newton"')])
+def test_wrong_input_says_what_is_wrong(given, cause):
+    unreached(hung(), cause, **given)
+
+
+def test_scene_files_adjust():
+    scene = wire(adjust={"wire.rest_length": (50.0, 52.0)}, to={"wire@25.15.position.y": -3.0})
+    again = fu.Scene.from_toml(scene.to_toml())
+    assert again.equilibrium_settings == scene.equilibrium_settings
+    rest = again.equilibrium()
+    assert rest["wire.position"][20, 1] == pytest.approx(-3.0, abs=1e-7)
+    run = again.run(duration=0.02, initial="equilibrium", tol=1e-6)
+    assert run.scene.cables["wire"].length == rest.adjusted["wire.rest_length"]
+    assert np.ptp(run["wire.position"], axis=0).max() < 1e-6
+
+
+@pytest.mark.parametrize("element", ["beam24", "cable12"])
+def test_clamps_that_turn_and_move_with_the_drawing_have_the_right_derivatives(element):
+    scene = fu.Scene()
+    scene.cable("rod", start=(0, 0, 0), end=(2, 1, 0.5), elements=8, element=element, section=fu.Circle(radius=0.02),
+                material=fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000), rest_length=2.25)
+    scene.clamp("rod", s=0)
+    scene.pin("rod", s=2.25)
+    rest = scene.equilibrium(adjust=["rod.end.y", "rod.start.x"],
+                             to={"rod@1.125.position.y": 0.5, "rod@2.25.force.x": 5e3})
+    for k, name in enumerate(rest.adjusted):
+        ends = []
+        for change in (-1e-5, 1e-5):
+            other = changed(rest.scene, {path_of(rest.scene, name): rest.adjusted[name] + change})
+            state = other.equilibrium(tolerance=1e-13, start=rest)
+            assert state["rod.position"][-1] == pytest.approx(other.cables["rod"].end, abs=1e-12)
+            ends.append([state["rod.position"][4, 1], state["rod@2.25.force"][0]])
+        assert rest.adjustment.jacobian[:, k] == pytest.approx((np.array(ends[1]) - ends[0]) / 2e-5, rel=1e-4)
+
+
+def test_a_search_that_begins_at_a_state_takes_the_supports_as_they_are_now():
+    scene = wire(length=49.9)
+    rest = scene.equilibrium()
+    moved = scene.replace("wire", end=(50, 1, 0))
+    from_there = moved.equilibrium(start=rest)
+    assert from_there["wire.position"][-1] == pytest.approx([50, 1, 0])
+    assert from_there["wire.position"] == pytest.approx(moved.equilibrium()["wire.position"], abs=1e-8)
+
+
+def test_runs_and_modes_take_no_state_whose_supports_are_elsewhere():
+    scene = wire(length=49.9)
+    rest = scene.equilibrium()
+    moved = scene.replace("wire", end=(50, 1, 0))
+    for start in (lambda: moved.run(duration=0.01, initial=rest), lambda: moved.modes(2, about=rest)):
+        with pytest.raises(fu.SceneError, match="has a support 1 m from where it is here"):
+            start()
