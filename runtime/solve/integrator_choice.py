@@ -133,12 +133,27 @@ def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival 
 
 def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
     """Return whether the error of positions that genalpha estimates is the one that counts: not where supports are
-    moved, slides rub at a tight tol or bodies turn fast, nor where there are bodies alone.
+    moved, slides rub at a tight tol, bodies turn fast or outrun the waves of their cable, nor where there are bodies alone.
     """
     fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
     return (bool(model.cables) and not model.motions
             and (demands.tol >= LOOSE_FOR_FRICTION or not demands.friction)
-            and fastest <= FAST_TURNS * demands.slow)
+            and fastest <= FAST_TURNS * demands.slow and not _outruns_waves(scene))
+
+
+def _outruns_waves(scene: SceneData) -> bool:
+    """Return whether a rider starts faster than the transverse waves of a cable that is drawn taut: the shock that it
+    runs in damps out in steps of genalpha, whose estimate does not see it.
+    """
+    for slide in scene.slides.values():
+        cable, body = scene.cables[slide.along], scene.bodies.get(slide.body or "")
+        if body is None or cable.stretch <= 1.0:
+            continue
+        per_length = cable.material.density * cable.section.area
+        tension = cable.material.youngs_modulus * cable.section.area * (cable.stretch - 1.0)
+        if np.dot(body.velocity, body.velocity) * per_length > tension:
+            return True
+    return False
 
 
 def begin_with_low_order(demands: Demands, duration: float, method: Integrator, why: str,
