@@ -133,7 +133,7 @@ def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival 
 
 def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
     """Return whether the error of positions that genalpha estimates is the one that counts: not where supports are
-    moved, slides rub at a tight tol, bodies turn fast or outrun the waves of their cable, nor where there are bodies alone.
+    moved, slides rub at a tight tol, bodies turn fast or outrun their cable's waves, nor where there are bodies alone.
     """
     fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
     return (bool(model.cables) and not model.motions
