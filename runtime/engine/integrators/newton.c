@@ -13,7 +13,6 @@
 #define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is not rounding */
 #define MATRIX_COST 2.0       /* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
 #define UNDERESTIMATE 10.0    /* how many times more an increment may shrink less than its residual, which counts stiffness more */
-#define CLOSED 0.1              /* of what Newton may leave: gaps that are closed no further beside an iteration */
 #define COARSE 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
 #define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
 
@@ -127,20 +126,6 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
     return 0;
 }
 
-/* Returns the largest gap of a constraint in run->rhs, m. */
-static double largest_gap(fu_run *run)
-{
-    const fu_model *model = run->model;
-    const double *own = fu_own(run);
-    double gap = 0.0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
-        for (int i = 0; i < c->n_forces; ++i)
-            gap = fmax(gap, fabs(own[c->unknown + c->n_coordinates + i]) / c->scale[i]);
-    }
-    return gap;
-}
-
 /* Largest residuals in run->rhs: root of the sum of squares over the equations of motion; of the couplings' own equations;
  * and gaps of constraints, m. */
 typedef struct {
@@ -151,19 +136,23 @@ static residual_size size_of_residual(fu_run *run)
 {
     const fu_model *model = run->model;
     const double *own = fu_own(run);
-    residual_size size = {0.0, 0.0, largest_gap(run)};
+    residual_size size = {0.0, 0.0, 0.0};
     for (int i = 0; i < model->n_band + model->n_border_dof; ++i) size.motion += run->rhs[i] * run->rhs[i];
     size.motion = sqrt(size.motion);
     for (int i = 0; i < model->n_extra; ++i) size.own = fmax(size.own, fabs(own[i]));
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        for (int i = 0; i < c->n_forces; ++i)
+            size.gap = fmax(size.gap, fabs(own[c->unknown + c->n_coordinates + i]) / c->scale[i]);
+    }
     return size;
 }
 
-/* Returns what the next increment is of the last, at most, by what the residual has become: that of the motion since the last
- * increment, of this size; that of the couplings, which are solved beyond it, since the first. */
-static double contraction_of_residual(residual_size first, residual_size before, residual_size after, double first_size, double size)
+/* Returns what the next increment is of the last, at most, by what the residual has become of the one before. */
+static double contraction_of_residual(residual_size before, residual_size after)
 {
     const double motion = before.motion > 0.0 ? after.motion / before.motion : 0.0;
-    const double own = first.own > 0.0 ? after.own / first.own * (first_size / size) : 0.0;
+    const double own = before.own > 0.0 ? after.own / before.own : 0.0;
     return fmin(1.0, UNDERESTIMATE * fmax(motion, own));
 }
 
@@ -183,29 +172,13 @@ static void count_for_matrix(fu_run *run, int iterations, int most)
     if ((double)iterations * run->matrix_steps > run->matrix_cost || iterations > most) run->factored = 0;
 }
 
-/* Closes the gaps that an iteration has left, with the factored matrix, as if the dofs' own equations were linear: gaps come of
- * directions that have turned since it was made, and are the most of what the next iteration would mend. This takes no forces
- * of cables and no substitution in their chains; without chains it would take as much as an iteration. */
-static void close_gaps(fu_run *run, const fu_newton *method, double h)
-{
-    const fu_model *model = run->model;
-    if (!model->n_extra || !model->n_band) return;
-    method->own_residual(run, h);
-    if (largest_gap(run) <= CLOSED * fmax(run->newton_tolerance, run->round_off)) return;
-    fu_system_solve_border(&run->newton, model->lapack, run->rhs);
-    method->apply(run, h);
-    method->kinematics(run, h);
-}
-
 /* Does the same where the steps to come make up for what is left: its residual is evaluated, and tells how much that is. */
 static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
 {
     double last = INFINITY;
     method->kinematics(run, h);
     method->residual(run, h);
-    const residual_size first = size_of_residual(run);
-    residual_size before = first;
-    double first_size = 0.0;
+    residual_size before = size_of_residual(run);
     for (int i = 0; i < method->most_iterations; ++i) {
         if (!run->factored && factor(run, method, h)) return 1;
         const double begin = fu_clock();
@@ -216,11 +189,9 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
         if (!(size < FU_RUNS_AWAY)) return blame(run);
         if (size >= last && size > BEYOND_ROUNDING * run->round_off) return blame(run);
         method->kinematics(run, h);
-        close_gaps(run, method, h);
         method->residual(run, h);
         const residual_size after = size_of_residual(run);
-        if (i == 0) first_size = size;
-        double contraction = contraction_of_residual(first, before, after, first_size, size);
+        double contraction = contraction_of_residual(before, after);
         if (i > 0) contraction = fmin(contraction, ratio / (1.0 - ratio));
         if (leaves_little(run, size, contraction, after.gap)) {
             method->note_rest(run, h);
@@ -236,14 +207,14 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
     return 0;
 }
 
-/* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps that had to be divided, or are too
- * coarse, are solved to rounding instead. */
+/* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to
+ * rounding instead, as their forces show gaps of 1e-12 m; so are fixed steps that had to be divided, or are too coarse. */
 int fu_carries_rest(const fu_run *run)
 {
     const fu_newton *method = run->integrator->newton;
     if (!method || !method->note_rest) return 0;
     if (run->fixed_step <= 0.0) return 1;
-    return run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
+    return !run->model->n_extra && run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
 }
 
 /* Makes one step of size h from `now` to `next`; returns 0 where the Newton iteration converged. */

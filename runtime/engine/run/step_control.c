@@ -24,7 +24,6 @@
 #define CARRIED_MOST 1e-9  /* of the extent: what Newton may leave there at most */
 #define CARRIED_FIXED_PART 3e-3  /* of the last step's error: what Newton may leave there of a fixed step */
 #define CARRIED_FIXED_MOST 1e-10 /* of the extent: what Newton may leave there of a fixed step at most */
-#define COUPLED_FIXED_MOST 1e-13 /* of the scene's size: the same with couplings, whose forces show it times the stiffness of cables */
 
 /* Returns the step that ends at the target, or one of equal steps to there, none larger than wanted, s. */
 double fu_fit_step(double remaining, double want)
@@ -41,9 +40,8 @@ static double newton_tolerance(const fu_run *run, double h, double allowed, doub
 {
     const int fixed = run->fixed_step > 0.0;
     const double share = h / run->duration;
-    const double fixed_most = run->model->n_extra ? COUPLED_FIXED_MOST * run->size : CARRIED_FIXED_MOST * extent;
     if (fu_carries_rest(run))
-        return fixed ? fmin(CARRIED_FIXED_PART * run->last_error, fixed_most)
+        return fixed ? fmin(CARRIED_FIXED_PART * run->last_error, CARRIED_FIXED_MOST * extent)
                      : fmin(CARRIED_PART * allowed, CARRIED_MOST * extent);
     return fixed ? fmin(FIXED_PART * share * run->last_error, FIXED_MOST * extent)
                  : fmin(NEWTON_PART * share * allowed, NEWTON_MOST * extent);

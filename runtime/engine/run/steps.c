@@ -1,23 +1,13 @@
 /* Steps: their size, trial, error and events, until one is accepted. */
 #include "engine.h"
 
-#include <math.h>
-
 #define SMALLEST_STEP 1e-12   /* of the duration: a run that needs a shorter step ends */
 #define BEYOND 0.1            /* of a step: how far it may go on after a coupling should have reached its boundary */
 #define MOST_REJECTIONS 10000 /* steps rejected beyond those taken, before a run ends */
 #define ACCEPTED 2.0          /* of what is allowed: a step with a larger error is rejected */
-#define DIVISIONS 8           /* rejections of a fixed step that each part of it makes up for: so often it may be divided */
+#define DIVISIONS 8           /* rejections of a fixed step that each step taken makes up for: so often it may be divided */
 #define MOST_TURNS 2          /* of a coupling on one boundary before a step is taken all the same: it rests there */
 #define PASSED_BY 0.5         /* of the step that was wanted: what is wanted after one whose event was not found */
-
-/* Returns how many rejections a step that is taken makes up for. Of a fixed step parts of less than DIVISIONS halvings, and one
- * more to fit the next output, make up for none: how many of them lead to where no step is possible is chance. */
-static int made_up_for(const fu_run *run, double h)
-{
-    if (run->fixed_step <= 0.0) return 1;
-    return ldexp(h, DIVISIONS + 1) >= run->fixed_step ? DIVISIONS : 0;
-}
 
 /* Takes the step just made: `next` becomes `now`. */
 static void accept(fu_run *run, double h, fu_event event)
@@ -35,7 +25,7 @@ static void accept(fu_run *run, double h, fu_event event)
     if (moved > run->motion) run->motion = moved;
     run->controlled_motion = run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
     fu_watch_now(run, event);
-    if (run->net_rejections > 0) run->net_rejections -= made_up_for(run, h);
+    run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
     fu_statistics *s = &run->statistics;
     ++s->steps;
     if (s->steps == 1 || h < s->h_min) s->h_min = h;
