@@ -150,7 +150,7 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
     if part.points is not None:
         changes["points"] = [_point(axes, point) for point in part.points]
     changes |= {name: _direction(axes, getattr(part, name)) for name in ("up", "velocity", "angular_velocity")}
-    if part.dim == 2:  # whose height is normal x tangent in z = 0
+    if part.dim == 2 and abs(axes.plane.into(part.normal)[2]) > 1 - FLAT:  # its height is normal x tangent in z = 0
         changes["up"] = (0.0, 1.0, 0.0)
     made = Cable(**part.entries() | changes)
     if part.shape == "hanging":
