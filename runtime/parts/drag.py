@@ -22,10 +22,10 @@ class Drag(Part):
 
     on: the cable, all of it, or the body; fluid: its name, the scene's only one if not given.
     Of a cable: ``normal`` and ``tangential``, the coefficients of Morison's equation, whose forces a length are
-    ρ/2 d normal |w_n| w_n across and ρ/2 π d tangential |w_t| w_t along, with the velocity w of the fluid past it;
+    ``ρ/2 d normal |w_n| w_n`` across and ``ρ/2 π d tangential |w_t| w_t`` along, with the fluid's velocity w past it;
     ``diameter`` d in m and ``displaced_area``, the volume a length that the cable displaces, in m², are those of the
     section (of a tube with its inside) if not given; 0 for no buoyancy.
-    Of a body: ``area`` (m²) and ``coefficient`` of the force ρ/2 area coefficient |w| w at its centre of pressure
+    Of a body: ``area`` (m²) and ``coefficient`` of the force ``ρ/2 area coefficient |w| w`` at its centre of pressure
     ``at`` (m, body axes), and the displaced ``volume`` (m³), whose buoyancy acts there, too.
     Added mass is not in it.
     """
