@@ -36,8 +36,6 @@ from .blocks import named_blocks
 from .cable import Cable, Term
 from .points import Point, gathered
 
-STIFFNESS_DOC = "axial and bending stiffness EA, EI, and EA of the strain's upper modes"
-
 
 def traits(strain: str, curvature: str) -> LawTraits:
     """Return what the law with these measures is; it is damped like the full law with the same strain."""
@@ -46,6 +44,9 @@ def traits(strain: str, curvature: str) -> LawTraits:
 
 class AssumedCable(Cable):
     """The law over an element's strain vectors; the damping is that of the law without assumed strain."""
+
+    stiffness_units = "N, N m^2, N"
+    stiffness_doc = "axial and bending stiffness EA, EI, and EA of the strain's upper modes"
 
     def __init__(self, gram: Gram, strain: str, curvature: str):
         super().__init__(gram, strain, curvature)
@@ -65,19 +66,6 @@ class AssumedCable(Cable):
         if self.curvature == "exact" or self.strain == "engineering":
             return super().axial_points
         return self.points((3 * self.degree - 1) // 2)
-
-    def constants(self, program: Program) -> np.ndarray:
-        """Declare the input A (3,): EA in N, EI in N m^2, EA of the upper modes in N; return it."""
-        return program.input("A", 3, "N, N m^2, N", STIFFNESS_DOC)
-
-    def section_stiffness(self, program: Program) -> np.ndarray:
-        """Declare the input S (3,): EA in N, EI in N m^2, EA of the upper modes in N; return it."""
-        return program.input("S", 3, "N, N m^2, N", STIFFNESS_DOC)
-
-    def set_up(self, program: Program) -> None:
-        """Declare the inputs l and S, and the output A, which is S."""
-        program.input("l", (), "m", "length of the element")
-        program.output("A", self.section_stiffness(program), "N, N m^2, N", STIFFNESS_DOC)
 
     def _terms(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> Iterator[Term]:
         """Yield the energy of bending point by point, with strain and stress of the membrane."""

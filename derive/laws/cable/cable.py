@@ -29,7 +29,6 @@ from .points import Point, gathered, on_vectors, values
 from .section import resultants
 
 SOURCE = "Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)"
-STIFFNESS_DOC = "axial and bending stiffness EA, EI"
 
 
 @dataclass(frozen=True)
@@ -76,6 +75,7 @@ class Cable(Damping):
     """The law over an element's strain vectors."""
 
     source, set_up_kernel = SOURCE, "stiffness"
+    stiffness_units, stiffness_doc = "N, N m^2", "axial and bending stiffness EA, EI"
 
     def __init__(self, gram: Gram, strain: str, curvature: str):
         self.gram, self.strain, self.curvature = gram, strain, curvature
@@ -122,17 +122,20 @@ class Cable(Damping):
         return self.points(self.degree - 1 if self.curvature == "linear" else max(5, self.degree))
 
     def constants(self, program: Program) -> np.ndarray:
-        """Declare the input A (2,): EA in N, EI in N m^2; return it."""
-        return program.input("A", 2, "N, N m^2", STIFFNESS_DOC)
+        """Declare the input A, which is S; return it."""
+        return self._stiffness(program, "A")
 
     def section_stiffness(self, program: Program) -> np.ndarray:
-        """Declare the input S (2,): EA in N, EI in N m^2; return it."""
-        return program.input("S", 2, "N, N m^2", STIFFNESS_DOC)
+        """Declare the input S: EA in N, EI in N m^2, and what else ``stiffness_doc`` tells of; return it."""
+        return self._stiffness(program, "S")
+
+    def _stiffness(self, program: Program, name: str) -> np.ndarray:
+        return program.input(name, len(self.stiffness_units.split(", ")), self.stiffness_units, self.stiffness_doc)
 
     def set_up(self, program: Program) -> None:
         """Declare the inputs l and S, and the output A, which is S."""
         program.input("l", (), "m", "length of the element")
-        program.output("A", self.section_stiffness(program), "N, N m^2", STIFFNESS_DOC)
+        program.output("A", self.section_stiffness(program), self.stiffness_units, self.stiffness_doc)
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr,
                        c0: np.ndarray | None = None) -> tuple:

@@ -20,9 +20,6 @@ from ...codegen.program import Program
 from ...spec import LawTraits
 from .cable import Cable
 
-UNITS = "N, N m^2, 1, 1"
-STIFFNESS_DOC = "axial and bending stiffness EA, EI; part of EA that is left in compression; transition strain"
-
 
 def traits(strain: str, curvature: str) -> LawTraits:
     """Return what the law with these measures is; it is damped like the full law with the same strain."""
@@ -32,23 +29,13 @@ def traits(strain: str, curvature: str) -> LawTraits:
 class TensionOnlyCable(Cable):
     """The law over an element's strain vectors; the damping is that of the law that resists compression, too."""
 
+    stiffness_units = "N, N m^2, 1, 1"
+    stiffness_doc = "axial and bending stiffness EA, EI; part of EA that is left in compression; transition strain"
+
     def __init__(self, gram: Gram, strain: str, curvature: str):
         super().__init__(gram, strain, curvature)
         self.name += "_tension_only"
         self.doc += ", which gives way in compression"
-
-    def constants(self, program: Program) -> np.ndarray:
-        """Declare the input A (4,): EA in N, EI in N m^2, rho, transition strain; return it."""
-        return program.input("A", 4, UNITS, STIFFNESS_DOC)
-
-    def section_stiffness(self, program: Program) -> np.ndarray:
-        """Declare the input S (4,): EA in N, EI in N m^2, rho, transition strain; return it."""
-        return program.input("S", 4, UNITS, STIFFNESS_DOC)
-
-    def set_up(self, program: Program) -> None:
-        """Declare the inputs l and S, and the output A, which is S."""
-        program.input("l", (), "m", "length of the element")
-        program.output("A", self.section_stiffness(program), UNITS, STIFFNESS_DOC)
 
     def twice_axial_energy(self, program: Program, tag: str, A: np.ndarray, stiffness: sp.Expr,
                            strain: sp.Expr) -> sp.Expr:
