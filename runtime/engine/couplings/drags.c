@@ -23,13 +23,6 @@ typedef struct {
     double dissipated, external; /* W */
 } powers;
 
-static double scalar_product(int n, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int d = 0; d < n; ++d) sum += a[d] * b[d];
-    return sum;
-}
-
 /* Returns the factor of a profile at a height, and its derivative. */
 static double profile_at(const fu_flow *flow, double height, double *slope)
 {
@@ -52,7 +45,7 @@ static void act(const fu_model *model, const fu_drag *drag, double t, const plac
     const int dim = model->dim;
     const double signal = flow->signal < 0 ? 1.0 : fu_signal_at(&model->signals[flow->signal], t, 0, 0);
     double slope;
-    const double factor = profile_at(flow, flow->base + scalar_product(dim, flow->up, at->r), &slope);
+    const double factor = profile_at(flow, flow->base + fu_dot(dim, flow->up, at->r), &slope);
     for (int d = 0; d < dim; ++d) {
         out->U[d] = signal * factor * flow->velocity[d];
         out->by_height[d] = signal * slope * flow->velocity[d];
@@ -74,8 +67,8 @@ static void whole_force(const fu_model *model, const fu_drag *drag, const action
 static void add_powers(const fu_model *model, const fu_drag *drag, const place *at, const action *a, double weight, powers *sum)
 {
     const double part = weight * model->load_fraction;
-    sum->dissipated += part * scalar_product(model->dim, a->f, a->w);
-    sum->external += part * (scalar_product(model->dim, a->f, a->U) + scalar_product(model->dim, drag->buoyancy, at->v));
+    sum->dissipated += part * fu_dot(model->dim, a->f, a->w);
+    sum->external += part * (fu_dot(model->dim, a->f, a->U) + fu_dot(model->dim, drag->buoyancy, at->v));
 }
 
 /* A point of quadrature on an element: its weight in m, shape functions and their slopes. */
@@ -153,7 +146,7 @@ static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu
             place_on_axis(model, drag, state->q + first, state->v + first, point, &at);
             act(model, drag, state->t, &at, &a);
             for (int i = 0; i < dim; ++i) {
-                const double by_height = scalar_product(dim, a.by_w + i * dim, a.by_height);
+                const double by_height = fu_dot(dim, a.by_w + i * dim, a.by_height);
                 for (int j = 0; j < dim; ++j) {
                     const double by_r = by_height * drag->flow.up[j] - weights.rate * a.by_w[i * dim + j];
                     for (int k = 0; k < n; ++k)

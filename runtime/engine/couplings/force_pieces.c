@@ -26,9 +26,7 @@ const double *fu_piece_parameters(const fu_point_force *between, int piece)
 
 static double norm(int dim, const double *gap)
 {
-    double square = 0.0;
-    for (int d = 0; d < dim; ++d) square += gap[d] * gap[d];
-    return sqrt(square);
+    return sqrt(fu_dot(dim, gap, gap));
 }
 
 static int piece_at_distance(const fu_point_force *between, double distance)
@@ -57,11 +55,10 @@ void fu_touch_piece(const fu_model *model, const fu_coupling *coupling, fu_state
 static double margin_of_sense(const fu_point_force *between, int piece, const double *gap, const double *rate, double distance)
 {
     const int sense = between->senses[piece];
-    double force[3], tension = 0.0;
+    double force[3];
     if (sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE) return INFINITY;
     between->law->force(fu_piece_parameters(between, piece), gap, rate, force);
-    for (int d = 0; d < between->dim; ++d) tension += force[d] * gap[d] / distance;
-    return sense * between->compliance * tension;
+    return sense * between->compliance * fu_dot(between->dim, force, gap) / distance;
 }
 
 /* How the force may pass from its piece to another: `margin` is negative while it stays, m. */

@@ -38,4 +38,12 @@ typedef struct {
     double inertia, rate, stiffness;
 } fu_weights;
 
+/* Returns the scalar product of two vectors of n components. */
+static inline double fu_dot(int n, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
 #endif

@@ -89,13 +89,6 @@ static void turn(const moving *m, int k, const double omega[3], double *turned)
     }
 }
 
-static double dot(int n, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < n; ++i) sum += a[i] * b[i];
-    return sum;
-}
-
 /* Makes f of D (weight dE - relaxed), and dE; returns the work of the one with the other. */
 static double element_force(const moving *m, int k, const double *relaxed, double *f, double *dE)
 {
@@ -106,7 +99,7 @@ static double element_force(const moving *m, int k, const double *relaxed, doubl
     if (cable->law->spins) turn(m, k, back, v);
     cable->law->algorithmic_force(fu_element_length(cable, k), m->q + entry_of(cable, k), v, fu_element_constants(cable, k),
                                   m->weight, relaxed, f, dE);
-    return dot(cable->coordinates, f, v);
+    return fu_dot(cable->coordinates, f, v);
 }
 
 /* Solves N x = b, N symmetric and not negative; x is zero where N is. */
@@ -131,7 +124,7 @@ static void solve(double N[9], double b[3], double x[3])
     x[0] = x[1] = x[2] = 0.0;
     while (n--) {
         const int i = order[n];
-        x[i] = (b[i] - dot(3, N + 3 * i, x)) / N[4 * i];
+        x[i] = (b[i] - fu_dot(3, N + 3 * i, x)) / N[4 * i];
     }
 }
 
@@ -172,12 +165,12 @@ static moving without_turn(const fu_run *run, const fu_cable *cable, const doubl
         for (int d = 0; d < 3; ++d) {
             const double axis[3] = {d == 0, d == 1, d == 2};
             turn(&m, k, axis, turns[d]);
-            M[d] += dot(cable->coordinates, f, turns[d]);
+            M[d] += fu_dot(cable->coordinates, f, turns[d]);
         }
         for (int d = 0; d < 3; ++d) {
             cable->law->algorithmic_force(fu_element_length(cable, k), q + entry_of(cable, k), turns[d],
                                           fu_element_constants(cable, k), weight, none, f, dE);
-            for (int i = 0; i < 3; ++i) N[3 * d + i] += dot(cable->coordinates, f, turns[i]);
+            for (int i = 0; i < 3; ++i) N[3 * d + i] += fu_dot(cable->coordinates, f, turns[i]);
         }
     }
     solve(N, M, m.omega);
@@ -236,7 +229,7 @@ double fu_algorithmic_account(fu_run *run, const double *q)
             double f[FU_MAX_COORDINATES], relaxed[FU_MAX_RATES], dE[FU_MAX_RATES];
             of_both(run, cable, k, relaxed);
             element_force(&m, k, relaxed, f, dE);
-            work += dot(cable->coordinates, f, psi);
+            work += fu_dot(cable->coordinates, f, psi);
             for (int i = 0; i < n; ++i) next[i] = now[i] + 2.0 * (a->lag * dE[i] - now[i]) / (2.0 * a->lag + 1.0);
             of_inertia(run, cable, k, relaxed);
             const double gained = element_force(&second, k, relaxed, f, dE);
