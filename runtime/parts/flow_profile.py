@@ -10,7 +10,7 @@ from pydantic import model_validator
 from .part import Part, part_of_table
 from .schemas import checked, tagged
 from .signal import TableSignal
-from .validation import list_of, not_negative, one_of, positive
+from .validation import check_function, list_of, not_negative, one_of, positive
 
 
 class Profile(Part):
@@ -51,11 +51,7 @@ class TableProfile(Profile):
 
     @model_validator(mode="after")
     def _is_a_function(self) -> TableProfile:
-        if len(self.height) != len(self.factors):
-            raise ValueError("height and factors must be of equal length, got "
-                             f"{len(self.height)} and {len(self.factors)}")
-        if not np.diff(self.height).min() > 0:
-            raise ValueError("height must increase from each entry to the next")
+        check_function(self.height, "height", "m", self.factors, "factors")
         return self
 
     def _table(self) -> TableSignal:

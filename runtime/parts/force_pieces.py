@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import model_validator
 
 from .part import Part
-from .validation import list_of, show
+from .validation import check_function, list_of, show
 
 PUSHES_ALONE, PULLS_AND_PUSHES, PULLS_ALONE, HAS_NO_FORCE = -1, 0, 1, 2
 """What a piece of a law may do, as in runtime/engine/include/point_force.h."""
@@ -29,14 +29,12 @@ class ForceTable(Part):
 
     @model_validator(mode="after")
     def _is_a_function(self) -> ForceTable:
-        if len(self.extension) != len(self.tension):
-            raise ValueError("extension and tension must be of equal length, got "
-                             f"{len(self.extension)} and {len(self.tension)}")
+        check_function(self.extension, "extension", "m", self.tension, "tension")
         steps = np.diff(self.extension)
         if not steps.min() > 1e-12 * (1 + np.abs(self.extension).max()):
             k = int(np.argmin(steps))
-            raise ValueError(f"extension must increase, got {show(self.extension[k + 1], 'm')} after "
-                             f"{show(self.extension[k], 'm')}")
+            raise ValueError(f"extension must increase by more than rounding, got {show(self.extension[k + 1], 'm')} "
+                             f"after {show(self.extension[k], 'm')}")
         return self
 
 

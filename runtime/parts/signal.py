@@ -18,7 +18,7 @@ from pydantic import Field, model_validator
 
 from .part import Part, part_of_table
 from .schemas import checked, tagged
-from .validation import finite, list_of, one_of, positive, show
+from .validation import check_function, finite, list_of, one_of, positive, show
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
@@ -149,12 +149,7 @@ class TableSignal(Signal):
 
     @model_validator(mode="after")
     def _is_a_function(self) -> TableSignal:
-        if len(self.time) != len(self.values):
-            raise ValueError(f"time and value must be of equal length, got {len(self.time)} and {len(self.values)}")
-        steps = np.diff(self.time)
-        if not steps.min() > 0:
-            k = int(np.argmax(steps <= 0))
-            raise ValueError(f"time must increase, got {show(self.time[k + 1], 's')} after {show(self.time[k], 's')}")
+        check_function(self.time, "time", "s", self.values, "value")
         _check_apart(self.time)
         return self
 

@@ -9,6 +9,7 @@ precision: the sixth power of a radius, for instance, is a moment of its section
 
 from __future__ import annotations
 
+import itertools
 import math
 import reprlib
 from collections.abc import Callable, Iterable
@@ -204,6 +205,18 @@ def list_of(unit: str = "", *, least: int) -> PlainValidator:
         return vector(value, unit, len(value))
 
     return checked(check, list_schema(unit, least, None))
+
+
+def check_function(arguments: tuple[float, ...], of: str, unit: str, values: tuple[float, ...], name: str) -> None:
+    """Raise ValueError unless a table has a value for each argument, and the arguments increase.
+
+    of, name: what messages call arguments and values; unit: of the arguments.
+    """
+    if len(arguments) != len(values):
+        raise ValueError(f"{of} and {name} must be of equal length, got {len(arguments)} and {len(values)}")
+    for before, after in itertools.pairwise(arguments):
+        if not after > before:
+            raise ValueError(f"{of} must increase, got {show(after, unit)} after {show(before, unit)}")
 
 
 def names() -> PlainValidator:
