@@ -53,7 +53,7 @@ def softened(scene: S, names: Collection[str]) -> S:
     def soft(cable: Cable) -> Cable:
         section = GeneralSection(area=cable.section.moments()[0],
                                  second_moment_about_z=SOFTER * cable.section.second_moment_about_z)
-        return Cable(**cable.entries() | {"section": section})
+        return cable.remade({"section": section})
 
     return scene.with_parts(soft(part) if isinstance(part, Cable) and part.name in names else part
                             for part in scene.parts())

@@ -20,6 +20,7 @@ from .fluid import Fluid
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
 from .part import Part
+from .paths import COMPONENTS
 from .plane import FLAT, Plane, aligned, called, flattened
 from .plane_axes import PlaneAxes
 from .rigid_body import RigidBody
@@ -29,8 +30,6 @@ from .slide import Slide
 from .support import Motion, Rotation
 
 S = TypeVar("S", bound=SceneData)
-
-AXES = ("x", "y", "z")
 
 
 def laid(scene: S) -> S:
@@ -264,7 +263,7 @@ def _passing(event: Event, scene: SceneData) -> Callable[[float, Any], float]:
     """Return the function of time and state that passes zero where the quantity of an event passes its value."""
     assert event.quantity is not None, f"{event.where} has a function"
     name, what, axis = event.quantity.split(".")
-    k, value = AXES.index(axis), event.value
+    k, value = COMPONENTS[axis], event.value
     if name in scene.bodies:
         return lambda time, state: state[f"{name}.{what}"][k] - value
     assert event.s is not None, f"{event.where} is not complete"

@@ -93,20 +93,27 @@ S = TypeVar("S", bound=SceneData)
 def changed(scene: S, values: Mapping[Path, Any]) -> S:
     """Return a scene like this one with these values, all changed at once. Raises SceneError."""
     parts = _parts(scene)
-    gravity = list(scene.gravity)
     settings: dict[str, dict[str, Any]] = {name: {} for name in SETTINGS}
     for path, value in values.items():
-        if path.head == GRAVITY:
-            gravity[COMPONENTS[path.entries[0]]] = value
-            _check_end(path, 1)
-        elif path.part is None:
+        if path.part is None and path.head != GRAVITY:
             settings[path.head][path.entries[0]] = value
             _check_end(path, 1)
-    made = scene.changed([(parts[k], entries) for k, entries in changes_of(scene, values).items()], gravity)
+    made = scene.changed([(parts[k], entries) for k, entries in changes_of(scene, values).items()],
+                         gravity_of(scene, values))
     for name, table in settings.items():
         if table:
             setattr(made, f"{name}_settings", getattr(scene, f"{name}_settings") | table)
     return made
+
+
+def gravity_of(scene: SceneData, values: Mapping[Path, Any]) -> list[Any]:
+    """Return gravity with these values. Raises SceneError."""
+    gravity: list[Any] = list(scene.gravity)
+    for path, value in values.items():
+        if path.head == GRAVITY and path.part is None:
+            gravity[COMPONENTS[path.entries[0]]] = value
+            _check_end(path, 1)
+    return gravity
 
 
 def changes_of(scene: SceneData, values: Mapping[Path, Any]) -> dict[int, dict[str, Any]]:

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import FunicularWarning, SceneError
 from ..parts.arc_lengths import following, remade
 from ..parts.cable import Cable
-from ..parts.paths import Path, changes_of, path_of, unit_of, value_at
+from ..parts.paths import Path, changes_of, gravity_of, path_of, unit_of, value_at
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.settings import Limits
@@ -80,14 +80,11 @@ class Parameters(Generic[S]):
         """Return the scene with these values (n,); places on cables keep their part of the length. Raises SceneError.
         """
         given = dict(zip(self.paths, values.tolist(), strict=True))
-        gravity = list(self.scene.gravity)
-        for path, value in given.items():
-            if path.part is None:
-                gravity["xyz".index(path.entries[0])] = value
         changes = following(self.scene, changes_of(self.scene, given))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)  # they stand in the scene's messages
-            made = self.scene.changed([(self.parts[k], entries) for k, entries in changes.items()], gravity)
+            made = self.scene.changed([(self.parts[k], entries) for k, entries in changes.items()],
+                                      gravity_of(self.scene, given))
         made.equilibrium_settings = {name: value for name, value in made.equilibrium_settings.items()
                                      if name not in ("adjust", "to")}
         return made

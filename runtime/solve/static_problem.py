@@ -43,7 +43,7 @@ class StaticState:
         self.load(1.0)
         unknown = self.model.unknown_of_dof
         free = unknown >= 0
-        self.weight = np.zeros(len(self.residual()))  # forces and arc-lengths do not count in the size of a correction
+        self.weight = np.zeros(self.engine.unknowns)  # forces and arc-lengths do not count in the size of a correction
         self.weight[unknown[free]] = self.model.weight[free]
         self.iterations = 0
 
