@@ -182,3 +182,19 @@ def test_scene_files_have_them(tmp_path):
     file.write_text(scene.to_toml())
     again = fu.load_scene(file)
     assert again.point_forces["dropper"] == scene.point_forces["dropper"]
+
+
+@pytest.mark.parametrize("law, loses", [
+    ({"stiffness": 100.0, "tension_only": True}, False), ({"stiffness": 100.0, "free_play": 1.2}, False),
+    ({"stiffness": 100.0, "free_play": 0.1}, True), ({"table": TABLE}, True),
+    ({"table": TABLE, "tension_only": True}, False)])
+def test_ends_that_meet_are_refused_where_the_spring_then_has_a_force(law, loses):
+    scene = fu.Scene()
+    scene.rigid_body("m", mass=MASS, inertia=(1, 1, 1), position=(0, 0, 0))
+    if loses:
+        with pytest.raises(fu.SceneError, match="its direction is lost"):
+            scene.spring("m", (0, 0, 0), length=0.5, **law)
+        return
+    scene.spring("m", (0, 0, 0), length=0.5, **law)
+    run = scene.run(duration=0.1, tol=1e-6)
+    assert run["m.position"][-1, 1] == pytest.approx(-GRAVITY * 0.1**2 / 2, rel=1e-9)

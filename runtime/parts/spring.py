@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Self
 
 from pydantic import model_validator
 
-from .force_pieces import ForceTable, Piece, pulling, tabulated, with_play
+from .force_pieces import HAS_NO_FORCE, ForceTable, Piece, pulling, tabulated, with_play
 from .point_force import PointForce
 from .validation import Flag, not_negative
 
@@ -53,9 +53,10 @@ class Spring(PointForce):
     @property
     def loses_direction(self) -> bool:
         """Return whether its force has no direction where its points meet: not if it is free of force there."""
-        if self.has_pieces:
-            return False
-        return self.length != 0.0
+        if self.length is None or not self.has_pieces:
+            return self.length != 0.0
+        meeting = next(piece for piece in self.pieces() if self.length + piece.end > 0)
+        return meeting.sense != HAS_NO_FORCE
 
     def at_distance(self, distance: float) -> Self:
         """Return the spring with its length, the distance of its points at the start if not given."""
