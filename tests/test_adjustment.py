@@ -24,7 +24,7 @@ def wire(elements=40, length=50.3, **settings):
 
 
 def hung():
-    """Return a body on two springs, side by side, that hangs on a third one."""
+    """Return a body that hangs on a spring."""
     scene = fu.Scene()
     scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(0, -1, 0))
     scene.spring((0, 0, 0), "A", name="spring", stiffness=100.0, length=0.5)
@@ -189,6 +189,7 @@ def test_a_dropper_that_begins_slack_is_made_taut_and_none_pushes():
     ({"adjust": ["spring.lenght"], "to": {"A.position.y": 1.0}}, 'spring has no "lenght"; did you mean "length"?'),
     ({"adjust": ["spring.a"], "to": {"A.position.y": 1.0}}, "not a number that can be adjusted"),
     ({"adjust": ["equilibrium.tolerance"], "to": {"A.position.y": 1.0}}, "settings cannot be adjusted"),
+    ({"adjust": ["gravity.y.z"], "to": {"A.position.y": 1.0}}, "gravity.y has no entries"),
     ({"adjust": ["spring.length"], "to": {"A.position": 1.0}}, "has three components; add .x, .y or .z"),
     ({"adjust": ["spring.length"], "to": {"spring.tension.x": 1.0}}, "has no components"),
     ({"adjust": ["spring.length"], "to": {"A.place.y": 1.0}}, "is no value of the state of rest"),

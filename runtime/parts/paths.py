@@ -127,9 +127,15 @@ def changes_of(scene: SceneData, values: Mapping[Path, Any]) -> dict[int, dict[s
 
 
 def value_at(scene: SceneData, path: Path) -> Any:
-    """Return what a path leads to in a scene, as plain data; None where the part has no such entry."""
+    """Return what a path leads to in a scene, as plain data; None where the part has no such entry.
+
+    Raises SceneError for entries of a component of gravity.
+    """
+    if path.part is None and path.head != GRAVITY:
+        return None
     if path.part is None:
-        return scene.gravity[COMPONENTS[path.entries[0]]] if path.head == GRAVITY else None
+        _check_end(path, 1)
+        return scene.gravity[COMPONENTS[path.entries[0]]]
     data: Any = plain_data(_parts(scene)[path.part].entries().get(path.entries[0]))
     for entry in path.entries[1:]:
         if isinstance(data, list):
