@@ -26,6 +26,7 @@ typedef struct {
 void fu_linearise(fu_run *run, double h, const double *change);
 double fu_clock(void);
 
+int fu_goes_on(const fu_run *run);
 int fu_carries_rest(const fu_run *run);
 int fu_newton_step(fu_run *run, const fu_newton *method, double h);
 void fu_predict_own(fu_run *run, double h);

@@ -189,7 +189,7 @@ static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_accept(&w.carried, run->model, h);
-    if (fu_carries_rest(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
+    if (fu_goes_on(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
     else fu_extrapolation_start(&w.past);
     fu_account_trapezoid(run, h);
 }

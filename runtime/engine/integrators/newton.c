@@ -93,6 +93,15 @@ static int blame(fu_run *run)
     return fu_fail(run, FU_ITERATION, run->work, coupling);
 }
 
+/* Counts the step just made for the matrix, which is made anew where going on with it costs more than steps did on the average,
+ * the matrix included. */
+static void count_for_matrix(fu_run *run, int iterations, int most)
+{
+    run->matrix_cost += iterations;
+    ++run->matrix_steps;
+    if ((double)iterations * run->matrix_steps > run->matrix_cost || iterations > most) run->factored = 0;
+}
+
 /* Iterates from the prediction with the matrix at hand; returns 0 where that converged. */
 static int iterate(fu_run *run, const fu_newton *method, double h)
 {
@@ -115,7 +124,8 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance ||
             (size <= run->round_off && (!method->to_rounding || ratio > STAGNANT))) {
             method->kinematics(run, h);
-            if (MANY * (i + 1) > method->most_iterations) run->factored = 0; /* made anew for the next step */
+            if (method->note_rest) count_for_matrix(run, i + 1, method->most_iterations / MANY);
+            else if (MANY * (i + 1) > method->most_iterations) run->factored = 0; /* made anew for the next step */
             return 0;
         }
         last = size;
@@ -163,15 +173,6 @@ static int leaves_little(const fu_run *run, double size, double contraction, dou
     return size <= run->round_off || (size * contraction <= enough && gap <= enough);
 }
 
-/* Counts the step just made for the matrix, which is made anew where going on with it costs more than steps did on the average,
- * the matrix included. */
-static void count_for_matrix(fu_run *run, int iterations, int most)
-{
-    run->matrix_cost += iterations;
-    ++run->matrix_steps;
-    if ((double)iterations * run->matrix_steps > run->matrix_cost || iterations > most) run->factored = 0;
-}
-
 /* Does the same where the steps to come make up for what is left: its residual is evaluated, and tells how much that is. */
 static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
 {
@@ -207,14 +208,21 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
     return 0;
 }
 
+/* Returns whether steps go on as they have: those of a fixed size that had to be divided, or are too coarse, do not. */
+int fu_goes_on(const fu_run *run)
+{
+    if (run->fixed_step <= 0.0) return 1;
+    return run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
+}
+
 /* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to
- * rounding instead, as their forces show gaps of 1e-12 m; so are fixed steps that had to be divided, or are too coarse. */
+ * rounding instead: a gap of 1e-14 m after a step of 1 ms takes a force of 1e-8 N for each kg in the next one, which vibrations of
+ * the scheme keep for long. So are fixed steps that had to be divided, or are too coarse. */
 int fu_carries_rest(const fu_run *run)
 {
     const fu_newton *method = run->integrator->newton;
-    if (!method || !method->note_rest) return 0;
-    if (run->fixed_step <= 0.0) return 1;
-    return !run->model->n_extra && run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
+    if (!method || !method->note_rest || !fu_goes_on(run)) return 0;
+    return run->fixed_step <= 0.0 || !run->model->n_extra;
 }
 
 /* Makes one step of size h from `now` to `next`; returns 0 where the Newton iteration converged. */
