@@ -130,6 +130,15 @@ static void close_gaps(fu_run *run, const fu_newton *method, double h)
     method->kinematics(run, h);
 }
 
+/* Returns whether an iteration may end after an increment of this size, which is `ratio` of the last. Increments that shrink no more
+ * are rounding, of which long chains of joints make more than one position has. */
+static int leaves_nothing(const fu_run *run, const fu_newton *method, double size, double ratio)
+{
+    if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance) return 1;
+    if (method->to_rounding) return size <= run->round_off && ratio > STAGNANT;
+    return size <= run->round_off || (ratio >= 1.0 && size <= BEYOND_ROUNDING * run->round_off);
+}
+
 /* Iterates from the prediction with the matrix at hand; returns 0 where that converged. */
 static int iterate(fu_run *run, const fu_newton *method, double h)
 {
@@ -149,8 +158,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
             if (ratio >= 1.0 && size > BEYOND_ROUNDING * run->round_off) return blame(run);
             run->contraction = ratio < QUICK ? QUICK : ratio > SLOWEST ? SLOWEST : ratio;
         }
-        if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance ||
-            (size <= run->round_off && (!method->to_rounding || ratio > STAGNANT))) {
+        if (leaves_nothing(run, method, size, ratio)) {
             method->kinematics(run, h);
             if (method->note_rest) count_for_matrix(run, i + 1, method->most_iterations / MANY);
             else if (MANY * (i + 1) > method->most_iterations) run->factored = 0; /* made anew for the next step */
