@@ -142,5 +142,6 @@ void fu_system_invert_band(fu_system *system);
 void fu_system_keep_border(fu_system *system, const fu_lapack *lapack, int columns);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);
 void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x);
+void fu_system_solve_border(const fu_system *system, const fu_lapack *lapack, double *x);
 
 #endif

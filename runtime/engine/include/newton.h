@@ -21,11 +21,14 @@ typedef struct {
     /* Notes what Newton leaves, in run->rhs, which the steps to come make up for; null: they do not, and what Newton leaves
      * acts on the motion like a force. */
     void (*note_rest)(fu_run *run, double h);
+    /* Leaves minus the scaled residual of the couplings' own equations in run->rhs, and zero for the dofs. */
+    void (*own_residual)(fu_run *run, double h);
 } fu_newton;
 
 void fu_linearise(fu_run *run, double h, const double *change);
 double fu_clock(void);
 
+int fu_goes_on(const fu_run *run);
 int fu_carries_rest(const fu_run *run);
 int fu_newton_step(fu_run *run, const fu_newton *method, double h);
 void fu_predict_own(fu_run *run, double h);

@@ -25,6 +25,8 @@ void fu_extrapolation_take(fu_extrapolation *past, const fu_model *model, double
     past->earlier = fu_take(scratch, taken, model->n_dof);
     past->slope = fu_take(scratch, taken, model->n_coordinates);
     past->slope_before = fu_take(scratch, taken, model->n_coordinates);
+    past->force_before = fu_take(scratch, taken, model->n_forces);
+    past->force_earlier = fu_take(scratch, taken, model->n_forces);
     past->last = (fu_last_steps *)fu_take(scratch, taken, FU_DOUBLES(1, fu_last_steps));
 }
 
@@ -68,13 +70,24 @@ static void predict_accelerations(const fu_extrapolation *past, fu_run *run, fac
     for (int i = 0; i < model->n_dof; ++i) run->next.a[i] = rest * a[i] + run->work[i];
 }
 
-/* Makes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola. */
+/* Makes the forces of a first `next`, which go with accelerations. Those that have not changed stay as they are, as those of
+ * redundant rows do. Steps that the error chooses gain nothing by it: they are as large as Newton's method takes them. */
+static void predict_forces(const fu_extrapolation *past, fu_run *run, factors f)
+{
+    const double *now = run->now.forces;
+    for (int i = 0; i < run->model->n_forces; ++i)
+        if (now[i] != past->force_before[i])
+            run->next.forces[i] = f.now * now[i] + f.before * past->force_before[i] + f.earlier * past->force_earlier[i];
+}
+
+/* Makes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola, and forces. */
 void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, double h)
 {
     const fu_last_steps *last = past->last;
     const factors f = factors_of(last, (int)last->degree, rest, h);
     predict_accelerations(past, run, f, rest);
     fu_predict_own(run, h);
+    if (last->degree > 0 && run->fixed_step > 0.0) predict_forces(past, run, f);
     if (last->steps < 2) return;
     const double bend = h * (h + last->h) / (last->h + last->h_before);
     for (int i = 0; i < run->model->n_coordinates; ++i)
@@ -99,6 +112,7 @@ void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, do
 {
     const size_t dofs = sizeof(double) * (size_t)run->model->n_dof;
     const size_t coordinates = sizeof(double) * (size_t)run->model->n_coordinates;
+    const size_t forces = sizeof(double) * (size_t)run->model->n_forces;
     fu_last_steps *last = past->last;
     int best = BY_VELOCITIES;
     double least = INFINITY;
@@ -110,6 +124,8 @@ void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, do
     }
     memcpy(past->earlier, past->before, dofs);
     memcpy(past->before, run->now.a, dofs);
+    memcpy(past->force_earlier, past->force_before, forces);
+    memcpy(past->force_before, run->now.forces, forces);
     memcpy(past->slope_before, past->slope, coordinates);
     memcpy(past->slope, run->s_slope, coordinates);
     *last = (fu_last_steps){h, last->h, last->steps + 1, best};

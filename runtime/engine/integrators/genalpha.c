@@ -157,13 +157,21 @@ static void residual(fu_run *run, double h)
     fu_carried_residual_add(&w.carried, run, at.weights.stiffness);
 }
 
+/* Makes minus the residual of the couplings' own equations, beside zero for the dofs. */
+static void own_residual(fu_run *run, double h)
+{
+    const fu_equations at = equations(run, h);
+    fu_coupling_residuals(run->model, &at, run->force, fu_own(run));
+    memset(run->rhs, 0, sizeof(double) * (size_t)(run->model->n_band + run->model->n_border_dof));
+}
+
 static void note_rest(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_note(&w.carried, run, sigma(scheme_of(run), h));
 }
 
-static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0, note_rest};
+static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0, note_rest, own_residual};
 
 static int step(fu_run *run, double h)
 {
@@ -189,7 +197,7 @@ static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_accept(&w.carried, run->model, h);
-    if (fu_carries_rest(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
+    if (fu_goes_on(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
     else fu_extrapolation_start(&w.past);
     fu_account_trapezoid(run, h);
 }

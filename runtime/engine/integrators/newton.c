@@ -93,12 +93,58 @@ static int blame(fu_run *run)
     return fu_fail(run, FU_ITERATION, run->work, coupling);
 }
 
+/* Counts the step just made for the matrix, which is made anew where going on with it costs more than steps did on the average,
+ * the matrix included. */
+static void count_for_matrix(fu_run *run, int iterations, int most)
+{
+    run->matrix_cost += iterations;
+    ++run->matrix_steps;
+    if ((double)iterations * run->matrix_steps > run->matrix_cost || iterations > most) run->factored = 0;
+}
+
+/* Returns the largest gap of a constraint in run->rhs, m. */
+static double largest_gap(fu_run *run)
+{
+    const fu_model *model = run->model;
+    const double *own = fu_own(run);
+    double gap = 0.0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        for (int i = 0; i < c->n_forces; ++i)
+            gap = fmax(gap, fabs(own[c->unknown + c->n_coordinates + i]) / c->scale[i]);
+    }
+    return gap;
+}
+
+/* Closes the gaps that an iteration has left, with the factored matrix, as if the dofs' own equations were linear: gaps come of
+ * directions that have turned since it was made, and are the most of what the next iteration would mend. This takes no forces
+ * of cables and no substitution in their chains; without chains it would take as much as an iteration. */
+static void close_gaps(fu_run *run, const fu_newton *method, double h)
+{
+    const fu_model *model = run->model;
+    if (!method->own_residual || !model->n_extra || !model->n_band) return;
+    method->own_residual(run, h);
+    if (largest_gap(run) <= run->round_off) return;
+    fu_system_solve_border(&run->newton, model->lapack, run->rhs);
+    method->apply(run, h);
+    method->kinematics(run, h);
+}
+
+/* Returns whether an iteration may end after an increment of this size, which is `ratio` of the last. Increments that shrink no more
+ * are rounding, of which long chains of joints make more than one position has. */
+static int leaves_nothing(const fu_run *run, const fu_newton *method, double size, double ratio)
+{
+    if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance) return 1;
+    if (method->to_rounding) return size <= run->round_off && ratio > STAGNANT;
+    return size <= run->round_off || (ratio >= 1.0 && size <= BEYOND_ROUNDING * run->round_off);
+}
+
 /* Iterates from the prediction with the matrix at hand; returns 0 where that converged. */
 static int iterate(fu_run *run, const fu_newton *method, double h)
 {
     double last = 0.0, ratio = 0.0;
+    method->kinematics(run, h);
     for (int i = 0; i < method->most_iterations; ++i) {
-        method->kinematics(run, h);
         method->residual(run, h);
         if (!run->factored && factor(run, method, h)) return 1;
         const double begin = fu_clock();
@@ -112,17 +158,18 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
             if (ratio >= 1.0 && size > BEYOND_ROUNDING * run->round_off) return blame(run);
             run->contraction = ratio < QUICK ? QUICK : ratio > SLOWEST ? SLOWEST : ratio;
         }
-        if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance ||
-            (size <= run->round_off && (!method->to_rounding || ratio > STAGNANT))) {
+        if (leaves_nothing(run, method, size, ratio)) {
             method->kinematics(run, h);
-            if (MANY * (i + 1) > method->most_iterations) run->factored = 0; /* made anew for the next step */
+            if (method->note_rest) count_for_matrix(run, i + 1, method->most_iterations / MANY);
+            else if (MANY * (i + 1) > method->most_iterations) run->factored = 0; /* made anew for the next step */
             return 0;
         }
         last = size;
+        method->kinematics(run, h);
+        close_gaps(run, method, h);
     }
     if (last > BEYOND_ROUNDING * run->round_off) return blame(run);
-    method->kinematics(run, h); /* rounding: long chains of joints make more of it than one position has */
-    run->factored = 0;
+    run->factored = 0; /* rounding: long chains of joints make more of it than one position has */
     return 0;
 }
 
@@ -163,15 +210,6 @@ static int leaves_little(const fu_run *run, double size, double contraction, dou
     return size <= run->round_off || (size * contraction <= enough && gap <= enough);
 }
 
-/* Counts the step just made for the matrix, which is made anew where going on with it costs more than steps did on the average,
- * the matrix included. */
-static void count_for_matrix(fu_run *run, int iterations, int most)
-{
-    run->matrix_cost += iterations;
-    ++run->matrix_steps;
-    if ((double)iterations * run->matrix_steps > run->matrix_cost || iterations > most) run->factored = 0;
-}
-
 /* Does the same where the steps to come make up for what is left: its residual is evaluated, and tells how much that is. */
 static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
 {
@@ -207,14 +245,21 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
     return 0;
 }
 
+/* Returns whether steps go on as they have: those of a fixed size that had to be divided, or are too coarse, do not. */
+int fu_goes_on(const fu_run *run)
+{
+    if (run->fixed_step <= 0.0) return 1;
+    return run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
+}
+
 /* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to
- * rounding instead, as their forces show gaps of 1e-12 m; so are fixed steps that had to be divided, or are too coarse. */
+ * rounding instead: a gap of 1e-14 m after a step of 1 ms takes a force of 1e-8 N for each kg in the next one, which vibrations of
+ * the scheme keep for long. So are fixed steps that had to be divided, or are too coarse. */
 int fu_carries_rest(const fu_run *run)
 {
     const fu_newton *method = run->integrator->newton;
-    if (!method || !method->note_rest) return 0;
-    if (run->fixed_step <= 0.0) return 1;
-    return !run->model->n_extra && run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
+    if (!method || !method->note_rest || !fu_goes_on(run)) return 0;
+    return run->fixed_step <= 0.0 || !run->model->n_extra;
 }
 
 /* Makes one step of size h from `now` to `next`; returns 0 where the Newton iteration converged. */

@@ -228,22 +228,18 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
     return info;
 }
 
-/* Solves in place: x is the right side, then the solution, and goes on FU_BAND_BEYOND beyond the unknowns. These are made zero here: a step
- * that has overflowed leaves no numbers in them, and no later step would have any. */
-void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
+/* Solves with the Schur complement in place. */
+static void solve_border(const fu_system *s, const fu_lapack *lapack, double *y)
 {
     int m = s->m, one = 1, info;
-    double *y = x + s->n;
-    for (int i = m; i < m + FU_BAND_BEYOND(s->width); ++i) y[i] = 0.0;
-    for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, (fu_span){s->chains[c], s->chains[c + 1]}, x);
-    if (!m) return;
-    for (int c = 0; c < s->n_chains; ++c) {
-        const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[c];
-        for (const fu_piece *r = rows; r < rows + s->n_rows[c]; ++r) y[r->k] -= times(s, r, r->rows, x);
-    }
     if (s->fronts->n > 1) fu_fronts_solve(s->fronts, &s->factors, y);
     else if (m <= FU_SMALL_MOST) fu_small_solve(m, s->D, s->pivot_border, y);
     else lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
+}
+
+/* Takes from x, of the band, what the border's solution y adds to the right side there, K^-1 B y. */
+static void take_columns(const fu_system *s, const double *y, double *x)
+{
     for (int c = 0; c < s->n_chains; ++c) {
         const fu_piece *columns = s->columns + FU_HALVES * s->chain_start[c];
         for (const fu_piece *p = columns; p < columns + s->n_columns[c]; ++p) {
@@ -251,4 +247,36 @@ void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
             for (int i = p->rows.first; i < p->rows.end; ++i) x[i] -= scale * column[i];
         }
     }
+}
+
+/* Makes zero what goes on beyond the unknowns: a step that has overflowed leaves no numbers there, and no later step would have
+ * any. */
+static void clear_beyond(const fu_system *s, double *y)
+{
+    for (int i = s->m; i < s->m + FU_BAND_BEYOND(s->width); ++i) y[i] = 0.0;
+}
+
+/* Solves in place: x is the right side, then the solution, and goes on FU_BAND_BEYOND beyond the unknowns. */
+void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
+{
+    double *y = x + s->n;
+    clear_beyond(s, y);
+    for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, (fu_span){s->chains[c], s->chains[c + 1]}, x);
+    if (!s->m) return;
+    for (int c = 0; c < s->n_chains; ++c) {
+        const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[c];
+        for (const fu_piece *r = rows; r < rows + s->n_rows[c]; ++r) y[r->k] -= times(s, r, r->rows, x);
+    }
+    solve_border(s, lapack, y);
+    take_columns(s, y, x);
+}
+
+/* Does the same where the right side is zero in the band. */
+void fu_system_solve_border(const fu_system *s, const fu_lapack *lapack, double *x)
+{
+    double *y = x + s->n;
+    clear_beyond(s, y);
+    for (int i = 0; i < s->n; ++i) x[i] = 0.0;
+    solve_border(s, lapack, y);
+    take_columns(s, y, x);
 }
