@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, TypeVar
 
 from ..errors import SceneError, near
@@ -192,7 +193,13 @@ def unit_of(scene: SceneData, path: Path) -> str:
             part = part.entries()[entries.pop(0)]
         kind = type(part)
     assert kind is not None, "gravity, settings and parts are all there is"
-    return _unit(kind.model_json_schema(mode="validation").get("properties", {}).get(entries[0], {}))
+    return _unit_of_entry(kind, entries[0])
+
+
+@cache
+def _unit_of_entry(kind: type[Part], entry: str) -> str:
+    """Return the unit of an entry of a kind of part."""
+    return _unit(kind.model_json_schema(mode="validation").get("properties", {}).get(entry, {}))
 
 
 def _unit(schema: Any) -> str:

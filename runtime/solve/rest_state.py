@@ -10,12 +10,7 @@ import numpy as np
 from ..errors import SceneError, UnknownResultError, near
 from ..model.drag_forces import drag_forces
 from ..model.model import Model
-from ..model.states import (
-    body_state,
-    connection_states,
-    modal_state,
-    spatial,
-)
+from ..model.states import connection_states, free_states
 from ..named_arrays import NamedArrays
 from ..parts.paths import path_of, value_at
 from ..parts.plane import called
@@ -223,21 +218,10 @@ class RestState(NamedArrays):
             slide.place_at(float(s), model.cables[slide.cable])
 
     def _quantities(self) -> dict[str, np.ndarray]:
-        model, q = self.model, self.static_state["q"][None]
-        found = {}
-        for cable in model.cables:
-            vectors = spatial(q[0, cable.coordinates].reshape(cable.shape))
-            vectors = model.results(cable.name, {"nodal_vectors": vectors})["nodal_vectors"]
-            found[f"{cable.name}.nodal_vectors"] = vectors
-            found[f"{cable.name}.position"] = vectors[:, cable.vectors.index("r")]
-        for body in model.bodies:
-            state = body_state(model, body, q)
-            state |= modal_state(model, body, state, q) if body.modes else {}
-            found |= {f"{body.name}.{name}": value[0] for name, value in model.results(body.name, state).items()}
-        for k, slide in enumerate(model.slides):
-            found[f"{slide.name}.s"] = self.static_state["s"][k]
-            found |= {f"{slide.name}.{name}": value for name, value in
-                      model.results(slide.name, {"force": self.static_state["force"][k]}).items()}
+        model, kept = self.model, self.static_state
+        q = kept["q"][None]
+        free = free_states(model, q, kept["s"][None], kept["force"][None])
+        found = {f"{part}.{name}": value[0] for part, values in free.items() for name, value in values.items()}
         forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
                                    self.static_state["point_force"][None],
                                    self.load_fraction * drag_forces(self.model, q)[None])
