@@ -84,6 +84,15 @@ def _check_entry(scene: SceneData, path: Path) -> None:
                          f"{near(path.entries[0], known)} (known: {', '.join(known)})")
 
 
+def check_each_once(paths: Iterable[Path]) -> None:
+    """Raise SceneError where two of several paths lead to the same number, as a.y and a.1 do."""
+    first: dict[tuple[str, ...], str] = {}
+    for path in paths:
+        entries = tuple(str(COMPONENTS.get(entry, entry)) for entry in path.entries)
+        if (other := first.setdefault((path.head, *entries), path.text)) != path.text:
+            raise SceneError(path.where, f'is the same number as "{other}"', "name each number once")
+
+
 def _parts(scene: SceneData) -> list[Part]:
     return list(scene.parts())
 

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import FunicularWarning, SceneError
 from ..parts.arc_lengths import following, remade
 from ..parts.cable import Cable
-from ..parts.paths import Path, changes_of, gravity_of, path_of, unit_of, value_at
+from ..parts.paths import Path, changes_of, check_each_once, gravity_of, path_of, unit_of, value_at
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.settings import Limits
@@ -36,6 +36,7 @@ class Parameters(Generic[S]):
         """
         self.scene, self.names = scene, list(adjust)
         self.paths = [path_of(scene, name, ADJUST) for name in adjust]
+        check_each_once(self.paths)
         self.parts = list(scene.parts())
         self.values = np.array([self._value(path) for path in self.paths])
         self.units = [unit_of(scene, path) for path in self.paths]

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import SceneError, UnknownResultError, near
 from ..model.drag_forces import drag_forces
 from ..model.model import Model
-from ..model.states import connection_states, free_states
+from ..model.states import attachment_points, connection_states, free_states
 from ..named_arrays import NamedArrays
 from ..parts.paths import path_of, value_at
 from ..parts.plane import called
@@ -20,6 +20,8 @@ from .static_problem import StaticState
 
 SAME = 1e-12
 """Of an adjusted value: what rounding may change."""
+MOVED = 1e-6
+"""Of the scene's size: what is taken for the same place."""
 
 
 def in_loads(fraction: float) -> str:
@@ -200,13 +202,27 @@ class RestState(NamedArrays):
                                  f"was adjusted, here it is {here}", "take the state's own scene: rest.scene")
 
     def check_supports(self, model: Model) -> None:
-        """Raise SceneError where supports are drawn elsewhere in a freshly built model than they are in this state."""
+        """Raise SceneError where supports or ends of joints are drawn elsewhere in a freshly built model than they are
+        in this state.
+        """
+        q, size = self.static_state["q"][None], max(float(np.abs(model.q).max(initial=0.0)), 1.0)
+        for was, joint in zip(self.model.joints, model.joints, strict=True):
+            if joint.slide is not None:
+                continue
+            was_open, is_open = (np.subtract(*(attachment_points(of, end, q)[0] for end in each.attachments))
+                                 for of, each in ((self.model, was), (model, joint)))
+            moved = float(np.linalg.norm(is_open - was_open))
+            if "distance" in joint.kernel:
+                moved = max(moved, abs(joint.base - was.base))
+            if moved > MOVED * size:
+                raise SceneError("scene", f'the state to start from has an end of the joint "{joint.name}" '
+                                 f"{moved:.3g} m from where it is here", "take an equilibrium of this scene")
         if model.cables:
             own = slice(0, model.cables[-1].coordinates.stop)
             fixed = model.unknown_of_dof[own] == -1
             fixed[[motion.dof for motion in model.motions if motion.dof < own.stop]] = False
             moved = np.abs(self.static_state["q"][own] - model.q[own]) * model.weight[own] * fixed
-            if np.max(moved) > 1e-6 * max(cable.mesh.total for cable in model.cables):
+            if np.max(moved) > MOVED * max(cable.mesh.total for cable in model.cables):
                 raise SceneError("scene", f"the state to start from has a support {np.max(moved):.3g} m from where it "
                                  "is here", "take an equilibrium of this scene")
 
