@@ -62,13 +62,13 @@ class _Values:
         self.cuts: dict[str, dict[float, dict[str, np.ndarray]]] = {}
 
     def of(self, targets: Sequence[Target]) -> np.ndarray:
-        """Return (T, targets)."""
+        """Return the values of targets, (T, targets)."""
         for name in {target.cable for target in targets if target.cable is not None and not target.is_place}:
             self._cut(name, [target.along for target in targets if target.cable == name and not target.is_place])
         return np.stack([self._of(target) for target in targets], axis=1)
 
     def _of(self, target: Target) -> np.ndarray:
-        """Return (T,)."""
+        """Return the values of a target, (T,)."""
         if target.is_place:
             value = self._place(target)
         elif target.cable is not None:

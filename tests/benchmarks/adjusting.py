@@ -4,11 +4,11 @@ heights of the contact wire, and the wire's length by its pull; in the plane z =
 
 from __future__ import annotations
 
-import argparse
 import time
 
 import funicular as fu
 import numpy as np
+from table import arguments, show
 
 G, SPAN, ELEMENTS = 9.81, 55.0, 22
 X = np.array([4.5, 10.25, 16, 21.75, 27.5, 33.25, 39, 44.75, 50.5])
@@ -72,18 +72,20 @@ def adjusted(spans: int, plane: str) -> tuple[float, fu.Equilibrium]:
     return time.process_time() - begin, rest
 
 
+def row(spans: int) -> dict:
+    """Return what is measured of a line of so many spans."""
+    found = {plane: adjusted(spans, plane) for plane in PLANES}
+    last = found["z = 0"][1].adjustment
+    return {"spans": spans, "parameters": len(last.values),
+            **{f"seconds, {plane}": seconds for plane, (seconds, _) in found.items()},
+            "iterations": last.iterations, "misfit": last.misfits[-1]}
+
+
 def main() -> None:
-    """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--spans", type=int, nargs="+", default=[1, 3, 10, 30])
+    """Measure and print."""
+    options = arguments(__doc__, most=(30, "spans"))
     adjusted(1, "z = 0")  # imports
-    print("| spans | parameters | " + " | ".join(f"s, plane {plane}" for plane in PLANES) + " | iterations | misfit |")
-    print("|" + "---|" * (4 + len(PLANES)))
-    for spans in parser.parse_args().spans:
-        found = [adjusted(spans, plane) for plane in PLANES]
-        last = found[0][1].adjustment
-        print(f"| {spans} | {len(last.values)} | " + " | ".join(f"{seconds:.2f}" for seconds, _ in found)
-              + f" | {last.iterations} | {last.misfits[-1]:.1e} |", flush=True)
+    show([row(spans) for spans in (1, 3, 10, 30, 100) if spans <= options.most], options.out)
 
 
 if __name__ == "__main__":
