@@ -116,14 +116,17 @@ class EventWatcher:
         name, axis = _quantity(event).rsplit(".", 1)
         return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 
-    def acts(self, which: int, what: str, time: float, s: float | None) -> None:
+    def acts(self, which: int, what: str, time: float, passed: bool, s: float | None) -> None:
         """Note what a coupling of this number has done by itself: stuck, struck the end, and so on.
 
-        Without a word it is no event for a user: a corner of a table. s: of a slide, m.
+        Without a word it is no event for a user: a corner of a table. passed: a step went over it, and did not end
+        there; s: of a slide, m.
         """
         if not what:
             return
-        happened = {"name": self.model.couplings[which].name, "time": time, "what": what}
+        happened: dict = {"name": self.model.couplings[which].name, "time": time, "what": what}
+        if passed:
+            happened["passed"] = True
         self.happened.append(happened if s is None else happened | {"s": s})
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:

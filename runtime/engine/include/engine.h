@@ -31,6 +31,7 @@
 #include "energy_balance.h"
 #include "equations.h"
 #include "events.h"
+#include "passages.h"
 #include "failure.h"
 #include "integrator.h"
 #include "joints.h"

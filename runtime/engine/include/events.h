@@ -14,8 +14,8 @@ typedef struct {
 } fu_watch;
 
 /* An event. FU_CROSSING: a coupling, `which`, passes a boundary of its path to a side. FU_WATCHED: the watch `which` passes
- * zero to a side. FU_ACTED: a coupling, `which`, has changed by itself, as `what` says in words. */
-enum { FU_NO_EVENT = 0, FU_CROSSING, FU_WATCHED, FU_ACTED };
+ * zero to a side. FU_ACTED: a coupling, `which`, has changed by itself, as `what` says in words. FU_PASSED: a step went over that. */
+enum { FU_NO_EVENT = 0, FU_CROSSING, FU_WATCHED, FU_ACTED, FU_PASSED };
 typedef struct {
     int kind, which, side;
     const char *what;
