@@ -235,6 +235,10 @@ cdef class Engine(Report):
                 if stream is not None:
                     stream.between()
                 PyErr_CheckSignals()
+                if status == FU_EVENT and run.event.kind == FU_GAVE_WAY:
+                    if self.watcher is not None:
+                        self.watcher.gives_way(run.event.which, run.event.what.decode(), run.event_time, run.event.side)
+                    status = FU_RUNNING
                 if status == FU_EVENT and run.event.kind in (FU_ACTED, FU_PASSED):
                     if self.watcher is not None:
                         c = self.couplings[run.event.which]

@@ -32,6 +32,7 @@
 #include "equations.h"
 #include "events.h"
 #include "passages.h"
+#include "slack_cables.h"
 #include "failure.h"
 #include "integrator.h"
 #include "joints.h"

@@ -10,6 +10,7 @@
 #include "linear.h"
 #include "model.h"
 #include "record.h"
+#include "slack_cables.h"
 #include "state.h"
 
 typedef struct {
@@ -37,6 +38,7 @@ struct fu_run {
     int *late;           /* per watch: the side to which it passed together with another event */
     double *passed_at;   /* per watch: when a step has gone over it, s, for the caller to learn of it; negative where none has */
     const char **passed; /* per watch: what has happened then, in words */
+    fu_slackness *slackness; /* per cable */
     double *watch_work;  /* n_dof + n_outputs: accelerations and a row of output that a watched number is of */
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;

@@ -2,6 +2,7 @@
  * step's end has the forces of what couplings are there; its error counts the jump (integrators/genalpha.c). */
 #include "engine.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Returns whether steps may go over changes of a coupling. */
@@ -73,12 +74,13 @@ void fu_add_passed_forces(const fu_run *run, double factor, double *f)
     }
 }
 
-/* Makes the earliest passage that the caller does not know of the run's event; returns 0 where there is none. */
+/* Makes the earliest of passages and slack cables that the caller does not know of the run's event; returns 0 where there is none. */
 int fu_take_passage(fu_run *run)
 {
     int first = -1;
     for (int k = 0; k < run->n_watches && run->model->n_passing; ++k)
         if (run->passed[k] && (first < 0 || run->passed_at[k] < run->passed_at[first])) first = k;
+    if (fu_take_slackness(run, first < 0 ? INFINITY : run->passed_at[first])) return 1;
     if (first < 0) return 0;
     run->event = (fu_event){FU_PASSED, run->watches[first].index, 0, run->passed[first]};
     run->event_time = run->passed_at[first];

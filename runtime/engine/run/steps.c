@@ -16,6 +16,7 @@ static void accept(fu_run *run, double h, fu_event event)
     for (int i = 0; i < model->n_coordinates; ++i) run->s_slope[i] = (run->next.s[i] - run->now.s[i]) / h;
     run->integrator->account(run, h);
     fu_note_passages(run, h);
+    fu_note_slackness(run, h);
     run->dissipated += fu_lost_in_step(model, &run->now, &run->next);
     run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
