@@ -158,6 +158,8 @@ cdef class Engine(Report):
         run = &self.run
         run.n_watches, run.watches = n + own, self.watches
         run.watched, run.late = self._zeros(run.n_watches), self._int_zeros(run.n_watches)
+        run.passed_at = self._zeros(run.n_watches)
+        run.passed = <const char **>self._memory(<double>run.n_watches * sizeof(char *))
         run.watch_work = self._zeros(self.model.n_dof + self.model.n_outputs)
 
     def _knots(self, times, jumps):
@@ -233,11 +235,15 @@ cdef class Engine(Report):
                 if stream is not None:
                     stream.between()
                 PyErr_CheckSignals()
-                if status == FU_EVENT and run.event.kind == FU_ACTED:
+                if status == FU_EVENT and run.event.kind == FU_GAVE_WAY:
+                    if self.watcher is not None:
+                        self.watcher.gives_way(run.event.which, run.event.what.decode(), run.event_time, run.event.side)
+                    status = FU_RUNNING
+                if status == FU_EVENT and run.event.kind in (FU_ACTED, FU_PASSED):
                     if self.watcher is not None:
                         c = self.couplings[run.event.which]
-                        self.watcher.acts(c.number, run.event.what.decode(), run.now.t,
-                                          self._view(&run.now, "s")[c.coordinate] if c.n_coordinates else None)
+                        self.watcher.acts(c.number, run.event.what.decode(), run.event_time,
+                                          run.event.kind == FU_PASSED, self._view(&run.now, "s")[c.coordinate] if c.n_coordinates else None)
                     status = FU_RUNNING
                 if status == FU_EVENT:
                     if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):

@@ -7,6 +7,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.parts.paths import changed, path_of
+from funicular.solve import static_problem
 
 STEEL = fu.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=9000)
 THIN = fu.Circle(radius=0.005)
@@ -248,3 +249,106 @@ def test_runs_and_modes_take_no_state_whose_supports_are_elsewhere():
     for start in (lambda: moved.run(duration=0.01, initial=rest), lambda: moved.modes(2, about=rest)):
         with pytest.raises(fu.SceneError, match="has a support 1 m from where it is here"):
             start()
+
+
+@pytest.mark.parametrize(("given", "path"), [
+    ({"stiffness": 300.0}, "stiffness"), ({"stiffness": 300.0}, "length"),
+    ({"stiffness": 300.0, "free_play": 0.1}, "free_play"),
+    ({"stiffness": 300.0, "free_play": 0.1, "tension_only": True}, "length"),
+    ({"table": fu.ForceTable(extension=[0, 0.05, 0.2], tension=[0, 2, 30])}, "length"),
+    ({"table": fu.ForceTable(extension=[0, 0.05, 0.2], tension=[0, 2, 30])}, "table.tension.2"),
+    ({"stiffness": 300.0}, "a.y")])
+def test_derivatives_by_what_a_spring_is_are_those_of_other_equilibria(given, path):
+    scene = hung()
+    scene.spring((0.2, 0.1, 0), "A", name="other", length=0.5, **given)
+    first = scene.equilibrium()
+    now = float(first["other.tension"])
+    rest = scene.equilibrium(adjust=[f"other.{path}", "spring.length"], tolerance=1e-10,
+                             to={"A.position.y": float(first["A.position"][1]), "other.tension": 1.001 * now})
+    value = rest.adjusted[f"other.{path}"]
+    ends = []
+    for change in (-1e-5, 1e-5):
+        other = changed(rest.scene, {path_of(rest.scene, f"other.{path}"): value + change * max(1, abs(value))})
+        state = other.equilibrium(tolerance=1e-13)
+        ends.append([state["A.position"][1], float(state["other.tension"])])
+    rate = (np.array(ends[1]) - ends[0]) / (2e-5 * max(1, abs(value)))
+    assert rest.adjustment.jacobian[:, 0] == pytest.approx(rate, rel=1e-5)
+
+
+def test_parameters_of_springs_take_no_scene_each(monkeypatch):
+    built = []
+    plain = static_problem.build
+    monkeypatch.setattr(static_problem, "build", lambda scene: built.append(scene) or plain(scene))
+
+    def scenes(n):
+        built.clear()
+        scene = wire(length=49.9)
+        places = [50 * (k + 1) / (n + 1) for k in range(n)]
+        for k, x in enumerate(places):
+            scene.spring((x, 0.5, 0), ("wire", x / 50 * 49.9), name=f"d{k}", stiffness=1e4, length=0.5,
+                         tension_only=True)
+        rest = scene.equilibrium(adjust=[f"d{k}.length" for k in range(n)],
+                                 to={f"wire@{x / 50 * 49.9:.12g}.position.y": -0.48 * x / 50 * (1 - x / 50)
+                                     for x in places})
+        assert rest.adjustment.misfits[-1] < 1e-9
+        return len(built)
+
+    assert scenes(9) == scenes(3) < 12
+
+
+def test_values_that_springs_would_have_to_push_for_say_which():
+    scene = wire(length=49.9)
+    scene.spring((25, 0.2, 0), ("wire", 24.95), name="dropper", stiffness=1e5, length=1.0, tension_only=True)
+    unreached(scene, '"dropper", which pulls alone, would push with 50 N', adjust=["dropper.length"],
+              to={"dropper.tension": -50.0})
+    for above in (0.2, 0.5):  # a dropper of no length, and of less
+        unreached(scene, 'with all springs taut, "dropper.length" would have to be zero or below',
+                  adjust=["dropper.length"], to={"wire@24.95.position.y": above})
+    slack = scene.equilibrium(adjust=["dropper.length"], to={"dropper.tension": 0.0})
+    assert slack.adjusted == {"dropper.length": 1.0}  # it has none already
+
+
+def test_one_quantity_under_two_names():
+    scene = wire()
+    names = ["wire.rest_length", "wire.section.radius"]
+    unreached(scene, 'change "wire@25.15.position.y" and "wire@25.150.position.y" only together', adjust=names,
+              to={"wire@25.15.position.y": -3.0, "wire@25.150.position.y": -3.5})
+    rest = scene.equilibrium(adjust=names, to={"wire@25.15.position.y": -3.0, "wire@25.150.position.y": -3.0})
+    assert rest["wire.position"][20, 1] == pytest.approx(-3.0, abs=1e-7)
+    unreached(hung(), 'is the same number as "spring.a.y"', adjust=["spring.a.y", "spring.a.1"],
+              to={"A.position.y": -1.0})
+
+
+def hinged(kind, x=0.0, spring=(1, 0, 0), **given):
+    """Return a body on a joint to the ground at x, with a spring to a point of the ground."""
+    scene = fu.Scene()
+    scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(x, -1, 0))
+    scene.joint(kind, (x, 0, 0), "A" if kind == "distance" else ("A", (0, 1, 0)), name="J", **given)
+    scene.spring(spring, "A", name="S", stiffness=50.0, length=0.5)
+    return scene
+
+
+@pytest.mark.parametrize(("kind", "given"), [
+    ("spherical", {}), ("revolute", {"axis": (0, 0, 1)}), ("weld", {}), ("prismatic", {"axis": (1, 0, 0)}),
+    ("distance", {}), ("distance", {"length": 1.0})])
+def test_a_search_that_begins_at_a_state_takes_ground_points_as_they_are_now(kind, given):
+    rest = hinged(kind, **given).equilibrium()
+    for moved in (hinged(kind, spring=(1.5, 0.5, 0), **given), hinged(kind, x=0.3, **given)):
+        begun, drawn = moved.equilibrium(start=rest), moved.equilibrium()
+        for name in drawn.keys():
+            assert begun[name] == pytest.approx(drawn[name], abs=1e-9)
+        assert begun.residual < 1e-9
+
+
+def test_runs_and_modes_take_no_state_whose_joints_are_elsewhere():
+    rest = hinged("spherical").equilibrium()
+    moved = hinged("spherical", x=0.3)
+    longer = hinged("distance").replace("A", position=(0, -1.1, 0))
+    begun = hinged("distance").equilibrium()
+    for start in (lambda: moved.run(duration=0.01, initial=rest), lambda: moved.modes(2, about=rest)):
+        with pytest.raises(fu.SceneError, match=r'an end of the joint "J" 0\.3 m from where it is here'):
+            start()
+    with pytest.raises(fu.SceneError, match=r"0\.1 m from where it is here"):
+        longer.modes(2, about=begun)
+    drawn = hinged("spherical", spring=(1.5, 0.5, 0)).run(duration=0.01, initial=rest, progress=False)
+    assert drawn["A.position"][0] == pytest.approx(rest["A.position"])

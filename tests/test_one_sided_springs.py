@@ -4,6 +4,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicHermiteSpline
 
 MASS, GRAVITY, STIFFNESS = 2.0, 9.81, 400.0
 BY_TOL = ("explicit", "radau")
@@ -198,3 +199,43 @@ def test_ends_that_meet_are_refused_where_the_spring_then_has_a_force(law, loses
     scene.spring("m", (0, 0, 0), length=0.5, **law)
     run = scene.run(duration=0.1, tol=1e-6)
     assert run["m.position"][-1, 1] == pytest.approx(-GRAVITY * 0.1**2 / 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("tol", [1e-2, 1e-3])
+def test_steps_go_over_what_tol_allows_and_tell_when(tol):
+    scene = hanging(0.5, stiffness=STIFFNESS, tension_only=True)
+    run = scene.run(duration=2.0, output_step=0.01, integrator="genalpha", tol=tol)
+    events = [event for event in run.report["events"] if event["time"] > 1e-6]
+    assert [event["what"] for event in events] == (["became slack", "became taut"] * 4)[:len(events)]
+    assert [event["time"] for event in events] == sorted(event["time"] for event in events)
+    passed = [event for event in events if event.get("passed")]
+    assert passed
+    along = CubicHermiteSpline(run.time, extension(run), -run["m.velocity"][:, 2])
+    speed = np.abs(along.derivative()([event["time"] for event in passed]))
+    assert np.all(np.abs(along([event["time"] for event in passed])) < 1e-3 * tol * speed)
+    landed = scene.run(duration=2.0, output_step=0.01, integrator="radau", tol=tol)
+    assert not any(event.get("passed") for event in landed.report["events"])
+    assert np.ptp(total_energy(run)) < 10 * tol * np.ptp(run["energy.kinetic"])
+
+
+def test_a_damper_that_would_jump_is_not_gone_over_but_where_little_comes_of_it():
+    law = {"stiffness": STIFFNESS, "damping": 40.0, "tension_only": True}
+    run = hanging(-4.0, 0.3, **law).run(duration=2.0, output_step=0.01, integrator="genalpha", tol=1e-4)
+    exact = hanging(-4.0, 0.3, **law).run(duration=2.0, output_step=0.01, integrator="radau", tol=1e-9)
+    assert [event["what"] for event in run.report["events"]] == [event["what"] for event in exact.report["events"]]
+    assert np.abs(extension(run) - extension(exact)).max() < 5e-4 * np.ptp(extension(exact))
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "radau"])
+def test_a_resumed_run_tells_the_same_events(tmp_path, integrator):
+    given = {"duration": 2.0, "output_step": 0.01, "integrator": integrator, "tol": 1e-2}
+
+    def stop(time):
+        if time > 1.0:
+            raise KeyboardInterrupt
+
+    scene = hanging(0.5, stiffness=STIFFNESS, tension_only=True)
+    whole = scene.run(**given, save=tmp_path / "whole.nc")
+    assert scene.run(**given, save=tmp_path / "out.nc", progress=stop).status == "interrupted"
+    assert scene.run(**given, save=tmp_path / "out.nc", resume=True).events == whole.events
+    assert whole.events[-1]["time"] > 1.0

@@ -65,3 +65,72 @@ def test_it_is_a_law_of_straight_cables_with_engineering_strain():
                   {"element": "cable12", "curvature": "linear"}):
         with pytest.raises(fu.SceneError, match=r"is not possible|are for cable elements"):
             scene.cable("b", membrane="tension_only", **given, **common)
+
+
+def let_loose(element="cable12", action="record", elements=8):
+    """Return a taut wire whose end comes nearer for a while, smoothly."""
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    wire = scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element=element,
+                       membrane="tension_only", section=fu.Circle(radius=1e-3), rest_length=1 / 1.001,
+                       material=fu.Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1100))
+    scene.pin(wire, s=0)
+    way = fu.TableSignal(time=[0, 0.05, 0.1, 0.15], value=[0, -0.004, -0.004, 0.002], interpolation="cubic")
+    scene.motion(wire, s=1 / 1.001, displacement=(way, 0, 0))
+    if action == "stop":
+        scene.event(quantity="wire.least_strain", direction="falling", action="stop", name="first")
+    return scene
+
+
+@pytest.mark.parametrize("element", ["cable8p", "cable12"])
+def test_slack_elements_are_noted(element):
+    run = let_loose(element).run(duration=0.1, output_step=1e-4, integrator="radau", tol=1e-5)
+    slack = run.slack_elements("wire")
+    assert slack.dims == ("time", "element")
+    assert slack.shape == (len(run.time), 8)
+    assert slack.s[0] == pytest.approx(1 / 1.001 / 16)
+    some, events = slack.any("element").values, run.report["events"]
+    assert not some[0] and some.any()
+    assert [event["what"] for event in events] == (["became slack", "all taut again"] * len(events))[:len(events)]
+    for event in events:  # between the rows before and after it, unless another one is there, too
+        k = int(np.searchsorted(run.time, event["time"]))
+        if sum(run.time[k - 1] <= other["time"] <= run.time[k] for other in events) == 1:
+            assert (some[k - 1], some[k]) == ((False, True) if event["what"] == "became slack" else (True, False))
+    first = int(np.argmax(some))
+    assert run.time[first - 1] <= events[0]["time"] <= run.time[first]
+    assert slack.values[first, events[0]["element"]]
+
+
+def test_a_run_ends_where_a_cable_becomes_slack_if_asked():
+    whole = let_loose().run(duration=0.1, output_step=1e-3, integrator="radau", tol=1e-6)
+    run = let_loose(action="stop").run(duration=0.1, output_step=1e-3, integrator="radau", tol=1e-6)
+    assert run.status == "event"
+    assert run.time[-1] == pytest.approx(whole.report["events"][0]["time"], abs=1e-5)
+    with pytest.raises(fu.SceneError, match=r"cannot be watched|has no place"):
+        let_loose().event(quantity="wire.least_strain", s=0.5, name="there")
+
+
+def test_a_state_of_rest_tells_which_elements_are_slack():
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    wire = scene.cable("wire", start=(0, 0, 0), end=(0, -1, 0), elements=8, element="cable12", membrane="tension_only",
+                       section=fu.Circle(radius=1e-3), rest_length=1.0,
+                       material=fu.Material(youngs_modulus=1e6, poisson_ratio=0.3, density=1100))
+    for s in (0, 1.0):
+        scene.clamp(wire, s=s)
+    slack = scene.equilibrium().slack_elements("wire").values
+    assert list(slack) == [False] * 7 + [True]  # its weight hangs on the upper end
+    with pytest.raises(fu.UnknownResultError, match='there is no cable "rope"'):
+        scene.equilibrium().slack_elements("rope")
+
+
+def test_a_resumed_run_notes_the_same(tmp_path):
+    given = {"duration": 0.1, "output_step": 1e-3, "integrator": "radau", "tol": 1e-4}
+
+    def stop(time):
+        if time > 0.045:
+            raise KeyboardInterrupt
+
+    whole = let_loose().run(**given, save=tmp_path / "whole.nc")
+    assert let_loose().run(**given, save=tmp_path / "out.nc", progress=stop).status == "interrupted"
+    resumed = let_loose().run(**given, save=tmp_path / "out.nc", resume=True)
+    assert resumed.events == whole.events
+    assert whole.events[-1]["time"] > 0.06

@@ -9,8 +9,10 @@ from .placement import node_at
 
 AXES = ("x", "y", "z")
 WATCHABLE = {"rigid_body": ("position", "velocity"), "modal_body": ("position", "velocity"),
-             "cable": ("position", "velocity"), "slide": ("s", "s_rate", "traction")}
+             "cable": ("position", "velocity", "least_strain"), "slide": ("s", "s_rate", "traction")}
 """Quantities that a threshold can be set on, by kind of part."""
+WHOLE = ("s", "s_rate", "traction", "least_strain")
+"""Those that have no components, and no place on a cable."""
 
 
 def _normal(scene: SceneData) -> tuple[float, ...]:
@@ -29,15 +31,15 @@ def placed_event(scene: SceneData, event: Event) -> Event:
         raise SceneError(event.where, f'there is no body, cable or slide "{name}"', near(name, parts))
     part = parts[name]
     known = WATCHABLE[part.kind]
-    if what not in known or (axis not in AXES if part.kind != "slide" else axis):
-        forms = ", ".join(f"{name}.{k}" if part.kind == "slide" else f"{name}.{k}.x" for k in known)
+    if what not in known or (axis if what in WHOLE else axis not in AXES):
+        forms = ", ".join(f"{name}.{k}" if k in WHOLE else f"{name}.{k}.x" for k in known)
         raise SceneError(event.where, f'"{event.quantity}" cannot be watched', f"{forms}, with x, y or z, can"
                          if part.kind != "slide" else f"{forms} can")
     if scene.dim == 2 and axis and abs(_normal(scene)[AXES.index(axis)]) == 1.0:
         same = "always 0" if scene.plane is None else "always the same"
         others = " or ".join(each for each in AXES if each != axis)
         raise SceneError(event.where, f'"{event.quantity}" is {same}: the scene is planar', f"watch {others}")
-    if part.kind == "cable":
+    if part.kind == "cable" and what not in WHOLE:
         if event.s is None:
             raise SceneError(event.where, "s is missing: where on the cable?", "give the s of a node")
         node_at(scene, name, event.where, event.s)

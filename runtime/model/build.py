@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
-
 import numpy as np
 
 from ..kernels.libraries import tables_of
@@ -73,20 +71,6 @@ def build(scene: SceneData) -> Model:
     )
     model.newton, model.accelerations = elimination(model, NEWTON), elimination(model, ACCELERATIONS)
     return model
-
-
-def with_point_force(model: Model, scene: SceneData, name: str) -> Model:
-    """Return the model of a scene, from that of one that differs in the law of this force between two points alone.
-
-    All else is shared with the other model.
-    """
-    k = list(scene.point_forces).index(name)
-    loads = LoadBuilder(scene, AttachmentBuilder(scene, model.cables, model.bodies))
-    force, old = loads.point_force(scene.point_forces[name]), model.point_forces[k]
-    force.unknown, force.multiplier, force.redundant_rows = old.unknown, old.multiplier, old.redundant_rows
-    made = copy(model)
-    made.point_forces = [*model.point_forces[:k], force, *model.point_forces[k + 1:]]
-    return made
 
 
 def _elements(nodes: dict[str, list[Node]]) -> np.ndarray:

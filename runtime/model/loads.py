@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..checks.placement import placed_attachment
+from ..kernels.libraries import kernels_of
 from ..kernels.point_laws import point_law
 from ..parts.attachment import Attachment
 from ..parts.force_pieces import HAS_NO_FORCE, PULLS_AND_PUSHES
@@ -72,16 +73,15 @@ class LoadModel(CouplingModel):
 
 
 @dataclass
-class PointForceModel(CouplingModel):
-    """A force between two points, whose unknowns are its components.
+class ForceLaw:
+    """The law of a force between two points.
 
-    law: the name of its kernels; parameters: of the law, in the order in which the kernels take them, for one piece of
-    it after the other. bounds (n_pieces - 1), in m: distances of the points at which a piece ends and the next begins.
-    senses (n_pieces): what each piece may do. compliance: in m/N, that of the stiffest piece.
+    law: the name of its kernels; parameters: in the order in which the kernels take them, for one piece of it after the
+    other. bounds (n_pieces - 1), in m: distances of the points at which a piece ends and the next begins. senses
+    (n_pieces): what each piece may do. compliance: in m/N, that of the stiffest piece.
     """
 
     law: str
-    attachments: list[AttachmentModel]
     dim: int
     parameters: tuple[float, ...]
     n_pieces: int = 1
@@ -89,6 +89,30 @@ class PointForceModel(CouplingModel):
     bounds: tuple[float, ...] = ()
     senses: tuple[int, ...] = (PULLS_AND_PUSHES,)
     compliance: float = 0.0
+
+    @classmethod
+    def of(cls, part: PointForce, dim: int) -> ForceLaw:
+        """Return the law of a part, which is complete, in so many dimensions."""
+        name = ("planar_" if dim == 2 else "") + part.law
+        names = list(point_law(name).parameters)
+        if isinstance(part, Spring) and part.has_pieces:
+            return cls(name, dim, n_parameters=len(names), **_pieces(part, names))
+        return cls(name, dim, tuple(float(getattr(part, each)) for each in names), n_parameters=len(names))
+
+    def at_rest(self, gap: np.ndarray) -> np.ndarray:
+        """Return the force (dim,) on the first point, in N, from the way (dim,) to the second one, which rests."""
+        piece = int(np.searchsorted(self.bounds, np.linalg.norm(gap)))
+        if self.senses[piece] == HAS_NO_FORCE:
+            return np.zeros(self.dim)
+        parameters = np.array(self.parameters[piece * self.n_parameters :][: self.n_parameters])
+        return np.asarray(getattr(kernels_of(None), f"{self.law}_force")(parameters, gap, np.zeros(self.dim)))
+
+
+@dataclass(kw_only=True)
+class PointForceModel(CouplingModel, ForceLaw):
+    """A force between two points, whose unknowns are its components."""
+
+    attachments: list[AttachmentModel]
 
 
 class LoadBuilder:
@@ -169,17 +193,11 @@ class LoadBuilder:
     def point_force(self, part: PointForce) -> PointForceModel:
         """Return the model of a force between two points."""
         ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
-        dim = self.scene.dim
-        kernels = ("planar_" if dim == 2 else "") + part.law
-        law = point_law(kernels)
-        common: dict[str, Any] = {
-            "type": "point_force", "name": part.name or "", "scale": [max(end.mass for end in ends)] * dim,
-            "is_damped": bool(law.damping) and getattr(part, law.damping) != 0, "follows_law": True,
-            "n_parameters": len(law.parameters)}
-        if isinstance(part, Spring) and part.has_pieces:
-            return PointForceModel(kernels, ends, dim, **_pieces(part, list(law.parameters)), **common)
-        parameters = tuple(float(getattr(part, name)) for name in law.parameters)
-        return PointForceModel(kernels, ends, dim, parameters, **common)
+        law = ForceLaw.of(part, self.scene.dim)
+        damping = point_law(law.law).damping
+        return PointForceModel(
+            type="point_force", name=part.name or "", scale=[max(end.mass for end in ends)] * law.dim,
+            is_damped=bool(damping) and getattr(part, damping) != 0, follows_law=True, attachments=ends, **vars(law))
 
 
 def _pieces(part: Spring, names: list[str]) -> dict[str, Any]:

@@ -254,7 +254,7 @@ def _component(plane: Plane, k: int, displacement: tuple[Signal | None, ...]) ->
 @turned.register
 def _event(part: Event, axes: PlaneAxes, scene: SceneData) -> Event:
     """A threshold on a component along the ground's axes is a function of a state, which has results in those."""
-    if part.quantity is None or part.quantity.partition(".")[0] in scene.slides:
+    if part.quantity is None or part.quantity.partition(".")[0] in scene.slides or part.quantity.count(".") == 1:
         return part
     return part.model_copy(update={"quantity": None, "s": None, "value": 0.0, "function": _passing(part, scene)})
 

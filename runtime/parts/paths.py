@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, TypeVar
 
 from ..errors import SceneError, near
@@ -81,6 +82,15 @@ def _check_entry(scene: SceneData, path: Path) -> None:
     if path.entries[0] not in known:
         raise SceneError(path.where, f'{path.head} has no "{path.entries[0]}"',
                          f"{near(path.entries[0], known)} (known: {', '.join(known)})")
+
+
+def check_each_once(paths: Iterable[Path]) -> None:
+    """Raise SceneError where two of several paths lead to the same number, as a.y and a.1 do."""
+    first: dict[tuple[str, ...], str] = {}
+    for path in paths:
+        entries = tuple(str(COMPONENTS.get(entry, entry)) for entry in path.entries)
+        if (other := first.setdefault((path.head, *entries), path.text)) != path.text:
+            raise SceneError(path.where, f'is the same number as "{other}"', "name each number once")
 
 
 def _parts(scene: SceneData) -> list[Part]:
@@ -192,7 +202,13 @@ def unit_of(scene: SceneData, path: Path) -> str:
             part = part.entries()[entries.pop(0)]
         kind = type(part)
     assert kind is not None, "gravity, settings and parts are all there is"
-    return _unit(kind.model_json_schema(mode="validation").get("properties", {}).get(entries[0], {}))
+    return _unit_of_entry(kind, entries[0])
+
+
+@cache
+def _unit_of_entry(kind: type[Part], entry: str) -> str:
+    """Return the unit of an entry of a kind of part."""
+    return _unit(kind.model_json_schema(mode="validation").get("properties", {}).get(entry, {}))
 
 
 def _unit(schema: Any) -> str:

@@ -8,6 +8,7 @@ from ..parts.cable import Cable
 from ..parts.slide import Slide
 from ..solve.rest_state import CriticalPoint, RestState
 from .section_forces import dataset
+from .slack import slack_elements
 from .viewable import Viewable, titled
 
 if TYPE_CHECKING:
@@ -29,6 +30,10 @@ class Equilibrium(Viewable, RestState):
         Where no s is given, both sides of riders are among the places.
         """
         return dataset(self, cable, s, method=method, side=side)
+
+    def slack_elements(self, cable: Cable | str) -> xarray.DataArray:
+        """Return which elements of ``cable`` are slack, (element,): shorter in the middle than at rest."""
+        return slack_elements(self, cable)
 
     def animation(self, title: str | None = None) -> Animation:
         """Return the state as pictures show it; see `Viewable.animation`."""

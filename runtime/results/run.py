@@ -278,6 +278,16 @@ class Run(Viewable, NamedArrays):
 
         return build(laid(self.scene))
 
+    def slack_elements(self, cable: Cable | str) -> xarray.DataArray:
+        """Return which elements of ``cable`` are slack, (time, element): shorter in the middle than at rest.
+
+        In cables with ``membrane="tension_only"`` these have hardly any stiffness along their axis. The report's events
+        tell when the first of them became slack and when all were taut again, between the rows, too.
+        """
+        from .slack import slack_elements  # brings SciPy, as below
+
+        return slack_elements(self, cable)
+
     def section_forces(self, cable: Cable | str, s: ArrayLike | Slide | None = None, *, method: str = "balance",
                        side: str = "after") -> xarray.Dataset:
         """Return the forces and moments in sections of ``cable``.

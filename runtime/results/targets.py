@@ -7,18 +7,24 @@ or a section force of the cable there. Places on a cable keep their part of its 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import SceneError, near
+from ..model.drag_forces import drag_forces
+from ..model.states import connection_states, free_states, spatial
 from ..parts.cable import EXACT
 from ..parts.paths import COMPONENTS
+from ..solve.adjustment import Reader
+from ..solve.snapshots import Snapshots
+from ..solve.static_problem import StaticState
+from .cable_loads import Instants
 from .equilibrium import Equilibrium
 from .quantities import QUANTITIES
 from .section_components import labels
-from .section_forces import GLOBAL
+from .section_forces import GLOBAL, cut_forces
 
 PLACE = re.compile(r"(?P<cable>[^@.]+)@(?P<s>[-+0-9.eE]+?)\.(?P<rest>[A-Za-z_].*)")
 """The name of a value at a place of a cable."""
@@ -41,29 +47,80 @@ class Target:
     cable: str | None = None
     along: float = 0.0
 
-    def of(self, state: Equilibrium) -> float:
-        """Return the value in a state."""
-        if self.cable is not None:
-            cable = state.scene.cables[self.cable]
-            s = self.along * cable.length
-            if self.quantity == "position":
-                value = cable.point_between(state[f"{self.cable}.nodal_vectors"], s)
-            else:
-                value = state.section_forces(self.cable, s=[s])[self.quantity].values[0]
+    @property
+    def is_place(self) -> bool:
+        """Return whether it is where a point of a cable is."""
+        return self.cable is not None and self.quantity == "position"
+
+
+class _Values:
+    """Values of targets in states of a scene, each result computed once, for all states together."""
+
+    def __init__(self, problem: StaticState, at: Snapshots):
+        self.problem, self.at, self.model, self.scene = problem, at, problem.model, problem.scene.as_drawn
+        self.found: dict[str, dict[str, np.ndarray]] = {}
+        self.cuts: dict[str, dict[float, dict[str, np.ndarray]]] = {}
+
+    def of(self, targets: Sequence[Target]) -> np.ndarray:
+        """Return the values of targets, (T, targets)."""
+        for name in {target.cable for target in targets if target.cable is not None and not target.is_place}:
+            self._cut(name, [target.along for target in targets if target.cable == name and not target.is_place])
+        return np.stack([self._of(target) for target in targets], axis=1)
+
+    def _of(self, target: Target) -> np.ndarray:
+        """Return the values of a target, (T,)."""
+        if target.is_place:
+            value = self._place(target)
+        elif target.cable is not None:
+            value = self.cuts[target.cable][target.along][target.quantity]
         else:
-            part = self.part if self.support is None else state.scene.supports[self.support].label
-            value = state[f"{part}.{self.quantity}"]
-        return float(value if self.component is None else value[self.component])
+            part = target.part if target.support is None else self.scene.supports[target.support].label
+            value = self._result(f"{part}.{target.quantity}")
+        return value if target.component is None else value[:, target.component]
+
+    def _place(self, target: Target) -> np.ndarray:
+        """Return (T, 3): where a point of a cable is, in m."""
+        assert target.cable is not None, "only a point of a cable has such a place"
+        cable = next(cable for cable in self.model.cables if cable.name == target.cable)
+        s = target.along * self.scene.cables[target.cable].length
+        element = int(cable.mesh.element_at(s))
+        N = cable.kernel("on_axis")(cable.mesh.length(element), s - cable.mesh.start(element))[0]
+        _, vectors, dim = cable.shape
+        first = cable.first + element * vectors * dim
+        e = self.at.q[:, first : first + len(N) * dim].reshape(len(self.at), len(N), dim)
+        return self.model.results(target.cable, {"position": spatial(np.einsum("k,tkd->td", N, e))})["position"]
+
+    def _result(self, name: str) -> np.ndarray:
+        """Return (T, ...): a result by its name, along the ground's axes."""
+        part, _, quantity = name.rpartition(".")
+        if part not in self.found:
+            at, model = self.at, self.model
+            self.found[part] = free_states(model, at.q, at.s, at.slide_force, part).get(part, {})
+            fluid = np.array([drag_forces(model, q[None]) for q in at.q]) if part in self.scene.drags else np.zeros(
+                (len(at), len(model.drags), 3))
+            for group in connection_states(model, self.scene, at.q, at.reaction, at.joint_forces, at.point_force,
+                                           self.problem.fraction * fluid, part).values():
+                self.found[part] |= group.get(part, {})
+        return self.found[part][quantity]
+
+    def _cut(self, name: str, along: Sequence[float]) -> None:
+        """Compute the forces in sections of a cable at parts of its length."""
+        problem, model, places = self.problem, self.model, sorted(set(along))
+        s = np.array(places)[None] * self.scene.cables[name].length
+        weight = problem.fraction if problem.settings.scale_gravity else 1.0
+        instants = Instants(np.zeros(len(self.at)), self.at.q, np.zeros((len(self.at), model.n_dof)),
+                            lambda each: model.as_in_model(each, self._result(each)), problem.fraction, weight)
+        found = model.results(name, cut_forces(problem.scene, model, instants, name, s, at_rest=True))
+        self.cuts[name] = {place: {quantity: values[:, k] for quantity, values in found.items()}
+                           for k, place in enumerate(places)}
 
 
-def reader(state: Equilibrium, names: Sequence[str]) -> tuple[Callable[[Equilibrium], np.ndarray], np.ndarray]:
-    """Return the function that reads these values (n,) of a state like this one, and which of them are in m (n,).
-
-    Raises SceneError where a name is that of no value.
-    """
+def reader(state: Equilibrium, names: Sequence[str]) -> Reader:
+    """Return the reader of these values of states like this one. Raises SceneError where a name is that of no value."""
     targets = [target_of(state, name) for name in names]
-    return (lambda other: np.array([target.of(other) for target in targets]),
-            np.array([target.unit == "m" for target in targets]))
+    of_supports = any(target.support is not None or target.part in state.scene.ties for target in targets)
+    return Reader(lambda problem, at: _Values(problem, at).of(targets),
+                  np.array([target.unit == "m" for target in targets]), of_supports)
 
 
 def target_of(state: Equilibrium, name: str) -> Target:

@@ -1,12 +1,7 @@
 """The search for values of parameters with which the state of rest of a scene has given values.
 
-At rest R(x, p) = 0 with the state x and the parameters p. The values asked for are functions g(x, p), so that
-
-    dx/dp = -K^-1 dR/dp,    dg/dp = dg/dx dx/dp + dg/dp,
-
-with the factorised tangent K = dR/dx of the state at rest. dR/dp is the central difference of the residual at a fixed
-state, and dg/dp is that of g along (dx/dp, 1): no other equilibria are sought for it. Newton's steps on p are damped;
-each begins from the state x + dx/dp dp and ends in a state of rest.
+Newton's steps on the parameters are damped; each begins from the state that the derivatives foresee, and ends in a
+state of rest (solve/parameter_search.py).
 """
 
 from __future__ import annotations
@@ -14,28 +9,24 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from ..errors import EquilibriumError, FunicularWarning, SceneError
-from ..model.build import with_point_force
-from ..model.model import Model
 from ..parts.laid import laid
-from ..parts.plane import called
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from ..parts.spring import Spring
+from .parameter_search import AtRest, ParameterSearch
 from .parameters import Parameters
 from .rest_state import Adjustment, RestState
-from .stability import Stability
+from .snapshots import Reader
 from .stable_search import find_rest
 from .static import equilibrium, note
-from .static_problem import StaticProblem, StaticState, fitted
-from .unreachable import Linear, why_unreachable
+from .static_problem import StaticProblem, fitted
+from .unreachable import Linear, cause_of, why_unreachable
 
-STEP = 1e-6
-"""Of a parameter, to either side: where the residual is differenced."""
 SHORTEST = 2.0**-12
 """Of Newton's step: no nearer to the targets with less, and the search ends."""
 ENOUGH = 1e-4
@@ -44,103 +35,14 @@ NEARLY = 100.0
 """Times the tolerance: misfits below that are rounding where no step brings them down."""
 
 S = TypeVar("S", bound=RestState)
-Reader = Callable[[S], np.ndarray]
-
-
-@dataclass
-class _Found(Generic[S]):
-    """A state of rest with these values p of the parameters (n,), and its values g (targets,)."""
-
-    problem: StaticProblem
-    p: np.ndarray
-    g: np.ndarray
-
-
-class _Search(Generic[S]):
-    """Newton's method on the parameters; misfits are over the scales of the targets."""
-
-    def __init__(self, parameters: Parameters, settings: EquilibriumSettings, made: type[S], read: Reader):
-        self.parameters, self.settings, self.made, self.read = parameters, settings, made, read
-
-    def laid(self, scene: SceneData) -> SceneData:
-        """Return a scene of the search in the axes of its plane, which are those of the scene that it began with.
-
-        Raises SceneError where they are others: the coordinates of a state would mean another place.
-        """
-        first, plane = self.parameters.scene.plane, scene.plane
-        if (first is None) != (plane is None) or (first is not None and plane is not None
-                                                  and not plane.has_same_axes(first)):
-            raise SceneError("equilibrium", f"what is adjusted moves or turns {called(first)}, in which the "
-                             "scene lies", "adjust what leaves its planar elements in their plane")
-        return laid(scene)
-
-    def state(self, problem: StaticState) -> S:
-        """Return the state of a problem, whose stability is not looked at."""
-        return self.made.of(problem, Stability(0, 0, known=False))
-
-    def begin(self, rest: RestState) -> _Found[S]:
-        """Return the state of rest from which the parameters are adjusted."""
-        problem = StaticProblem(self.laid(rest.scene), self.settings)
-        problem.restore(rest.static_state)
-        return _Found(problem, self.parameters.values, self.read(self.state(problem)))
-
-    def linear(self, at: _Found[S]) -> tuple[np.ndarray, np.ndarray]:
-        """Return dx/dp (unknowns, n) and dg/dp (targets, n) at a state of rest."""
-        solve = at.problem.solver()
-        kept, sizes = at.problem.keep(), self.parameters.sizes(at.problem.size)
-        rates_x, rates_g = [], []
-        for k, size in enumerate(sizes):
-            h = STEP * max(abs(at.p[k]), 1e-3 * size)
-            ends = [self.beside(at, k, change, kept) for change in (-h, h)]
-            rate = -solve((ends[1].residual() - ends[0].residual()) / (2 * h))
-            values = []
-            for end, change in zip(ends, (-h, h), strict=True):
-                end.move(change * rate)
-                values.append(self.read(self.state(end)))
-            rates_x.append(rate)
-            rates_g.append((values[1] - values[0]) / (2 * h))
-        return np.array(rates_x).T, np.array(rates_g).T
-
-    def beside(self, at: _Found[S], k: int, change: float, kept: dict) -> StaticState:
-        """Return the fixed state `kept` with parameter k changed."""
-        p = at.p.copy()
-        p[k] += change
-        if (name := self.parameters.law_of(k)) is not None:
-            scene = laid(self.parameters.with_law(at.problem.scene.as_drawn, k, p[k]))
-            other = StaticState(scene, self.settings, with_point_force(at.problem.model, scene, name))
-        else:
-            other = StaticState(self.laid(self.parameters.scene_at(p)), self.settings)
-        self.check_same(at.problem.model, other.model, k)
-        other.restore(fitted(kept, other.model))
-        return other
-
-    def check_same(self, model: Model, other: Model, k: int) -> None:
-        """Raise SceneError where parameter k changes which unknowns there are."""
-        if not np.array_equal(model.unknown_of_dof, other.unknown_of_dof):
-            raise SceneError(f'adjust of "{self.parameters.names[k]}"', "changes which coordinates are free, so that "
-                             "there are no derivatives by it", "adjust something else")
-
-    def moved(self, at: _Found[S], step: np.ndarray, rates: np.ndarray) -> _Found[S] | str:
-        """Return the state of rest beside another one, or why there is none, in words."""
-        p = at.p + step
-        try:
-            problem = StaticProblem(self.laid(self.parameters.scene_at(p)), self.settings)
-        except SceneError as error:
-            return str(error)
-        problem.iterations = at.problem.iterations
-        problem.restore(fitted(at.problem.keep(), problem.model))
-        problem.move(rates @ step)
-        if not problem.newton():
-            return "no state of rest was found there"
-        return _Found(problem, p, self.read(self.state(problem)))
 
 
 def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState | None, made: type[S],
-             reader: Callable[[S, Sequence[str]], tuple[Reader, np.ndarray]]) -> S:
+             reader: Callable[[S, Sequence[str]], Reader]) -> S:
     """Return the state of rest that has the values ``settings.to``, of the scene with ``settings.adjust`` adjusted.
 
-    reader: returns, of a state and of names of values, the function that reads these of any such state, and which of
-    them are in m (targets,). Raises SceneError; EquilibriumError, which says what is not reached and why.
+    reader: returns, of a state and of names of values, what reads these of any such state. Raises SceneError;
+    EquilibriumError, which says what is not reached and why.
     """
     adjust, to = settings.adjust, settings.to
     assert adjust is not None, "without parameters there is nothing to adjust"
@@ -152,28 +54,22 @@ def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState |
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)  # that of the state returned counts
         rest = equilibrium(laid(scene), settings, start, made)
-    read, in_metres = reader(rest, list(to))
-    search = _Search(parameters, settings, made, read)
+    read = reader(rest, list(to))
+    search = ParameterSearch(parameters, settings, made, read)
     at = search.begin(rest)
     targets = np.array(list(to.values()))
-    scales = np.where(in_metres, at.problem.size, np.maximum(np.abs(targets), np.abs(at.g)))
+    scales = np.where(read.in_metres, at.problem.size, np.maximum(np.abs(targets), np.abs(at.g)))
     scales = np.where(scales > 0, scales, 1.0)
-    try:
-        misfits = _approach(search, at, to, scales)
-    except EquilibriumError:
-        if (taut := _with_all_taut(search, to, scales)) is None:
-            raise
-        misfits = _approach(search, taut.at, to, scales)
-        misfits.sizes[:0] = taut.sizes[:-1]  # of the same values
+    misfits = _found(search, at, to, scales)
     at = misfits.at
     found = find_rest(at.problem)
     state = made.of(at.problem, found or search.state(at.problem).stability)
-    g = read(state)
+    g = read.values(at.problem)
     left = float(np.max(np.abs(targets - g) / scales, initial=0.0))
     if found is None or left > NEARLY * settings.tolerance:
         raise EquilibriumError("the targets are met by an unstable state of rest alone, which the search for a stable "
                                "one leaves; take seek_stable=False to have it, or other targets", state, 1.0)
-    _, jacobian = search.linear(_Found(at.problem, at.p, g))
+    _, jacobian = search.linear(AtRest(at.problem, at.p, g))
     names = parameters.names
     state.adjustment = Adjustment(dict(zip(names, at.p.tolist(), strict=True)), dict(to),
                                   dict(zip(to, g.tolist(), strict=True)), jacobian, len(misfits.sizes) - 1,
@@ -182,12 +78,49 @@ def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState |
     return state
 
 
-def _with_all_taut(search: _Search[S], to: Mapping[str, float], scales: np.ndarray) -> _Approach[S] | None:
-    """Return a state of rest of the scene with the values that a scene finds whose springs push, too, where they pull
-    alone; None where there is none, or no such spring.
+@dataclass
+class _Approach:
+    """Where the steps have led, and the largest misfits on the way.
 
-    A slack spring changes nothing, so that no derivative says by how much it must be shorter. Where all are taut in the
-    end, both scenes are at rest in the same state.
+    cause: why the targets are not reached there, empty where they are; linear: the last model, None where the first
+    state has the values already.
+    """
+
+    at: AtRest
+    sizes: list[float]
+    cause: str = ""
+    linear: Linear | None = None
+
+
+def _found(search: ParameterSearch[S], at: AtRest, to: Mapping[str, float], scales: np.ndarray) -> _Approach:
+    """Return the state of rest with the values that are asked for. Raises EquilibriumError.
+
+    Where so many of the parameters are of slack springs that the others cannot do it, what all taut springs would do is
+    looked at first, and else last: a slack spring changes nothing, so that no derivative says by how much it must be
+    shorter.
+    """
+    met = np.max(np.abs(np.array(list(to.values())) - at.g) / scales) <= search.settings.tolerance
+    few = not met and len(search.parameters.names) - search.without_effect(at) < len(to)
+    taut = _with_all_taut(search, to, scales) if few else None
+    if not isinstance(taut, _Approach):
+        found = _approach(search, at, to, scales)
+        if not found.cause:
+            return found
+        taut = taut if few else _with_all_taut(search, to, scales)
+    if isinstance(taut, _Approach):
+        found = _approach(search, taut.at, to, scales)
+        found.sizes[:0] = taut.sizes[:-1]  # of the same values
+    if found.cause:
+        assert found.linear is not None, "there was one step at least"
+        also = f"{found.cause}; with all springs taut, {taut}" if isinstance(taut, str) else found.cause
+        raise EquilibriumError(why_unreachable(found.linear, found.at.g, to, also), search.state(found.at.problem), 1.0)
+    return found
+
+
+def _with_all_taut(search: ParameterSearch[S], to: Mapping[str, float], scales: np.ndarray) -> _Approach | str | None:
+    """Return a state of rest of the scene with the values that a scene finds whose springs push, too, where they pull
+    alone; why there is none, in words; None where there is no such spring. Where all are taut in the end, both scenes
+    are at rest in the same state.
     """
     scene, settings = search.parameters.scene, search.settings
     pulling = [part for part in scene.point_forces.values() if isinstance(part, Spring) and part.tension_only
@@ -196,36 +129,46 @@ def _with_all_taut(search: _Search[S], to: Mapping[str, float], scales: np.ndarr
         return None
     assert settings.adjust is not None, "the search has parameters"
     both = scene.changed([(part, {"tension_only": False}) for part in pulling])
-    pushing = _Search(Parameters(both, settings.adjust), settings, search.made, search.read)
+    pushing = ParameterSearch(Parameters(both, settings.adjust), settings, search.made, search.reader)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)  # as above
             rest = equilibrium(laid(both), settings, None, search.made)
         found = _approach(pushing, pushing.begin(rest), to, scales)
+        if found.cause:
+            return found.cause
         at = found.at
         problem = StaticProblem(search.laid(search.parameters.scene_at(at.p)), settings)
-    except (EquilibriumError, SceneError):
-        return None
+    except (EquilibriumError, SceneError) as error:
+        return str(error)
+    if pushes := _pushing(pushing.state(at.problem), pulling, settings.tolerance):
+        return pushes
     problem.restore(fitted(at.problem.keep(), problem.model))
     if find_rest(problem) is None:
-        return None
+        return "no state of rest was found"
     problem.iterations += at.problem.iterations
-    return _Approach(_Found(problem, at.p, search.read(search.state(problem))), found.sizes)
+    return _Approach(AtRest(problem, at.p, search.reader.values(problem)), found.sizes)
 
 
-@dataclass
-class _Approach(Generic[S]):
-    """Where the steps have led, and the largest misfits on the way."""
+def _pushing(state: RestState, springs: Sequence[Spring], tolerance: float) -> str:
+    """Return which of some springs push in a state, in words, by more than this part of the largest of their forces;
+    empty where none does.
+    """
+    tensions = {spring.name: float(state[f"{spring.name}.tension"]) for spring in springs}
+    least = -NEARLY * tolerance * max(abs(tension) for tension in tensions.values())
+    pushes = {name: tension for name, tension in tensions.items() if tension < least}
+    if not pushes:
+        return ""
+    worst = min(pushes, key=pushes.__getitem__)
+    others = f", and {len(pushes) - 1} more would push" * (len(pushes) > 1)
+    return f'"{worst}", which pulls alone, would push with {-pushes[worst]:.4g} N{others}'
 
-    at: _Found[S]
-    sizes: list[float]
 
-
-def _approach(search: _Search[S], at: _Found[S], to: Mapping[str, float], scales: np.ndarray) -> _Approach[S]:
-    """Take steps until the targets are met. Raises EquilibriumError where they cannot be."""
+def _approach(search: ParameterSearch[S], at: AtRest, to: Mapping[str, float], scales: np.ndarray) -> _Approach:
+    """Take steps until the targets are met, or no step comes nearer."""
     targets, settings, parameters = np.array(list(to.values())), search.settings, search.parameters
     sizes: list[float] = []
-    linear = None
+    linear, reason = None, f"{settings.max_iterations} steps were not enough; take more max_iterations"
     for _ in range(settings.max_iterations + 1):
         misfit = (targets - at.g) / scales
         sizes.append(float(np.max(np.abs(misfit), initial=0.0)))
@@ -233,19 +176,19 @@ def _approach(search: _Search[S], at: _Found[S], to: Mapping[str, float], scales
             return _Approach(at, sizes)
         rates, G = search.linear(at)
         linear = Linear.of(parameters, at.p, G, scales, misfit, parameters.sizes(at.problem.size))
-        nearer, reason = _step(search, at, linear, rates, targets, scales)
+        nearer, why = _step(search, at, linear, rates, targets, scales)
         if nearer is None:
             if sizes[-1] <= NEARLY * settings.tolerance:
                 return _Approach(at, sizes)
-            raise EquilibriumError(why_unreachable(parameters, linear, at.g, to, reason), search.state(at.problem), 1.0)
+            reason = why
+            break
         at = nearer
     assert linear is not None, "there is one iteration at least"
-    reason = f"{settings.max_iterations} steps were not enough; take more max_iterations"
-    raise EquilibriumError(why_unreachable(parameters, linear, at.g, to, reason), search.state(at.problem), 1.0)
+    return _Approach(at, sizes, cause_of(parameters, linear, list(to), reason), linear)
 
 
-def _step(search: _Search[S], at: _Found[S], linear: Linear, rates: np.ndarray, targets: np.ndarray,
-          scales: np.ndarray) -> tuple[_Found[S] | None, str]:
+def _step(search: ParameterSearch[S], at: AtRest, linear: Linear, rates: np.ndarray, targets: np.ndarray,
+          scales: np.ndarray) -> tuple[AtRest | None, str]:
     """Return a state nearer to the targets, by a part of Newton's step; None where there is none, and why, in words."""
     reason = "no step comes nearer"
     before, part = float(np.linalg.norm(linear.misfit)), 1.0

@@ -65,10 +65,15 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
             "not_finite": f"{where} diverges",
             "self_locking": f"friction is self-locking at {where}: the larger it is, the harder it presses the rider "
                             "on the cable"}[cause]
+    is_slide = coupling is None or isinstance(model.couplings[coupling], SlideModel)
+    if cause == "self_locking" and not is_slide:
+        what = f"{where} changes to and fro at one instant, again and again"
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
+    elif cause == "self_locking" and not is_slide:
+        remedy = "Take a smaller stiffness or tol, or give it damping"
     elif cause == "self_locking":
         remedy = "Take a smaller coefficient, or the rider's point nearer to its centre of mass"
     elif folded:
@@ -98,7 +103,8 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
     """Return what a dof is of, or what a coupling of this number is."""
     if coupling is not None:
         failed = model.couplings[coupling]
-        assert isinstance(failed, SlideModel), "slides alone have coordinates of their own"
+        if not isinstance(failed, SlideModel):
+            return f'{failed.type.replace("_", " ")} "{failed.name}"'
         return f'slide "{failed.name}" on cable "{model.cables[failed.cable].name}"'
     if (found := _node(model, dof)) is not None:
         cable, node = found

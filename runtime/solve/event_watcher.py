@@ -9,6 +9,7 @@ import numpy as np
 
 from ..checks.event_placement import AXES
 from ..errors import SceneError, near
+from ..model.middle_strain import middle_strain
 from ..model.model import Model
 from ..model.states import body_rates, body_state, spatial
 from ..parts.event import Event
@@ -29,6 +30,9 @@ class Watch:
             self.kind, self.index = "function", 0
             return
         name, what, *axis = _quantity(event).split(".")
+        if what == "least_strain":
+            self.kind, self.index = "function", 0
+            return
         if name in scene.slides:
             slide = model.slides[list(scene.slides).index(name)]
             self.kind, self.index = what, [c is slide for c in model.couplings].index(True)
@@ -112,19 +116,33 @@ class EventWatcher:
         return value
 
     def _of_quantity(self, event: Event) -> Callable[[float, State], float]:
-        """Return the function that a threshold on a body's origin stands for."""
+        """Return the function that a threshold on a body's origin, or on the least strain of a cable, stands for."""
         name, axis = _quantity(event).rsplit(".", 1)
+        if axis == "least_strain":
+            cable = next(cable for cable in self.model.cables if cable.name == name)
+            vectors = f"{name}.nodal_vectors"
+            return lambda time, state: middle_strain(cable, np.asarray(state[vectors])[None]).min() - event.value
         return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 
-    def acts(self, which: int, what: str, time: float, s: float | None) -> None:
+    def acts(self, which: int, what: str, time: float, passed: bool, s: float | None) -> None:
         """Note what a coupling of this number has done by itself: stuck, struck the end, and so on.
 
-        Without a word it is no event for a user: a corner of a table. s: of a slide, m.
+        Without a word it is no event for a user: a corner of a table. passed: a step went over it, and did not end
+        there; s: of a slide, m.
         """
         if not what:
             return
-        happened = {"name": self.model.couplings[which].name, "time": time, "what": what}
+        happened: dict = {"name": self.model.couplings[which].name, "time": time, "what": what}
+        if passed:
+            happened["passed"] = True
         self.happened.append(happened if s is None else happened | {"s": s})
+
+    def gives_way(self, cable: int, what: str, time: float, element: int) -> None:
+        """Note that the first element of a cable has become slack, or that all are taut again; element: which was
+        first, or last.
+        """
+        self.happened.append({"name": self.model.cables[cable].name, "time": time, "what": what, "element": element,
+                              "passed": True})
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Note an event; return whether the run goes on."""

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import FunicularWarning, SceneError
 from ..parts.arc_lengths import following, remade
 from ..parts.cable import Cable
-from ..parts.paths import Path, changes_of, gravity_of, path_of, unit_of, value_at
+from ..parts.paths import Path, changes_of, check_each_once, gravity_of, path_of, unit_of, value_at
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.settings import Limits
@@ -36,6 +36,7 @@ class Parameters(Generic[S]):
         """
         self.scene, self.names = scene, list(adjust)
         self.paths = [path_of(scene, name, ADJUST) for name in adjust]
+        check_each_once(self.paths)
         self.parts = list(scene.parts())
         self.values = np.array([self._value(path) for path in self.paths])
         self.units = [unit_of(scene, path) for path in self.paths]
@@ -95,18 +96,15 @@ class Parameters(Generic[S]):
         part = None if path.part is None else self.parts[path.part]
         return part.name if isinstance(part, PointForce) and path.entries[0] not in ("a", "b") else None
 
-    def with_law(self, scene: S, k: int, value: float) -> S:
-        """Return a scene of these parameters with another value of parameter k, of those that `law_of` names, which
-        nothing else of a scene depends on. Raises SceneError.
+    def force_with(self, scene: S, k: int, value: float) -> PointForce:
+        """Return the force between two points, in a scene of these parameters, with another value of parameter k, of
+        those that `law_of` names: nothing else of the scene depends on it. Raises SceneError.
         """
-        path = self.paths[k]
-        name = self.law_of(k)
+        path, name = self.paths[k], self.law_of(k)
         assert name is not None, f"{path.text} is of no force between two points"
         assert path.part is not None, f"{path.text} is of no part"
         part = scene.point_forces[name]
-        made = scene.copied()
-        made.point_forces[name] = type(part)(**{**part.entries(), **changes_of(scene, {path: value})[path.part]})
-        return made
+        return type(part)(**{**part.entries(), **changes_of(scene, {path: value})[path.part]})
 
     def sizes(self, length: float) -> np.ndarray:
         """Return (n,): what a change of each is compared with: its value; where that is zero, a thousandth of this

@@ -10,12 +10,7 @@ import numpy as np
 from ..errors import SceneError, UnknownResultError, near
 from ..model.drag_forces import drag_forces
 from ..model.model import Model
-from ..model.states import (
-    body_state,
-    connection_states,
-    modal_state,
-    spatial,
-)
+from ..model.states import attachment_points, connection_states, free_states
 from ..named_arrays import NamedArrays
 from ..parts.paths import path_of, value_at
 from ..parts.plane import called
@@ -25,6 +20,8 @@ from .static_problem import StaticState
 
 SAME = 1e-12
 """Of an adjusted value: what rounding may change."""
+MOVED = 1e-6
+"""Of the scene's size: what is taken for the same place."""
 
 
 def in_loads(fraction: float) -> str:
@@ -205,13 +202,27 @@ class RestState(NamedArrays):
                                  f"was adjusted, here it is {here}", "take the state's own scene: rest.scene")
 
     def check_supports(self, model: Model) -> None:
-        """Raise SceneError where supports are drawn elsewhere in a freshly built model than they are in this state."""
+        """Raise SceneError where supports or ends of joints are drawn elsewhere in a freshly built model than they are
+        in this state.
+        """
+        q, size = self.static_state["q"][None], max(float(np.abs(model.q).max(initial=0.0)), 1.0)
+        for was, joint in zip(self.model.joints, model.joints, strict=True):
+            if joint.slide is not None:
+                continue
+            was_open, is_open = (np.subtract(*(attachment_points(of, end, q)[0] for end in each.attachments))
+                                 for of, each in ((self.model, was), (model, joint)))
+            moved = float(np.linalg.norm(is_open - was_open))
+            if "distance" in joint.kernel:
+                moved = max(moved, abs(joint.base - was.base))
+            if moved > MOVED * size:
+                raise SceneError("scene", f'the state to start from has an end of the joint "{joint.name}" '
+                                 f"{moved:.3g} m from where it is here", "take an equilibrium of this scene")
         if model.cables:
             own = slice(0, model.cables[-1].coordinates.stop)
             fixed = model.unknown_of_dof[own] == -1
             fixed[[motion.dof for motion in model.motions if motion.dof < own.stop]] = False
             moved = np.abs(self.static_state["q"][own] - model.q[own]) * model.weight[own] * fixed
-            if np.max(moved) > 1e-6 * max(cable.mesh.total for cable in model.cables):
+            if np.max(moved) > MOVED * max(cable.mesh.total for cable in model.cables):
                 raise SceneError("scene", f"the state to start from has a support {np.max(moved):.3g} m from where it "
                                  "is here", "take an equilibrium of this scene")
 
@@ -223,21 +234,10 @@ class RestState(NamedArrays):
             slide.place_at(float(s), model.cables[slide.cable])
 
     def _quantities(self) -> dict[str, np.ndarray]:
-        model, q = self.model, self.static_state["q"][None]
-        found = {}
-        for cable in model.cables:
-            vectors = spatial(q[0, cable.coordinates].reshape(cable.shape))
-            vectors = model.results(cable.name, {"nodal_vectors": vectors})["nodal_vectors"]
-            found[f"{cable.name}.nodal_vectors"] = vectors
-            found[f"{cable.name}.position"] = vectors[:, cable.vectors.index("r")]
-        for body in model.bodies:
-            state = body_state(model, body, q)
-            state |= modal_state(model, body, state, q) if body.modes else {}
-            found |= {f"{body.name}.{name}": value[0] for name, value in model.results(body.name, state).items()}
-        for k, slide in enumerate(model.slides):
-            found[f"{slide.name}.s"] = self.static_state["s"][k]
-            found |= {f"{slide.name}.{name}": value for name, value in
-                      model.results(slide.name, {"force": self.static_state["force"][k]}).items()}
+        model, kept = self.model, self.static_state
+        q = kept["q"][None]
+        free = free_states(model, q, kept["s"][None], kept["force"][None])
+        found = {f"{part}.{name}": value[0] for part, values in free.items() for name, value in values.items()}
         forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
                                    self.static_state["point_force"][None],
                                    self.load_fraction * drag_forces(self.model, q)[None])

@@ -59,20 +59,17 @@ class Linear:
         return U[:, int(np.sum(values > RANK * values[0])):] if values[0] > 0 else U
 
 
-def why_unreachable(parameters: Parameters, linear: Linear, g: np.ndarray, to: Mapping[str, float],
-                    reason: str) -> str:
-    """Return which targets are not reached, how far from them the search ended, and why, as a message; g: values there;
-    reason: why the search ended.
+def why_unreachable(linear: Linear, g: np.ndarray, to: Mapping[str, float], cause: str) -> str:
+    """Return which targets are not reached, how far from them the search ended, and why, as a message; g: values there.
     """
     names = list(to)
     missed = np.abs(linear.misfit) > SHARE * np.max(np.abs(linear.misfit))
     values = " and ".join(f'"{names[k]}" is {g[k]:.9g}, not {to[names[k]]:.9g}' for k in np.flatnonzero(missed))
-    return f"the targets are not reached: {values}; {_cause(parameters, linear, names, reason)}; the state there is " \
-           "kept in .state"
+    return f"the targets are not reached: {values}; {cause}; the state there is kept in .state"
 
 
-def _cause(parameters: Parameters, linear: Linear, names: list[str], reason: str) -> str:
-    """Return why the search ended where it did, in words."""
+def cause_of(parameters: Parameters, linear: Linear, names: list[str], reason: str) -> str:
+    """Return why the search ended where it did, in words; names: of the targets; reason: why no step was taken."""
     silent = ~np.any(np.abs(linear.A) > RANK * max(np.max(np.abs(linear.A)), 1e-300), axis=1)
     if silent.any():
         which = _quoted([names[k] for k in np.flatnonzero(silent)])

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ..errors import FunicularWarning, SceneError, near
-from ..parts.paths import Path, changed, path_of, unit_of
+from ..parts.paths import Path, changed, check_each_once, path_of, unit_of
 from ..parts.settings import RunSettings
 from ..parts.validation import shown
 from ..results.run import Run
@@ -46,7 +46,9 @@ class SceneSubject:
     def of(cls, scene: Scene, parameters: Sequence[str], keep: Keep) -> SceneSubject:
         """Return the subject of a scene with run_settings. Raises SceneError for wrong paths and results."""
         keep.check(scene)
-        return cls(scene, {name: path_of(scene, name) for name in parameters}, keep)
+        paths = {name: path_of(scene, name) for name in parameters}
+        check_each_once(paths.values())
+        return cls(scene, paths, keep)
 
     @property
     def digest(self) -> str:

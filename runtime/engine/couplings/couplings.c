@@ -21,7 +21,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
     model->slides = 0;
     model->n_coordinates = model->n_forces = model->n_rows = model->n_outputs = 0;
     model->n_numbers = model->n_flags = model->n_scratch = 0;
-    model->n_reacting = model->n_external = model->n_driven = model->n_damped = 0;
+    model->n_reacting = model->n_external = model->n_driven = model->n_damped = model->n_passing = 0;
     for (int k = 0; k < n; ++k) {
         fu_coupling *c = couplings[k];
         c->number = k;
@@ -43,6 +43,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
         model->n_external += c->type->external_force != 0;
         model->n_driven += c->is_driven;
         model->n_damped += c->is_damped;
+        model->n_passing += fu_can_pass(c);
     }
 }
 

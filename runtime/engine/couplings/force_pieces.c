@@ -8,6 +8,8 @@
 
 #include <math.h>
 
+#define BISECTIONS 40 /* of a step: where the distance passes a bound, to rounding */
+
 static const fu_point_force *force_of(const fu_coupling *coupling)
 {
     return (const fu_point_force *)coupling;
@@ -91,10 +93,9 @@ static passage entering(const fu_point_force *between, int piece, int side, cons
     return (passage){fmin(beyond, margin_of_sense(between, entered, gap, rate, distance)), entered};
 }
 
-/* Returns the passage that is nearest, or has happened. */
-static passage next_passage(const fu_model *model, const fu_point_force *between, const fu_state *state)
+/* Returns the passage from a piece that is nearest, or has happened. */
+static passage passage_from(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece)
 {
-    const int piece = fu_force_piece(between, state);
     passage found = {-INFINITY, piece};
     double gap[3], rate[3];
     fu_gap(model, between, state->q, state->v, gap, rate);
@@ -110,6 +111,83 @@ static passage next_passage(const fu_model *model, const fu_point_force *between
             found = farther(found, (passage){side * (distance - between->bounds[piece - (side < 0)]), beside});
     }
     return found;
+}
+
+static passage next_passage(const fu_model *model, const fu_point_force *between, const fu_state *state)
+{
+    return passage_from(model, between, state, fu_force_piece(between, state));
+}
+
+/* Passages follow from where the points are; each leads from piece to piece. */
+static int pass(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to)
+{
+    const fu_point_force *between = force_of(coupling);
+    int *piece = &to->flags[coupling->flags];
+    *piece = from->flags[coupling->flags];
+    for (int i = 0; i < between->n_pieces; ++i) {
+        const passage next = next_passage(model, between, to);
+        if (!(next.margin > 0.0)) break;
+        *piece = next.piece;
+    }
+    return *piece != from->flags[coupling->flags];
+}
+
+/* What has happened where the force has passed from piece to piece, in words; nothing at a corner of a table. */
+static const char *words(const fu_point_force *between, int before, int after)
+{
+    const int was_free = between->senses[before] == FU_HAS_NO_FORCE, is_free = between->senses[after] == FU_HAS_NO_FORCE;
+    return is_free ? "became slack" : !was_free ? "" : after > before ? "became taut" : "came into contact";
+}
+
+/* The distance of the points, less that at which a piece ends, m, and its rate. */
+static void beyond(const fu_model *model, const fu_point_force *between, const fu_state *state, double bound, double *way, double *rate)
+{
+    double gap[3], gap_rate[3];
+    fu_gap(model, between, state->q, state->v, gap, gap_rate);
+    const double distance = norm(between->dim, gap);
+    *way = distance - bound;
+    *rate = fu_dot(between->dim, gap, gap_rate) / distance;
+}
+
+/* By the cubic of the distance through both ends of the step; where a damper turns the force round, by the line of its margins. */
+static double passed(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,
+                     const char **what)
+{
+    const fu_point_force *between = force_of(coupling);
+    const int before = fu_force_piece(between, from), there = fu_force_piece(between, to);
+    const int after = there == before ? passage_from(model, between, to, before).piece : there, up = after > before;
+    double a, b, rate_a, rate_b, low = 0.0, high = 1.0;
+    *what = words(between, before, after);
+    if (coupling->is_damped) {
+        a = passage_from(model, between, from, before).margin;
+        b = passage_from(model, between, to, before).margin;
+        return a < 0.0 && b > 0.0 ? a / (a - b) : 1.0;
+    }
+    beyond(model, between, from, between->bounds[up ? before : before - 1], &a, &rate_a);
+    beyond(model, between, to, between->bounds[up ? before : before - 1], &b, &rate_b);
+    for (int i = 0; i < BISECTIONS; ++i) {
+        const double x = 0.5 * (low + high), y = 1.0 - x;
+        const double way = y * y * ((1.0 + 2.0 * x) * a + x * h * rate_a) + x * x * ((1.0 + 2.0 * y) * b - y * h * rate_b);
+        if ((up ? way : -way) < 0.0) low = x;
+        else high = x;
+    }
+    return high;
+}
+
+static double since(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_point_force *between = force_of(coupling);
+    const int before = fu_force_piece(between, state), up = next_passage(model, between, state).piece > before;
+    double way, rate;
+    if (coupling->is_damped) return NAN;
+    beyond(model, between, state, between->bounds[up ? before : before - 1], &way, &rate);
+    return way / rate;
+}
+
+static void passed_force(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                         double factor, double *f)
+{
+    fu_add_force_change(model, force_of(coupling), to, fu_force_piece(force_of(coupling), from), factor, f);
 }
 
 static int watches(const fu_coupling *coupling, fu_watch *out)
@@ -135,10 +213,9 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
 {
     const fu_point_force *between = force_of(coupling);
     const int before = fu_force_piece(between, &run->now), after = next_passage(run->model, between, &run->now).piece;
-    const int was_free = between->senses[before] == FU_HAS_NO_FORCE, is_free = between->senses[after] == FU_HAS_NO_FORCE;
     (void)which, (void)side;
     run->now.flags[coupling->flags] = after;
-    *what = is_free ? "became slack" : !was_free ? "" : after > before ? "became taut" : "came into contact";
+    *what = words(between, before, after);
     return FU_RUNNING;
 }
 
@@ -164,6 +241,10 @@ const fu_coupling_events fu_point_force_events = {
     .watched = watched,
     .sign = sign,
     .act = act,
+    .pass = pass,
+    .passed = passed,
+    .since = since,
+    .passed_force = passed_force,
     .can_act = can_act,
     .begin = begin,
 };

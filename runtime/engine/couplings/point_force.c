@@ -92,6 +92,17 @@ static void add_step_forces(const fu_model *model, const fu_point_force *between
     }
 }
 
+void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece, double factor,
+                         double *f)
+{
+    double gap[3], rate[3], force[3], other[3];
+    fu_gap(model, between, state->q, state->v, gap, rate);
+    force_of_piece(between, fu_force_piece(between, state), gap, rate, force);
+    force_of_piece(between, piece, gap, rate, other);
+    for (int d = 0; d < between->dim; ++d) force[d] = factor * (force[d] - other[d]);
+    add_forces(model, between, state->q, force, f);
+}
+
 /* Writes minus the residuals of the own unknowns: the forces less those of the law. */
 static void own_rows(const fu_coupling *coupling, const fu_equations *at, const double *force, double *own)
 {

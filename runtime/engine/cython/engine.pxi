@@ -36,7 +36,7 @@ cdef extern from "engine.h" nogil:
     int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING
-    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_OUTPUT, FU_WATCH_CALL, FU_ACTED
+    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_OUTPUT, FU_WATCH_CALL, FU_ACTED, FU_PASSED, FU_GAVE_WAY
     int FU_INTEGER, FU_REAL, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_MODAL_POINT, FU_INTEGERS, FU_REALS
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
     int FU_BAND_MORE(int width)
@@ -46,7 +46,7 @@ cdef extern from "engine.h" nogil:
         const fu_element_kernels *kernel
         const fu_law_kernels *law
         const fu_law_blocks *blocks
-        int n_elements, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state
+        int n_elements, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state, gives_way
         double length, tau, mass_damping
         const double *lengths
         const double *nodes
@@ -257,6 +257,8 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_watch:
         int kind, index, which, direction
         double value
+    ctypedef struct fu_slackness:
+        int pending
     ctypedef struct fu_event:
         int kind, which, side
         const char *what
@@ -286,9 +288,13 @@ cdef extern from "engine.h" nogil:
         double *watched
         double *watch_work
         int *late
+        fu_slackness *slackness
+        double *passed_at
+        const char **passed
         double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
         void *context
         fu_event event
+        double event_time
         int n_knots
         const fu_knot *knots
         long most_evaluations

@@ -152,14 +152,13 @@ cdef class Statics(Translation):
 
     def static_residual(self):
         """(n,): left side of equilibrium over the unknowns: internal minus external forces; constraints."""
-        cdef int i
+        cdef int total = self.run.newton.n + self.run.newton.m
         fu_static_residual(&self.run)
-        return -np.array([self.run.rhs[i] for i in range(self.run.newton.n + self.run.newton.m)])
+        return -np.asarray(<double[:total]>self.run.rhs) if total else np.zeros(0)
 
     def reaction(self):
         """(n_dof,): after `static_residual`, what supports give to each dof, the residual where it is free."""
-        cdef int i
-        return np.array([self.run.force[i] for i in range(self.model.n_dof)])
+        return np.asarray(<double[:self.model.n_dof]>self.run.force).copy() if self.model.n_dof else np.zeros(0)
 
     def matrix(self, double inertia, double rate, double stiffness):
         """inertia M + stiffness (K + rate D) at the static state, (n, n) sparse; constraints where stiffness is not 0."""

@@ -77,6 +77,7 @@ cdef class Translation(Arrays):
             c.n_elements, c.first, c.length = mesh.n_elements, cable.first, mesh.mean
             c.lengths, c.l_stride = self._doubles(mesh.lengths), 0 if mesh.is_even else 1
             c.nodes = NULL if mesh.is_even else self._doubles(mesh.node_s)
+            c.gives_way = cable.law.endswith("tension_only")
             c.tau, c.mass_damping = cable.tau, cable.mass_damping
             c.per_node = c.kernel.vectors * c.kernel.dim
             c.coordinates = c.kernel.nodes * c.per_node
@@ -371,6 +372,7 @@ cdef class Translation(Arrays):
         a.self_locking = -1
         a.force, a.work = self._zeros(n_dof), self._zeros(n_dof)
         a.prescribed = self._zeros(n_dof)
+        run.slackness = <fu_slackness *>self._memory(<double>self.model.n_cables * sizeof(fu_slackness))
         run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(width))
         run.psi, run.force = self._zeros(n_dof), self._zeros(n_dof)
         run.work, run.before = self._zeros(n_dof), self._zeros(n_dof)

@@ -39,6 +39,20 @@ struct fu_coupling_events {
      * what has happened, and is null where nothing has. */
     int (*act)(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what);
 
+    /* Passages: changes that steps may go over, as nothing but a slope of the force jumps there. Null: there are none.
+     *
+     * Makes the flags of `to` those that follow from the flags of `from` and from where `to` is; returns whether they differ. */
+    int (*pass)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to);
+    /* Returns after which part of a step of h from one state to the other the coupling has passed; *what as above. */
+    double (*passed)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,
+                     const char **what);
+    /* Returns how long before a state close to it the coupling has passed what it is about to, s; not a number where that needs the
+     * state itself. */
+    double (*since)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    /* Adds to f, times a factor, by how much the force at `to` differs from that without the passage. */
+    void (*passed_force)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                         double factor, double *f);
+
     /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);
     int (*begin)(fu_run *run, const fu_coupling *coupling);

@@ -31,6 +31,8 @@
 #include "energy_balance.h"
 #include "equations.h"
 #include "events.h"
+#include "passages.h"
+#include "slack_cables.h"
 #include "failure.h"
 #include "integrator.h"
 #include "joints.h"

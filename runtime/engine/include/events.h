@@ -14,8 +14,9 @@ typedef struct {
 } fu_watch;
 
 /* An event. FU_CROSSING: a coupling, `which`, passes a boundary of its path to a side. FU_WATCHED: the watch `which` passes
- * zero to a side. FU_ACTED: a coupling, `which`, has changed by itself, as `what` says in words. */
-enum { FU_NO_EVENT = 0, FU_CROSSING, FU_WATCHED, FU_ACTED };
+ * zero to a side. FU_ACTED: a coupling, `which`, has changed by itself, as `what` says in words. FU_PASSED: a step went over that.
+ * FU_GAVE_WAY: a cable, `which`, has become slack, or taut again; `side` is an element of it. */
+enum { FU_NO_EVENT = 0, FU_CROSSING, FU_WATCHED, FU_ACTED, FU_PASSED, FU_GAVE_WAY };
 typedef struct {
     int kind, which, side;
     const char *what;

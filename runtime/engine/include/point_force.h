@@ -35,6 +35,9 @@ void fu_gap(const fu_model *model, const fu_point_force *between, const double *
  * adds to `by_place` the derivatives of the point's velocity by them at fixed rates; K, those of P' own, of a force `own`. */
 void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own, const double *psi,
                    const fu_attachment_state *at, double *turned, double *by_place, double *K);
+/* Adds to f, times a factor, by how much the forces at a state differ from those by the law of another piece. */
+void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece, double factor,
+                         double *f);
 
 /* couplings/force_pieces.c */
 int fu_force_piece(const fu_point_force *between, const fu_state *state);

@@ -10,6 +10,7 @@
 #include "linear.h"
 #include "model.h"
 #include "record.h"
+#include "slack_cables.h"
 #include "state.h"
 
 typedef struct {
@@ -35,10 +36,14 @@ struct fu_run {
     const fu_watch *watches;
     double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
     int *late;           /* per watch: the side to which it passed together with another event */
+    double *passed_at;   /* per watch: when a step has gone over it, s, for the caller to learn of it; negative where none has */
+    const char **passed; /* per watch: what has happened then, in words */
+    fu_slackness *slackness; /* per cable */
     double *watch_work;  /* n_dof + n_outputs: accelerations and a row of output that a watched number is of */
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     fu_event event;      /* that the run has stopped at */
+    double event_time;   /* s: when it has happened, of couplings */
     int n_knots;
     const fu_knot *knots; /* increasing; steps end there */
     long most_evaluations; /* after which fu_advance returns; 0: after any number */
@@ -73,6 +78,7 @@ struct fu_run {
     double matrix_cost; /* of the factored matrix and of the steps made with it, in iterations */
     int matrix_steps;   /* how many these are */
     int factored, stopped_slide, turned, acts;
+    int keep_forces; /* couplings pass nothing in a step, which ends where one of them would */
     int keep_pieces; /* couplings keep their pieces in a step, which ends where one of them leaves its piece */
     int net_rejections; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */

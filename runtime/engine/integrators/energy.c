@@ -176,7 +176,7 @@ static double error(fu_run *run, double h)
     const double factor = h * h * h / 12.0 / (0.5 * h + run->since);
     for (int i = 0; i < run->model->n_dof; ++i)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
-    return fu_filtered_size(run);
+    return fu_filtered_size(run, 0.0);
 }
 
 /* Adds the work of the forces that are not conserved, as the step has it: energy balances to rounding. */

@@ -110,6 +110,7 @@ static void kinematics(fu_run *run, double h)
     fu_share(model->threads, model->n_dof, kinematics_part, &job);
     fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
+    fu_choose_passages(run);
 }
 
 /* Returns the equations at the end of a step. */
@@ -183,14 +184,15 @@ static int step(fu_run *run, double h)
 
 /* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has changed its
  * element the accelerations have jumped at some instant of the step, and velocities are wrong by the part of h that lies
- * between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. */
+ * between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. Where the step
+ * goes over a passage, the same holds of what the force of that has become. */
 static double error(fu_run *run, double h)
 {
     const parameters *g = scheme_of(run);
     const double smooth = fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
     const double factor = h * h * (fu_count_changes(run) ? JUMP : smooth);
     fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration, run->work);
-    return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run);
+    return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run, JUMP * h * h);
 }
 
 static void account(fu_run *run, double h)

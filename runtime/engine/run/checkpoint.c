@@ -52,6 +52,7 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, run->watched, sizeof(double) * (size_t)run->n_watches);
     if (run->integrator->keeps_scratch) copy(c, run->scratch, sizeof(double) * (size_t)run->integrator->n_scratch(run));
     copy(c, run->late, sizeof(int) * (size_t)run->n_watches);
+    copy(c, run->slackness, sizeof *run->slackness * (size_t)model->n_cables);
     copy(c, &run->record.n, sizeof run->record.n);
     copy(c, &run->statistics, sizeof run->statistics);
     copy(c, &run->accelerator.evaluated, sizeof run->accelerator.evaluated);
@@ -114,7 +115,7 @@ static int possible_counts(const fu_run *run)
         if (counts[i] < 0) return 0;
     for (int k = 0; k < run->n_watches; ++k)
         if (!in_range(run->late[k], -1, 1)) return 0;
-    return in_range(run->turned, 0, MOST_COUNT) && in_range(run->net_rejections, -MOST_COUNT, MOST_COUNT);
+    return fu_possible_slackness(run) && in_range(run->turned, 0, MOST_COUNT) && in_range(run->net_rejections, -MOST_COUNT, MOST_COUNT);
 }
 
 /* Returns whether flags, and numbers of couplings and dofs, are possible: some lead to places in memory. */

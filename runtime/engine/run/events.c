@@ -8,6 +8,7 @@
 #define FINER 1e-2        /* of Newton's tolerance, which is used near an event, lest its noise rule where the event is */
 #define PRECISE 1e-13     /* of a piece, or of what a watched quantity changes by in the step: how close to an event it ends */
 #define LITTLE 1e-2       /* of the allowed error: what a passage beside a boundary may make */
+#define NEAR 1e-6         /* of what a distance changes by in the step: how close to a passage an adaptive step ends */
 #define LARGEST_MISS 1e-6 /* of a piece: how close to a boundary a step ends at least */
 #define SMALLEST 1e-300   /* a value that has a sign and is nearly zero */
 
@@ -83,18 +84,40 @@ static double root_of_parabola(double g_low, double g_high, double rate)
     return square > 0.0 ? -2.0 * g_low / (rate + sqrt(square)) : -g_low / (g_high - g_low);
 }
 
-/* Returns how close to an event a step must end. A coupling that goes on in the next piece, a way d from the boundary, has
- * gone that way on the wrong curve, whose direction is wrong by d times the jump of r_xx: its velocity by less than rate
- * d/length for pieces that bend by less than a radian. Over the step that shall be little of what is allowed. */
-static double landing(const fu_run *run, fu_event event, double range)
+/* Returns the coupling whose passage an event is; null where it is none. */
+static const fu_coupling *passing(const fu_run *run, fu_event event)
 {
-    if (event.kind == FU_WATCHED) return PRECISE * range;
+    const fu_watch *watch = &run->watches[event.which];
+    const fu_coupling *c = event.kind == FU_WATCHED && watch->kind == FU_WATCH_COUPLING ? run->model->couplings[watch->index] : 0;
+    return c && fu_can_pass(c) ? c : 0;
+}
+
+/* Returns whether a step may end a little off an event: the slope of a force jumps there, which over so short a way makes nothing, and
+ * the instant follows from the rate (run/happenings.c). */
+static int may_miss(const fu_run *run, fu_event event)
+{
+    const fu_coupling *c = passing(run, event);
+    return c && run->fixed_step <= 0.0 && !c->is_damped;
+}
+
+/* Where a step that ends on an event ends: the event's value is `aim` there, within `close`. */
+typedef struct {
+    double aim, close;
+} landing_place;
+
+/* Returns how close to an event a step must end: beyond a passage, lest it happen again. A coupling that goes on in the next piece, a way
+ * d from the boundary, has gone that way on the wrong curve, whose direction is wrong by d times the jump of r_xx: its velocity by less
+ * than rate d/length for pieces that bend by less than a radian. Over the step that shall be little of what is allowed. */
+static landing_place landing(const fu_run *run, fu_event event, double range)
+{
+    if (event.kind == FU_WATCHED)
+        return may_miss(run, event) ? (landing_place){0.5 * NEAR * range, 0.5 * NEAR * range} : (landing_place){0.0, PRECISE * range};
     const fu_coupling *c = run->model->couplings[event.which];
     const fu_path path = fu_path_of(run->model, c, &run->now);
     const int next = run->now.piece[c->coordinate] + event.side;
-    if (run->fixed_step > 0.0 || next < 0 || next >= path.n) return PRECISE * path.length;
+    if (run->fixed_step > 0.0 || next < 0 || next >= path.n) return (landing_place){0.0, PRECISE * path.length};
     const double shorter = fmin(fu_piece_length(path, next), fu_piece_length(path, next - event.side));
-    return fmax(PRECISE * path.length, fmin(LARGEST_MISS, LITTLE * run->allowed / range) * shorter);
+    return (landing_place){0.0, fmax(PRECISE * path.length, fmin(LARGEST_MISS, LITTLE * run->allowed / range) * shorter)};
 }
 
 /* Returns whether an event is of a watch of a coupling's own, whose value leaves its zero anew after each event. */
@@ -145,14 +168,16 @@ static int leave_zero(fu_run *run, fu_event event, bracket *b, double least, dou
 }
 
 /* Shortens the step until it ends where the event happens; returns the step, 0 on failure. `next` is there then. */
-static double search(fu_run *run, fu_event event, bracket b, double middle, double least, double close)
+static double search(fu_run *run, fu_event event, bracket b, double middle, double least, landing_place at)
 {
+    b.g_low -= at.aim;
+    b.g_high -= at.aim;
     for (int i = 0; i < MOST_TRIALS; ++i) {
         /* rounding may rule g */
         if (!(middle > b.low && middle < b.high) || (i > FEW_TRIALS && i % 2)) middle = 0.5 * (b.low + b.high);
         if (run->integrator->step(run, middle)) return 0.0;
-        const double g = value(run, &run->next, event);
-        if (fabs(g) <= close || (g >= 0.0 && middle - b.low <= least)) return middle;
+        const double g = value(run, &run->next, event) - at.aim;
+        if (fabs(g) <= at.close || (g >= 0.0 && middle - b.low <= least)) return middle;
         narrow(&b, middle, g);
         if (g < 0.0 && b.high - b.low <= least) return run->integrator->step(run, b.high) ? 0.0 : b.high;
         middle = secant(&b);
@@ -165,21 +190,25 @@ static double locate(fu_run *run, fu_event event, double h)
 {
     bracket b = {0.0, h, 0.0, value(run, &run->next, event), 0};
     b.g_low = event.kind == FU_WATCHED ? event.side * run->watched[event.which] : value(run, &run->now, event);
-    const double least = LEAST_STEP * run->duration, close = landing(run, event, b.g_high - b.g_low);
+    const double least = LEAST_STEP * run->duration;
+    const landing_place at = landing(run, event, b.g_high - b.g_low);
     double middle = h * b.g_low / (b.g_low - b.g_high);
     if (event.kind == FU_CROSSING) {
         const fu_coupling *c = run->model->couplings[event.which];
         const double rate = event.side * c->type->events->rate(run->model, c, &run->now);
         middle = h * root_of_parabola(b.g_low, b.g_high, h * rate);
     }
-    if (b.g_high <= close) return h;
-    if (is_of_a_coupling(run, event) && fabs(b.g_low) <= close) {
-        const int found = leave_zero(run, event, &b, least, close);
+    const fu_coupling *passes = passing(run, event);
+    const char *unused;
+    if (passes) middle = h * passes->type->events->passed(run->model, passes, &run->now, &run->next, h, &unused);
+    if (b.g_high <= at.aim + at.close) return h;
+    if (is_of_a_coupling(run, event) && fabs(b.g_low) <= (at.aim > 0.0 ? PRECISE * (b.g_high - b.g_low) : at.close)) {
+        const int found = leave_zero(run, event, &b, least, at.close);
         if (found < 0) return 0.0;
         if (!found) return b.high < h || !run->integrator->step(run, b.high) ? b.high : 0.0;
         middle = secant(&b);
     }
-    return search(run, event, b, middle, least, close);
+    return search(run, event, b, middle, least, at);
 }
 
 /* Shortens the step h, which leads beyond an event, until it ends there, with couplings that keep their pieces until one of

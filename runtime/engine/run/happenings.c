@@ -2,11 +2,12 @@
 #include "engine.h"
 
 #define AT_ONE_INSTANT 1e-12 /* of the duration: changes of couplings that follow each other within it are at one instant */
+#define MOST_SINCE 1e-6      /* of the duration: how far from its end a step may have passed what it ends on */
 #define MOST_ACTS 100        /* changes of couplings at one instant: more is no motion */
 
-/* Starts the scheme anew after a coupling has changed, as `what` says; returns FU_EVENT, for the caller to learn of it, or the
+/* Starts the scheme anew after a coupling has changed, as `what` says, so long ago, s; returns FU_EVENT, for the caller to learn of it, or the
  * status of a run that cannot go on. */
-static int acted(fu_run *run, const fu_coupling *coupling, const char *what)
+static int acted(fu_run *run, const fu_coupling *coupling, const char *what, double since)
 {
     const int status = fu_start_scheme(run, 1);
     run->acts = run->now.t - run->acted <= AT_ONE_INSTANT * run->duration ? run->acts + 1 : 0;
@@ -17,6 +18,7 @@ static int acted(fu_run *run, const fu_coupling *coupling, const char *what)
     }
     fu_watch_anew(run, coupling->number);
     run->event = (fu_event){FU_ACTED, coupling->number, 0, what};
+    run->event_time = run->now.t - since;
     return status ? status : FU_EVENT;
 }
 
@@ -31,7 +33,7 @@ static int cross(fu_run *run, const fu_coupling *coupling, int side)
     if (piece < 0 || piece >= fu_path_of(run->model, coupling, now).n) {
         const char *what = 0;
         const int status = events->reach_end(run, coupling, side, &what);
-        return status ? status : acted(run, coupling, what);
+        return status ? status : acted(run, coupling, what, 0.0);
     }
     const int status = events->enter ? events->enter(run, coupling, piece) : FU_RUNNING;
     if (status) return status;
@@ -49,8 +51,9 @@ int fu_let_happen(fu_run *run, fu_event event)
     if (watch->kind == FU_WATCH_COUPLING) {
         const fu_coupling *coupling = run->model->couplings[watch->index];
         const char *what = 0;
+        const double since = coupling->type->events->since ? coupling->type->events->since(run->model, coupling, &run->now) : 0.0;
         const int status = coupling->type->events->act(run, coupling, watch->which, event.side, &what);
-        return status || !what ? status : acted(run, coupling, what);
+        return status || !what ? status : acted(run, coupling, what, fabs(since) < MOST_SINCE * run->duration ? since : 0.0);
     }
     run->event = event;
     return FU_EVENT;

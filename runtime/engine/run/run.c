@@ -27,6 +27,7 @@ int fu_advance(fu_run *run, double seconds)
 {
     const double until = fu_clock() + seconds;
     for (;;) {
+        if (fu_take_passage(run)) return FU_EVENT;
         double target = run->record.n * run->output_step;
         if (target > run->duration * (1.0 - FU_AT_ONCE)) target = run->duration;
         if (run->now.t >= target - FU_AT_ONCE * run->duration) {

@@ -57,6 +57,7 @@ int fu_start(fu_run *run)
         if (fu_begin_couplings(run) || fu_start_scheme(run, 0)) return FU_SINGULAR;
         memcpy(run->before, run->psi, sizeof(double) * (size_t)model->n_dof);
     }
+    fu_begin_slackness(run);
     const int recorded = fu_record_row(run);
     if (recorded) return recorded == FU_NO_CONVERGENCE ? recorded : FU_SINGULAR;
     if (run->rest_start) {

@@ -15,6 +15,8 @@ static void accept(fu_run *run, double h, fu_event event)
     const fu_model *model = run->model;
     for (int i = 0; i < model->n_coordinates; ++i) run->s_slope[i] = (run->next.s[i] - run->now.s[i]) / h;
     run->integrator->account(run, h);
+    fu_note_passages(run, h);
+    fu_note_slackness(run, h);
     run->dissipated += fu_lost_in_step(model, &run->now, &run->next);
     run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
@@ -58,11 +60,17 @@ static int must_keep_pieces(const fu_run *run)
     return !is_adaptive(run) || !run->integrator->crosses_boundaries || fu_stop_at_boundaries(run->model);
 }
 
+/* Returns whether couplings must pass nothing in a step, which ends where one of them would. */
+static int must_keep_forces(const fu_run *run)
+{
+    return !is_adaptive(run) || !run->integrator->crosses_boundaries;
+}
+
 /* A step that is tried: the size that is wanted and the one that is taken, s; its error, m, and that over what is allowed;
- * how many boundaries couplings have passed in it; the event that it ends on. */
+ * how many boundaries couplings have passed in it, and how many passages it goes over; the event that it ends on. */
 typedef struct {
     double want, h, error, ratio;
-    int changes;
+    int changes, passages;
     fu_event event;
 } trial;
 
@@ -106,6 +114,10 @@ static int attempt(fu_run *run, trial *t)
     run->failure.cause = FU_NO_FAILURE;
     run->usual = t->want;
     if (make(run, t->h)) {
+        if (run->model->n_passing && !run->keep_forces) { /* its iteration may go to and fro over one */
+            fu_undo_passages(run);
+            return 0;
+        }
         if (!run->failure.cause) fu_fail(run, FU_ITERATION, run->next.v, -1);
         t->want = fu_retry_step(run, t->h);
         return 0;
@@ -113,7 +125,8 @@ static int attempt(fu_run *run, trial *t)
     t->error = error_of(run, t->h);
     t->ratio = t->error / allowed;
     t->changes = fu_count_changes(run);
-    if (is_adaptive(run) && !t->changes && !(t->ratio <= ACCEPTED)) {
+    t->passages = fu_count_passages(run);
+    if (is_adaptive(run) && !t->changes && !t->passages && !(t->ratio <= ACCEPTED)) {
         t->want = fu_shrink_step(run, t->h, t->ratio);
         return 0;
     }
@@ -123,6 +136,7 @@ static int attempt(fu_run *run, trial *t)
 /* Finds the event that the step leads to. Where accelerations jump by too much within it, it shall end at the boundary. */
 static void find_event(fu_run *run, trial *t)
 {
+    if (t->passages && !(t->ratio <= 1.0)) fu_undo_passages(run);
     t->event = fu_find_event(run, fu_no_event);
     if (t->changes && (t->event.kind == FU_CROSSING || !(t->ratio <= 1.0))) {
         fu_keep_pieces(run);
@@ -173,6 +187,7 @@ int fu_step_towards(fu_run *run, double target)
     trial t = {.want = is_adaptive(run) ? run->h : run->fixed_step};
     if (late.kind) return fu_let_happen(run, late);
     run->keep_pieces = must_keep_pieces(run);
+    run->keep_forces = must_keep_forces(run);
     for (;;) {
         if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
         if (!attempt(run, &t)) continue;
@@ -192,7 +207,7 @@ int fu_step_towards(fu_run *run, double target)
             if (t.want < shortest(run)) return FU_NO_CONVERGENCE;
             continue;
         }
-        if (t.changes && !is_accurate_without_jump(run, &t)) continue;
+        if ((t.changes || t.passages) && !is_accurate_without_jump(run, &t)) continue;
         accept(run, t.h, t.event);
         const int status = t.event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, t.h);
         return status ? status : fu_let_happen(run, t.event);

@@ -1,0 +1,15 @@
+/* Passages: changes of couplings that a step goes over: run/passages.c. */
+#ifndef FUNICULAR_PASSAGES_H
+#define FUNICULAR_PASSAGES_H
+
+#include "coupling_events.h"
+
+int fu_can_pass(const fu_coupling *coupling);
+void fu_choose_passages(fu_run *run);
+int fu_count_passages(const fu_run *run);
+void fu_undo_passages(fu_run *run);
+void fu_note_passages(fu_run *run, double h);
+void fu_add_passed_forces(const fu_run *run, double factor, double *f);
+int fu_take_passage(fu_run *run);
+
+#endif

@@ -1,0 +1,35 @@
+"""Which elements of a cable are slack, and when."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import UnknownResultError, near
+from ..model.middle_strain import middle_strain
+from ..parts.cable import Cable
+from ..solve.rest_state import RestState
+from .section_forces import Results
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def slack_elements(state: Results | RestState, cable: Cable | str) -> xarray.DataArray:
+    """See `Run.slack_elements`; of an equilibrium without the time. Raises UnknownResultError."""
+    import xarray  # 0.5 s, for those who ask for it
+
+    name, over_time = cable.name if isinstance(cable, Cable) else cable, not isinstance(state, RestState)
+    if name not in state.scene.cables:
+        raise UnknownResultError(f'there is no cable "{name}"; {near(name, state.scene.cables)}')
+    of = next(each for each in state.model.cables if each.name == name)
+    vectors = state[f"{name}.nodal_vectors"]
+    strain = middle_strain(of, vectors if over_time else vectors[None])
+    s = of.mesh.node_s
+    coords: dict = {"s": ("element", (s[:-1] + s[1:]) / 2, {"units": "m", "long_name": "middle of the element"})}
+    if not isinstance(state, RestState):
+        coords["time"] = ("time", state.time, {"units": "s", "long_name": "time"})
+    return xarray.DataArray(np.asarray(strain < 0.0) if over_time else strain[0] < 0.0,
+                            dims=("time", "element") if over_time else ("element",), coords=coords, name="slack",
+                            attrs={"cable": name, "long_name": "shorter in the middle than at rest"})

@@ -1,0 +1,61 @@
+"""Static states of one scene, one after the other, as arrays: what values of many states are read from at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from .static_problem import StaticState
+
+
+@dataclass
+class Snapshots:
+    """T static states of a scene: configurations q (T, n_q), arc-lengths s and forces of slides (T, slides, 3), forces
+    between points (T, point forces, 3), what supports give (T, n_dof), and forces of joints (T, joints, 7).
+    """
+
+    q: np.ndarray
+    s: np.ndarray
+    slide_force: np.ndarray
+    point_force: np.ndarray
+    reaction: np.ndarray
+    joint_forces: np.ndarray
+
+    def __len__(self) -> int:
+        """Return the number of states."""
+        return len(self.q)
+
+    @classmethod
+    def of(cls, states: Iterable[StaticState], reactions: bool = True) -> Self:
+        """Take the states that these are in when it is their turn: one that moves on counts as several.
+
+        reactions: False where no force is asked for that residuals are needed to know, which saves them.
+        """
+        rows: list[tuple[np.ndarray, ...]] = []
+        for state in states:
+            if reactions:
+                state.residual()
+            kept = state.keep()
+            rows.append((kept["q"], kept["s"], kept["force"], kept["point_force"], state.engine.reaction(),
+                         state.engine.joint_forces()))
+        return cls(*(np.array(each) for each in zip(*rows, strict=True)))
+
+
+@dataclass(frozen=True)
+class Reader:
+    """What reads values of states.
+
+    read: returns values (T, targets) of snapshots of a scene's states; in_metres (targets,): which are in m; reactions:
+    whether snapshots must have what supports give.
+    """
+
+    read: Callable[[StaticState, Snapshots], np.ndarray]
+    in_metres: np.ndarray
+    reactions: bool
+
+    def values(self, state: StaticState) -> np.ndarray:
+        """Return (targets,): the values of a state."""
+        return self.read(state, Snapshots.of([state], self.reactions))[0]

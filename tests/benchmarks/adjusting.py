@@ -1,0 +1,92 @@
+"""Seconds that `equilibrium(adjust=, to=)` takes of an overhead line by its number of spans: lengths of droppers by the
+heights of the contact wire, and the wire's length by its pull; in the plane z = 0 and in another one.
+"""
+
+from __future__ import annotations
+
+import time
+
+import funicular as fu
+import numpy as np
+from table import arguments, show
+
+G, SPAN, ELEMENTS = 9.81, 55.0, 22
+X = np.array([4.5, 10.25, 16, 21.75, 27.5, 33.25, 39, 44.75, 50.5])
+SAG = 0.055 * (1 - ((X - 27.5) / 23) ** 2)
+CONTACT = {"tension": 22e3, "area": 150e-6, "modulus": 100e9, "bending": 179.0, "mass": 1.35}
+MESSENGER = {"tension": 16e3, "area": 120e-6, "modulus": 97e9, "bending": 111.0, "mass": 1.08}
+PLANES = {"z = 0": np.eye(3), "y = 0": np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])}
+"""Axes as columns: along the line, up, and across."""
+
+
+def wire(scene: fu.Scene, axes: np.ndarray, name: str, height: float, excess: float, data: dict,
+         spans: int) -> fu.Cable:
+    """Add a wire that is longer than a span by this excess where its tension is as given."""
+    area, modulus = data["area"], data["modulus"]
+    section = fu.GeneralSection(area=area, second_moment_about_z=data["bending"] / modulus)
+    length = spans * (SPAN + excess) / (1 + data["tension"] / (modulus * area))
+    return scene.cable(name, start=axes @ [0, height, 0], end=axes @ [spans * SPAN, height, 0], up=axes[:, 1],
+                       elements=spans * ELEMENTS, element="cable8p", section=section, strain="engineering",
+                       rest_length=length,
+                       material=fu.Material(youngs_modulus=modulus, poisson_ratio=0.3, density=data["mass"] / area))
+
+
+def line(spans: int, axes: np.ndarray) -> fu.Scene:
+    """Return the line with droppers of one length, of which many are slack."""
+    scene = fu.Scene(gravity=axes @ [0, -G, 0])
+    contact = wire(scene, axes, "contact", 0.0, 0.0, CONTACT, spans)
+    messenger = wire(scene, axes, "messenger", 1.2, 0.03, MESSENGER, spans)
+    for s in (0, messenger.length):
+        scene.pin(messenger, s=s)
+    for k in range(1, spans):
+        scene.spring(axes @ [k * SPAN, 2.2, 0], (messenger, k / spans * messenger.length), name=f"support_{k}",
+                     stiffness=500e3, length=1.0)
+    up = int(np.argmax(np.abs(axes[:, 1])))
+    for s in (0, contact.length):
+        scene.motion(contact, s=s, displacement=["free" if k == up else 0 for k in range(3)])
+    for name, at in places(spans).items():
+        upper, lower = at * messenger.length, at * contact.length
+        scene.spring((messenger, upper), (contact, lower), name=name, stiffness=200e3 / 0.85, length=0.85,
+                     tension_only=True)
+        scene.force(messenger, s=upper, value=axes @ [0, -G * (0.195 + 0.117 * 0.85), 0])
+        scene.force(contact, s=lower, value=axes @ [0, -G * 0.165, 0])
+    return scene
+
+
+def places(spans: int) -> dict[str, float]:
+    """Return the names of the droppers, and at which part of the wires' lengths they are."""
+    return {f"dropper_{span}_{k}": (span + x / SPAN) / spans for span in range(spans) for k, x in enumerate(X)}
+
+
+def adjusted(spans: int, plane: str) -> tuple[float, fu.Equilibrium]:
+    """Return the CPU seconds, and the state in which heights and pull are as given."""
+    scene = line(spans, PLANES[plane])
+    length = scene.cables["contact"].length
+    up = "xyz"[int(np.argmax(np.abs(PLANES[plane][:, 1])))]
+    heights = {f"contact@{at * length:.12g}.position.{up}": -sag
+               for at, sag in zip(places(spans).values(), np.tile(SAG, spans).tolist(), strict=True)}
+    begin = time.process_time()
+    rest = scene.equilibrium(adjust={**{f"{name}.length": (0.3, 1.5) for name in places(spans)},
+                                     "contact.rest_length": "free"},
+                             to={**heights, "contact@0.force.x": -CONTACT["tension"]})
+    return time.process_time() - begin, rest
+
+
+def row(spans: int) -> dict:
+    """Return what is measured of a line of so many spans."""
+    found = {plane: adjusted(spans, plane) for plane in PLANES}
+    last = found["z = 0"][1].adjustment
+    return {"spans": spans, "parameters": len(last.values),
+            **{f"seconds, {plane}": seconds for plane, (seconds, _) in found.items()},
+            "iterations": last.iterations, "misfit": last.misfits[-1]}
+
+
+def main() -> None:
+    """Measure and print."""
+    options = arguments(__doc__, most=(30, "spans"))
+    adjusted(1, "z = 0")  # imports
+    show([row(spans) for spans in (1, 3, 10, 30, 100) if spans <= options.most], options.out)
+
+
+if __name__ == "__main__":
+    main()
