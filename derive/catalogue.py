@@ -92,7 +92,7 @@ def _resistance(dim: int) -> CouplingFamily:
 
 def _drag(dim: int) -> CouplingFamily:
     return CouplingFamily(drag.DRAGS[dim], f"drag of a fluid in {_SPACE[dim]}", partial(drag.build, dim),
-                          ("couplings.drag",), role="drag", facts={"dim": dim}, dim=dim)
+                          ("couplings.drag", "couplings.added_mass"), role="drag", facts={"dim": dim}, dim=dim)
 
 
 def _joint(dim: int, name: str) -> CouplingFamily:

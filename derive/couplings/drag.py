@@ -13,6 +13,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ..codegen.program import Program, jacobian
+from . import added_mass
 
 DRAGS = {3: "drag", 2: "planar_drag"}
 RELATIVE = "velocity of the fluid less that of the point"
@@ -21,7 +22,7 @@ SOURCE = "Morison et al. 1950; Hall & Goupee 2015"
 
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
-    return [along_cable(dim), on_point(dim)]
+    return [along_cable(dim), on_point(dim), *added_mass.build(DRAGS[dim], dim)]
 
 
 def _size(p: Program, name: str, square: sp.Expr, least: sp.Expr) -> sp.Expr:

@@ -17,8 +17,9 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
         return drag
     placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
     _refuse(drag, OF_CABLE, "body")
-    if drag.area * drag.coefficient == 0 and drag.volume == 0:
+    if drag.area * drag.coefficient == 0 and drag.volume == 0 and drag.added_mass is None:
         raise SceneError(drag.where, "has neither drag nor buoyancy", "give an area with a coefficient, or a volume")
+    _check_added_mass(drag, drag.volume, "volume, in m³")
     return drag.completed({"at": placed.at})
 
 
@@ -38,6 +39,10 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
     """Raise SceneError where a drag does not suit its cable."""
     _refuse(drag, OF_BODY, "cable")
     cable = scene.cables[drag.on]
+    _check_added_mass(drag, drag.displaced(cable), "displaced_area, in m²")
+    if isinstance(drag.added_mass, tuple):
+        raise SceneError(drag.where, f'acts on cable "{drag.on}", whose added_mass is one number',
+                         "give that across the cable, and added_mass_tangential along it")
     if other := next((each for each in scene.drags.values() if each.on == drag.on), None):
         raise SceneError(drag.where, f'cable "{drag.on}" has the {other.where} already', "leave one of them out")
     if drag.normal == 0 and drag.tangential == 0:
@@ -50,10 +55,20 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
         raise SceneError(drag.where, str(error), "give diameter, in m: the width across the flow") from None
 
 
+def _check_added_mass(drag: Drag, displaced: float, name: str) -> None:
+    """Raise SceneError where added mass has no volume that it is a multiple of; name: of the entry that gives one."""
+    if drag.added_mass is None and drag.added_mass_tangential:
+        raise SceneError(drag.where, "added_mass_tangential is given without added_mass",
+                         "give added_mass, that across the cable: 1 for a round one, 0 for none")
+    if drag.added_mass is not None and displaced == 0:
+        raise SceneError(drag.where, "added_mass counts by the mass of the fluid displaced, which is nil",
+                         f"give {name}")
+
+
 def _refuse(drag: Drag, names: tuple[str, ...], kind: str) -> None:
     """Raise SceneError where values are given that such a part does not take."""
     defaults = {name: field.default for name, field in Drag.model_fields.items()}
-    for name in names:
+    takes = OF_CABLE if kind == "cable" else OF_BODY
+    for name in (name for name in names if name not in takes):
         if getattr(drag, name) != defaults[name]:
-            takes = OF_CABLE if kind == "cable" else OF_BODY
             raise SceneError(drag.where, f'acts on {kind} "{drag.on}" and takes no {name}', f"takes {', '.join(takes)}")

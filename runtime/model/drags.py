@@ -28,6 +28,7 @@ class DragModel(CouplingModel):
 
     velocity (dim), in m/s, times the signal of that number (-1: one) and the profile, as engine/include/drags.h has it,
     at the height base + up . r. coefficients: as the kernel takes them. buoyancy (dim): N/m of a cable, N of a body.
+    displaced: mass of the fluid displaced, added: that it adds, as engine/include/drags.h has them, where has_inertia.
     weights (1 or elements, n_points), in m, N and N_x (1 or elements, n_points, vectors): of the quadrature on the
     elements of the cable, once where they are equal; stride: points from one element's to the next's. fluid: the
     scene's, of which the engine takes nothing.
@@ -45,9 +46,17 @@ class DragModel(CouplingModel):
     n_pieces: int
     breaks: np.ndarray
     coefficients_of_profile: np.ndarray
+    degree: int
+    n_splines: tuple[int, ...]
+    knots: np.ndarray
+    table: np.ndarray
+    origin: np.ndarray
+    axes: np.ndarray
     cable: int
     coefficients: tuple[float, ...]
     buoyancy: np.ndarray
+    displaced: float
+    added: tuple[float, ...]
     n_points: int
     stride: int
     weights: np.ndarray
@@ -67,14 +76,17 @@ def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loa
     displaced, none = part.displaced(scene.cables.get(part.on)), np.zeros(0)
     model = DragModel(
         kernel=KERNELS[dim], velocity=factor * np.array(fluid.velocity)[:dim], up=up[:dim], base=base, signal=signal,
-        **_profile(fluid), cable=-1, coefficients=(), buoyancy=-fluid.density * displaced * gravity, n_points=0,
+        **_profile(fluid), cable=-1, coefficients=(), buoyancy=-fluid.density * displaced * gravity,
+        displaced=fluid.density * displaced, added=(), has_inertia=part.added_mass is not None, n_points=0,
         stride=0, weights=none, N=none, N_x=none, attachments=[], fluid=fluid, type="drag",
         name=part.name or "", is_damped=True)
+    if model.has_inertia:
+        model.added = tuple((model.displaced * part.added(dim)).ravel().tolist())
     pressure = fluid.density / 2
     if part.on in attachments.cable_index:
         model.cable = attachments.cable_index[part.on]
         cable = attachments.cables[model.cable]
-        width = part.width(scene.cables[part.on])
+        width = part.width(scene.cables[part.on]) if part.normal or part.tangential else 0.0
         model.coefficients = (pressure * width * part.normal, pressure * np.pi * width * part.tangential, LEAST_SPEED)
         lengths = cable.mesh.lengths
         shapes = [[cable.kernel("on_axis")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
@@ -83,7 +95,7 @@ def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loa
         model.stride = 0 if cable.mesh.is_even else model.n_points
     else:
         model.coefficients = (pressure * part.area * part.coefficient, LEAST_SPEED)
-        model.attachments = [attachments.model(Attachment(on=part.on, at=part.at))]
+        model.attachments = [attachments.model(Attachment(on=part.on, at=part.at), np.eye(3))]
     return model
 
 
@@ -110,4 +122,5 @@ def _profile(fluid: Fluid) -> dict[str, Any]:
         breaks, coefficients = fluid.profile.pieces()
     return {"profile": kind, "reference": power.reference_height, "exponent": power.exponent,
             "least": power.least_height, "n_pieces": len(coefficients), "breaks": breaks,
-            "coefficients_of_profile": coefficients}
+            "coefficients_of_profile": coefficients, "degree": 0, "n_splines": (1, 1, 1, 1), "knots": np.zeros(0),
+            "table": np.zeros(0), "origin": np.zeros(3), "axes": np.eye(3).ravel()}

@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from .loads import SignalModel
 from .model import Model
 
 HIGHER, ACCELERATION, RATE = range(3)
@@ -32,9 +33,9 @@ def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tupl
 
     turns: whether the instants at which tables turn round are among them.
     """
-    driving = driving_signals(model)
+    driving, inertial = driving_signals(model), {drag.signal for drag in model.drags if drag.has_inertia}
     found = [each for number, signal in enumerate(model.signals)
-             for each in [*of_pieces(signal.breaks, signal.coefficients, number in driving, tol),
+             for each in [*_of_signal(signal, number in driving, number in inertial, tol),
                           *(_turns(signal.breaks, signal.coefficients[:, 0], tol) if turns else [])]
              if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
     times: list[float] = []
@@ -51,6 +52,12 @@ def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tupl
 def driving_signals(model: Model) -> set[int]:
     """Return the numbers of the signals that prescribe a motion; the others scale loads."""
     return {motion.signal for motion in model.motions} | {coupling.drive for coupling in model.couplings}
+
+
+def _of_signal(signal: SignalModel, drives: bool, accelerates: bool, tol: float) -> list[tuple[float, int]]:
+    """Return `of_pieces` of a signal; accelerates: its rate is that of a fluid, whose inertia makes it a force."""
+    found = of_pieces(signal.breaks, signal.coefficients, drives or accelerates, tol)
+    return found if drives else [(time, min(jump, ACCELERATION)) for time, jump in found]
 
 
 def of_pieces(breaks: np.ndarray, coefficients: np.ndarray, drives: bool, tol: float) -> list[tuple[float, int]]:

@@ -210,7 +210,7 @@ cdef extern from "engine.h" nogil:
         const fu_motion *motions
         const fu_signal *signals
         int n_q, n_dof, n_band, n_border_dof, n_dissipation_state, n_extra, n_multipliers
-        int n_coordinates, n_forces, n_rows, n_outputs, n_scratch
+        int n_coordinates, n_forces, n_rows, n_outputs, n_scratch, n_inertial
         const int *unknown_of_dof
         const int *combination_start
         const int *combination_unknown
