@@ -218,12 +218,10 @@ def _fluid(part: Fluid, axes: PlaneAxes, scene: SceneData) -> Fluid:
 
 @turned.register
 def _drag(part: Drag, axes: PlaneAxes, scene: SceneData) -> Drag:
-    if part.at is None:
-        return part
-    changes: dict[str, Any] = {"at": _place(axes, part.on, part.at)}
+    changes = {} if part.at is None else {"at": _place(axes, part.on, part.at)}
     if isinstance(part.added_mass, tuple):
         changes["added_mass"] = _tensor(axes, part.on, part.added_mass)
-    return part.model_copy(update=changes)
+    return part.model_copy(update=changes) if changes else part
 
 
 @turned.register

@@ -6,6 +6,7 @@ from typing import Any
 
 from ...codegen.family import CouplingFamily
 from ..methods import Relation
+from .added_mass import added_mass
 from .paths import entry, from_kernel
 
 
@@ -34,4 +35,5 @@ def drag(family: CouplingFamily) -> list[Relation]:
             *(Relation("along_cable", f"f_{name}", f"df by {name}", 1,
                        from_kernel("along_cable", "f", **{name: entry(name)}), dim) for name in "tw"),
             Relation("on_point", "f", "derivative by w of c |w|^3/3", 1, of_point, dim),
-            Relation("on_point", "f_w", "df by w", 1, from_kernel("on_point", "f", w=entry("w")), dim)]
+            Relation("on_point", "f_w", "df by w", 1, from_kernel("on_point", "f", w=entry("w")), dim),
+            *added_mass(family)]
