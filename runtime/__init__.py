@@ -34,6 +34,7 @@ from .parts.slide import Slide
 from .parts.solids import Box, Cylinder, MeshShape, Sphere
 from .parts.spring import Spring
 from .parts.support import Clamp, Motion, Pin, Tie
+from .parts.velocity_table import VelocityTable
 from .results.combination import combine
 from .results.run import Run
 from .scene import Scene
@@ -87,6 +88,7 @@ __all__ = [
     "Tie",
     "Tube",
     "UnknownResultError",
+    "VelocityTable",
     "__version__",
     "bundled_scenes",
     "combine",

@@ -44,7 +44,7 @@ def taut(coefficient, element="cable12"):
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_a_taut_cable_vibrates_slower_in_water(element):
-    """Transverse frequencies fall by sqrt(m/(m + C rho A)), but for what sections turn, in which no water takes part."""
+    """Transverse frequencies fall by sqrt(m/(m + C rho A)), but for sections that turn, in which no water takes part."""
     dry, still, wet = (taut(coefficient, element) for coefficient in (None, 0.0, 1.3))
     found = [scene.modes(2, about=scene.equilibrium()).frequency for scene in (dry, still, wet)]
     assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-6)
@@ -99,7 +99,8 @@ def test_a_sphere_begins_to_fall_with_the_mass_of_half_the_water(integrator):
 
 @pytest.mark.parametrize("integrator", OF_BODIES)
 def test_a_pendulum_in_water_swings_with_the_weight_and_the_inertia_that_the_water_leaves(integrator):
-    """A ball on a massless rod from 60 degrees: the period of a pendulum, an elliptic integral, with g' of the water."""
+    """A ball on a massless rod from 60 degrees: the period of a pendulum, an elliptic integral, with its weight there.
+    """
     length, angle = 1.0, pi / 3
     scene = fu.Scene()
     scene.fluid(density=WATER)
@@ -108,7 +109,8 @@ def test_a_pendulum_in_water_swings_with_the_weight_and_the_inertia_that_the_wat
     scene.joint("spherical", ("ball", (-length * np.sin(angle), length * np.cos(angle), 0)), (0, 0, 0))
     scene.drag("ball", volume=1e-3, added_mass=(0.5, 0.5, 0.5))
     effective = (8 - 1) / (8 + 0.5) * G
-    period = 4 * sqrt(length / effective) * quad(lambda x: 1 / sqrt(1 - (np.sin(angle / 2) * np.sin(x))**2), 0, pi / 2)[0]
+    quarter = quad(lambda x: 1 / sqrt(1 - (np.sin(angle / 2) * np.sin(x)) ** 2), 0, pi / 2)[0]
+    period = 4 * sqrt(length / effective) * quarter
     run = scene.run(period, tol=1e-7, integrator=integrator, output_step=period / 4)
     assert np.abs(run["ball.position"][-1] - run["ball.position"][0]).max() < 1e-5
     assert run["ball.position"][2, 0] == pytest.approx(-run["ball.position"][0, 0], abs=1e-5)

@@ -1,8 +1,8 @@
 """Inertia of the fluid that a cable or a body carries along: added mass, from the kinetic energy of that fluid.
 
-Of a length of a cable it is T = (m_n |w_n|^2 + m_t w_t^2)/2, with the velocity w past the fluid, w_n across the axis and
-w_t along it, and the added masses m_n and m_t of a length of the undeformed cable. M = m_n 1 - (m_n - m_t) i i' turns
-with the tangent i, so Lagrange's equations give more than M times an acceleration: the change of the impulse p = M w,
+Of a length of a cable it is T = (m_n |w_n|^2 + m_t w_t^2)/2, with the velocity w past the fluid, w_n across the axis
+and w_t along it, and the added masses m_n and m_t of a length of the undeformed cable. M = m_n 1 - (m_n - m_t) i i'
+turns with the tangent i, so Lagrange's equations give more than M times an acceleration: the change of the impulse p = M w,
 and g, the derivative of T by the slope r_x (Lighthill, Proc. R. Soc. B 179 (1971) 125-138, who has it from momentum).
 Of a body T = w . A C A' w/2 at a point, with C in the body's axes A: force and moment are those of Kirchhoff and Lamb
 (Hydrodynamics, 6th ed., art. 124), the change of p = A C A' w and the moment w x p.
@@ -51,7 +51,8 @@ def impulse_of_cable(name: str, dim: int) -> Program:
 
 def of_cable(name: str, dim: int) -> Program:
     """Return the kernel of the impulse of the fluid a length of cable, its rate, and what acts on the slope."""
-    p = Program(f"{name}_inertia_of_cable", "impulse of the fluid along a cable, its rate, and their derivatives", LENGTH)
+    p = Program(f"{name}_inertia_of_cable", "impulse of the fluid along a cable, its rate, and their derivatives",
+                LENGTH)
     t, t_rate = p.input("t", dim, "1", "slope r_x of the axis"), p.input("t_rate", dim, "1/s", "its rate")
     w, w_rate = p.input("w", dim, "m/s", PAST), p.input("w_rate", dim, "m/s^2", "its rate")
     normal, less = _input_masses(p)
@@ -87,8 +88,8 @@ def of_cable(name: str, dim: int) -> Program:
 def of_cable_step(name: str, dim: int) -> Program:
     """Return the kernel of the impulse over a step, and a discrete derivative by the slope that conserves energy.
 
-    With a and b, the half sum and half difference of w at the ends, T_next - T = dp . a - (D_next - D) for D = (a . M a -
-    b . M b)/2, of which the output g is a discrete gradient: g . (t_next - t) = D_next - D.
+    With a and b, the half sum and half difference of w at the ends, T_next - T = dp . a - (D_next - D) for
+    D = (a . M a - b . M b)/2, of which the output g is a discrete gradient: g . (t_next - t) = D_next - D.
     """
     p = Program(f"{name}_inertia_step", "impulse of the fluid along a cable over a step", f"{LENGTH}; Gonzalez 1996")
     t, t_next = p.input("t", dim, "1", "slope r_x of the axis"), p.input("t_next", dim, "1", "t at the end of the step")
@@ -133,8 +134,8 @@ def impulse_of_point(name: str, dim: int) -> Program:
 def of_point(name: str, dim: int) -> Program:
     """Return the kernel of the impulse of the fluid at a point of a body, its rate, and its moment."""
     turns = 3 if dim == 3 else 1
-    p = Program(f"{name}_inertia_of_point", "impulse of the fluid at a body, its rate and moment, and their derivatives",
-                POINT)
+    p = Program(f"{name}_inertia_of_point",
+                "impulse of the fluid at a body, its rate and moment, and their derivatives", POINT)
     A, M = _mass_of_point(p, dim)
     omega = p.input("omega", turns, "rad/s", "angular velocity in global axes")
     w, w_rate = p.input("w", dim, "m/s", PAST), p.input("w_rate", dim, "m/s^2", "its rate")

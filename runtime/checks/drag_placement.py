@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..errors import SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.drag import OF_BODY, OF_CABLE, Drag
 from ..parts.scene_data import SceneData
+from ..parts.validation import EXACT, show
 from .placement import placed_attachment
 
 
@@ -14,13 +17,30 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     drag = drag.completed({"fluid": _fluid(scene, drag)})
     if drag.on in scene.cables:
         _check_cable(scene, drag)
+        _check_table(scene, drag, scene.cables[drag.on].nodal_vectors[:, 0])
         return drag
     placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
     _refuse(drag, OF_CABLE, "body")
     if drag.area * drag.coefficient == 0 and drag.volume == 0 and drag.added_mass is None:
         raise SceneError(drag.where, "has neither drag nor buoyancy", "give an area with a coefficient, or a volume")
     _check_added_mass(drag, drag.volume, "volume, in m³")
+    _check_table(scene, drag, scene.bodies[drag.on].point(placed.point)[None])
     return drag.completed({"at": placed.at})
+
+
+def _check_table(scene: SceneData, drag: Drag, places: np.ndarray) -> None:
+    """Raise SceneError where a drag begins outside of the table of its fluid; places (n, 3), in m."""
+    fluid = scene.fluids[drag.fluid or ""]
+    if fluid.table is None:
+        return
+    margin, axis = fluid.table.margin(np.zeros(len(places)), places)
+    if margin < -EXACT:
+        values = fluid.table.grid.axes[axis]
+        at = 0.0 if axis == "time" else float(max(places[:, "xyz".index(axis)], key=lambda x: abs(x - values.mean())))
+        unit = "s" if axis == "time" else "m"
+        raise SceneError(drag.where, f'begins at {axis} = {show(at, unit)}, outside of the table of {fluid.where}, '
+                         f"which goes from {show(float(values[0]), unit)} to {show(float(values[-1]), unit)}",
+                         "take a larger table, or leave out what the velocity does not depend on")
 
 
 def _fluid(scene: SceneData, drag: Drag) -> str:

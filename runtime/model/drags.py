@@ -12,6 +12,7 @@ from ..parts.drag import Drag
 from ..parts.flow_profile import PowerProfile, TableProfile
 from ..parts.fluid import Fluid
 from ..parts.scene_data import SceneData
+from ..parts.velocity_table import AXES
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 from .loads import GAUSS, LoadBuilder
@@ -30,8 +31,9 @@ class DragModel(CouplingModel):
     at the height base + up . r. coefficients: as the kernel takes them. buoyancy (dim): N/m of a cable, N of a body.
     displaced: mass of the fluid displaced, added: that it adds, as engine/include/drags.h has them, where has_inertia.
     weights (1 or elements, n_points), in m, N and N_x (1 or elements, n_points, vectors): of the quadrature on the
-    elements of the cable, once where they are equal; stride: points from one element's to the next's. fluid: the
-    scene's, of which the engine takes nothing.
+    elements of the cable, once where they are equal; stride: points from one element's to the next's. degree,
+    n_splines (4), knots, table: of splines in time and space, degree 0 without; origin (3,), axes (9): those of the
+    model, of the ground. fluid: the scene's, of which the engine takes nothing.
     """
 
     kernel: str
@@ -76,8 +78,8 @@ def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loa
     displaced, none = part.displaced(scene.cables.get(part.on)), np.zeros(0)
     model = DragModel(
         kernel=KERNELS[dim], velocity=factor * np.array(fluid.velocity)[:dim], up=up[:dim], base=base, signal=signal,
-        **_profile(fluid), cable=-1, coefficients=(), buoyancy=-fluid.density * displaced * gravity,
-        displaced=fluid.density * displaced, added=(), has_inertia=part.added_mass is not None, n_points=0,
+        **_profile(fluid), **_table(fluid, scene), cable=-1, coefficients=(),
+        buoyancy=-fluid.density * displaced * gravity, displaced=fluid.density * displaced, added=(), has_inertia=part.added_mass is not None, n_points=0,
         stride=0, weights=none, N=none, N_x=none, attachments=[], fluid=fluid, type="drag",
         name=part.name or "", is_damped=True)
     if model.has_inertia:
@@ -122,5 +124,16 @@ def _profile(fluid: Fluid) -> dict[str, Any]:
         breaks, coefficients = fluid.profile.pieces()
     return {"profile": kind, "reference": power.reference_height, "exponent": power.exponent,
             "least": power.least_height, "n_pieces": len(coefficients), "breaks": breaks,
-            "coefficients_of_profile": coefficients, "degree": 0, "n_splines": (1, 1, 1, 1), "knots": np.zeros(0),
-            "table": np.zeros(0), "origin": np.zeros(3), "axes": np.eye(3).ravel()}
+            "coefficients_of_profile": coefficients}
+
+
+def _table(fluid: Fluid, scene: SceneData) -> dict[str, Any]:
+    """Return what a model has of the table of a fluid, and of the axes that it is on."""
+    plane = None if scene.plane_axes is None else scene.plane_axes.plane
+    origin, axes = (np.zeros(3), np.eye(3)) if plane is None else (plane.origin, plane.axes)
+    common = {"origin": origin, "axes": axes.ravel()}
+    if fluid.table is None:
+        return common | {"degree": 0, "n_splines": (1,) * len(AXES), "knots": np.zeros(0), "table": np.zeros(0)}
+    degree, knots, coefficients = fluid.table.splines(scene.dim)
+    return common | {"degree": degree, "n_splines": coefficients.shape[:-1],
+                     "knots": np.concatenate(list(knots.values())), "table": coefficients.ravel()}

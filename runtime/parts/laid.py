@@ -213,7 +213,8 @@ def _distributed(part: DistributedForce, axes: PlaneAxes, scene: SceneData) -> D
 
 @turned.register
 def _fluid(part: Fluid, axes: PlaneAxes, scene: SceneData) -> Fluid:
-    return part.model_copy(update={"velocity": _direction(axes, part.velocity)})
+    table = None if part.table is None else part.table.turned(axes.plane.axes)
+    return part.model_copy(update={"velocity": _direction(axes, part.velocity), "table": table})
 
 
 @turned.register

@@ -109,7 +109,7 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
 def _refuse_added_mass(scene: SceneData, model: Model, name: str, number: int, at_rest: bool) -> None:
     """Raise FunicularError where the inertia of a fluid has a part in the balance, which does not know it."""
     for drag in model.drags:
-        is_still = at_rest and not any(drag.fluid.velocity)
+        is_still = at_rest and not drag.fluid.moves
         if drag.has_inertia and not is_still and drag.cable in tied_cables(scene, model, number):
             raise FunicularError(f'section forces of "{name}": the balance does not know added mass, which drag '
                                  f'"{drag.name}" has; take method="constitutive"')
