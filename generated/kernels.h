@@ -1370,8 +1370,14 @@ void planar_resistance_force(const fu_real *t, const fu_real *u, const fu_real *
 /* drag a length of a cable, and its derivatives: t 3[1]; w 3[m/s]; c 3[N s^2/m^3, N s^2/m^3, m/s] -> f 3[N/m]; f_t
  * 3x3[N/m]; f_w 3x3[N s/m^2] */
 void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
+/* lift a length of a cable, and its derivatives: t 3[1]; w 3[m/s]; c_lift 2[N s^2/m^3, m/s] -> f 3[N/m]; f_t
+ * 3x3[N/m]; f_w 3x3[N s/m^2] */
+void drag_lift_along_cable(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w);
 /* drag on a point, and its derivatives: w 3[m/s]; c_point 2[N s^2/m^2, m/s] -> f 3[N]; f_w 3x3[N s/m] */
 void drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
+/* drag and lift on a body with a span, and their derivatives: w 3[m/s]; s 3[1]; c_foil 2[N s^2/m^2, m/s];
+ * coefficients 4[1, 1/rad] -> f 3[N]; f_w 3x3[N s/m] */
+void drag_on_foil(const fu_real *w, const fu_real *s, const fu_real *c_foil, const fu_real *coefficients, fu_real *f, fu_real *f_w);
 /* impulse of the fluid along a cable, and its mass: t 3[1]; w 3[m/s]; m 2[kg/m] -> p 3[kg/s]; M 3x3[kg/m] */
 void drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M);
 /* impulse of the fluid along a cable, its rate, and their derivatives: t 3[1]; t_rate 3[1/s]; w 3[m/s]; w_rate
@@ -1394,6 +1400,9 @@ void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *om
 void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
 /* drag on a point, and its derivatives: w 2[m/s]; c_point 2[N s^2/m^2, m/s] -> f 2[N]; f_w 2x2[N s/m] */
 void planar_drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
+/* drag and lift on a body with a span, and their derivatives: w 2[m/s]; s 1[1]; c_foil 2[N s^2/m^2, m/s];
+ * coefficients 4[1, 1/rad] -> f 2[N]; f_w 2x2[N s/m] */
+void planar_drag_on_foil(const fu_real *w, const fu_real *s, const fu_real *c_foil, const fu_real *coefficients, fu_real *f, fu_real *f_w);
 /* impulse of the fluid along a cable, and its mass: t 2[1]; w 2[m/s]; m 2[kg/m] -> p 2[kg/s]; M 2x2[kg/m] */
 void planar_drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M);
 /* impulse of the fluid along a cable, its rate, and their derivatives: t 2[1]; t_rate 2[1/s]; w 2[m/s]; w_rate
@@ -1616,7 +1625,9 @@ typedef struct {
     const char *name;
     int dim;
     void (*along_cable)(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
+    void (*lift_along_cable)(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w);
     void (*on_point)(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
+    void (*on_foil)(const fu_real *w, const fu_real *s, const fu_real *c_foil, const fu_real *coefficients, fu_real *f, fu_real *f_w);
     void (*impulse_of_cable)(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M);
     void (*inertia_of_cable)(const fu_real *t, const fu_real *t_rate, const fu_real *w, const fu_real *w_rate, const fu_real *m, fu_real *p, fu_real *p_rate, fu_real *g, fu_real *M, fu_real *p_t, fu_real *p_rate_t, fu_real *p_rate_t_rate, fu_real *p_rate_w, fu_real *g_t, fu_real *g_w);
     void (*inertia_step)(const fu_real *t, const fu_real *t_next, const fu_real *w, const fu_real *w_next, const fu_real *m, fu_real *dp, fu_real *g);

@@ -26,6 +26,7 @@ from .parts.joint import Joint
 from .parts.load import DistributedForce, Force, Moment
 from .parts.material import Material
 from .parts.modal_body import ModalBody
+from .parts.polar import Polar
 from .parts.rigid_body import RigidBody
 from .parts.section import Circle, GeneralSection, Rectangle, Tube
 from .parts.settings import EquilibriumSettings, RunSettings
@@ -70,6 +71,7 @@ __all__ = [
     "Moment",
     "Motion",
     "Pin",
+    "Polar",
     "PowerProfile",
     "Pulse",
     "Ramp",

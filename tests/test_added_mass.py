@@ -44,7 +44,7 @@ def taut(coefficient, element="cable12"):
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_a_taut_cable_vibrates_slower_in_water(element):
-    """Transverse frequencies fall by sqrt(m/(m + C rho A)), but for sections that turn, in which no water takes part."""
+    """Transverse frequencies fall by sqrt(m/(m + C rho A)), but for sections that turn, which no water does."""
     dry, still, wet = (taut(coefficient, element) for coefficient in (None, 0.0, 1.3))
     found = [scene.modes(2, about=scene.equilibrium()).frequency for scene in (dry, still, wet)]
     assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-6)

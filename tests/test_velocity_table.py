@@ -61,7 +61,8 @@ def test_the_engine_has_its_velocities_and_their_derivatives(interpolation):
     for t, force in zip(run.time, run["drag_1.force"], strict=True):
         def velocity(t, r):
             return signal.value(t) * flow(t, *r)
-        gradient = np.stack([(velocity(t, place + h * e) - velocity(t, place - h * e)) / (2 * h) for e in np.eye(3)], axis=1)
+        ends = [[velocity(t, place + h * side * e) for e in np.eye(3)] for side in (1, -1)]
+        gradient = (np.array(ends[0]) - np.array(ends[1])).T / (2 * h)
         by_time = (velocity(t + h, place) - velocity(t - h, place)) / (2 * h)
         exact = by_time + gradient @ velocity(t, place) + C @ by_time + gradient.T @ C @ velocity(t, place)
         assert force == pytest.approx(WATER * 1e-3 * exact, rel=1e-7, abs=1e-8)
@@ -240,7 +241,7 @@ def test_what_begins_outside_is_refused():
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(5, 0, 0), elements=3, **ROPE)
     scene.fluid("sea", density=WATER, table=fu.VelocityTable(x=[0, 1, 2, 3], velocity=STILL))
-    with pytest.raises(fu.SceneError, match='begins at x = 5 m, outside of the table of fluid "sea", which goes from 0'):
+    with pytest.raises(fu.SceneError, match='begins at x = 5 m, outside of the table of fluid "sea", which goes'):
         scene.drag("wire", normal=1.0)
 
 

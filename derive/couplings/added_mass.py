@@ -2,8 +2,9 @@
 
 Of a length of a cable it is T = (m_n |w_n|^2 + m_t w_t^2)/2, with the velocity w past the fluid, w_n across the axis
 and w_t along it, and the added masses m_n and m_t of a length of the undeformed cable. M = m_n 1 - (m_n - m_t) i i'
-turns with the tangent i, so Lagrange's equations give more than M times an acceleration: the change of the impulse p = M w,
-and g, the derivative of T by the slope r_x (Lighthill, Proc. R. Soc. B 179 (1971) 125-138, who has it from momentum).
+turns with the tangent i, so Lagrange's equations give more than M times an acceleration: the change of the impulse
+p = M w, and g, the derivative of T by the slope r_x (Lighthill, Proc. R. Soc. B 179 (1971) 125-138, has it from
+momentum).
 Of a body T = w . A C A' w/2 at a point, with C in the body's axes A: force and moment are those of Kirchhoff and Lamb
 (Hydrodynamics, 6th ed., art. 124), the change of p = A C A' w and the moment w x p.
 

@@ -21,7 +21,9 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
         return drag
     placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
     _refuse(drag, OF_CABLE, "body")
-    if drag.area * drag.coefficient == 0 and drag.volume == 0 and drag.added_mass is None:
+    _check_foil(scene, drag)
+    acts = drag.area * (drag.coefficient or drag.lift) != 0 or (drag.area != 0 and drag.polar is not None)
+    if not acts and drag.volume == 0:
         raise SceneError(drag.where, "has neither drag nor buoyancy", "give an area with a coefficient, or a volume")
     _check_added_mass(drag, drag.volume, "volume, in m³")
     _check_table(scene, drag, scene.bodies[drag.on].point(placed.point)[None])
@@ -65,7 +67,10 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
                          "give that across the cable, and added_mass_tangential along it")
     if other := next((each for each in scene.drags.values() if each.on == drag.on), None):
         raise SceneError(drag.where, f'cable "{drag.on}" has the {other.where} already', "leave one of them out")
-    if drag.normal == 0 and drag.tangential == 0:
+    if drag.lift != 0 and cable.dim == 2:
+        raise SceneError(drag.where, f'lift of cable "{drag.on}" leaves the plane of its element {cable.element}',
+                         "take a spatial element, or leave lift out")
+    if drag.normal == 0 and drag.tangential == 0 and drag.lift == 0:
         if drag.displaced(cable) == 0:
             raise SceneError(drag.where, "has neither drag nor buoyancy", "give normal, tangential or displaced_area")
         return
@@ -73,6 +78,31 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
         drag.width(cable)
     except ValueError as error:
         raise SceneError(drag.where, str(error), "give diameter, in m: the width across the flow") from None
+
+
+def _check_foil(scene: SceneData, drag: Drag) -> None:
+    """Raise SceneError where lift of a body lacks its axes, or has two coefficients."""
+    if drag.polar is None:
+        if drag.chord is not None:
+            raise SceneError(drag.where, "chord is given without a polar", "give polar, or leave chord out")
+        if drag.lift == 0 and drag.span is not None:
+            raise SceneError(drag.where, "span is given without lift or a polar", "give one of them, or leave span out")
+    elif drag.lift != 0 or drag.coefficient != Drag.model_fields["coefficient"].default:
+        raise SceneError(drag.where, "has a polar and " + ("lift" if drag.lift else "a coefficient"),
+                         "leave it out: the polar has both coefficients")
+    elif drag.chord is None:
+        raise SceneError(drag.where, "chord is missing, from which the polar counts its angle",
+                         "give chord, a direction in body axes")
+    if drag.polar is None and drag.lift == 0:
+        return
+    if drag.area == 0:
+        raise SceneError(drag.where, "has lift without an area", "give area, in m²")
+    if drag.span is None and not any(cable.dim == 2 for cable in scene.cables.values()):
+        raise SceneError(drag.where, "span is missing, across which lift acts", "give span, a direction in body axes")
+    span, chord = drag.foil_axes
+    if abs(span @ chord) > 1e-6:
+        raise SceneError(drag.where, f"chord must be square to span, got {show(drag.chord or ())} and "
+                         f"{show(drag.span or (0, 0, 1))}", "turn one of them")
 
 
 def _check_added_mass(drag: Drag, displaced: float, name: str) -> None:

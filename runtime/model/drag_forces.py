@@ -1,4 +1,4 @@
-"""Forces of fluids at given instants, from results: along cables, and on whole parts."""
+"""Forces of fluids along cables at given instants, from results; and what lies beyond their tables."""
 
 from __future__ import annotations
 
@@ -27,6 +27,9 @@ def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v:
     kernel = getattr(kernels_of(None), f"{drag.kernel}_along_cable")
     n = r[..., 0].size
     f = kernel.rows(n, slope.reshape(n, dim), (flow - velocity).reshape(n, dim), np.array(drag.coefficients))[0]
+    if drag.lift[0] != 0:
+        lift = getattr(kernels_of(None), f"{drag.kernel}_lift_along_cable")
+        f = f + lift.rows(n, slope.reshape(n, dim), (flow - velocity).reshape(n, dim), np.array(drag.lift))[0]
     return spatial(f.reshape(r.shape) + drag.buoyancy)
 
 
@@ -55,19 +58,4 @@ def outside_tables(model: Model, q: np.ndarray) -> list[str]:
         if margin < -EXACT:
             found.append(f'drag "{drag.name}" is on what lies beyond the table of its fluid along {axis}, by '
                          f"{-margin:.3g} of it: there the velocity is as at its edge; take a larger table")
-    return found
-
-
-def drag_forces(model: Model, q: np.ndarray) -> np.ndarray:
-    """Return (drags, 3): the forces of fluids on the parts at rest at t = 0, in N; q (1, n_q)."""
-    found = np.zeros((len(model.drags), 3))
-    time, at_rest = np.zeros(1), np.zeros((1, model.n_dof))
-    for k, drag in enumerate(model.drags):
-        if drag.cable >= 0:
-            found[k] = np.sum(drag.weights[..., None] * densities(model, drag, time, q, at_rest)[0], axis=(0, 1))
-        else:
-            r = attachment_points(model, drag.attachments[0], q)[:, : model.dim]
-            flow = _velocity(drag, time, r)[0]
-            kernel = getattr(kernels_of(None), f"{drag.kernel}_on_point")
-            found[k] = spatial(kernel(flow, np.array(drag.coefficients))[0] + drag.buoyancy)
     return found

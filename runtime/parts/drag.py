@@ -12,13 +12,27 @@ import numpy as np
 from .cable import Cable
 from .part import Part
 from .plane import across
+from .polar import Polar
 from .quantity import Quantity, vector_of_time
 from .schemas import checked, list_of_lists, list_schema, number_schema
 from .section import Circle, Tube
-from .validation import Name, Reference, Vector, not_negative, number, positive, show, vector, vector3, xyz
+from .validation import (
+    Name,
+    Reference,
+    Vector,
+    direction,
+    finite,
+    not_negative,
+    number,
+    positive,
+    show,
+    vector,
+    vector3,
+    xyz,
+)
 
-OF_CABLE = ("normal", "tangential", "diameter", "displaced_area", "added_mass", "added_mass_tangential")
-OF_BODY = ("area", "coefficient", "at", "volume", "added_mass")
+OF_CABLE = ("normal", "tangential", "lift", "diameter", "displaced_area", "added_mass", "added_mass_tangential")
+OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "added_mass")
 
 Matrix = tuple[Vector, Vector, Vector]
 
@@ -54,6 +68,10 @@ class Drag(Part):
     section (of a tube with its inside) if not given; 0 for no buoyancy.
     Of a body: ``area`` (m²) and ``coefficient`` of the force ``ρ/2 area coefficient |w| w`` at its centre of pressure
     ``at`` (m, body axes), and the displaced ``volume`` (m³), whose buoyancy acts there, too.
+    ``lift`` C_L adds a force across the flow: of a cable ``ρ/2 d C_L |w_n| i × w_n``, i along it from its start; of a
+    body ``ρ/2 area C_L |w_p| s × w_p`` with its ``span`` s (a direction in body axes; in the plane z), w_p across s.
+    Of a body ``polar``, a `Polar` of coefficients by the angle from its ``chord`` (body axes, square to the span) to
+    the flow, about the span, stands in place of coefficient and lift; drag is then along w_p.
     ``added_mass`` C adds the inertia of the fluid: mass of C times that of the fluid displaced, of a cable with the
     motion across it, and with that along it times ``added_mass_tangential``; of a body at ``at``, the same in all
     directions, or three along its axes, or 3x3 in these. With it the fluid also acts by its own acceleration, as a
@@ -71,8 +89,12 @@ class Drag(Part):
     tangential: Annotated[float, not_negative()] = 0.0
     diameter: Annotated[float, positive("m")] | None = None
     displaced_area: Annotated[float, not_negative("m²")] | None = None
+    lift: Annotated[float, finite()] = 0.0
     area: Annotated[float, not_negative("m²")] = 0.0
     coefficient: Annotated[float, not_negative()] = 1.0
+    polar: Polar | None = None
+    span: Annotated[Vector, direction()] | None = None
+    chord: Annotated[Vector, direction()] | None = None
     at: Annotated[Vector, xyz("m")] | None = None
     volume: Annotated[float, not_negative("m³")] = 0.0
     added_mass: Annotated[float | Matrix | None, checked(
@@ -82,8 +104,19 @@ class Drag(Part):
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         yield from across("at", self.at, "m")
+        yield from across("chord", self.chord)
+        if self.span is not None and any(self.span[:2]):
+            yield f"span {show(self.span)}, which is not square to it,"
         if isinstance(self.added_mass, tuple) and (off := [self.added_mass[k][2] for k in range(2)]) != [0.0, 0.0]:
             yield f"added_mass, whose entries xz and yz are {show((off[0], off[1]))},"
+
+    @property
+    def foil_axes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return unit vectors (3,) along span and chord, in body axes."""
+        span = np.array((0.0, 0.0, 1.0) if self.span is None else self.span)
+        span /= np.linalg.norm(span)
+        chord = np.zeros(3) if self.chord is None else np.array(self.chord) / np.linalg.norm(self.chord)
+        return span, chord
 
     def added(self, dim: int) -> np.ndarray:
         """Return its coefficients of added mass: of a cable across and along it (2,), of a body (dim, dim).

@@ -220,6 +220,8 @@ def _fluid(part: Fluid, axes: PlaneAxes, scene: SceneData) -> Fluid:
 @turned.register
 def _drag(part: Drag, axes: PlaneAxes, scene: SceneData) -> Drag:
     changes = {} if part.at is None else {"at": _place(axes, part.on, part.at)}
+    changes |= {name: _of_body(axes, part.on, value) for name in ("span", "chord")
+                if (value := getattr(part, name)) is not None}
     if isinstance(part.added_mass, tuple):
         changes["added_mass"] = _tensor(axes, part.on, part.added_mass)
     return part.model_copy(update=changes) if changes else part

@@ -15,11 +15,77 @@
 /* What the fluid does at a place: its velocity with derivatives; drag with its derivatives. */
 typedef struct {
     fu_flow_state flow;
-    double w[3], f[3], by_slope[9], by_w[9];
+    double w[3], f[3], by_slope[9], by_w[9], by_turn[9];
 } action;
 
-/* Makes what the fluid does at a place. */
-static void act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, action *out)
+static void add_to(int n, const double *x, double *sum)
+{
+    for (int i = 0; i < n; ++i) sum[i] += x[i];
+}
+
+/* Makes a x b; in the plane b turned by a quarter times a[0]. */
+static void cross(int dim, const double *a, const double *b, double out[3])
+{
+    if (dim == 2) {
+        out[0] = -a[0] * b[1];
+        out[1] = a[0] * b[0];
+        return;
+    }
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Makes coefficients of drag and lift, each with its derivative by the angle of attack, of the flow w past axes by rows of A. */
+static void coefficients_of(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w,
+                            double coefficients[4])
+{
+    coefficients[0] = drag->foil_drag;
+    coefficients[2] = drag->foil_lift;
+    coefficients[1] = coefficients[3] = 0.0;
+    if (!drag->n_angles) return;
+    double normal[3], second;
+    cross(dim, span, chord, normal);
+    const double angle = atan2(fu_dot(dim, w, normal), fu_dot(dim, w, chord));
+    const fu_signal of_drag = {drag->n_angles, drag->angles, drag->polar_drag, 0.0, 0.0, 0.0};
+    const fu_signal of_lift = {drag->n_angles, drag->angles, drag->polar_lift, 0.0, 0.0, 0.0};
+    coefficients[0] = fu_signal_at(&of_drag, angle, &coefficients[1], &second);
+    coefficients[2] = fu_signal_at(&of_lift, angle, &coefficients[3], &second);
+}
+
+/* Adds drag and lift on a body with a span, of axes A. */
+static void add_foil(int dim, const fu_drag *drag, const double *A, action *out)
+{
+    const int turns = dim == 3 ? 3 : 1;
+    double span[3] = {drag->span[0]}, chord[3], coefficients[4], f[3], by_w[9];
+    for (int d = 0; d < dim; ++d) {
+        chord[d] = fu_dot(dim, A + d * dim, drag->chord);
+        if (dim == 3) span[d] = fu_dot(dim, A + d * dim, drag->span);
+    }
+    coefficients_of(dim, drag, chord, span, out->w, coefficients);
+    drag->kernel->on_foil(out->w, span, drag->foil, coefficients, f, by_w);
+    add_to(dim, f, out->f);
+    add_to(dim * dim, by_w, out->by_w);
+    for (int k = 0; k < turns; ++k) { /* by a turn of the body, as if the flow had turned back */
+        const double axis[3] = {k == 0, k == 1, k == 2};
+        double turned[3], flow[3];
+        cross(dim, axis, f, turned);
+        cross(dim, axis, out->w, flow);
+        for (int d = 0; d < dim; ++d) out->by_turn[d * turns + k] = turned[d] - fu_dot(dim, by_w + d * dim, flow);
+    }
+}
+
+static void add_lift(const fu_drag *drag, const fu_drag_place *at, action *out)
+{
+    double f[3], by_slope[9], by_w[9];
+    drag->kernel->lift_along_cable(at->r_x, out->w, drag->lift, f, by_slope, by_w);
+    add_to(3, f, out->f);
+    add_to(9, by_slope, out->by_slope);
+    add_to(9, by_w, out->by_w);
+}
+
+/* Makes what the fluid does at a place; A: axes of a body there. */
+static void act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A, action *out)
 {
     fu_flow_at(model, &drag->flow, t, at->r, &out->flow);
     for (int d = 0; d < model->dim; ++d) out->w[d] = out->flow.U[d] - at->v[d];
@@ -27,6 +93,8 @@ static void act(const fu_model *model, const fu_drag *drag, double t, const fu_d
         drag->kernel->along_cable(at->r_x, out->w, drag->coefficients, out->f, out->by_slope, out->by_w);
     else
         drag->kernel->on_point(out->w, drag->coefficients, out->f, out->by_w);
+    if (drag->lift[0] != 0.0) add_lift(drag, at, out);
+    if (drag->is_foil) add_foil(model->dim, drag, A, out);
 }
 
 /* Makes the derivative of drag by the place (dim x dim). */
@@ -96,7 +164,7 @@ static void on_cable(const fu_model *model, const fu_drag *drag, double t, const
             double force[3];
             const fu_quadrature_point point = fu_drag_point(drag, n, e, g);
             fu_drag_place_on_axis(model, drag, q + first, v + first, 0, point, &at);
-            act(model, drag, t, &at, &a);
+            act(model, drag, t, &at, 0, &a);
             whole_force(model, drag, &a, force);
             if (sums->power) add_powers(model, drag, &at, &a, point.weight, sums->power);
             for (int d = 0; d < dim; ++d) {
@@ -126,7 +194,7 @@ static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu
             fu_drag_place at;
             action a;
             fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, point, &at);
-            act(model, drag, state->t, &at, &a);
+            act(model, drag, state->t, &at, 0, &a);
             by_place(dim, &a, gradient);
             for (int i = 0; i < dim; ++i)
                 for (int j = 0; j < dim; ++j) {
@@ -150,6 +218,7 @@ static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_s
 {
     const fu_attachment *on = &drag->attachments[0];
     memset(at, 0, sizeof *at);
+    if (drag->is_foil) fu_attachment_at(model, on, state, 0.0, FU_AXES, end); /* in a step those in its middle */
     fu_attachment_at(model, on, step ? step->now : state, 0.0, FU_POINT, end);
     memcpy(at->r, end->p, sizeof at->r);
     memcpy(at->v, end->v, sizeof at->v);
@@ -173,7 +242,7 @@ static void on_body(const fu_model *model, const fu_drag *drag, double t, const 
     action a;
     double force[3];
     place_on_body(model, drag, state, step, &at, &end);
-    act(model, drag, t, &at, &a);
+    act(model, drag, t, &at, end.A, &a);
     whole_force(model, drag, &a, force);
     if (sums->power) add_powers(model, drag, &at, &a, 1.0, sums->power);
     for (int d = 0; d < model->dim; ++d) {
@@ -186,23 +255,27 @@ static void matrix_of_body(const fu_model *model, const fu_drag *drag, const fu_
                            fu_weights weights, fu_system *system)
 {
     const fu_attachment *on = &drag->attachments[0];
-    const int dim = model->dim;
+    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
     double turned[3 * FU_ATTACHMENT_COORDINATES], of_rate[3 * FU_ATTACHMENT_COORDINATES];
     double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], force[3], gradient[9];
     fu_attachment_state end;
     fu_drag_place at;
     action a;
     place_on_body(model, drag, state, 0, &at, &end);
-    act(model, drag, state->t, &at, &a);
+    act(model, drag, state->t, &at, end.A, &a);
     whole_force(model, drag, &a, force);
     const int n = end.n;
     memcpy(turned, end.P, sizeof turned);
     memset(of_rate, 0, sizeof of_rate);
     fu_turn_point(model, on, state, force, psi, &end, turned, of_rate, K);
     by_place(dim, &a, gradient);
+    if (drag->is_foil) fu_turn_attachment(model, on, psi, end.T, turns, n, 0);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
             double sum = K[i * n + j];
+            for (int d = 0; d < dim && drag->is_foil; ++d)
+                for (int k = 0; k < turns; ++k)
+                    sum += model->load_fraction * end.P[d * n + i] * a.by_turn[d * turns + k] * end.T[k * n + j];
             for (int d = 0; d < dim; ++d)
                 for (int c = 0; c < dim; ++c) {
                     const double rate = of_rate[c * n + j] + weights.rate * end.P[c * n + j];
@@ -319,6 +392,11 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     add_all(model, coupling, state, acceleration, &sums);
 }
 
+void fu_drag_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3])
+{
+    outputs(model, coupling, state, 0, 0, force);
+}
+
 /* Returns how far within its table all of what a fluid acts on is, as a part of the table's axes; negative beyond its edges. */
 static double margin(const fu_model *model, const fu_drag *drag, const fu_state *state)
 {
@@ -408,6 +486,17 @@ static const fu_field fields[] = {
     {"axes", FU_REAL, offsetof(fu_drag, flow.axes), 9, sizeof(double), NULL},
     FU_FIELD(fu_drag, cable, FU_INTEGER, 0),
     FU_FIELD_ARRAY(fu_drag, coefficients, FU_REAL),
+    FU_FIELD_ARRAY(fu_drag, lift, FU_REAL),
+    FU_FIELD(fu_drag, is_foil, FU_INTEGER, 0),
+    FU_FIELD_ARRAY(fu_drag, foil, FU_REAL),
+    FU_FIELD_ARRAY(fu_drag, span, FU_REAL),
+    FU_FIELD_ARRAY(fu_drag, chord, FU_REAL),
+    FU_FIELD(fu_drag, foil_drag, FU_REAL, 0),
+    FU_FIELD(fu_drag, foil_lift, FU_REAL, 0),
+    FU_FIELD(fu_drag, n_angles, FU_INTEGER, 0),
+    FU_FIELD(fu_drag, angles, FU_REALS, 0),
+    FU_FIELD(fu_drag, polar_drag, FU_REALS, 0),
+    FU_FIELD(fu_drag, polar_lift, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_drag, buoyancy, FU_REAL),
     FU_FIELD(fu_drag, displaced, FU_REAL, 0),
     FU_FIELD_ARRAY(fu_drag, added, FU_REAL),

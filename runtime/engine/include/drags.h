@@ -13,6 +13,12 @@ typedef struct {
     fu_flow flow;
     int cable;                 /* -1: on a body, at its attachment */
     double coefficients[3];    /* as the kernel takes them */
+    double lift[2];            /* of a cable, as the kernel takes them: none where the first is zero */
+    int is_foil;               /* not zero: a body with a span, and a force by its angle of attack, with drag by `coefficients` */
+    double foil[2], span[3], chord[3]; /* as the kernel takes them; along axes of the body, span[0] in the plane its sense */
+    double foil_drag, foil_lift;       /* coefficients, without a polar: */
+    int n_angles;                      /* polynomials of the angle, as a signal's of time: of both coefficients */
+    const double *angles, *polar_drag, *polar_lift;
     double buoyancy[3];        /* N/m a length of the undeformed cable, N on a body */
     double displaced;          /* mass of the fluid displaced: kg/m, kg */
     double added[9];           /* mass added: of a length of cable across and along it, kg/m; of a body in its axes (dim x dim), kg */
@@ -44,6 +50,9 @@ typedef struct {
     double *f, *total;
     fu_drag_powers *power;
 } fu_drag_sums;
+
+/* Makes the whole force of the fluid at a state of rest. */
+void fu_drag_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3]);
 
 fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point);
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
