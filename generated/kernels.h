@@ -1370,8 +1370,29 @@ void planar_resistance_force(const fu_real *t, const fu_real *u, const fu_real *
 /* drag a length of a cable, and its derivatives: t 3[1]; w 3[m/s]; c 3[N s^2/m^3, N s^2/m^3, m/s] -> f 3[N/m]; f_t
  * 3x3[N/m]; f_w 3x3[N s/m^2] */
 void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
+/* lift a length of a cable, and its derivatives: t 3[1]; w 3[m/s]; c_lift 2[N s^2/m^3, m/s] -> f 3[N/m]; f_t
+ * 3x3[N/m]; f_w 3x3[N s/m^2] */
+void drag_lift_along_cable(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w);
 /* drag on a point, and its derivatives: w 3[m/s]; c_point 2[N s^2/m^2, m/s] -> f 3[N]; f_w 3x3[N s/m] */
 void drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
+/* drag and lift on a body with a span, and their derivatives: w 3[m/s]; s 3[1]; c_foil 2[N s^2/m^2, m/s];
+ * coefficients 4[1, 1/rad] -> f 3[N]; f_w 3x3[N s/m] */
+void drag_on_foil(const fu_real *w, const fu_real *s, const fu_real *c_foil, const fu_real *coefficients, fu_real *f, fu_real *f_w);
+/* impulse of the fluid along a cable, and its mass: t 3[1]; w 3[m/s]; m 2[kg/m] -> p 3[kg/s]; M 3x3[kg/m] */
+void drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M);
+/* impulse of the fluid along a cable, its rate, and their derivatives: t 3[1]; t_rate 3[1/s]; w 3[m/s]; w_rate
+ * 3[m/s^2]; m 2[kg/m] -> p 3[kg/s]; p_rate 3[N/m]; g 3[N]; M 3x3[kg/m]; p_t 3x3[kg/s]; p_rate_t 3x3[N/m];
+ * p_rate_t_rate 3x3[kg/s]; p_rate_w 3x3[kg/(m s)]; g_t 3x3[N]; g_w 3x3[kg/s] */
+void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *w, const fu_real *w_rate, const fu_real *m, fu_real *p, fu_real *p_rate, fu_real *g, fu_real *M, fu_real *p_t, fu_real *p_rate_t, fu_real *p_rate_t_rate, fu_real *p_rate_w, fu_real *g_t, fu_real *g_w);
+/* impulse of the fluid along a cable over a step: t 3[1]; t_next 3[1]; w 3[m/s]; w_next 3[m/s]; m 2[kg/m] -> dp
+ * 3[kg/s]; g 3[N] */
+void drag_inertia_step(const fu_real *t, const fu_real *t_next, const fu_real *w, const fu_real *w_next, const fu_real *m, fu_real *dp, fu_real *g);
+/* impulse of the fluid at a body, and its mass: A 3x3[1]; C 3x3[kg]; w 3[m/s] -> p 3[kg m/s]; M 3x3[kg] */
+void drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_real *w, fu_real *p, fu_real *M);
+/* impulse of the fluid at a body, its rate and moment, and their derivatives: A 3x3[1]; C 3x3[kg]; omega 3[rad/s]; w
+ * 3[m/s]; w_rate 3[m/s^2] -> p 3[kg m/s]; p_rate 3[N]; moment 3[N m]; M 3x3[kg]; p_turn 3x3[SI]; p_rate_turn
+ * 3x3[SI]; moment_turn 3x3[SI]; p_rate_omega 3x3[kg m/s]; p_rate_w 3x3[kg/s]; moment_w 3x3[kg m/s] */
+void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
 
 /* planar_drag: drag of a fluid in the plane */
 /* drag a length of a cable, and its derivatives: t 2[1]; w 2[m/s]; c 3[N s^2/m^3, N s^2/m^3, m/s] -> f 2[N/m]; f_t
@@ -1379,6 +1400,24 @@ void drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real
 void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
 /* drag on a point, and its derivatives: w 2[m/s]; c_point 2[N s^2/m^2, m/s] -> f 2[N]; f_w 2x2[N s/m] */
 void planar_drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
+/* drag and lift on a body with a span, and their derivatives: w 2[m/s]; s 1[1]; c_foil 2[N s^2/m^2, m/s];
+ * coefficients 4[1, 1/rad] -> f 2[N]; f_w 2x2[N s/m] */
+void planar_drag_on_foil(const fu_real *w, const fu_real *s, const fu_real *c_foil, const fu_real *coefficients, fu_real *f, fu_real *f_w);
+/* impulse of the fluid along a cable, and its mass: t 2[1]; w 2[m/s]; m 2[kg/m] -> p 2[kg/s]; M 2x2[kg/m] */
+void planar_drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M);
+/* impulse of the fluid along a cable, its rate, and their derivatives: t 2[1]; t_rate 2[1/s]; w 2[m/s]; w_rate
+ * 2[m/s^2]; m 2[kg/m] -> p 2[kg/s]; p_rate 2[N/m]; g 2[N]; M 2x2[kg/m]; p_t 2x2[kg/s]; p_rate_t 2x2[N/m];
+ * p_rate_t_rate 2x2[kg/s]; p_rate_w 2x2[kg/(m s)]; g_t 2x2[N]; g_w 2x2[kg/s] */
+void planar_drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *w, const fu_real *w_rate, const fu_real *m, fu_real *p, fu_real *p_rate, fu_real *g, fu_real *M, fu_real *p_t, fu_real *p_rate_t, fu_real *p_rate_t_rate, fu_real *p_rate_w, fu_real *g_t, fu_real *g_w);
+/* impulse of the fluid along a cable over a step: t 2[1]; t_next 2[1]; w 2[m/s]; w_next 2[m/s]; m 2[kg/m] -> dp
+ * 2[kg/s]; g 2[N] */
+void planar_drag_inertia_step(const fu_real *t, const fu_real *t_next, const fu_real *w, const fu_real *w_next, const fu_real *m, fu_real *dp, fu_real *g);
+/* impulse of the fluid at a body, and its mass: A 2x2[1]; C 2x2[kg]; w 2[m/s] -> p 2[kg m/s]; M 2x2[kg] */
+void planar_drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_real *w, fu_real *p, fu_real *M);
+/* impulse of the fluid at a body, its rate and moment, and their derivatives: A 2x2[1]; C 2x2[kg]; omega 1[rad/s]; w
+ * 2[m/s]; w_rate 2[m/s^2] -> p 2[kg m/s]; p_rate 2[N]; moment 1[N m]; M 2x2[kg]; p_turn 2x1[SI]; p_rate_turn
+ * 2x1[SI]; moment_turn 1x1[SI]; p_rate_omega 2x1[kg m/s]; p_rate_w 2x2[kg/s]; moment_w 1x2[kg m/s] */
+void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
 
 /* spring: spring and damper between two points in space */
 /* stored energy: parameters 3[N/m, N s/m, m]; gap 3[m] -> U 1[J] */
@@ -1586,7 +1625,14 @@ typedef struct {
     const char *name;
     int dim;
     void (*along_cable)(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
+    void (*lift_along_cable)(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w);
     void (*on_point)(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
+    void (*on_foil)(const fu_real *w, const fu_real *s, const fu_real *c_foil, const fu_real *coefficients, fu_real *f, fu_real *f_w);
+    void (*impulse_of_cable)(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M);
+    void (*inertia_of_cable)(const fu_real *t, const fu_real *t_rate, const fu_real *w, const fu_real *w_rate, const fu_real *m, fu_real *p, fu_real *p_rate, fu_real *g, fu_real *M, fu_real *p_t, fu_real *p_rate_t, fu_real *p_rate_t_rate, fu_real *p_rate_w, fu_real *g_t, fu_real *g_w);
+    void (*inertia_step)(const fu_real *t, const fu_real *t_next, const fu_real *w, const fu_real *w_next, const fu_real *m, fu_real *dp, fu_real *g);
+    void (*impulse_of_point)(const fu_real *A, const fu_real *C, const fu_real *w, fu_real *p, fu_real *M);
+    void (*inertia_of_point)(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
 } fu_drag_kernels;
 
 /* What the engine needs of a point_law. */

@@ -26,6 +26,7 @@ from .parts.joint import Joint
 from .parts.load import DistributedForce, Force, Moment
 from .parts.material import Material
 from .parts.modal_body import ModalBody
+from .parts.polar import Polar
 from .parts.rigid_body import RigidBody
 from .parts.section import Circle, GeneralSection, Rectangle, Tube
 from .parts.settings import EquilibriumSettings, RunSettings
@@ -34,6 +35,7 @@ from .parts.slide import Slide
 from .parts.solids import Box, Cylinder, MeshShape, Sphere
 from .parts.spring import Spring
 from .parts.support import Clamp, Motion, Pin, Tie
+from .parts.velocity_table import VelocityTable
 from .results.combination import combine
 from .results.run import Run
 from .scene import Scene
@@ -69,6 +71,7 @@ __all__ = [
     "Moment",
     "Motion",
     "Pin",
+    "Polar",
     "PowerProfile",
     "Pulse",
     "Ramp",
@@ -87,6 +90,7 @@ __all__ = [
     "Tie",
     "Tube",
     "UnknownResultError",
+    "VelocityTable",
     "__version__",
     "bundled_scenes",
     "combine",

@@ -323,3 +323,13 @@ cdef class Engine(Report):
             fu_joint_outputs(&self.model, <fu_joint *>c, &self.run.next, self.run.next.forces + c.force,
                              <fu_joint_output *>&view[k, 0])
         return out
+
+    def drag_forces(self):
+        """(drags, 3): forces of fluids on their cables and bodies in the static state, along the axes of the model."""
+        numbers = self._of("drag")
+        out = np.zeros((len(numbers), 3))
+        cdef double[:, ::1] view = out
+        cdef int k, number
+        for k, number in enumerate(numbers):
+            fu_drag_at_rest(&self.model, self.couplings[number], &self.run.next, &view[k, 0])
+        return out

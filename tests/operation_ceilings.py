@@ -236,6 +236,8 @@ CEILINGS = {
     "planar_spring": {"energy": 8, "dissipation": 12, "force": 16, "tangent": 58, "discrete_force": 33},
     "planar_zero_length_spring": {"energy": 5, "dissipation": 4, "force": 6, "tangent": 6, "discrete_force": 21},
     "planar_resistance": {"force": 207},
-    "drag": {"along_cable": 370, "on_point": 31},
-    "planar_drag": {"along_cable": 201, "on_point": 20},
+    "drag": {"along_cable": 370, "lift_along_cable": 341, "on_point": 31, "on_foil": 233, "impulse_of_cable": 43,
+             "inertia_of_cable": 1038, "inertia_step": 166, "impulse_of_point": 105, "inertia_of_point": 705},
+    "planar_drag": {"along_cable": 201, "on_point": 20, "on_foil": 65, "impulse_of_cable": 25, "inertia_of_cable": 454,
+                    "inertia_step": 105, "impulse_of_point": 30, "inertia_of_point": 134},
 }

@@ -5,14 +5,21 @@ On a cable it is the drag term of Morison's equation (Morison, Johnson, O'Brien,
 1/2 rho d C_n |w_n| w_n, along 1/2 rho pi d C_t |w_t| w_t a length of the cable as it is stretched. It is given a length
 of the undeformed cable, so times the length of r_x. On a body it is 1/2 rho A C |w| w.
 
+Lift is across the flow and the axis, on a cable 1/2 rho d C_L |w_n| i x w_n, on a body with the span s and the part w_p
+of w across it 1/2 rho A |w_p| (C_D w_p + C_L s x w_p), with coefficients by the angle of attack, that of w_p from the
+chord about the span.
+
 The sizes of velocities have a tiny `least` under the root, so that their derivatives exist at zero, where they vanish.
 """
 
 from __future__ import annotations
 
+import numpy as np
 import sympy as sp
 
+from ..algebra.tangent_frame import cross
 from ..codegen.program import Program, jacobian
+from . import added_mass
 
 DRAGS = {3: "drag", 2: "planar_drag"}
 RELATIVE = "velocity of the fluid less that of the point"
@@ -21,7 +28,8 @@ SOURCE = "Morison et al. 1950; Hall & Goupee 2015"
 
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
-    return [along_cable(dim), on_point(dim)]
+    lift = [lift_along_cable()] if dim == 3 else []
+    return [along_cable(dim), *lift, on_point(dim), on_foil(dim), *added_mass.build(DRAGS[dim], dim)]
 
 
 def _size(p: Program, name: str, square: sp.Expr, least: sp.Expr) -> sp.Expr:
@@ -55,6 +63,54 @@ def along_cable(dim: int) -> Program:
     p.output("f", f, "N/m", "force a length of the undeformed cable")
     p.output("f_t", by_t, "N/m", "derivatives of f by t")
     p.output("f_w", by_w, "N s/m^2", "derivatives of f by w")
+    return p
+
+
+def lift_along_cable() -> Program:
+    """Return the kernel of the lift a length of the undeformed cable, in space, with its derivatives."""
+    p = Program(f"{DRAGS[3]}_lift_along_cable", "lift a length of a cable, and its derivatives", SOURCE)
+    t = p.input("t", 3, "1", "slope r_x of the axis")
+    w = p.input("w", 3, "m/s", RELATIVE)
+    lift, least = p.input("c_lift", 2, "N s^2/m^3, m/s", "rho d C_L/2, and what the size of w across is not below")
+    p.stage("flow across")
+    inverse = p.define("inv_len_t", 1 / p.define("len_t", sp.sqrt(t.dot(t))))
+    i = p.vector("i", t * inverse)
+    n = p.vector("w_n", w - i.dot(w) * i)
+    size = _size(p, "size_n", n.dot(n), least)
+    p.stage("force")
+    f = p.vector("F", p.define("lift", lift * size) * np.array(cross(t, w)))
+    p.stage("derivatives")
+    by_t, by_w = jacobian(p, f, t), jacobian(p, f, w)
+    p.output("f", f, "N/m", "force a length of the undeformed cable")
+    p.output("f_t", by_t, "N/m", "derivatives of f by t")
+    p.output("f_w", by_w, "N s/m^2", "derivatives of f by w")
+    return p
+
+
+def on_foil(dim: int) -> Program:
+    """Return the kernel of drag and lift on a body with a span, with its derivative by w.
+
+    The angle of attack turns with w by (s x w)/|w_p|^2, and the coefficients with it. With the body turns all of it: by
+    a turn theta of the body alone the force changes by theta x f - f_w (theta x w).
+    """
+    p = Program(f"{DRAGS[dim]}_on_foil", "drag and lift on a body with a span, and their derivatives", SOURCE)
+    w = p.input("w", dim, "m/s", RELATIVE)
+    s = p.input("s", 3 if dim == 3 else 1, "1", "unit vector along the span; in the plane its sense along z")
+    scale, least = p.input("c_foil", 2, "N s^2/m^2, m/s", "rho A/2, and what the size of w across is not below")
+    values = p.input("coefficients", 4, "1, 1/rad", "C_D and its derivative by the angle of attack, C_L and its")
+    p.stage("flow across the span")
+    across = w - s.dot(w) * s if dim == 3 else w
+    n = p.vector("w_p", across)
+    turned = p.vector("lifted", cross(s, n))
+    size = _size(p, "size", n.dot(n), least)
+    p.stage("force")
+    f = p.vector("F", p.define("c_size", scale * size) * (values[0] * n + values[2] * turned))
+    p.stage("derivatives")
+    per_turn = p.define("c_turn", scale * sp.Symbol("inv_size"))
+    by_angle = p.vector("F_angle", per_turn * (values[1] * n + values[3] * turned))
+    by_w = jacobian(p, f, w) + np.outer(by_angle, turned)
+    p.output("f", f, "N", "force")
+    p.output("f_w", by_w, "N s/m", "derivatives of f by w")
     return p
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..errors import SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.drag import OF_BODY, OF_CABLE, Drag
 from ..parts.scene_data import SceneData
+from ..parts.validation import EXACT, show
 from .placement import placed_attachment
 
 
@@ -14,12 +17,32 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     drag = drag.completed({"fluid": _fluid(scene, drag)})
     if drag.on in scene.cables:
         _check_cable(scene, drag)
+        _check_table(scene, drag, scene.cables[drag.on].nodal_vectors[:, 0])
         return drag
     placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
     _refuse(drag, OF_CABLE, "body")
-    if drag.area * drag.coefficient == 0 and drag.volume == 0:
+    _check_foil(scene, drag)
+    acts = drag.area * (drag.coefficient or drag.lift) != 0 or (drag.area != 0 and drag.polar is not None)
+    if not acts and drag.volume == 0:
         raise SceneError(drag.where, "has neither drag nor buoyancy", "give an area with a coefficient, or a volume")
+    _check_added_mass(drag, drag.volume, "volume, in m³")
+    _check_table(scene, drag, scene.bodies[drag.on].point(placed.point)[None])
     return drag.completed({"at": placed.at})
+
+
+def _check_table(scene: SceneData, drag: Drag, places: np.ndarray) -> None:
+    """Raise SceneError where a drag begins outside of the table of its fluid; places (n, 3), in m."""
+    fluid = scene.fluids[drag.fluid or ""]
+    if fluid.table is None:
+        return
+    margin, axis = fluid.table.margin(np.zeros(len(places)), places)
+    if margin < -EXACT:
+        values = fluid.table.grid.axes[axis]
+        at = 0.0 if axis == "time" else float(max(places[:, "xyz".index(axis)], key=lambda x: abs(x - values.mean())))
+        unit = "s" if axis == "time" else "m"
+        raise SceneError(drag.where, f'begins at {axis} = {show(at, unit)}, outside of the table of {fluid.where}, '
+                         f"which goes from {show(float(values[0]), unit)} to {show(float(values[-1]), unit)}",
+                         "take a larger table, or leave out what the velocity does not depend on")
 
 
 def _fluid(scene: SceneData, drag: Drag) -> str:
@@ -38,9 +61,16 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
     """Raise SceneError where a drag does not suit its cable."""
     _refuse(drag, OF_BODY, "cable")
     cable = scene.cables[drag.on]
+    _check_added_mass(drag, drag.displaced(cable), "displaced_area, in m²")
+    if isinstance(drag.added_mass, tuple):
+        raise SceneError(drag.where, f'acts on cable "{drag.on}", whose added_mass is one number',
+                         "give that across the cable, and added_mass_tangential along it")
     if other := next((each for each in scene.drags.values() if each.on == drag.on), None):
         raise SceneError(drag.where, f'cable "{drag.on}" has the {other.where} already', "leave one of them out")
-    if drag.normal == 0 and drag.tangential == 0:
+    if drag.lift != 0 and cable.dim == 2:
+        raise SceneError(drag.where, f'lift of cable "{drag.on}" leaves the plane of its element {cable.element}',
+                         "take a spatial element, or leave lift out")
+    if drag.normal == 0 and drag.tangential == 0 and drag.lift == 0:
         if drag.displaced(cable) == 0:
             raise SceneError(drag.where, "has neither drag nor buoyancy", "give normal, tangential or displaced_area")
         return
@@ -50,10 +80,45 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
         raise SceneError(drag.where, str(error), "give diameter, in m: the width across the flow") from None
 
 
+def _check_foil(scene: SceneData, drag: Drag) -> None:
+    """Raise SceneError where lift of a body lacks its axes, or has two coefficients."""
+    if drag.polar is None:
+        if drag.chord is not None:
+            raise SceneError(drag.where, "chord is given without a polar", "give polar, or leave chord out")
+        if drag.lift == 0 and drag.span is not None:
+            raise SceneError(drag.where, "span is given without lift or a polar", "give one of them, or leave span out")
+    elif drag.lift != 0 or drag.coefficient != Drag.model_fields["coefficient"].default:
+        raise SceneError(drag.where, "has a polar and " + ("lift" if drag.lift else "a coefficient"),
+                         "leave it out: the polar has both coefficients")
+    elif drag.chord is None:
+        raise SceneError(drag.where, "chord is missing, from which the polar counts its angle",
+                         "give chord, a direction in body axes")
+    if drag.polar is None and drag.lift == 0:
+        return
+    if drag.area == 0:
+        raise SceneError(drag.where, "has lift without an area", "give area, in m²")
+    if drag.span is None and not any(cable.dim == 2 for cable in scene.cables.values()):
+        raise SceneError(drag.where, "span is missing, across which lift acts", "give span, a direction in body axes")
+    span, chord = drag.foil_axes
+    if abs(span @ chord) > 1e-6:
+        raise SceneError(drag.where, f"chord must be square to span, got {show(drag.chord or ())} and "
+                         f"{show(drag.span or (0, 0, 1))}", "turn one of them")
+
+
+def _check_added_mass(drag: Drag, displaced: float, name: str) -> None:
+    """Raise SceneError where added mass has no volume that it is a multiple of; name: of the entry that gives one."""
+    if drag.added_mass is None and drag.added_mass_tangential:
+        raise SceneError(drag.where, "added_mass_tangential is given without added_mass",
+                         "give added_mass, that across the cable: 1 for a round one, 0 for none")
+    if drag.added_mass is not None and displaced == 0:
+        raise SceneError(drag.where, "added_mass counts by the mass of the fluid displaced, which is nil",
+                         f"give {name}")
+
+
 def _refuse(drag: Drag, names: tuple[str, ...], kind: str) -> None:
     """Raise SceneError where values are given that such a part does not take."""
     defaults = {name: field.default for name, field in Drag.model_fields.items()}
-    for name in names:
+    takes = OF_CABLE if kind == "cable" else OF_BODY
+    for name in (name for name in names if name not in takes):
         if getattr(drag, name) != defaults[name]:
-            takes = OF_CABLE if kind == "cable" else OF_BODY
             raise SceneError(drag.where, f'acts on {kind} "{drag.on}" and takes no {name}', f"takes {', '.join(takes)}")

@@ -14,11 +14,11 @@ class CouplingModel:
 
     type: the engine's type of coupling. name: of the part that it is of. n_coordinates: of its own in a Newton system.
     scale: what the equations of each of its own forces are multiplied by there, kg or kg m. n_multipliers: the most
-    multipliers of eq 38 that it needs. reacts, is_damped: a force of it depends on those multipliers, on velocities.
-    drive: the number of a signal that prescribes a motion of it, or -1. follows_law: its own forces are given by a law,
-    and else by constraints. redundant_rows: those of its constraints that others imply, whose forces are nil
-    (model/redundant_constraints.py). unknown, multiplier: the first of each, of unknowns beyond the dofs, as `number`
-    counts them.
+    multipliers of eq 38 that it needs. reacts, is_damped: a force of it depends on those multipliers, on velocities;
+    has_inertia: it has a mass. drive: the number of a signal that prescribes a motion of it, or -1. follows_law: its
+    own forces are given by a law, and else by constraints. redundant_rows: those of its constraints that others imply,
+    whose forces are nil (model/redundant_constraints.py). unknown, multiplier: the first of each, of unknowns beyond
+    the dofs, as `number` counts them.
     """
 
     type: str
@@ -28,6 +28,7 @@ class CouplingModel:
     n_multipliers: int = 0
     reacts: bool = False
     is_damped: bool = False
+    has_inertia: bool = False
     drive: int = -1
     follows_law: bool = False
     redundant_rows: set[int] = field(default_factory=set)

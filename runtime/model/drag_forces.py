@@ -1,10 +1,11 @@
-"""Forces of fluids at given instants, from results: along cables, and on whole parts."""
+"""Forces of fluids along cables at given instants, from results; and what lies beyond their tables."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..kernels.libraries import kernels_of
+from ..parts.validation import EXACT
 from .drags import DragModel
 from .model import Model
 from .states import attachment_points, spatial
@@ -22,23 +23,39 @@ def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v:
     local = e - np.where(is_r[:, None], e[:, :, :1], 0.0)
     r, slope, velocity = (np.einsum("egk,tekd->tegd", np.broadcast_to(shape, (cable.n_elements, *shape.shape[1:])), of)
                           for shape, of in ((drag.N, e), (drag.N_x, local), (drag.N, rates)))
-    flow = drag.fluid.velocity_at(time[:, None, None], drag.base + r @ drag.up)[..., :dim]
+    flow = _velocity(drag, time[:, None, None], r)
     kernel = getattr(kernels_of(None), f"{drag.kernel}_along_cable")
     n = r[..., 0].size
     f = kernel.rows(n, slope.reshape(n, dim), (flow - velocity).reshape(n, dim), np.array(drag.coefficients))[0]
+    if drag.lift[0] != 0:
+        lift = getattr(kernels_of(None), f"{drag.kernel}_lift_along_cable")
+        f = f + lift.rows(n, slope.reshape(n, dim), (flow - velocity).reshape(n, dim), np.array(drag.lift))[0]
     return spatial(f.reshape(r.shape) + drag.buoyancy)
 
 
-def drag_forces(model: Model, q: np.ndarray) -> np.ndarray:
-    """Return (drags, 3): the forces of fluids on the parts at rest at t = 0, in N; q (1, n_q)."""
-    found = np.zeros((len(model.drags), 3))
-    time, at_rest = np.zeros(1), np.zeros((1, model.n_dof))
-    for k, drag in enumerate(model.drags):
+def _velocity(drag: DragModel, time: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """Return the velocity of the fluid (..., dim) at times (s) and places r (..., dim) in m."""
+    return drag.fluid.velocity_at(time, drag.base + r @ drag.up, _place(drag, r))[..., : r.shape[-1]]
+
+
+def _place(drag: DragModel, r: np.ndarray) -> np.ndarray:
+    """Return places (..., 3) on the ground's axes of places r (..., dim) in the model's."""
+    return drag.origin + r @ drag.axes.reshape(3, 3)[:, : r.shape[-1]].T
+
+
+def outside_tables(model: Model, q: np.ndarray) -> list[str]:
+    """Return a message for each drag on what is beyond the table of its fluid at t = 0; q (n_q,)."""
+    found = []
+    for drag in model.drags:
+        if drag.fluid.table is None:
+            continue
         if drag.cable >= 0:
-            found[k] = np.sum(drag.weights[..., None] * densities(model, drag, time, q, at_rest)[0], axis=(0, 1))
+            cable = model.cables[drag.cable]
+            r = q[cable.coordinates].reshape(cable.shape)[:, 0]
         else:
-            r = attachment_points(model, drag.attachments[0], q)[:, : model.dim]
-            flow = drag.fluid.velocity_at(time, drag.base + r @ drag.up)[0, : model.dim]
-            kernel = getattr(kernels_of(None), f"{drag.kernel}_on_point")
-            found[k] = spatial(kernel(flow, np.array(drag.coefficients))[0] + drag.buoyancy)
+            r = attachment_points(model, drag.attachments[0], q[None])[:, : model.dim]
+        margin, axis = drag.fluid.table.margin(np.zeros(len(r)), _place(drag, r))
+        if margin < -EXACT:
+            found.append(f'drag "{drag.name}" is on what lies beyond the table of its fluid along {axis}, by '
+                         f"{-margin:.3g} of it: there the velocity is as at its edge; take a larger table")
     return found

@@ -12,6 +12,7 @@ from ..parts.drag import Drag
 from ..parts.flow_profile import PowerProfile, TableProfile
 from ..parts.fluid import Fluid
 from ..parts.scene_data import SceneData
+from ..parts.velocity_table import AXES
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 from .loads import GAUSS, LoadBuilder
@@ -28,9 +29,13 @@ class DragModel(CouplingModel):
 
     velocity (dim), in m/s, times the signal of that number (-1: one) and the profile, as engine/include/drags.h has it,
     at the height base + up . r. coefficients: as the kernel takes them. buoyancy (dim): N/m of a cable, N of a body.
+    lift, foil: likewise, is_foil: a body with a span; n_angles, angles, polar_drag, polar_lift: its polar, see
+    `Polar.pieces`.
+    displaced: mass of the fluid displaced, added: that it adds, as engine/include/drags.h has them, where has_inertia.
     weights (1 or elements, n_points), in m, N and N_x (1 or elements, n_points, vectors): of the quadrature on the
-    elements of the cable, once where they are equal; stride: points from one element's to the next's. fluid: the
-    scene's, of which the engine takes nothing.
+    elements of the cable, once where they are equal; stride: points from one element's to the next's. degree,
+    n_splines (4), knots, table: of splines in time and space, degree 0 without; origin (3,), axes (9): those of the
+    model, of the ground. fluid: the scene's, of which the engine takes nothing.
     """
 
     kernel: str
@@ -45,9 +50,28 @@ class DragModel(CouplingModel):
     n_pieces: int
     breaks: np.ndarray
     coefficients_of_profile: np.ndarray
+    degree: int
+    n_splines: tuple[int, ...]
+    knots: np.ndarray
+    table: np.ndarray
+    origin: np.ndarray
+    axes: np.ndarray
     cable: int
     coefficients: tuple[float, ...]
+    lift: tuple[float, ...]
+    is_foil: bool
+    foil: tuple[float, float]
+    span: tuple[float, ...]
+    chord: tuple[float, ...]
+    foil_drag: float
+    foil_lift: float
+    n_angles: int
+    angles: np.ndarray
+    polar_drag: np.ndarray
+    polar_lift: np.ndarray
     buoyancy: np.ndarray
+    displaced: float
+    added: tuple[float, ...]
     n_points: int
     stride: int
     weights: np.ndarray
@@ -67,14 +91,18 @@ def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loa
     displaced, none = part.displaced(scene.cables.get(part.on)), np.zeros(0)
     model = DragModel(
         kernel=KERNELS[dim], velocity=factor * np.array(fluid.velocity)[:dim], up=up[:dim], base=base, signal=signal,
-        **_profile(fluid), cable=-1, coefficients=(), buoyancy=-fluid.density * displaced * gravity, n_points=0,
-        stride=0, weights=none, N=none, N_x=none, attachments=[], fluid=fluid, type="drag",
-        name=part.name or "", is_damped=True)
+        **_profile(fluid), **_foil(part, fluid, dim, part.on in scene.bodies), **_table(fluid, scene), cable=-1,
+        coefficients=(), buoyancy=-fluid.density * displaced * gravity, displaced=fluid.density * displaced, added=(),
+        has_inertia=part.added_mass is not None, n_points=0, stride=0, weights=none, N=none, N_x=none,
+        attachments=[], fluid=fluid, type="drag", name=part.name or "", is_damped=True)
+    if model.has_inertia:
+        model.added = tuple((model.displaced * part.added(dim)).ravel().tolist())
     pressure = fluid.density / 2
     if part.on in attachments.cable_index:
         model.cable = attachments.cable_index[part.on]
         cable = attachments.cables[model.cable]
-        width = part.width(scene.cables[part.on])
+        width = part.width(scene.cables[part.on]) if part.normal or part.tangential or part.lift else 0.0
+        model.lift = (pressure * width * part.lift, LEAST_SPEED)
         model.coefficients = (pressure * width * part.normal, pressure * np.pi * width * part.tangential, LEAST_SPEED)
         lengths = cable.mesh.lengths
         shapes = [[cable.kernel("on_axis")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
@@ -82,9 +110,21 @@ def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loa
         model.n_points, model.weights = len(GAUSS[0]), np.outer(lengths, GAUSS[1]) / 2
         model.stride = 0 if cable.mesh.is_even else model.n_points
     else:
-        model.coefficients = (pressure * part.area * part.coefficient, LEAST_SPEED)
-        model.attachments = [attachments.model(Attachment(on=part.on, at=part.at))]
+        of_drag = part.coefficient if part.polar is None else 0.0
+        model.coefficients = (pressure * part.area * of_drag, LEAST_SPEED)
+        model.attachments = [attachments.model(Attachment(on=part.on, at=part.at), np.eye(3))]
     return model
+
+
+def _foil(part: Drag, fluid: Fluid, dim: int, on_body: bool) -> dict[str, Any]:
+    """Return what a model has of lift."""
+    breaks, drag, lift = (np.zeros(0),) * 3 if part.polar is None else part.polar.pieces()
+    span, chord = part.foil_axes
+    is_foil = on_body and (part.lift != 0 or part.polar is not None)
+    return {"lift": (0.0, LEAST_SPEED), "is_foil": is_foil, "foil": (fluid.density / 2 * part.area, LEAST_SPEED),
+            "span": tuple(span) if dim == 3 else (float(np.sign(span[2])),), "chord": tuple(chord[:dim]),
+            "foil_drag": 0.0, "foil_lift": part.lift, "n_angles": len(drag), "angles": breaks, "polar_drag": drag,
+            "polar_lift": lift}
 
 
 def up_of(scene: SceneData) -> np.ndarray:
@@ -111,3 +151,15 @@ def _profile(fluid: Fluid) -> dict[str, Any]:
     return {"profile": kind, "reference": power.reference_height, "exponent": power.exponent,
             "least": power.least_height, "n_pieces": len(coefficients), "breaks": breaks,
             "coefficients_of_profile": coefficients}
+
+
+def _table(fluid: Fluid, scene: SceneData) -> dict[str, Any]:
+    """Return what a model has of the table of a fluid, and of the axes that it is on."""
+    plane = None if scene.plane_axes is None else scene.plane_axes.plane
+    origin, axes = (np.zeros(3), np.eye(3)) if plane is None else (plane.origin, plane.axes)
+    common = {"origin": origin, "axes": axes.ravel()}
+    if fluid.table is None:
+        return common | {"degree": 0, "n_splines": (1,) * len(AXES), "knots": np.zeros(0), "table": np.zeros(0)}
+    degree, knots, coefficients = fluid.table.splines(scene.dim)
+    return common | {"degree": degree, "n_splines": coefficients.shape[:-1],
+                     "knots": np.concatenate(list(knots.values())), "table": coefficients.ravel()}

@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from .loads import SignalModel
 from .model import Model
 
 HIGHER, ACCELERATION, RATE = range(3)
@@ -32,11 +33,12 @@ def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tupl
 
     turns: whether the instants at which tables turn round are among them.
     """
-    driving = driving_signals(model)
+    driving, inertial = driving_signals(model), {drag.signal for drag in model.drags if drag.has_inertia}
     found = [each for number, signal in enumerate(model.signals)
-             for each in [*of_pieces(signal.breaks, signal.coefficients, number in driving, tol),
+             for each in [*_of_signal(signal, number in driving, number in inertial, tol),
                           *(_turns(signal.breaks, signal.coefficients[:, 0], tol) if turns else [])]
              if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
+    found += [each for each in _of_tables(model) if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
     times: list[float] = []
     jumps: list[float] = []
     for time, jump in sorted(found):
@@ -51,6 +53,21 @@ def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tupl
 def driving_signals(model: Model) -> set[int]:
     """Return the numbers of the signals that prescribe a motion; the others scale loads."""
     return {motion.signal for motion in model.motions} | {coupling.drive for coupling in model.couplings}
+
+
+def _of_tables(model: Model) -> list[tuple[float, int]]:
+    """Return the times of the tables of fluids: a gust between two of them may be shorter than a step. Between straight
+    lines the acceleration of the fluid jumps, which is a force where its inertia counts.
+    """
+    kinds = {id(drag.fluid): (drag.fluid.table, ACCELERATION if drag.has_inertia and drag.degree == 1 else HIGHER)
+             for drag in model.drags if drag.fluid.table is not None}
+    return [(float(time), kind) for table, kind in kinds.values() for time in table.grid.axes.get("time", ())]
+
+
+def _of_signal(signal: SignalModel, drives: bool, accelerates: bool, tol: float) -> list[tuple[float, int]]:
+    """Return `of_pieces` of a signal; accelerates: its rate is that of a fluid, whose inertia makes it a force."""
+    found = of_pieces(signal.breaks, signal.coefficients, drives or accelerates, tol)
+    return found if drives else [(time, min(jump, ACCELERATION)) for time, jump in found]
 
 
 def of_pieces(breaks: np.ndarray, coefficients: np.ndarray, drives: bool, tol: float) -> list[tuple[float, int]]:

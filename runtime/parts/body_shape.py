@@ -3,22 +3,19 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import near, shown_path
+from ..errors import near
+from .data_files import arrays_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
 ARRAYS = ("nodes", "modes", "masses", "stiffness")
-NETCDF = {b"CDF\1": "scipy", b"CDF\2": "scipy", b"CDF\5": None, b"\x89HDF": None}
-"""How files of data begin, and what reads them: None leaves it to xarray."""
 SYMMETRIC, ORTHOGONAL, DEFINITE = 1e-9, 1e-6, 1e-10
 """Parts of the largest entry, or cosines, up to which a matrix is what it should be."""
 
@@ -150,24 +147,7 @@ def _is_orthogonal(M: np.ndarray) -> None:
 
 def of_file(path: str, orthogonal: bool) -> Shape:
     """Return the shape in an .npz or a netCDF file, see `ModalBody`. Raises ValueError(cause, remedy)."""
-    file = Path(path)
-    if not os.path.isfile(file):  # False also of what no path can be
-        raise ValueError(f'there is no file "{shown_path(path)}"')
-    try:
-        if file.suffix == ".npz":
-            with np.load(file, allow_pickle=False) as found:  # a pickle would run code
-                arrays = {name: found[name] for name in found.files}
-        else:
-            import xarray  # 0.5 s, for files of netCDF alone
-
-            with open(file, "rb") as opened:
-                head = opened.read(4)
-            if head not in NETCDF:
-                raise ValueError("it begins like no netCDF file")
-            with xarray.open_dataset(file, engine=NETCDF[head]) as found:
-                arrays = {name: found[name].values for name in found.data_vars}
-    except Exception as error:
-        raise ValueError(f'"{path}" could not be read: {error}', "give an .npz or a netCDF file") from error
+    arrays = arrays_of(path).arrays
     for name in ARRAYS:
         if name not in arrays:
             raise ValueError(f'"{path}" has no array {name}', near(name, arrays) if arrays else "")

@@ -4,21 +4,62 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Annotated, ClassVar
+from numbers import Real
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
 
 from .cable import Cable
 from .part import Part
 from .plane import across
+from .polar import Polar
 from .quantity import Quantity, vector_of_time
+from .schemas import checked, list_of_lists, list_schema, number_schema
 from .section import Circle, Tube
-from .validation import Name, Reference, Vector, not_negative, positive, xyz
+from .validation import (
+    Name,
+    Reference,
+    Vector,
+    direction,
+    finite,
+    not_negative,
+    number,
+    positive,
+    show,
+    vector,
+    vector3,
+    xyz,
+)
 
-OF_CABLE = ("normal", "tangential", "diameter", "displaced_area")
-OF_BODY = ("area", "coefficient", "at", "volume")
+OF_CABLE = ("normal", "tangential", "lift", "diameter", "displaced_area", "added_mass", "added_mass_tangential")
+OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "added_mass")
+
+Matrix = tuple[Vector, Vector, Vector]
+
+
+def _added_mass(value: Any) -> float | Matrix:
+    """Return a coefficient, or the symmetric matrix (3, 3) of three or of three rows of them, in body axes."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        found = number(value)
+        if found < 0:
+            raise ValueError(f"must not be negative, got {show(found)}")
+        return found
+    rows = value.tolist() if isinstance(value, np.ndarray) else value
+    if isinstance(rows, list | tuple) and len(rows) == 3 and all(isinstance(row, list | tuple) for row in rows):
+        matrix = np.array([vector(row) for row in rows])
+    else:
+        matrix = np.diag(vector(rows))
+    largest = np.abs(matrix).max()
+    if not np.allclose(matrix, matrix.T, rtol=0, atol=1e-12 * largest):
+        raise ValueError(f"must be symmetric, got {matrix.tolist()}")
+    if np.linalg.eigvalsh(matrix)[0] < -1e-12 * largest:
+        raise ValueError(f"must not be negative in any direction, got {matrix.tolist()}")
+    first, second, third = (vector3(row) for row in matrix)
+    return first, second, third
 
 
 class Drag(Part):
-    """Drag and buoyancy of a cable or a body in a `Fluid`.
+    """Drag, buoyancy and added mass of a cable or a body in a `Fluid`.
 
     on: the cable, all of it, or the body; fluid: its name, the scene's only one if not given.
     Of a cable: ``normal`` and ``tangential``, the coefficients of Morison's equation, whose forces a length are
@@ -27,7 +68,14 @@ class Drag(Part):
     section (of a tube with its inside) if not given; 0 for no buoyancy.
     Of a body: ``area`` (m²) and ``coefficient`` of the force ``ρ/2 area coefficient |w| w`` at its centre of pressure
     ``at`` (m, body axes), and the displaced ``volume`` (m³), whose buoyancy acts there, too.
-    Added mass is not in it.
+    ``lift`` C_L adds a force across the flow: of a cable ``ρ/2 d C_L |w_n| i × w_n``, i along it from its start; of a
+    body ``ρ/2 area C_L |w_p| s × w_p`` with its ``span`` s (a direction in body axes; in the plane z), w_p across s.
+    Of a body ``polar``, a `Polar` of coefficients by the angle from its ``chord`` (body axes, square to the span) to
+    the flow, about the span, stands in place of coefficient and lift; drag is then along w_p.
+    ``added_mass`` C adds the inertia of the fluid: mass of C times that of the fluid displaced, of a cable with the
+    motion across it, and with that along it times ``added_mass_tangential``; of a body at ``at``, the same in all
+    directions, or three along its axes, or 3x3 in these. With it the fluid also acts by its own acceleration, as a
+    current or wave that changes does: (1 + C) times the mass displaced. None: neither; 0: without added mass.
     """
 
     kind: ClassVar[str] = "drag"
@@ -41,14 +89,44 @@ class Drag(Part):
     tangential: Annotated[float, not_negative()] = 0.0
     diameter: Annotated[float, positive("m")] | None = None
     displaced_area: Annotated[float, not_negative("m²")] | None = None
+    lift: Annotated[float, finite()] = 0.0
     area: Annotated[float, not_negative("m²")] = 0.0
     coefficient: Annotated[float, not_negative()] = 1.0
+    polar: Polar | None = None
+    span: Annotated[Vector, direction()] | None = None
+    chord: Annotated[Vector, direction()] | None = None
     at: Annotated[Vector, xyz("m")] | None = None
     volume: Annotated[float, not_negative("m³")] = 0.0
+    added_mass: Annotated[float | Matrix | None, checked(
+        _added_mass, {"anyOf": [number_schema(minimum=0), list_schema(), list_of_lists("1")]})] = None
+    added_mass_tangential: Annotated[float, not_negative()] = 0.0
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        return across("at", self.at, "m")
+        yield from across("at", self.at, "m")
+        yield from across("chord", self.chord)
+        if self.span is not None and any(self.span[:2]):
+            yield f"span {show(self.span)}, which is not square to it,"
+        if isinstance(self.added_mass, tuple) and (off := [self.added_mass[k][2] for k in range(2)]) != [0.0, 0.0]:
+            yield f"added_mass, whose entries xz and yz are {show((off[0], off[1]))},"
+
+    @property
+    def foil_axes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return unit vectors (3,) along span and chord, in body axes."""
+        span = np.array((0.0, 0.0, 1.0) if self.span is None else self.span)
+        span /= np.linalg.norm(span)
+        chord = np.zeros(3) if self.chord is None else np.array(self.chord) / np.linalg.norm(self.chord)
+        return span, chord
+
+    def added(self, dim: int) -> np.ndarray:
+        """Return its coefficients of added mass: of a cable across and along it (2,), of a body (dim, dim).
+
+        Those of a cable are told by a drag with ``at`` not set.
+        """
+        if self.at is None:
+            return np.array([self.added_mass, self.added_mass_tangential], dtype=float)
+        C = self.added_mass if isinstance(self.added_mass, tuple) else np.eye(3) * (self.added_mass or 0.0)
+        return np.array(C)[:dim, :dim]
 
     def width(self, cable: Cable) -> float:
         """Return the diameter that drag counts with, m. Raises ValueError where the section has none."""

@@ -6,19 +6,22 @@ from collections.abc import Iterator
 from typing import Annotated, ClassVar
 
 import numpy as np
+from pydantic import model_validator
 
 from .flow_profile import AnyProfile
 from .part import Part
 from .plane import across
 from .signal import AnySignal, Constant
 from .validation import Name, Vector, positive, xyz
+from .velocity_table import VelocityTable
 
 
 class Fluid(Part):
     """Air or water that fills the scene, at rest or in motion; it acts on what a `Drag` names.
 
     density in kg/m³; velocity in m/s, times the signal ``scale`` of time and the ``profile``, a `PowerProfile` or a
-    `TableProfile` of the height above the origin. Heights are counted against gravity, along y without gravity.
+    `TableProfile` of the height above the origin. Heights are counted against gravity, along y without gravity. Or
+    ``table``, a `VelocityTable` of the velocity in time and space, times ``scale``.
     """
 
     kind: ClassVar[str] = "fluid"
@@ -28,12 +31,33 @@ class Fluid(Part):
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
     scale: AnySignal = Constant(constant=1.0)
     profile: AnyProfile = None
+    table: VelocityTable | None = None
+
+    @model_validator(mode="after")
+    def _has_one_velocity(self) -> Fluid:
+        if self.table is not None and (self.profile is not None or any(self.velocity)):
+            raise ValueError(f"has a table and a {'velocity' if any(self.velocity) else 'profile'}",
+                             "leave one of them out: the table is all of the velocity")
+        return self
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        return across("velocity", self.velocity, "m/s")
+        yield from across("velocity", self.velocity, "m/s")
+        if self.table is not None:
+            yield from across("table", self.table.fastest_across, "m/s")
 
-    def velocity_at(self, time: np.ndarray, height: np.ndarray) -> np.ndarray:
-        """Return the velocity (..., 3) in m/s at times (s) and heights (m), which are broadcast."""
+    @property
+    def moves(self) -> bool:
+        """Return whether it has a velocity anywhere."""
+        return any(self.velocity) or (self.table is not None and bool(np.any(self.table.grid.velocity)))
+
+    def velocity_at(self, time: np.ndarray, height: np.ndarray, place: np.ndarray | None = None) -> np.ndarray:
+        """Return the velocity (..., 3) in m/s at times (s) and heights (m), which are broadcast.
+
+        place (..., 3) in m: on the ground's axes, which a table needs.
+        """
+        if self.table is not None:
+            assert place is not None, f"{self.where} has a table, which depends on the place"
+            return self.scale.value(time)[..., None] * self.table.value(time, place)
         factor = np.ones(np.shape(height)) if self.profile is None else self.profile.factor(height)
         return (self.scale.value(time) * factor)[..., None] * np.array(self.velocity)

@@ -22,7 +22,7 @@ from .modal_body import ModalBody
 from .part import Part
 from .paths import COMPONENTS
 from .plane import FLAT, Plane, aligned, called, flattened
-from .plane_axes import PlaneAxes
+from .plane_axes import UNTURNED, PlaneAxes
 from .rigid_body import RigidBody
 from .scene_data import SceneData
 from .signal import Constant, Signal
@@ -132,6 +132,14 @@ def _place(axes: PlaneAxes, on: str | None, at: Any) -> Any:
     return tuple(flattened(np.array(_of_body(axes, on, at)), FLAT * axes.size).tolist())
 
 
+def _tensor(axes: PlaneAxes, body: str, tensor: Any) -> tuple[tuple[float, ...], ...]:
+    """Return a symmetric tensor (3, 3) in a body's own axes in those that it has in the plane."""
+    own = rotate(axes.bodies.get(body, UNTURNED), np.eye(3)).T  # columns: the axes in the plane along the body's own
+    found = own.T @ np.array(tensor) @ own
+    found[np.abs(found) <= FLAT * np.abs(found).max()] = 0.0
+    return tuple(map(tuple, ((found + found.T) / 2).tolist()))
+
+
 @singledispatch
 def turned(part: Part, axes: PlaneAxes, scene: SceneData) -> Part:
     """Return a part of a scene in the axes of a plane; by default with its attachments there. Raises SceneError."""
@@ -166,12 +174,9 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
 
 @turned.register
 def _rigid_body(part: RigidBody, axes: PlaneAxes, scene: SceneData) -> RigidBody:
-    own = rotate(axes.bodies[part.name], np.eye(3)).T  # columns: the axes in the plane along the body's own
-    inertia = own.T @ np.array(part.inertia) @ own
-    inertia[np.abs(inertia) <= FLAT * np.abs(inertia).max()] = 0.0
     return part.model_copy(update={
         "position": _point(axes, part.position), "orientation": (1.0, 0.0, 0.0, 0.0),
-        "inertia": tuple(map(tuple, ((inertia + inertia.T) / 2).tolist())),
+        "inertia": _tensor(axes, part.name, part.inertia),
         "centre": _place(axes, part.name, part.centre), "velocity": _direction(axes, part.velocity),
         "angular_velocity": _of_body(axes, part.name, part.angular_velocity)})
 
@@ -208,12 +213,18 @@ def _distributed(part: DistributedForce, axes: PlaneAxes, scene: SceneData) -> D
 
 @turned.register
 def _fluid(part: Fluid, axes: PlaneAxes, scene: SceneData) -> Fluid:
-    return part.model_copy(update={"velocity": _direction(axes, part.velocity)})
+    table = None if part.table is None else part.table.turned(axes.plane.axes)
+    return part.model_copy(update={"velocity": _direction(axes, part.velocity), "table": table})
 
 
 @turned.register
 def _drag(part: Drag, axes: PlaneAxes, scene: SceneData) -> Drag:
-    return part if part.at is None else part.model_copy(update={"at": _place(axes, part.on, part.at)})
+    changes = {} if part.at is None else {"at": _place(axes, part.on, part.at)}
+    changes |= {name: _of_body(axes, part.on, value) for name in ("span", "chord")
+                if (value := getattr(part, name)) is not None}
+    if isinstance(part.added_mass, tuple):
+        changes["added_mass"] = _tensor(axes, part.on, part.added_mass)
+    return part.model_copy(update=changes) if changes else part
 
 
 @turned.register

@@ -171,7 +171,7 @@ def _placed(table: dict, directory: str | os.PathLike) -> dict:
     """Return a table with its library, data and mesh seen from the working directory, and not from the scene file's."""
     here = {name: os.path.join(directory, table[name]) for name in ("library", "data", "file")
             if isinstance(table.get(name), str)}
-    return table | here | {name: _placed(table[name], directory) for name in ("shape",)
+    return table | here | {name: _placed(table[name], directory) for name in ("shape", "table")
                            if isinstance(table.get(name), dict)}
 
 

@@ -19,7 +19,7 @@ from ..parts.slide import Slide
 from ..parts.validation import show
 from ..solve.rest_state import RestState
 from .cable_loads import CableLoads, Instants, lengths_of_rows, rows
-from .nodal_forces import element_forces
+from .nodal_forces import element_forces, tied_cables
 from .section_balance import Cuts, balanced
 from .section_components import balanced_components, components, labels, taut_bending
 from .section_kinks import kinks
@@ -97,12 +97,22 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     force, moment, axes, strain = constitutive(cable, nodal, cuts)
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
+    _refuse_added_mass(scene, model, name, number, at_rest)
     loads = CableLoads(scene, model, at)
     forces = element_forces(scene, model, at, loads, number, at_rest)
     balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
     taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
         cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
     return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
+
+
+def _refuse_added_mass(scene: SceneData, model: Model, name: str, number: int, at_rest: bool) -> None:
+    """Raise FunicularError where the inertia of a fluid has a part in the balance, which does not know it."""
+    for drag in model.drags:
+        is_still = at_rest and not drag.fluid.moves
+        if drag.has_inertia and not is_still and drag.cable in tied_cables(scene, model, number):
+            raise FunicularError(f'section forces of "{name}": the balance does not know added mass, which drag '
+                                 f'"{drag.name}" has; take method="constitutive"')
 
 
 def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",

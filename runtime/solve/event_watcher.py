@@ -15,6 +15,9 @@ from ..model.states import body_rates, body_state, spatial
 from ..parts.event import Event
 from ..parts.scene_data import SceneData
 
+LEAVES_TABLE = "leaves the table of its fluid"
+"""What the engine says of it (engine/couplings/drags.c)."""
+
 
 class Watch:
     """What the engine watches for an event: kind, entry, value, direction.
@@ -143,6 +146,15 @@ class EventWatcher:
         """
         self.happened.append({"name": self.model.cables[cable].name, "time": time, "what": what, "element": element,
                               "passed": True})
+
+    def notes(self) -> list[str]:
+        """Return a message for each drag that has left the table of its fluid."""
+        first: dict[str, float] = {}
+        for happened in self.happened:
+            if happened.get("what") == LEAVES_TABLE:
+                first.setdefault(happened["name"], happened["time"])
+        return [f'drag "{name}" leaves the table of its fluid at t = {time:.6g} s: beyond the edges the velocity stays '
+                "as it is there; take a larger table" for name, time in first.items()]
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Note an event; return whether the run goes on."""

@@ -8,7 +8,6 @@ from typing import Self
 import numpy as np
 
 from ..errors import SceneError, UnknownResultError, near
-from ..model.drag_forces import drag_forces
 from ..model.model import Model
 from ..model.states import attachment_points, connection_states, free_states
 from ..named_arrays import NamedArrays
@@ -113,6 +112,7 @@ class RestState(NamedArrays):
     static_state: dict
     reaction: np.ndarray
     joint_forces: np.ndarray
+    drag_forces: np.ndarray
     load_fraction: float
     iterations: int
     residual: float
@@ -135,6 +135,7 @@ class RestState(NamedArrays):
         engine = problem.engine
         scene = problem.scene.as_drawn
         state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
+                    engine.drag_forces(),
                     problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
                     problem.fraction if problem.settings.scale_gravity else 1.0, heading)
         state.quantities = state._quantities()
@@ -240,6 +241,6 @@ class RestState(NamedArrays):
         found = {f"{part}.{name}": value[0] for part, values in free.items() for name, value in values.items()}
         forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
                                    self.static_state["point_force"][None],
-                                   self.load_fraction * drag_forces(self.model, q)[None])
+                                   self.drag_forces[None])
         return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()
                         for name, value in values.items() if name != "residual"}

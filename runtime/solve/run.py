@@ -115,7 +115,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         status = run.engine.advance(run.follow, pace.every, stream)
     if status == "interrupted" and stream is not None and not stream.has_begun:  # it gets a checkpoint to go on from
         run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream)
-    messages += run.follow.notes()
+    messages += run.follow.notes() + _warned(run.watcher.notes())
     cpu, ended = clock() - cpu, time.perf_counter()
     run.row_notes.see(run.engine.rows())
     messages += _controlled_alone(run.engine, settings)

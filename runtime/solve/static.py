@@ -13,6 +13,7 @@ from typing import Generic, TypeVar
 
 from ..checks.plausibility import implausible
 from ..errors import EquilibriumError, FunicularWarning
+from ..model.drag_forces import outside_tables
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from .path_following import Critical, Point, follow
@@ -64,6 +65,7 @@ def note(problem: StaticProblem, state: RestState) -> None:
     if rubbing := [name for name, slide in problem.scene.slides.items() if slide.friction is not None]:
         names = " and ".join(f'"{name}"' for name in rubbing)
         problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
+    problem.messages += outside_tables(problem.model, state.static_state["q"])
     if not state.stable:
         leaves = "; a small disturbance leaves it" * state.stability.known
         problem.messages.append(f"the state is {state.stability}{leaves}")

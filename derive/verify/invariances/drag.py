@@ -30,3 +30,19 @@ def drag(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
         float(np.max(np.abs(at_rest[name]))) for name in ("f", "f_t", "f_w")), 64 * EPS
     on_point = k("on_point", {**s, "w": 0 * w})
     yield "so do those on a point", max(float(np.max(np.abs(on_point[name]))) for name in ("f", "f_w")), 64 * EPS
+    yield from _added_mass(family, k, s)
+
+
+def _added_mass(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
+    """Yield that impulses turn with the scene, and that over a step the energy of the fluid is what its force gives."""
+    out = k("inertia_of_cable", s)
+    for spin in spins(family.dim):
+        turned = out["p_t"] @ (spin @ s["t"]) + out["M"] @ (spin @ s["w"])
+        yield "impulse turns with the scene", relative(turned - spin @ out["p"], out["p"]), 64 * EPS
+    yield "the force on the slope is across it", relative(s["t"] @ out["g"], out["g"]), 64 * EPS
+    step, ends = k("inertia_step", s), [(s["t"], s["w"]), (s["t_next"], s["w_next"])]
+    impulses = [k("impulse_of_cable", {**s, "t": t, "w": w})["p"] for t, w in ends]
+    yield "change of impulse over a step", relative(step["dp"] - impulses[1] + impulses[0], step["dp"]), 64 * EPS
+    energies = [p @ w / 2 for p, (_, w) in zip(impulses, ends, strict=True)]
+    given = step["dp"] @ (s["w"] + s["w_next"]) / 2 - step["g"] @ (s["t_next"] - s["t"])
+    yield "energy over a step", relative(energies[1] - energies[0] - given, energies), 64 * EPS

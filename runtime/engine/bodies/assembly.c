@@ -141,8 +141,8 @@ static void clear_part(const void *what, int part, int parts)
     for (int i = range.first; i < range.end; ++i) job->f[i] = 0.0;
 }
 
-/* Makes f = M a. */
-void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)
+/* Makes f = M a of cables and bodies. */
+void fu_constant_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
     const sum job = {.model = model, .f = f};
     fu_share(model->threads, model->n_dof, clear_part, &job);
@@ -151,6 +151,13 @@ void fu_mass_times(const fu_model *model, const double *q, const double *a, doub
         add_sum(&inertia);
     }
     fu_bodies_mass_times(model, q, a, f);
+}
+
+/* Makes f = M a. */
+void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)
+{
+    fu_constant_mass_times(model, q, a, f);
+    fu_coupling_inertia(model, q, a, f);
 }
 
 /* Adds elastic, damping and bodies' forces, as they stand on the left of the equations of motion; not those of couplings. */
@@ -306,7 +313,7 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
 }
 
 /* Returns the sum of e'.M e'/2 over the elements (eq 3) and the bodies' share, J. */
-double fu_kinetic_energy(const fu_model *model, const double *q, const double *v)
+static double of_cables_and_bodies(const fu_model *model, const double *q, const double *v)
 {
     double total = 0.0, part[FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
@@ -317,6 +324,18 @@ double fu_kinetic_energy(const fu_model *model, const double *q, const double *v
         }
     }
     return total + fu_bodies_kinetic_energy(model, q, v);
+}
+
+/* Returns the kinetic energy at the velocities v, J, that of a fluid past which they are included. */
+double fu_kinetic_energy(const fu_model *model, double t, const double *q, const double *v)
+{
+    return of_cables_and_bodies(model, q, v) + fu_coupling_kinetic_energy(model, t, q, v, 1);
+}
+
+/* Returns v' M v/2 of a change v of velocities, J. */
+double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v)
+{
+    return of_cables_and_bodies(model, q, v) + fu_coupling_kinetic_energy(model, 0.0, q, v, 0);
 }
 
 /* Returns the energy stored in cables, bodies and couplings, J. */

@@ -10,6 +10,7 @@ const fu_field fu_coupling_fields[] = {
     FU_FIELD(fu_coupling, reacts, FU_INTEGER, 0),
     FU_FIELD(fu_coupling, is_damped, FU_INTEGER, 0),
     FU_FIELD(fu_coupling, is_driven, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, has_inertia, FU_INTEGER, 0),
     FU_FIELD_ARRAY(fu_coupling, scale, FU_REAL),
     {0},
 };
@@ -21,7 +22,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
     model->slides = 0;
     model->n_coordinates = model->n_forces = model->n_rows = model->n_outputs = 0;
     model->n_numbers = model->n_flags = model->n_scratch = 0;
-    model->n_reacting = model->n_external = model->n_driven = model->n_damped = model->n_passing = 0;
+    model->n_reacting = model->n_external = model->n_driven = model->n_damped = model->n_passing = model->n_inertial = 0;
     for (int k = 0; k < n; ++k) {
         fu_coupling *c = couplings[k];
         c->number = k;
@@ -44,6 +45,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
         model->n_driven += c->is_driven;
         model->n_damped += c->is_damped;
         model->n_passing += fu_can_pass(c);
+        model->n_inertial += c->has_inertia;
     }
 }
 
@@ -77,6 +79,32 @@ void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu
         const fu_coupling *c = model->couplings[k];
         if (c->type->step_tangent) c->type->step_tangent(model, c, at, system);
     }
+}
+
+void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f)
+{
+    for (int k = 0; k < model->n_couplings && model->n_inertial; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->has_inertia) c->type->inertia(model, c, q, a, f);
+    }
+}
+
+void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system)
+{
+    for (int k = 0; k < model->n_couplings && model->n_inertial; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->has_inertia) c->type->mass(model, c, q, scale, system);
+    }
+}
+
+double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_couplings && model->n_inertial; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->has_inertia) total += c->type->kinetic_energy(model, c, t, q, v, past_fluid);
+    }
+    return total;
 }
 
 void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f)

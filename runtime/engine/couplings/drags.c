@@ -1,5 +1,6 @@
 /* The force of a fluid on cables and bodies: drag by the square of the velocity of the fluid past them
- * (derive/couplings/drag.py), and buoyancy. Along a cable it is integrated by Gauss quadrature on each element.
+ * (derive/couplings/drag.py), and buoyancy; with the inertia of the fluid, which fluid_inertia.c adds. Along a cable it is
+ * integrated by Gauss quadrature on each element.
  *
  * With the velocity U of the fluid and w = U - v, the power of drag f on what moves at v is f . U - f . w: the fluid gives the first,
  * work from outside, and the second, which is never negative, goes to heat.
@@ -9,52 +10,101 @@
 #include <math.h>
 #include <string.h>
 
-/* Where the fluid acts: a point of a cable's axis, or of a body. r_x only of a cable. */
-typedef struct {
-    double r[3], r_x[3], v[3];
-} place;
+#define AT_EDGE 1e-9 /* of an axis of a table: what is beyond its edge by less is at it, as a run that ends with a table */
 
-/* What it does there: velocity of the fluid and its derivative by height; drag with its derivatives. */
+/* What the fluid does at a place: its velocity with derivatives; drag with its derivatives. */
 typedef struct {
-    double U[3], by_height[3], w[3], f[3], by_slope[9], by_w[9];
+    fu_flow_state flow;
+    double w[3], f[3], by_slope[9], by_w[9], by_turn[9];
 } action;
 
-typedef struct {
-    double dissipated, external; /* W */
-} powers;
-
-/* Returns the factor of a profile at a height, and its derivative. */
-static double profile_at(const fu_flow *flow, double height, double *slope)
+static void add_to(int n, const double *x, double *sum)
 {
-    *slope = 0.0;
-    if (flow->profile == FU_TABLE) {
-        const fu_signal table = {flow->n_pieces, flow->breaks, flow->coefficients, 0.0, 0.0, 0.0};
-        double second;
-        return fu_signal_at(&table, height, slope, &second);
-    }
-    if (flow->profile == FU_UNIFORM) return 1.0;
-    const double h = fmax(height, flow->least), factor = pow(h / flow->reference, flow->exponent);
-    if (height > flow->least) *slope = flow->exponent * factor / h;
-    return factor;
+    for (int i = 0; i < n; ++i) sum[i] += x[i];
 }
 
-/* Makes what the fluid does at a place. */
-static void act(const fu_model *model, const fu_drag *drag, double t, const place *at, action *out)
+/* Makes a x b; in the plane b turned by a quarter times a[0]. */
+static void cross(int dim, const double *a, const double *b, double out[3])
 {
-    const fu_flow *flow = &drag->flow;
-    const int dim = model->dim;
-    const double signal = flow->signal < 0 ? 1.0 : fu_signal_at(&model->signals[flow->signal], t, 0, 0);
-    double slope;
-    const double factor = profile_at(flow, flow->base + fu_dot(dim, flow->up, at->r), &slope);
-    for (int d = 0; d < dim; ++d) {
-        out->U[d] = signal * factor * flow->velocity[d];
-        out->by_height[d] = signal * slope * flow->velocity[d];
-        out->w[d] = out->U[d] - at->v[d];
+    if (dim == 2) {
+        out[0] = -a[0] * b[1];
+        out[1] = a[0] * b[0];
+        return;
     }
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Makes coefficients of drag and lift, each with its derivative by the angle of attack, of the flow w past axes by rows of A. */
+static void coefficients_of(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w,
+                            double coefficients[4])
+{
+    coefficients[0] = drag->foil_drag;
+    coefficients[2] = drag->foil_lift;
+    coefficients[1] = coefficients[3] = 0.0;
+    if (!drag->n_angles) return;
+    double normal[3], second;
+    cross(dim, span, chord, normal);
+    const double angle = atan2(fu_dot(dim, w, normal), fu_dot(dim, w, chord));
+    const fu_signal of_drag = {drag->n_angles, drag->angles, drag->polar_drag, 0.0, 0.0, 0.0};
+    const fu_signal of_lift = {drag->n_angles, drag->angles, drag->polar_lift, 0.0, 0.0, 0.0};
+    coefficients[0] = fu_signal_at(&of_drag, angle, &coefficients[1], &second);
+    coefficients[2] = fu_signal_at(&of_lift, angle, &coefficients[3], &second);
+}
+
+/* Adds drag and lift on a body with a span, of axes A. */
+static void add_foil(int dim, const fu_drag *drag, const double *A, action *out)
+{
+    const int turns = dim == 3 ? 3 : 1;
+    double span[3] = {drag->span[0]}, chord[3], coefficients[4], f[3], by_w[9];
+    for (int d = 0; d < dim; ++d) {
+        chord[d] = fu_dot(dim, A + d * dim, drag->chord);
+        if (dim == 3) span[d] = fu_dot(dim, A + d * dim, drag->span);
+    }
+    coefficients_of(dim, drag, chord, span, out->w, coefficients);
+    drag->kernel->on_foil(out->w, span, drag->foil, coefficients, f, by_w);
+    add_to(dim, f, out->f);
+    add_to(dim * dim, by_w, out->by_w);
+    for (int k = 0; k < turns; ++k) { /* by a turn of the body, as if the flow had turned back */
+        const double axis[3] = {k == 0, k == 1, k == 2};
+        double turned[3], flow[3];
+        cross(dim, axis, f, turned);
+        cross(dim, axis, out->w, flow);
+        for (int d = 0; d < dim; ++d) out->by_turn[d * turns + k] = turned[d] - fu_dot(dim, by_w + d * dim, flow);
+    }
+}
+
+static void add_lift(const fu_drag *drag, const fu_drag_place *at, action *out)
+{
+    double f[3], by_slope[9], by_w[9];
+    drag->kernel->lift_along_cable(at->r_x, out->w, drag->lift, f, by_slope, by_w);
+    add_to(3, f, out->f);
+    add_to(9, by_slope, out->by_slope);
+    add_to(9, by_w, out->by_w);
+}
+
+/* Makes what the fluid does at a place; A: axes of a body there. */
+static void act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A, action *out)
+{
+    fu_flow_at(model, &drag->flow, t, at->r, &out->flow);
+    for (int d = 0; d < model->dim; ++d) out->w[d] = out->flow.U[d] - at->v[d];
     if (drag->cable >= 0)
         drag->kernel->along_cable(at->r_x, out->w, drag->coefficients, out->f, out->by_slope, out->by_w);
     else
         drag->kernel->on_point(out->w, drag->coefficients, out->f, out->by_w);
+    if (drag->lift[0] != 0.0) add_lift(drag, at, out);
+    if (drag->is_foil) add_foil(model->dim, drag, A, out);
+}
+
+/* Makes the derivative of drag by the place (dim x dim). */
+static void by_place(int dim, const action *a, double out[9])
+{
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            out[i * dim + j] = 0.0;
+            for (int k = 0; k < dim; ++k) out[i * dim + j] += a->by_w[i * dim + k] * a->flow.gradient[k * dim + j];
+        }
 }
 
 /* Makes the force of drag and buoyancy, N/m or N: so much of it as of all loads acts. */
@@ -64,28 +114,24 @@ static void whole_force(const fu_model *model, const fu_drag *drag, const action
 }
 
 /* Adds to `sum` the powers at a place of this weight. */
-static void add_powers(const fu_model *model, const fu_drag *drag, const place *at, const action *a, double weight, powers *sum)
+static void add_powers(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const action *a, double weight,
+                       fu_drag_powers *sum)
 {
     const double part = weight * model->load_fraction;
     sum->dissipated += part * fu_dot(model->dim, a->f, a->w);
-    sum->external += part * (fu_dot(model->dim, a->f, a->U) + fu_dot(model->dim, drag->buoyancy, at->v));
+    sum->external += part * (fu_dot(model->dim, a->f, a->flow.U) + fu_dot(model->dim, drag->buoyancy, at->v));
 }
 
-/* A point of quadrature on an element: its weight in m, shape functions and their slopes. */
-typedef struct {
-    double weight;
-    const double *N, *N_x;
-} quadrature_point;
-
-static quadrature_point point_of(const fu_drag *drag, int n, int element, int point)
+/* Returns a point of quadrature on an element of n shape functions. */
+fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point)
 {
     const long k = (long)element * drag->stride + point;
-    return (quadrature_point){drag->weights[k], drag->N + k * n, drag->N_x + k * n};
+    return (fu_quadrature_point){drag->weights[k], drag->N + k * n, drag->N_x + k * n};
 }
 
-/* Makes the place of a point of quadrature on an element with the coordinates e and rates v. */
-static void place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, quadrature_point point,
-                          place *at)
+/* Makes the place of a point of quadrature on an element with the coordinates e, rates v and accelerations a; null: without. */
+void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
+                           fu_quadrature_point point, fu_drag_place *at)
 {
     const fu_cable *cable = &model->cables[drag->cable];
     const int dim = model->dim, n = cable->coordinates / dim;
@@ -94,34 +140,37 @@ static void place_on_axis(const fu_model *model, const fu_drag *drag, const doub
     for (int k = 0; k < n; ++k)
         for (int d = 0; d < dim; ++d) {
             /* from the first node: slopes do not see where that is, and no digits are lost far from the origin */
-            const double local = e[k * dim + d] - (k % cable->kernel->vectors == 0 ? e[d] : 0.0);
+            const int is_place = k % cable->kernel->vectors == 0;
+            const double local = e[k * dim + d] - (is_place ? e[d] : 0.0);
             at->r[d] += N[k] * e[k * dim + d];
             at->r_x[d] += N_x[k] * local;
             at->v[d] += N[k] * v[k * dim + d];
+            at->r_x_rate[d] += N_x[k] * (v[k * dim + d] - (is_place ? v[d] : 0.0));
+            if (a) at->a[d] += N[k] * a[k * dim + d];
         }
 }
 
-/* Adds what acts on a cable to the left of the equations of motion, f, its powers and its sum to the others; each may be null. */
-static void on_cable(const fu_model *model, const fu_drag *drag, double t, const double *q, const double *v, double *f,
-                     powers *power, double total[3])
+/* Adds what drag and buoyancy do to a cable. */
+static void on_cable(const fu_model *model, const fu_drag *drag, double t, const double *q, const double *v,
+                     const fu_drag_sums *sums)
 {
     const fu_cable *cable = &model->cables[drag->cable];
     const int dim = model->dim, n = cable->coordinates / dim;
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
         for (int g = 0; g < drag->n_points; ++g) {
-            place at;
+            fu_drag_place at;
             action a;
             double force[3];
-            const quadrature_point point = point_of(drag, n, e, g);
-            place_on_axis(model, drag, q + first, v + first, point, &at);
-            act(model, drag, t, &at, &a);
+            const fu_quadrature_point point = fu_drag_point(drag, n, e, g);
+            fu_drag_place_on_axis(model, drag, q + first, v + first, 0, point, &at);
+            act(model, drag, t, &at, 0, &a);
             whole_force(model, drag, &a, force);
-            if (power) add_powers(model, drag, &at, &a, point.weight, power);
+            if (sums->power) add_powers(model, drag, &at, &a, point.weight, sums->power);
             for (int d = 0; d < dim; ++d) {
                 const double part = point.weight * force[d];
-                if (total) total[d] += part;
-                for (int k = 0; f && k < n; ++k) f[first + k * dim + d] -= point.N[k] * part;
+                if (sums->total) sums->total[d] += part;
+                for (int k = 0; sums->f && k < n; ++k) sums->f[first + k * dim + d] -= point.N[k] * part;
             }
         }
     }
@@ -138,23 +187,23 @@ static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu
         const int first = cable->first + e * cable->per_node;
         memset(K, 0, sizeof(double) * (size_t)(all * all));
         for (int g = 0; g < drag->n_points; ++g) {
-            const quadrature_point point = point_of(drag, n, e, g);
+            const fu_quadrature_point point = fu_drag_point(drag, n, e, g);
             const double *N = point.N, *N_x = point.N_x;
             const double scale = -weights.stiffness * model->load_fraction * point.weight;
-            place at;
+            double gradient[9];
+            fu_drag_place at;
             action a;
-            place_on_axis(model, drag, state->q + first, state->v + first, point, &at);
-            act(model, drag, state->t, &at, &a);
-            for (int i = 0; i < dim; ++i) {
-                const double by_height = fu_dot(dim, a.by_w + i * dim, a.by_height);
+            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, point, &at);
+            act(model, drag, state->t, &at, 0, &a);
+            by_place(dim, &a, gradient);
+            for (int i = 0; i < dim; ++i)
                 for (int j = 0; j < dim; ++j) {
-                    const double by_r = by_height * drag->flow.up[j] - weights.rate * a.by_w[i * dim + j];
+                    const double by_r = gradient[i * dim + j] - weights.rate * a.by_w[i * dim + j];
                     for (int k = 0; k < n; ++k)
                         for (int l = 0; l < n; ++l)
                             K[(k * dim + i) * all + l * dim + j] +=
                                 scale * N[k] * (a.by_slope[i * dim + j] * N_x[l] + by_r * N[l]);
                 }
-            }
         }
         for (int i = 0; i < all; ++i)
             for (int j = 0; j < all; ++j)
@@ -164,11 +213,12 @@ static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu
 
 /* Makes the place of a body's point, and how the point moves with the coordinates; over a step that conserves energy, the place in
  * its middle, with the velocity that the step has on average. */
-static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step, place *at,
-                          fu_attachment_state *end)
+static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
+                          fu_drag_place *at, fu_attachment_state *end)
 {
     const fu_attachment *on = &drag->attachments[0];
     memset(at, 0, sizeof *at);
+    if (drag->is_foil) fu_attachment_at(model, on, state, 0.0, FU_AXES, end); /* in a step those in its middle */
     fu_attachment_at(model, on, step ? step->now : state, 0.0, FU_POINT, end);
     memcpy(at->r, end->p, sizeof at->r);
     memcpy(at->v, end->v, sizeof at->v);
@@ -184,20 +234,20 @@ static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_s
 }
 
 /* Does for a body what on_cable does for a cable. */
-static void on_body(const fu_model *model, const fu_drag *drag, double t, const fu_state *state, const fu_equations *step, double *f,
-                    powers *power, double total[3])
+static void on_body(const fu_model *model, const fu_drag *drag, double t, const fu_state *state, const fu_equations *step,
+                    const fu_drag_sums *sums)
 {
     fu_attachment_state end;
-    place at;
+    fu_drag_place at;
     action a;
     double force[3];
     place_on_body(model, drag, state, step, &at, &end);
-    act(model, drag, t, &at, &a);
+    act(model, drag, t, &at, end.A, &a);
     whole_force(model, drag, &a, force);
-    if (power) add_powers(model, drag, &at, &a, 1.0, power);
+    if (sums->power) add_powers(model, drag, &at, &a, 1.0, sums->power);
     for (int d = 0; d < model->dim; ++d) {
-        if (total) total[d] += force[d];
-        for (int i = 0; f && i < end.n; ++i) f[end.at[i]] -= end.P[d * end.n + i] * force[d];
+        if (sums->total) sums->total[d] += force[d];
+        for (int i = 0; sums->f && i < end.n; ++i) sums->f[end.at[i]] -= end.P[d * end.n + i] * force[d];
     }
 }
 
@@ -205,113 +255,210 @@ static void matrix_of_body(const fu_model *model, const fu_drag *drag, const fu_
                            fu_weights weights, fu_system *system)
 {
     const fu_attachment *on = &drag->attachments[0];
-    const int dim = model->dim;
-    double turned[3 * FU_ATTACHMENT_COORDINATES], by_place[3 * FU_ATTACHMENT_COORDINATES];
-    double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], force[3];
+    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    double turned[3 * FU_ATTACHMENT_COORDINATES], of_rate[3 * FU_ATTACHMENT_COORDINATES];
+    double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], force[3], gradient[9];
     fu_attachment_state end;
-    place at;
+    fu_drag_place at;
     action a;
     place_on_body(model, drag, state, 0, &at, &end);
-    act(model, drag, state->t, &at, &a);
+    act(model, drag, state->t, &at, end.A, &a);
     whole_force(model, drag, &a, force);
     const int n = end.n;
     memcpy(turned, end.P, sizeof turned);
-    memset(by_place, 0, sizeof by_place);
-    fu_turn_point(model, on, state, force, psi, &end, turned, by_place, K);
+    memset(of_rate, 0, sizeof of_rate);
+    fu_turn_point(model, on, state, force, psi, &end, turned, of_rate, K);
+    by_place(dim, &a, gradient);
+    if (drag->is_foil) fu_turn_attachment(model, on, psi, end.T, turns, n, 0);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
             double sum = K[i * n + j];
+            for (int d = 0; d < dim && drag->is_foil; ++d)
+                for (int k = 0; k < turns; ++k)
+                    sum += model->load_fraction * end.P[d * n + i] * a.by_turn[d * turns + k] * end.T[k * n + j];
             for (int d = 0; d < dim; ++d)
                 for (int c = 0; c < dim; ++c) {
-                    double change = -by_place[c * n + j] - weights.rate * end.P[c * n + j];
-                    for (int b = 0; b < dim; ++b) change += a.by_height[c] * drag->flow.up[b] * turned[b * n + j];
-                    sum += model->load_fraction * end.P[d * n + i] * a.by_w[d * dim + c] * change;
+                    const double rate = of_rate[c * n + j] + weights.rate * end.P[c * n + j];
+                    const double change = gradient[d * dim + c] * turned[c * n + j] - a.by_w[d * dim + c] * rate;
+                    sum += model->load_fraction * end.P[d * n + i] * change;
                 }
             fu_add(model, system, end.at[i], end.at[j], -weights.stiffness * sum);
         }
 }
 
-/* Adds what acts at a state, or over a step; what it is added to may be null. */
-static void add(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_equations *step, double *f,
-                powers *power, double total[3])
+/* Adds what drag and buoyancy do at a state, or over a step. */
+static void add(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
+                const fu_drag_sums *sums)
+{
+    if (drag->cable >= 0) on_cable(model, drag, state->t, state->q, state->v, sums);
+    else on_body(model, drag, state->t, state, step, sums);
+}
+
+/* Adds all that the fluid does at a state, with the accelerations a or without, null. */
+static void add_all(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *a,
+                    const fu_drag_sums *sums)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
-    if (drag->cable >= 0) on_cable(model, drag, state->t, state->q, state->v, f, power, total);
-    else on_body(model, drag, state->t, state, step, f, power, total);
+    add(model, drag, state, 0, sums);
+    if (coupling->has_inertia) fu_fluid_inertia_forces(model, drag, state, a, sums);
+}
+
+/* Adds the same over a step. */
+static void add_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_drag_sums *sums)
+{
+    const fu_drag *drag = (const fu_drag *)coupling;
+    add(model, drag, at->middle, at, sums);
+    if (coupling->has_inertia) fu_fluid_inertia_step_forces(model, drag, at, sums);
 }
 
 static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
 {
-    add(model, coupling, state, 0, f, 0, 0);
+    const fu_drag_sums sums = {.f = f};
+    add_all(model, coupling, state, 0, &sums);
 }
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
 {
     (void)own;
-    add(model, coupling, at->next, 0, f, 0, 0);
+    force(model, coupling, at->next, f);
 }
 
 static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
 {
+    const fu_drag_sums sums = {.f = f};
     (void)own;
-    add(model, coupling, at->middle, at, f, 0, 0);
+    add_step(model, coupling, at, &sums);
 }
 
-static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *psi,
-                   fu_weights weights, fu_system *system)
+static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *a,
+                   const double *psi, fu_weights weights, fu_system *system)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     if (drag->cable >= 0) matrix_of_cable(model, drag, state, weights, system);
     else matrix_of_body(model, drag, state, psi, weights, system);
+    if (coupling->has_inertia) fu_fluid_inertia_tangent(model, drag, state, weights.inertia != 0.0 ? a : 0, psi, weights, system);
 }
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    matrix(model, coupling, at->next, at->psi, at->weights, system);
+    matrix(model, coupling, at->next, at->next->acceleration, at->psi, at->weights, system);
 }
 
 /* The middle moves by half of psi, which weights.stiffness has. */
 static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    matrix(model, coupling, at->middle, 0, at->weights, system);
+    matrix(model, coupling, at->middle, at->next->acceleration, 0, at->weights, system);
 }
 
 static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work)
 {
-    powers power = {0.0, 0.0};
+    fu_drag_powers power = {0.0, 0.0};
+    const fu_drag_sums sums = {.power = &power};
     (void)work;
-    add(model, coupling, state, 0, 0, &power, 0);
+    add(model, (const fu_drag *)coupling, state, 0, &sums);
     return power.dissipated;
 }
 
 static double external_power(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    powers power = {0.0, 0.0};
-    add(model, coupling, state, 0, 0, &power, 0);
+    fu_drag_powers power = {0.0, 0.0};
+    const fu_drag_sums sums = {.power = &power};
+    add_all(model, coupling, state, state->acceleration, &sums);
     return power.external;
 }
 
 static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
 {
-    powers power = {0.0, 0.0};
-    add(model, coupling, at->middle, at, 0, &power, 0);
+    fu_drag_powers power = {0.0, 0.0};
+    const fu_drag_sums sums = {.power = &power};
+    add(model, (const fu_drag *)coupling, at->middle, at, &sums);
     return at->h * power.dissipated;
 }
 
 static double step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
 {
-    powers power = {0.0, 0.0};
-    add(model, coupling, at->middle, at, 0, &power, 0);
+    fu_drag_powers power = {0.0, 0.0};
+    const fu_drag_sums sums = {.power = &power};
+    add_step(model, coupling, at, &sums);
     return at->h * power.external;
 }
 
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
                     const fu_accelerator *work, double *out)
 {
-    (void)acceleration, (void)work;
+    const fu_drag_sums sums = {.total = out};
+    (void)work;
     memset(out, 0, sizeof(double[3]));
-    add(model, coupling, state, 0, 0, 0, out);
+    add_all(model, coupling, state, acceleration, &sums);
 }
+
+void fu_drag_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3])
+{
+    outputs(model, coupling, state, 0, 0, force);
+}
+
+/* Returns how far within its table all of what a fluid acts on is, as a part of the table's axes; negative beyond its edges. */
+static double margin(const fu_model *model, const fu_drag *drag, const fu_state *state)
+{
+    double least = 1.0;
+    if (drag->cable >= 0) {
+        const fu_cable *cable = &model->cables[drag->cable];
+        for (int k = 0; k <= cable->n_elements; ++k)
+            least = fmin(least, fu_flow_margin(model, &drag->flow, state->t, state->q + cable->first + k * cable->per_node));
+    } else {
+        fu_attachment_state end;
+        fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT, &end);
+        least = fu_flow_margin(model, &drag->flow, state->t, end.p);
+    }
+    return least + AT_EDGE;
+}
+
+static int *is_outside(const fu_coupling *coupling, const fu_state *state)
+{
+    return state->flags + coupling->flags;
+}
+
+static int watches(const fu_coupling *coupling, fu_watch *out)
+{
+    if (((const fu_drag *)coupling)->flow.degree == 0) return 0;
+    if (out) *out = (fu_watch){.which = 0, .direction = 0};
+    return 1;
+}
+
+static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)which;
+    return margin(run->model, (const fu_drag *)coupling, state);
+}
+
+static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)model, (void)which;
+    return *is_outside(coupling, state) ? -1 : 1;
+}
+
+/* Notes that something leaves the table, or that all is in it again. The velocity does not jump there, but its derivatives do. */
+static int pass_edge(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    (void)which;
+    *is_outside(coupling, &run->now) = side < 0;
+    *what = side < 0 ? "leaves the table of its fluid" : "is back in the table of its fluid";
+    return FU_RUNNING;
+}
+
+static int has_edges(const fu_coupling *coupling)
+{
+    return ((const fu_drag *)coupling)->flow.degree > 0;
+}
+
+static int begin(fu_run *run, const fu_coupling *coupling)
+{
+    *is_outside(coupling, &run->now) = margin(run->model, (const fu_drag *)coupling, &run->now) < 0.0;
+    return FU_RUNNING;
+}
+
+static const fu_coupling_events edges = {
+    .watches = watches, .watched = watched, .sign = sign, .act = pass_edge, .can_act = has_edges, .begin = begin};
 
 static const char *const role[] = {"drag", 0};
 static const char *const profiles[] = {"uniform", "power", "table", 0};
@@ -331,9 +478,28 @@ static const fu_field fields[] = {
     FLOW_FIELD(n_pieces, FU_INTEGER, 0),
     FLOW_FIELD(breaks, FU_REALS, 0),
     {"coefficients_of_profile", FU_REALS, offsetof(fu_drag, flow.coefficients), 1, 0, NULL},
+    FLOW_FIELD(degree, FU_INTEGER, 0),
+    {"n_splines", FU_INTEGER, offsetof(fu_drag, flow.n_splines), FU_FLOW_AXES, sizeof(int), NULL},
+    FLOW_FIELD(knots, FU_REALS, 0),
+    FLOW_FIELD(table, FU_REALS, 0),
+    FLOW_VECTOR(origin),
+    {"axes", FU_REAL, offsetof(fu_drag, flow.axes), 9, sizeof(double), NULL},
     FU_FIELD(fu_drag, cable, FU_INTEGER, 0),
     FU_FIELD_ARRAY(fu_drag, coefficients, FU_REAL),
+    FU_FIELD_ARRAY(fu_drag, lift, FU_REAL),
+    FU_FIELD(fu_drag, is_foil, FU_INTEGER, 0),
+    FU_FIELD_ARRAY(fu_drag, foil, FU_REAL),
+    FU_FIELD_ARRAY(fu_drag, span, FU_REAL),
+    FU_FIELD_ARRAY(fu_drag, chord, FU_REAL),
+    FU_FIELD(fu_drag, foil_drag, FU_REAL, 0),
+    FU_FIELD(fu_drag, foil_lift, FU_REAL, 0),
+    FU_FIELD(fu_drag, n_angles, FU_INTEGER, 0),
+    FU_FIELD(fu_drag, angles, FU_REALS, 0),
+    FU_FIELD(fu_drag, polar_drag, FU_REALS, 0),
+    FU_FIELD(fu_drag, polar_lift, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_drag, buoyancy, FU_REAL),
+    FU_FIELD(fu_drag, displaced, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_drag, added, FU_REAL),
     FU_FIELD(fu_drag, n_points, FU_INTEGER, 0),
     FU_FIELD(fu_drag, stride, FU_INTEGER, 0),
     FU_FIELD(fu_drag, weights, FU_REALS, 0),
@@ -344,6 +510,7 @@ static const fu_field fields[] = {
 };
 
 const fu_coupling_type fu_drag_type = {
-    .name = "drag", .size = sizeof(fu_drag), .fields = fields, .n_outputs = 3, .residual = residual, .tangent = tangent,
+    .name = "drag", .size = sizeof(fu_drag), .fields = fields, .n_outputs = 3, .n_flags = 1, .events = &edges, .residual = residual, .tangent = tangent,
     .step_residual = step_residual, .step_tangent = step_tangent, .step_dissipation = step_dissipation, .step_work = step_work,
+    .inertia = fu_fluid_inertia, .mass = fu_fluid_mass, .kinetic_energy = fu_fluid_kinetic_energy,
     .force = force, .external_power = external_power, .dissipation = dissipation, .outputs = outputs};

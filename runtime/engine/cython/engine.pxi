@@ -210,7 +210,7 @@ cdef extern from "engine.h" nogil:
         const fu_motion *motions
         const fu_signal *signals
         int n_q, n_dof, n_band, n_border_dof, n_dissipation_state, n_extra, n_multipliers
-        int n_coordinates, n_forces, n_rows, n_outputs, n_scratch
+        int n_coordinates, n_forces, n_rows, n_outputs, n_scratch, n_inertial
         const int *unknown_of_dof
         const int *combination_start
         const int *combination_unknown
@@ -341,6 +341,8 @@ cdef extern from "engine.h" nogil:
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)
     int fu_prepare(fu_run *run)
     int fu_probe_mechanism(fu_run *run, const double *along, double *left)
+    void fu_drag_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                         double *force) noexcept nogil
     void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                           fu_joint_output *out)
     int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)

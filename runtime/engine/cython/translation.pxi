@@ -364,6 +364,8 @@ cdef class Translation(Arrays):
             a.mass.inverse = self._zeros(sum(n * FU_INVERSE_ROWS(n) for n in sizes))
         # that of the mass is factored elsewhere, before the first of Newton is made
         run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
+        if self.model.n_inertial:  # the mass is factored again and again
+            a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
         a.corner = self._zeros(accelerations.size)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
         a.rows = <fu_rows *>self._zeros(self.model.n_rows * sizeof(fu_rows) // sizeof(double) + 1)

@@ -26,13 +26,15 @@ typedef struct {
     int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 
+void fu_constant_mass_times(const fu_model *model, const double *q, const double *a, double *f);
 void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f);
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system);
-double fu_kinetic_energy(const fu_model *model, const double *q, const double *v);
+double fu_kinetic_energy(const fu_model *model, double t, const double *q, const double *v);
+double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v);
 double fu_elastic_energy(const fu_model *model, const fu_state *state);
 double fu_potential_energy(const fu_model *model, const double *q);
 double fu_dissipation(const fu_model *model, const fu_state *state, const struct fu_accelerator *work);

@@ -32,6 +32,7 @@ typedef struct {
     int reacts;                    /* not zero where it has a force that depends on the multipliers of eq 38 */
     int is_damped;                 /* not zero where it has a force that depends on velocities */
     int is_driven;                 /* not zero where a signal does work on it */
+    int has_inertia;               /* not zero where it has a mass of its own */
     double scale[FU_MAX_FORCES];   /* kg or kg m: rows of constraints times it have the scale of the mass matrix */
 } fu_coupling;
 
@@ -62,6 +63,14 @@ struct fu_coupling_type {
     int n_numbers, n_flags;  /* real and whole numbers that it keeps in a state */
     int n_scratch;           /* doubles that it keeps from `rows` to `outputs` */
     const fu_coupling_events *events; /* that it finds by itself; null: none (include/coupling_events.h) */
+
+    /* A mass that depends on the configuration: adds M a to f; adds scale M to a system; returns the kinetic energy, J, at the
+     * velocities v, or of these alone where the coupling is of a fluid that moves and past_fluid is zero. What inertia gives without
+     * accelerations is in `force`, `residual` and `tangent`. */
+    void (*inertia)(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
+    void (*mass)(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
+    double (*kinetic_energy)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
+                             int past_fluid);
 
     /* What of a coupling as the model gives it is more than the engine has room for, in words; null where nothing is. */
     const char *(*excess)(const fu_coupling *coupling);

@@ -1,35 +1,72 @@
-/* Drag and buoyancy in a fluid that moves: couplings/drags.c. */
+/* Forces of a fluid that moves, drag, buoyancy and inertia: couplings/drags.c, couplings/fluid_inertia.c. */
 #ifndef FUNICULAR_DRAGS_H
 #define FUNICULAR_DRAGS_H
 
 #include "attachments.h"
 #include "coupling.h"
-
-/* How the velocity of a fluid changes with height: not at all; as a power of it; as a table. */
-enum { FU_UNIFORM, FU_POWER, FU_TABLE };
-
-/* The velocity of a fluid: `velocity` times a signal (-1: one) times the profile at the height base + up . r. */
-typedef struct {
-    double velocity[3], up[3], base; /* base: height of the origin, m */
-    int signal, profile;
-    double reference, exponent, least; /* of a power: (max(height, least)/reference)^exponent, heights in m */
-    int n_pieces;                      /* of a table: polynomials of the height, as a signal's of time */
-    const double *breaks, *coefficients;
-} fu_flow;
+#include "flow.h"
 
 /* The force of a fluid on a whole cable, or on a point of a body. */
 typedef struct {
-    fu_coupling base;
+    fu_coupling base;          /* base.has_inertia: that of the fluid is in it */
     const fu_drag_kernels *kernel;
     fu_flow flow;
     int cable;                 /* -1: on a body, at its attachment */
     double coefficients[3];    /* as the kernel takes them */
+    double lift[2];            /* of a cable, as the kernel takes them: none where the first is zero */
+    int is_foil;               /* not zero: a body with a span, and a force by its angle of attack, with drag by `coefficients` */
+    double foil[2], span[3], chord[3]; /* as the kernel takes them; along axes of the body, span[0] in the plane its sense */
+    double foil_drag, foil_lift;       /* coefficients, without a polar: */
+    int n_angles;                      /* polynomials of the angle, as a signal's of time: of both coefficients */
+    const double *angles, *polar_drag, *polar_lift;
     double buoyancy[3];        /* N/m a length of the undeformed cable, N on a body */
+    double displaced;          /* mass of the fluid displaced: kg/m, kg */
+    double added[9];           /* mass added: of a length of cable across and along it, kg/m; of a body in its axes (dim x dim), kg */
     int n_points;              /* of quadrature on an element: weights in m, shape functions, their slopes, */
     int stride;                /* each of the first element; points from one element's to the next's: 0 where they are equal */
     const double *weights, *N, *N_x;
     fu_attachment attachments[1];
 } fu_drag;
 extern const fu_coupling_type fu_drag_type;
+
+/* A point of quadrature on an element: its weight in m, shape functions and their slopes. */
+typedef struct {
+    double weight;
+    const double *N, *N_x;
+} fu_quadrature_point;
+
+/* Where the fluid acts: a point of a cable's axis, or of a body. r_x, its rate, and `a`, acceleration, only of a cable. */
+typedef struct {
+    double r[3], r_x[3], v[3], r_x_rate[3], a[3];
+} fu_drag_place;
+
+/* Powers: what goes to heat, what the fluid gives, W. */
+typedef struct {
+    double dissipated, external;
+} fu_drag_powers;
+
+/* What is asked of a sum of forces: each may be null. f: on the left of the equations of motion; total: on the cable or body. */
+typedef struct {
+    double *f, *total;
+    fu_drag_powers *power;
+} fu_drag_sums;
+
+/* Makes the whole force of the fluid at a state of rest. */
+void fu_drag_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3]);
+
+fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point);
+void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
+                           fu_quadrature_point point, fu_drag_place *at);
+
+/* fluid_inertia.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or without, null. */
+void fu_fluid_inertia_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                             const fu_drag_sums *sums);
+void fu_fluid_inertia_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums);
+void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                              const double *psi, fu_weights weights, fu_system *system);
+void fu_fluid_inertia(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
+void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
+double fu_fluid_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
+                               int past_fluid);
 
 #endif

@@ -21,9 +21,9 @@ struct fu_model {
     int n_q, n_dof, n_band, n_border_dof;
     /* Sums over the couplings: own coordinates, own forces, sets of constraint rows, numbers in a row of output, own
      * numbers and flags in a state, own work space; how many
-     * react, act from outside, are driven, are damped. */
+     * react, act from outside, are driven, are damped, may be gone over, have inertia. */
     int n_coordinates, n_forces, n_rows, n_outputs, n_numbers, n_flags, n_scratch, n_reacting, n_external, n_driven, n_damped,
-        n_passing;
+        n_passing, n_inertial;
     int n_dissipation_state; /* zero without algorithmic dissipation */
     int n_extra, n_multipliers; /* unknowns of couplings in a Newton system, and in eq 38 */
     const int *unknown_of_dof;

@@ -100,7 +100,7 @@ static void residual(fu_run *run, double h)
     const middle_view m = middle(run);
     const fu_state middle_state = middle_of(run, h);
     const fu_equations at = equations(run, &middle_state, h);
-    fu_mass_times(model, m.q, next->acceleration, run->force);
+    fu_constant_mass_times(model, m.q, next->acceleration, run->force); /* of others: in their residuals */
     fu_discrete_forces(model, now->q, next->q, run->force);
     fu_algorithmic_forces(run, m.q, run->force);
     fu_rate_forces(model, m.q, m.v, run->force);
@@ -141,6 +141,7 @@ static void matrix(fu_run *run, double h)
     fu_system_clear(&run->newton);
     fu_dynamic_matrix(model, m.q, m.v, w->inertia, w->rate / stiffer, w->stiffness * stiffer, &run->newton);
     fu_bodies_matrix(model, &m, 0, *w, &run->newton);
+    fu_coupling_masses(model, m.q, w->inertia, &run->newton);
     mean_stress(run, w->stiffness);
     fu_coupling_step_tangents(model, &at, &run->newton);
 }
@@ -204,7 +205,7 @@ static void account(fu_run *run, double h)
     if (!model->n_motions) return;
     /* of the motions: velocities there are given, so that their mean is not quite psi/h */
     residual(run, h);
-    fu_mass_times(model, m.q, next->acceleration, m.force);
+    fu_constant_mass_times(model, m.q, next->acceleration, m.force);
     for (int k = 0; k < model->n_motions; ++k) {
         const int i = model->motions[k].dof;
         if (model->motions[k].first)

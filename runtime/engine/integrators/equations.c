@@ -40,6 +40,7 @@ static void matrix_of_cables(fu_run *run, const fu_equations *at)
 static void add_matrix_of_others(fu_run *run, const fu_equations *at)
 {
     fu_bodies_matrix(run->model, at->next, at->psi, at->weights, &run->newton);
+    if (at->weights.inertia != 0.0) fu_coupling_masses(run->model, at->next->q, at->weights.inertia, &run->newton);
     if (at->weights.stiffness != 0.0) fu_coupling_tangents(run->model, at, &run->newton);
 }
 

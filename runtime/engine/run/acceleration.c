@@ -33,31 +33,46 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
     fu_system_release_border(s);
+    s->inverted = 0;
+    if (model->n_inertial) return 0; /* nothing of it stays */
     fu_system_clear(s);
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, s);
     fu_bodies_mass(model, model->zero, 1, s);
     memcpy(work->corner, s->D, sizeof(double) * (size_t)s->fronts->size);
-    s->inverted = 0;
     if (fu_system_factor_band(s, model->lapack)) return 1;
     fu_system_invert_band(s);
     fu_system_keep_border(s, model->lapack, model->n_border_dof);
     return !s->definite; /* else it would be in K, which the Newton matrix takes */
 }
 
-/* Makes the border of M. */
-static void border(const fu_model *model, const double *q, fu_accelerator *work)
+/* Makes all of M at a state where couplings have inertia, and factors its band; returns 0, or not 0 where that is not positive
+ * definite. */
+static int whole(const fu_model *model, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
+    fu_system_clear(s);
+    fu_dynamic_matrix(model, q, model->zero, 1.0, 0.0, 0.0, s);
+    for (int constant = 0; constant < 2; ++constant) fu_bodies_mass(model, q, constant, s);
+    fu_coupling_masses(model, q, 1.0, s);
+    return fu_system_factor_band(s, model->lapack) || !s->definite;
+}
+
+/* Makes the border of M, and where it depends on the configuration the band; returns 0, or not 0 where that is not definite. */
+static int border(const fu_model *model, const double *q, fu_accelerator *work)
+{
+    fu_system *s = &work->mass;
+    if (model->n_inertial) return whole(model, q, work);
     fu_system_clear_border(s);
     memcpy(s->D, work->corner, sizeof(double) * (size_t)s->fronts->size);
     fu_bodies_mass(model, q, 0, s);
+    return 0;
 }
 
 /* Makes and factors the border of [M H'; H 0] (eq 11) at a state whose terms are evaluated. */
 static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    border(model, state->q, work);
+    if (border(model, state->q, work)) return 1;
     for (int r = 0; r < model->n_rows; ++r) {
         const fu_rows *rows = &work->rows[r];
         for (int c = 0; c < rows->max_multipliers; ++c) {
@@ -146,7 +161,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
     fu_system *s = &work->mass;
     const int all = model->n_multipliers;
     evaluate(model, state, work);
-    border(model, state->q, work);
+    if (border(model, state->q, work)) return 1;
     for (int k = 0; k < all; ++k) fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, and no multipliers */
     const int info = fu_system_factor_border(s, model->lapack);
     for (int r = 0; r < model->n_rows && !info; ++r) {

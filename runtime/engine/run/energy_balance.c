@@ -82,11 +82,12 @@ void fu_impact(fu_run *run, const double *change, double restitution)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
-    const double lost = (1.0 - restitution) / (1.0 + restitution) * fu_kinetic_energy(model, now->q, change);
-    const double before = fu_kinetic_energy(model, now->q, now->v);
+    const double lost = (1.0 - restitution) / (1.0 + restitution) * fu_kinetic_energy_of_change(model, now->q, change);
+    const double before = fu_kinetic_energy(model, now->t, now->q, now->v);
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += change[i];
     run->dissipated += lost;
-    if (model->n_driven || model->n_motions) run->external += fu_kinetic_energy(model, now->q, now->v) - before + lost;
+    if (model->n_driven || model->n_motions || model->n_inertial)
+        run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before + lost;
 }
 
 /* Returns whether anything moves beyond what step control and rounding leave of a scene at rest. */

@@ -25,11 +25,11 @@ int fu_pass_knot(fu_run *run, const fu_knot *knot, int event)
     run->drive_step = fmin(run->drive_step, 0.0); /* powers before do not tell how it changes from here */
     if (knot->jumps == FU_HIGHER_JUMPS && run->fixed_step <= 0.0) return FU_RUNNING;
     if (knot->jumps == FU_RATE_JUMPS) {
-        const double before = fu_kinetic_energy(model, now->q, now->v);
+        const double before = fu_kinetic_energy(model, now->t, now->q, now->v);
         fu_prescribe(model, now);
         if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
         for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
-        run->external += fu_kinetic_energy(model, now->q, now->v) - before;
+        run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before;
     }
     fu_prescribe(model, now);
     if (!event) fu_watch_now(run, fu_no_event);

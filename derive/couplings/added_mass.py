@@ -1,0 +1,172 @@
+"""Inertia of the fluid that a cable or a body carries along: added mass, from the kinetic energy of that fluid.
+
+Of a length of a cable it is T = (m_n |w_n|^2 + m_t w_t^2)/2, with the velocity w past the fluid, w_n across the axis
+and w_t along it, and the added masses m_n and m_t of a length of the undeformed cable. M = m_n 1 - (m_n - m_t) i i'
+turns with the tangent i, so Lagrange's equations give more than M times an acceleration: the change of the impulse
+p = M w, and g, the derivative of T by the slope r_x (Lighthill, Proc. R. Soc. B 179 (1971) 125-138, has it from
+momentum).
+Of a body T = w . A C A' w/2 at a point, with C in the body's axes A: force and moment are those of Kirchhoff and Lamb
+(Hydrodynamics, 6th ed., art. 124), the change of p = A C A' w and the moment w x p.
+
+w = v - U, and w' = a - dU/dt - (grad U) v: with U of the fluid these are Lagrange's equations of the same T, which for
+flow without curl are those of G. I. Taylor (Proc. R. Soc. A 120 (1928) 260-283).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ..algebra.tangent_frame import cross
+from ..codegen.program import DirectionalDerivative, Program, jacobian
+
+PAST = "velocity of the point past the fluid"
+LENGTH = "Lighthill 1971; Lagrange's equations of T"
+POINT = "Lamb, Hydrodynamics, art. 124; Taylor 1928"
+
+
+def build(name: str, dim: int) -> list[Program]:
+    """Return the kernels in space or in the plane, of the family `name`."""
+    return [impulse_of_cable(name, dim), of_cable(name, dim), of_cable_step(name, dim), impulse_of_point(name, dim),
+            of_point(name, dim)]
+
+
+def _input_masses(p: Program) -> tuple[sp.Symbol, sp.Expr]:
+    """Return m_n and m_n - m_t, kg/m."""
+    normal, tangential = p.input("m", 2, "kg/m", "added masses of a length of the undeformed cable, across and along")
+    p.stage("difference of the added masses")
+    return normal, p.define("less", normal - tangential)
+
+
+def impulse_of_cable(name: str, dim: int) -> Program:
+    """Return the kernel of the impulse of the fluid a length of cable, and of its mass."""
+    p = Program(f"{name}_impulse_of_cable", "impulse of the fluid along a cable, and its mass", LENGTH)
+    t, w = p.input("t", dim, "1", "slope r_x of the axis"), p.input("w", dim, "m/s", PAST)
+    normal, less = _input_masses(p)
+    p.stage("added mass")
+    scale = p.define("scale", less / t.dot(t))
+    p.output("p", normal * w - p.define("along", scale * t.dot(w)) * t, "kg/s", "impulse M w of a length")
+    p.output("M", normal * np.eye(dim, dtype=int) - scale * np.outer(t, t), "kg/m", "added mass of a length")
+    return p
+
+
+def of_cable(name: str, dim: int) -> Program:
+    """Return the kernel of the impulse of the fluid a length of cable, its rate, and what acts on the slope."""
+    p = Program(f"{name}_inertia_of_cable", "impulse of the fluid along a cable, its rate, and their derivatives",
+                LENGTH)
+    t, t_rate = p.input("t", dim, "1", "slope r_x of the axis"), p.input("t_rate", dim, "1/s", "its rate")
+    w, w_rate = p.input("w", dim, "m/s", PAST), p.input("w_rate", dim, "m/s^2", "its rate")
+    normal, less = _input_masses(p)
+    p.stage("tangent and its rate")
+    length = p.define("len_t", sp.sqrt(t.dot(t)))
+    inverse = p.define("inv_len_t", 1 / length)
+    i = p.vector("i", t * inverse)
+    i_rate = p.vector("i_rate", inverse * (t_rate - i.dot(t_rate) * i))
+    p.stage("impulse and its rate")
+    along = p.define("w_t", i.dot(w))
+    along_rate = p.define("w_t_rate", i_rate.dot(w) + i.dot(w_rate))
+    impulse = p.vector("P", normal * w - less * along * i)
+    impulse_rate = p.vector("P_rate", normal * w_rate - less * (along_rate * i + along * i_rate))
+    p.stage("derivative of the kinetic energy by the slope")
+    g = p.vector("G", -less * inverse * along * (w - along * i))
+    p.stage("derivatives")
+    outputs = {"p": impulse, "p_rate": impulse_rate, "g": g}
+    by = {"t": t, "t_rate": t_rate, "w": w}
+    of = {f"{of}_{to}": jacobian(p, values, by[to]) for of, values in outputs.items() for to in by
+          if not (of != "p_rate" and to == "t_rate")}
+    p.output("p", impulse, "kg/s", "impulse M w of a length")
+    p.output("p_rate", impulse_rate, "N/m", "its rate")
+    p.output("g", g, "N", "derivative of T by t")
+    p.output("M", normal * np.eye(dim, dtype=int) - less * np.outer(i, i), "kg/m",
+             "added mass of a length")
+    units = {"p_t": "kg/s", "p_rate_t": "N/m", "p_rate_t_rate": "kg/s", "p_rate_w": "kg/(m s)", "g_t": "N",
+             "g_w": "kg/s"}
+    for key, unit in units.items():
+        p.output(key, of[key], unit, f"derivatives of {key.rpartition('_')[0]}")
+    return p
+
+
+def of_cable_step(name: str, dim: int) -> Program:
+    """Return the kernel of the impulse over a step, and a discrete derivative by the slope that conserves energy.
+
+    With a and b, the half sum and half difference of w at the ends, T_next - T = dp . a - (D_next - D) for
+    D = (a . M a - b . M b)/2, of which the output g is a discrete gradient: g . (t_next - t) = D_next - D.
+    """
+    p = Program(f"{name}_inertia_step", "impulse of the fluid along a cable over a step", f"{LENGTH}; Gonzalez 1996")
+    t, t_next = p.input("t", dim, "1", "slope r_x of the axis"), p.input("t_next", dim, "1", "t at the end of the step")
+    w, w_next = p.input("w", dim, "m/s", PAST), p.input("w_next", dim, "m/s", "w at the end of the step")
+    normal, less = _input_masses(p)
+    p.stage("both ends")
+    size, size_next = p.define("size", t.dot(t)), p.define("size_next", t_next.dot(t_next))
+    a, b = p.vector("a", (w + w_next) / 2), p.vector("b", (w_next - w) / 2)
+    mean = p.vector("mean", (t + t_next) / 2)
+    p.stage("impulse")
+    along = p.define("along", t.dot(w) / size)
+    along_next = p.define("along_next", t_next.dot(w_next) / size_next)
+    p.output("dp", 2 * normal * b - less * (along_next * t_next - along * t), "kg/s", "change of the impulse M w")
+    p.stage("discrete gradient")
+    parts = [p.define(f"n{k}", (at.dot(a) ** 2 - at.dot(b) ** 2) / 2) for k, at in enumerate((t, t_next))]
+    scale = p.define("scale", -less / (size * size_next))
+    pull = p.vector("pull", mean.dot(a) * a - mean.dot(b) * b)
+    p.output("g", scale * ((size + size_next) / 2 * pull - (parts[0] + parts[1]) * mean), "N",
+             "discrete gradient of (a . M a - b . M b)/2 by t")
+    return p
+
+
+def _mass_of_point(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the axes A of a body and its added mass A C A' in global axes."""
+    A = p.input("A", (dim, dim), "1", "axes of the body by columns")
+    C = p.input("C", (dim, dim), "kg", "added mass in body axes, symmetric")
+    p.stage("added mass")
+    half = np.array([p.vector(f"CA{k + 1}", row) for k, row in enumerate(C.dot(A.T))])
+    return A, np.array([p.vector(f"M{k + 1}", row) for k, row in enumerate(A.dot(half))])
+
+
+def impulse_of_point(name: str, dim: int) -> Program:
+    """Return the kernel of the impulse of the fluid at a point of a body, and of its mass."""
+    p = Program(f"{name}_impulse_of_point", "impulse of the fluid at a body, and its mass", POINT)
+    _, M = _mass_of_point(p, dim)
+    w = p.input("w", dim, "m/s", PAST)
+    p.output("p", M.dot(w), "kg m/s", "impulse A C A' w")
+    p.output("M", M, "kg", "added mass A C A' in global axes")
+    return p
+
+
+def of_point(name: str, dim: int) -> Program:
+    """Return the kernel of the impulse of the fluid at a point of a body, its rate, and its moment."""
+    turns = 3 if dim == 3 else 1
+    p = Program(f"{name}_inertia_of_point",
+                "impulse of the fluid at a body, its rate and moment, and their derivatives", POINT)
+    A, M = _mass_of_point(p, dim)
+    omega = p.input("omega", turns, "rad/s", "angular velocity in global axes")
+    w, w_rate = p.input("w", dim, "m/s", PAST), p.input("w_rate", dim, "m/s^2", "its rate")
+    p.stage("impulse, its rate and moment")
+    impulse = p.vector("P", M.dot(w))
+    rest = p.vector("rest", w_rate - cross(omega, w))
+    impulse_rate = p.vector("P_rate", M.dot(rest) + cross(omega, impulse))
+    moment = np.array([p.define(f"moment{k}", value) for k, value in enumerate(_moment(w, impulse))])
+    p.stage("derivatives")
+    units = np.eye(turns, dtype=int)
+    turned = [DirectionalDerivative(p, f"d_th{k + 1}", _turned(A, axis)) for k, axis in enumerate(units)]
+    p.output("p", impulse, "kg m/s", "impulse A C A' w")
+    p.output("p_rate", impulse_rate, "N", "its rate")
+    p.output("moment", moment, "N m", "w x p")
+    p.output("M", M, "kg", "added mass A C A' in global axes")
+    for key, values in {"p": impulse, "p_rate": impulse_rate, "moment": moment}.items():
+        p.output(f"{key}_turn", np.stack([d.array(values) for d in turned], axis=-1), "SI",
+                 f"derivatives of {key} by a turn of the body about global axes")
+    p.output("p_rate_omega", jacobian(p, impulse_rate, omega), "kg m/s", "derivatives of p_rate by omega")
+    p.output("p_rate_w", jacobian(p, impulse_rate, w), "kg/s", "derivatives of p_rate by w")
+    p.output("moment_w", jacobian(p, moment, w), "kg m/s", "derivatives of moment by w")
+    return p
+
+
+def _moment(w: np.ndarray, impulse: np.ndarray) -> np.ndarray:
+    """Return w x p, (3,), in the plane (1,)."""
+    return cross(w, impulse) if len(w) == 3 else np.array([w[0] * impulse[1] - w[1] * impulse[0]])
+
+
+def _turned(A: np.ndarray, axis: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
+    """Return what a turn about a global axis changes the entries of A by."""
+    change = np.stack([cross(axis, column) for column in A.T], axis=1)
+    return dict(zip(A.ravel(), change.ravel(), strict=True))

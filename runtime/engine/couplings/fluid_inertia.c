@@ -1,0 +1,424 @@
+/* Inertia of the fluid around cables and bodies (derive/couplings/added_mass.py): the kinetic energy T = w . M w/2 of what they carry
+ * along at w = v - U past the fluid, and the force on the mass displaced where the fluid itself is accelerated.
+ *
+ * Lagrange's equations of T, with p = M w: along a cable p' + G' p with each particle, and -g with the slope, g = dT/dr_x; on a
+ * body p' + G' p with the point, and the moment w x p with its turn. G is the gradient of U, and w' = a - dU/dt - G v. M a, of the
+ * accelerations, is the mass, which Newton's matrix and that of eq 38 have as well. On the displaced mass acts its part of
+ * DU/Dt = dU/dt + G U, as in the undisturbed fluid.
+ *
+ * The fluid gives the power -p' . U - (G' p) . v, work from outside, where T counts as kinetic energy. In the matrix second
+ * derivatives of U are left out: Newton's method converges without.
+ */
+#include "engine.h"
+
+#include <string.h>
+
+/* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is -G. */
+typedef struct {
+    fu_flow_state flow;
+    double w[3], w_rate[3], material[3];
+} passage;
+
+/* What the kernels give: impulse, its rate, and their derivatives, of a cable or of a body's point. */
+typedef struct {
+    double p[3], p_rate[3], g[3], M[9], p_t[9], p_rate_t[9], p_rate_t_rate[9], p_rate_w[9], g_t[9], g_w[9];
+} of_length;
+typedef struct {
+    double p[3], p_rate[3], moment[3], M[9], p_turn[9], p_rate_turn[9], moment_turn[9], p_rate_omega[9], p_rate_w[9], moment_w[9];
+} of_point;
+
+static passage pass(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v, const double *a)
+{
+    const int dim = model->dim;
+    passage out;
+    fu_flow_at(model, &drag->flow, t, r, &out.flow);
+    for (int d = 0; d < dim; ++d) {
+        const double *gradient = out.flow.gradient + d * dim;
+        out.w[d] = v[d] - out.flow.U[d];
+        out.w_rate[d] = a[d] - out.flow.rate[d] - fu_dot(dim, gradient, v);
+        out.material[d] = out.flow.rate[d] + fu_dot(dim, gradient, out.flow.U);
+    }
+    return out;
+}
+
+/* Makes G' x. */
+static void back(int dim, const passage *at, const double *x, double out[3])
+{
+    for (int j = 0; j < dim; ++j) {
+        out[j] = 0.0;
+        for (int i = 0; i < dim; ++i) out[j] += at->flow.gradient[i * dim + j] * x[i];
+    }
+}
+
+/* Makes the force with the particles, as it stands on the left of the equations of motion, and adds the power. */
+static void of_particles(const fu_model *model, const fu_drag *drag, const passage *at, const double *p, const double *p_rate,
+                         const double *v, double part, double left[3], fu_drag_powers *power)
+{
+    const int dim = model->dim;
+    double strained[3];
+    back(dim, at, p, strained);
+    for (int d = 0; d < dim; ++d) left[d] = part * (p_rate[d] + strained[d] - drag->displaced * at->material[d]);
+    if (power)
+        power->external += part * (drag->displaced * fu_dot(dim, at->material, v) - fu_dot(dim, p_rate, at->flow.U) -
+                                   fu_dot(dim, strained, v));
+}
+
+static void terms_of_length(const fu_drag *drag, const fu_drag_place *at, const passage *past, of_length *out)
+{
+    drag->kernel->inertia_of_cable(at->r_x, at->r_x_rate, past->w, past->w_rate, drag->added, out->p, out->p_rate, out->g,
+                                   out->M, out->p_t, out->p_rate_t, out->p_rate_t_rate, out->p_rate_w, out->g_t, out->g_w);
+}
+
+/* Adds a force with the particles and one on the slope, at a point of quadrature, to those on an element's dofs. */
+static void add_to_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point, const double *left,
+                           const double *on_slope, const fu_drag_sums *sums)
+{
+    const int dim = model->dim, n = model->cables[drag->cable].coordinates / dim;
+    for (int d = 0; d < dim; ++d) {
+        if (sums->total) sums->total[d] -= left[d];
+        for (int k = 0; sums->f && k < n; ++k)
+            sums->f[first + k * dim + d] += point.N[k] * left[d] - point.N_x[k] * on_slope[d];
+    }
+}
+
+static void on_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a, const fu_drag_sums *sums)
+{
+    const fu_cable *cable = &model->cables[drag->cable];
+    const int dim = model->dim, n = cable->coordinates / dim;
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        for (int k = 0; k < drag->n_points; ++k) {
+            const fu_quadrature_point point = fu_drag_point(drag, n, e, k);
+            const double part = point.weight * model->load_fraction;
+            double left[3];
+            fu_drag_place at;
+            of_length terms;
+            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, a ? a + first : 0, point, &at);
+            const passage past = pass(model, drag, state->t, at.r, at.v, at.a);
+            terms_of_length(drag, &at, &past, &terms);
+            of_particles(model, drag, &past, terms.p, terms.p_rate, at.v, part, left, sums->power);
+            for (int d = 0; d < dim; ++d) terms.g[d] *= part;
+            add_to_element(model, drag, first, point, left, terms.g, sums);
+        }
+    }
+}
+
+/* The same over a step, with the change of impulse and a discrete gradient: the energy T changes by the work of the force. */
+static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
+{
+    const fu_cable *cable = &model->cables[drag->cable];
+    const int dim = model->dim, n = cable->coordinates / dim;
+    const fu_state *ends[2] = {at->now, at->next};
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        for (int k = 0; k < drag->n_points; ++k) {
+            const fu_quadrature_point point = fu_drag_point(drag, n, e, k);
+            fu_drag_place place[2], middle;
+            passage past[2];
+            double dp[3], g[3], rate[3], mean[3], M[9], left[3];
+            for (int i = 0; i < 2; ++i) {
+                fu_drag_place_on_axis(model, drag, ends[i]->q + first, ends[i]->v + first, 0, point, &place[i]);
+                past[i] = pass(model, drag, ends[i]->t, place[i].r, place[i].v, place[i].a);
+            }
+            fu_drag_place_on_axis(model, drag, at->middle->q + first, at->middle->v + first, 0, point, &middle);
+            const passage halfway = pass(model, drag, at->middle->t, middle.r, middle.v, middle.a);
+            drag->kernel->inertia_step(place[0].r_x, place[1].r_x, past[0].w, past[1].w, drag->added, dp, g);
+            drag->kernel->impulse_of_cable(middle.r_x, halfway.w, drag->added, mean, M);
+            for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
+            of_particles(model, drag, &halfway, mean, rate, middle.v, point.weight, left, sums->power);
+            if (sums->power) /* that T changes by, with the velocities at both ends; of_particles has -rate . U half-way */
+                for (int d = 0; d < dim; ++d)
+                    sums->power->external += point.weight * rate[d] *
+                                             (0.5 * (past[0].w[d] + past[1].w[d]) - middle.v[d] + halfway.flow.U[d]);
+            for (int d = 0; d < dim; ++d) g[d] *= point.weight;
+            add_to_element(model, drag, first, point, left, g, sums);
+        }
+    }
+}
+
+/* Adds to K (n x n) factor times a' by b of two rows of n / dim numbers and a matrix (dim x dim). */
+static void add_product(int dim, int n, double factor, const double *a, const double *b, const double *by, double *K)
+{
+    for (int k = 0; k < n / dim; ++k)
+        for (int l = 0; l < n / dim; ++l)
+            for (int i = 0; i < dim; ++i)
+                for (int j = 0; j < dim; ++j) K[(k * dim + i) * n + l * dim + j] += factor * a[k] * b[l] * by[i * dim + j];
+}
+
+static void add_element(const fu_model *model, int first, int n, const double *K, fu_system *system)
+{
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, K[i * n + j]);
+}
+
+/* Makes the derivatives of a force on particles by the slope and by the place, and those of g (dim x dim each); rate: that of
+ * velocities by places. */
+static void derivatives(const fu_drag *drag, int dim, const of_length *of, const passage *past, double rate, double by_slope[9],
+                        double by_place[9], double g_place[9])
+{
+    const double *G = past->flow.gradient;
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            const int ij = i * dim + j;
+            by_slope[ij] = of->p_rate_t[ij] + rate * of->p_rate_t_rate[ij];
+            by_place[ij] = g_place[ij] = 0.0;
+            for (int k = 0; k < dim; ++k) {
+                const double w = (k == j ? rate : 0.0) - G[k * dim + j]; /* of w by the place */
+                by_slope[ij] += G[k * dim + i] * of->p_t[k * dim + j];
+                by_place[ij] += of->p_rate_w[i * dim + k] * w - rate * of->M[i * dim + k] * G[k * dim + j] -
+                                drag->displaced * G[i * dim + k] * G[k * dim + j];
+                for (int l = 0; l < dim; ++l) {
+                    const double w_l = (l == j ? rate : 0.0) - G[l * dim + j];
+                    by_place[ij] += G[k * dim + i] * of->M[k * dim + l] * w_l;
+                }
+                g_place[ij] += of->g_w[i * dim + k] * w;
+            }
+        }
+}
+
+static void tangent_of_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                             fu_weights weights, fu_system *system)
+{
+    const fu_cable *cable = &model->cables[drag->cable];
+    const int dim = model->dim, all = cable->coordinates;
+    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES], by_slope[9], by_place[9], g_place[9];
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        memset(K, 0, sizeof(double) * (size_t)(all * all));
+        for (int k = 0; k < drag->n_points; ++k) {
+            const fu_quadrature_point point = fu_drag_point(drag, all / dim, e, k);
+            const double part = weights.stiffness * model->load_fraction * point.weight;
+            fu_drag_place at;
+            of_length terms;
+            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, a ? a + first : 0, point, &at);
+            const passage past = pass(model, drag, state->t, at.r, at.v, at.a);
+            terms_of_length(drag, &at, &past, &terms);
+            derivatives(drag, dim, &terms, &past, weights.rate, by_slope, by_place, g_place);
+            add_product(dim, all, part, point.N, point.N_x, by_slope, K);
+            add_product(dim, all, part, point.N, point.N, by_place, K);
+            add_product(dim, all, -part, point.N_x, point.N_x, terms.g_t, K);
+            add_product(dim, all, -part, point.N_x, point.N, g_place, K);
+        }
+        add_element(model, first, all, K, system);
+    }
+}
+
+/* Makes the state of a body's point with its axes, its acceleration, and what the kernel gives of it. */
+static passage at_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                       fu_attachment_state *end, of_point *out)
+{
+    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    double acceleration[3], omega[3] = {0.0};
+    fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT | FU_AXES, end);
+    memcpy(acceleration, end->bias, sizeof acceleration);
+    for (int d = 0; d < dim && a; ++d)
+        for (int i = 0; i < end->n; ++i) acceleration[d] += end->P[d * end->n + i] * a[end->at[i]];
+    for (int k = 0; k < turns; ++k)
+        for (int i = 0; i < end->n; ++i) omega[k] += end->T[k * end->n + i] * state->v[end->at[i]];
+    const passage past = pass(model, drag, state->t, end->p, end->v, acceleration);
+    drag->kernel->inertia_of_point(end->A, drag->added, omega, past.w, past.w_rate, out->p, out->p_rate, out->moment, out->M,
+                                   out->p_turn, out->p_rate_turn, out->moment_turn, out->p_rate_omega, out->p_rate_w,
+                                   out->moment_w);
+    return past;
+}
+
+static void on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a, const fu_drag_sums *sums)
+{
+    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    double left[3];
+    fu_attachment_state end;
+    of_point terms;
+    const passage past = at_body(model, drag, state, a, &end, &terms);
+    of_particles(model, drag, &past, terms.p, terms.p_rate, end.v, model->load_fraction, left, sums->power);
+    for (int d = 0; d < dim && sums->total; ++d) sums->total[d] -= left[d];
+    for (int i = 0; sums->f && i < end.n; ++i) {
+        double sum = 0.0;
+        for (int d = 0; d < dim; ++d) sum += end.P[d * end.n + i] * left[d];
+        for (int k = 0; k < turns; ++k) sum += model->load_fraction * end.T[k * end.n + i] * terms.moment[k];
+        sums->f[end.at[i]] += sum;
+    }
+}
+
+/* Adds the derivatives of the same, but for those of the acceleration of the point by the place. */
+static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                            const double *psi, fu_weights weights, fu_system *system)
+{
+    const fu_attachment *on = &drag->attachments[0];
+    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    double turned[3 * FU_ATTACHMENT_COORDINATES], axes[3 * FU_ATTACHMENT_COORDINATES];
+    double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], left[3];
+    fu_attachment_state end;
+    of_point of;
+    const passage past = at_body(model, drag, state, a, &end, &of);
+    const int n = end.n;
+    const double *G = past.flow.gradient;
+    of_particles(model, drag, &past, of.p, of.p_rate, end.v, 1.0, left, 0);
+    memcpy(turned, end.P, sizeof turned);
+    memcpy(axes, end.T, sizeof axes);
+    memset(K, 0, sizeof(double) * (size_t)(n * n));
+    fu_geometric_stiffness(model, on, state, left, of.moment, n, K);
+    fu_turn_attachment(model, on, psi, turned, dim, n, 0);
+    fu_turn_attachment(model, on, psi, axes, turns, n, 0);
+    fu_turn_attachment(model, on, psi, K, n, n, 0);
+    for (int j = 0; j < n; ++j) {
+        double w[3], w_rate[3], force[3], moment[3], p[3], strained[3];
+        for (int d = 0; d < dim; ++d) {
+            w[d] = weights.rate * end.P[d * n + j];
+            w_rate[d] = 0.0;
+            for (int k = 0; k < dim; ++k) {
+                w[d] -= G[d * dim + k] * turned[k * n + j];
+                w_rate[d] -= weights.rate * G[d * dim + k] * end.P[k * n + j];
+            }
+        }
+        for (int d = 0; d < dim; ++d) {
+            force[d] = p[d] = 0.0;
+            for (int k = 0; k < dim; ++k) {
+                force[d] += of.p_rate_w[d * dim + k] * w[k] + of.M[d * dim + k] * w_rate[k];
+                p[d] += of.M[d * dim + k] * w[k];
+            }
+            for (int k = 0; k < turns; ++k) {
+                force[d] += of.p_rate_turn[d * turns + k] * axes[k * n + j] +
+                            weights.rate * of.p_rate_omega[d * turns + k] * end.T[k * n + j];
+                p[d] += of.p_turn[d * turns + k] * axes[k * n + j];
+            }
+        }
+        back(dim, &past, p, strained);
+        for (int k = 0; k < turns; ++k) {
+            moment[k] = 0.0;
+            for (int d = 0; d < dim; ++d) moment[k] += of.moment_w[k * dim + d] * w[d];
+            for (int l = 0; l < turns; ++l) moment[k] += of.moment_turn[k * turns + l] * axes[l * n + j];
+        }
+        for (int i = 0; i < n; ++i) {
+            double sum = K[i * n + j];
+            for (int d = 0; d < dim; ++d) sum += end.P[d * n + i] * (force[d] + strained[d]);
+            for (int k = 0; k < turns; ++k) sum += end.T[k * n + i] * moment[k];
+            fu_add(model, system, end.at[i], end.at[j], weights.stiffness * model->load_fraction * sum);
+        }
+    }
+}
+
+void fu_fluid_inertia_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                             const fu_drag_sums *sums)
+{
+    if (drag->cable >= 0) on_cable(model, drag, state, a, sums);
+    else on_body(model, drag, state, a, sums);
+}
+
+/* Of cables alone: runs that conserve energy refuse bodies with inertia of a fluid. */
+void fu_fluid_inertia_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
+{
+    on_cable_in_step(model, drag, at, sums);
+}
+
+void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                              const double *psi, fu_weights weights, fu_system *system)
+{
+    if (drag->cable >= 0) tangent_of_cable(model, drag, state, a, weights, system);
+    else tangent_of_body(model, drag, state, a, psi, weights, system);
+}
+
+/* Makes the impulse M w of a length of cable at a point of quadrature, with M. */
+static void impulse(const fu_model *model, const fu_drag *drag, const double *q, const double *v, fu_quadrature_point point,
+                    double w[3], double p[3], double M[9])
+{
+    fu_drag_place at;
+    fu_drag_place_on_axis(model, drag, q, v, 0, point, &at);
+    memcpy(w, at.v, sizeof at.v);
+    drag->kernel->impulse_of_cable(at.r_x, w, drag->added, p, M);
+}
+
+void fu_fluid_inertia(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f)
+{
+    const fu_drag *drag = (const fu_drag *)coupling;
+    const int dim = model->dim;
+    double w[3] = {0.0}, p[3], M[9];
+    if (drag->cable < 0) {
+        const fu_state state = {.q = (double *)q, .v = (double *)model->zero};
+        fu_attachment_state end;
+        fu_attachment_at(model, &drag->attachments[0], &state, 0.0, FU_POINT | FU_AXES, &end);
+        for (int d = 0; d < dim; ++d)
+            for (int i = 0; i < end.n; ++i) w[d] += end.P[d * end.n + i] * a[end.at[i]];
+        drag->kernel->impulse_of_point(end.A, drag->added, w, p, M);
+        for (int d = 0; d < dim; ++d)
+            for (int i = 0; i < end.n; ++i) f[end.at[i]] += end.P[d * end.n + i] * p[d];
+        return;
+    }
+    const fu_cable *cable = &model->cables[drag->cable];
+    const int n = cable->coordinates / dim;
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        for (int g = 0; g < drag->n_points; ++g) {
+            const fu_quadrature_point point = fu_drag_point(drag, n, e, g);
+            impulse(model, drag, q + first, a + first, point, w, p, M);
+            for (int k = 0; k < n; ++k)
+                for (int d = 0; d < dim; ++d) f[first + k * dim + d] += point.weight * point.N[k] * p[d];
+        }
+    }
+}
+
+void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system)
+{
+    const fu_drag *drag = (const fu_drag *)coupling;
+    const int dim = model->dim;
+    double w[3] = {0.0}, p[3], M[9];
+    if (drag->cable < 0) {
+        const fu_state state = {.q = (double *)q, .v = (double *)model->zero};
+        fu_attachment_state end;
+        fu_attachment_at(model, &drag->attachments[0], &state, 0.0, FU_POINT | FU_AXES, &end);
+        drag->kernel->impulse_of_point(end.A, drag->added, w, p, M);
+        for (int i = 0; i < end.n; ++i)
+            for (int j = 0; j < end.n; ++j) {
+                double sum = 0.0;
+                for (int c = 0; c < dim; ++c)
+                    for (int d = 0; d < dim; ++d) sum += end.P[c * end.n + i] * M[c * dim + d] * end.P[d * end.n + j];
+                fu_add(model, system, end.at[i], end.at[j], scale * sum);
+            }
+        return;
+    }
+    const fu_cable *cable = &model->cables[drag->cable];
+    const int all = cable->coordinates;
+    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        memset(K, 0, sizeof(double) * (size_t)(all * all));
+        for (int g = 0; g < drag->n_points; ++g) {
+            const fu_quadrature_point point = fu_drag_point(drag, all / dim, e, g);
+            impulse(model, drag, q + first, model->zero, point, w, p, M);
+            add_product(dim, all, scale * point.weight, point.N, point.N, M, K);
+        }
+        add_element(model, first, all, K, system);
+    }
+}
+
+double fu_fluid_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
+                               int past_fluid)
+{
+    const fu_drag *drag = (const fu_drag *)coupling;
+    const int dim = model->dim;
+    double total = 0.0, p[3], M[9];
+    fu_flow_state flow = {{0.0}, {0.0}, {0.0}};
+    if (drag->cable < 0) {
+        const fu_state state = {.t = t, .q = (double *)q, .v = (double *)v};
+        fu_attachment_state end;
+        fu_attachment_at(model, &drag->attachments[0], &state, 0.0, FU_POINT | FU_AXES, &end);
+        if (past_fluid) fu_flow_at(model, &drag->flow, t, end.p, &flow);
+        for (int d = 0; d < dim; ++d) end.v[d] -= flow.U[d];
+        drag->kernel->impulse_of_point(end.A, drag->added, end.v, p, M);
+        return 0.5 * fu_dot(dim, p, end.v);
+    }
+    const fu_cable *cable = &model->cables[drag->cable];
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        for (int g = 0; g < drag->n_points; ++g) {
+            const fu_quadrature_point point = fu_drag_point(drag, cable->coordinates / dim, e, g);
+            fu_drag_place at;
+            fu_drag_place_on_axis(model, drag, q + first, v + first, 0, point, &at);
+            if (past_fluid) fu_flow_at(model, &drag->flow, t, at.r, &flow);
+            for (int d = 0; d < dim; ++d) at.v[d] -= flow.U[d];
+            drag->kernel->impulse_of_cable(at.r_x, at.v, drag->added, p, M);
+            total += 0.5 * point.weight * fu_dot(dim, p, at.v);
+        }
+    }
+    return total;
+}

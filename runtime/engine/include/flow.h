@@ -1,0 +1,36 @@
+/* The velocity of a fluid by place and time: couplings/flow.c. */
+#ifndef FUNICULAR_FLOW_H
+#define FUNICULAR_FLOW_H
+
+#include "common.h"
+
+#define FU_FLOW_AXES 4   /* of a table: time, and three directions of the ground */
+#define FU_FLOW_DEGREE 3 /* of its splines, at most */
+
+/* How the velocity changes with height: not at all; as a power of it; as a table. */
+enum { FU_UNIFORM, FU_POWER, FU_TABLE };
+
+/* The velocity of a fluid: a signal (-1: one) times `velocity` times the profile at the height base + up . r, or times a table. */
+typedef struct {
+    double velocity[3], up[3], base; /* base: height of the origin, m */
+    int signal, profile;
+    double reference, exponent, least; /* of a power: (max(height, least)/reference)^exponent, heights in m */
+    int n_pieces;                      /* of a table of the height: polynomials, as a signal's of time */
+    const double *breaks, *coefficients;
+    /* Of a table of time and place: degree of its splines, 0 without one; along each axis how many of them and their knots, one
+     * axis after the other, one spline without knots where the velocity does not depend on it; their coefficients (t, x, y, z, dim).
+     * Place on the ground's axes: origin + axes r, axes (3 x 3) by rows. */
+    int degree, n_splines[FU_FLOW_AXES];
+    const double *knots, *table;
+    double origin[3], axes[9];
+} fu_flow;
+
+/* The velocity at a place, its rate there, and its gradient by r (dim x dim), row i of component i. */
+typedef struct {
+    double U[3], rate[3], gradient[9];
+} fu_flow_state;
+
+void fu_flow_at(const fu_model *model, const fu_flow *flow, double t, const double *r, fu_flow_state *out);
+double fu_flow_margin(const fu_model *model, const fu_flow *flow, double t, const double *r);
+
+#endif

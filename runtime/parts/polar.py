@@ -1,0 +1,70 @@
+"""Coefficients of drag and lift by the angle of attack."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Annotated
+
+import numpy as np
+from pydantic import model_validator
+
+from .part import Part
+from .signal import TableSignal
+from .validation import check_function, list_of, one_of, show
+
+TURN = 1e-6
+"""rad: how well the angles of a polar make a full turn."""
+
+
+class Polar(Part):
+    """Coefficients of ``drag`` and ``lift`` at given angles of attack, in rad, through a full turn from -π to π.
+
+    Between them straight lines, or with interpolation="cubic" a spline. The angle is that of the flow past the body
+    from its chord, about its span.
+
+    >>> import funicular as fu
+    >>> plate = fu.Polar(angle=[-3.141593, -1.570796, 0, 1.570796, 3.141593], drag=[0, 2, 0, 2, 0], lift=[0] * 5)
+    >>> plate.at(1.570796 / 2)
+    (1.0, 0.0)
+    """
+
+    angle: Annotated[tuple[float, ...], list_of("rad", least=2)]
+    drag: Annotated[tuple[float, ...], list_of("", least=2)]
+    lift: Annotated[tuple[float, ...], list_of("", least=2)]
+    interpolation: Annotated[str, one_of(("linear", "cubic"))] = "linear"
+
+    @model_validator(mode="after")
+    def _is_a_turn(self) -> Polar:
+        for name in ("drag", "lift"):
+            values = getattr(self, name)
+            check_function(self.angle, "angle", "rad", values, name)
+            if values[0] != values[-1]:
+                raise ValueError(f"{name} must be the same at both ends, -π and π, got {show(values[0])} and "
+                                 f"{show(values[-1])}")
+        if abs(self.angle[0] + pi) > TURN or abs(self.angle[-1] - pi) > TURN:
+            raise ValueError(f"angle must go from -π to π, got {show(self.angle[0], 'rad')} to "
+                             f"{show(self.angle[-1], 'rad')}",
+                             "give the coefficients for flow from all sides: past the stall those of a flat plate")
+        lowest = self.pieces()[1]
+        if min(self.drag) < 0 or self._at(np.linspace(-pi, pi, 721), lowest).min() < -1e-9:
+            raise ValueError("drag must not be negative at any angle",
+                             'look at the values, or take interpolation="linear"')
+        return self
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return breaks (n + 1,) in rad, and polynomials (n, 7) of drag and of lift, see `Signal.pieces`."""
+        drag, lift = (TableSignal(time=self.angle, value=values, interpolation=self.interpolation).pieces()
+                      for values in (self.drag, self.lift))
+        return drag[0], drag[1], lift[1]
+
+    def _at(self, angle: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+        breaks = self.pieces()[0]
+        piece = np.clip(np.searchsorted(breaks, angle, side="right") - 1, 0, len(coefficients) - 1)
+        powers = (angle - breaks[piece])[:, None] ** np.arange(coefficients.shape[1])
+        return np.sum(coefficients[piece] * powers, axis=1)
+
+    def at(self, angle: float) -> tuple[float, float]:
+        """Return the coefficients of drag and lift at an angle in rad."""
+        _, drag, lift = self.pieces()
+        found = [float(self._at(np.array([angle]), each)[0]) for each in (drag, lift)]
+        return found[0], found[1]

@@ -1,0 +1,295 @@
+"""Added mass of fluids: frequencies, falls, conserved impulses, energy balance, all integrators, refusals."""
+
+from math import pi, sqrt
+
+import funicular as fu
+import numpy as np
+import pytest
+from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
+from funicular.model.build import build
+from scipy.integrate import quad, solve_ivp
+
+INTEGRATORS = ("genalpha", "energy", "explicit", "radau")
+OF_BODIES = ("genalpha", "explicit", "radau")
+ELEMENTS = ("cable12", "cable8p", "cable18", "beam24", "beam12p")
+G, WATER, RADIUS, STEEL = 9.81, 1000.0, 0.01, 7800.0
+AREA = pi * RADIUS**2
+
+
+def balance(run):
+    """Return the energy that is not accounted for, J."""
+    stored = sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "potential", "dissipated"))
+    found = stored - run["energy.external"]
+    return np.abs(found - found[0]).max()
+
+
+def rope(scene, element="cable12", end=(2, 0, 0), elements=4, density=STEEL, youngs_modulus=1e7, **more):
+    return scene.cable("wire", start=(0, 0, 0), end=end, elements=elements, element=element,
+                       section=fu.Circle(radius=RADIUS),
+                       material=fu.Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=density), **more)
+
+
+def taut(coefficient, element="cable12"):
+    """Return a string of 2 m under a tension that a hundred times its bending stiffness does not change."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    wire = rope(scene, element, elements=12, youngs_modulus=1e5, rest_length=2 / 1.5)
+    scene.pin(wire, s=0.0)
+    scene.pin(wire, s=wire.length)
+    scene.fluid(density=WATER)
+    if coefficient is not None:
+        scene.drag(wire, added_mass=coefficient)
+    return scene
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_a_taut_cable_vibrates_slower_in_water(element):
+    """Transverse frequencies fall by sqrt(m/(m + C rho A)), but for sections that turn, which no water does."""
+    dry, still, wet = (taut(coefficient, element) for coefficient in (None, 0.0, 1.3))
+    found = [scene.modes(2, about=scene.equilibrium()).frequency for scene in (dry, still, wet)]
+    assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-6)
+    turns = 1e-4 if "beam" in element else 1e-7
+    assert found[2][-1] / found[0][-1] == pytest.approx(sqrt(STEEL / (STEEL + 1.3 * WATER)), rel=turns)
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_a_run_vibrates_with_the_frequency_of_the_modes(integrator):
+    scene = taut(1.3)
+    state = scene.equilibrium()
+    modes = scene.modes(1, about=state)
+    period = 1 / modes.frequency[0]
+    start = {"wire.nodal_vectors": state["wire.nodal_vectors"] + 1e-6 * modes["wire.nodal_vectors"][0]}
+    run = scene.run(2 * period, initial=start, tol=1e-5, integrator=integrator, output_step=period / 8)
+    shape = run["wire.nodal_vectors"][:, 6, 0] - state["wire.nodal_vectors"][6, 0]
+    along = shape @ shape[0] / (shape[0] @ shape[0])
+    assert np.abs(along - np.cos(2 * pi * run.time / period)).max() < 1e-3
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("element", ["cable12", "beam12p"])
+def test_a_cable_that_falls_across_carries_the_water_along(integrator, element):
+    """v = v_t tanh(g' t/v_t) with the weight in water over the mass with what is added."""
+    scene = fu.Scene()
+    rope(scene, element)
+    scene.fluid(density=WATER)
+    scene.drag("wire", normal=1.2, tangential=0.01, added_mass=1.0, added_mass_tangential=0.05)
+    run = scene.run(0.5, tol=1e-7, integrator=integrator, output_step=0.05)
+    weight, mass = (STEEL - WATER) * AREA * G, (STEEL + WATER) * AREA
+    terminal = sqrt(weight / (WATER / 2 * 2 * RADIUS * 1.2))
+    exact = -terminal * np.tanh(run.time * weight / mass / terminal)
+    assert np.abs(run["wire.nodal_velocity"][:, :, 0, 1] - exact[:, None]).max() < 1e-6
+    assert balance(run) < (1e-12 if integrator == "energy" else 1e-5)
+    # of the fluid: buoyancy, drag, and what the added mass takes
+    drag = WATER / 2 * 2 * RADIUS * 1.2 * exact**2
+    force = 2 * (WATER * AREA * G + drag - WATER * AREA * (drag - weight) / mass)
+    assert np.abs(run["drag_1.force"][:, 1] - force).max() < 1e-4 * force.max()
+
+
+@pytest.mark.parametrize("integrator", OF_BODIES)
+def test_a_sphere_begins_to_fall_with_the_mass_of_half_the_water(integrator):
+    scene = fu.Scene()
+    scene.fluid(density=WATER)
+    scene.rigid_body("ball", mass=3.0, inertia=(1e-3, 1e-3, 1e-3), position=(0, 0, 0))
+    scene.drag("ball", volume=1e-3, added_mass=0.5)
+    run = scene.run(0.4, tol=1e-8, integrator=integrator, output_step=0.1)
+    assert run["ball.position"][:, 1] == pytest.approx(-(3 - 1) / (3 + 0.5) * G * run.time**2 / 2, abs=1e-8)
+    assert balance(run) < 1e-8
+    assert run["ball.acceleration"][-1, 1] == pytest.approx(-(3 - 1) / (3 + 0.5) * G, rel=1e-6)
+
+
+@pytest.mark.parametrize("integrator", OF_BODIES)
+def test_a_pendulum_in_water_swings_with_the_weight_and_the_inertia_that_the_water_leaves(integrator):
+    """A ball on a massless rod from 60 degrees: the period of a pendulum, an elliptic integral, with its weight there.
+    """
+    length, angle = 1.0, pi / 3
+    scene = fu.Scene()
+    scene.fluid(density=WATER)
+    scene.rigid_body("ball", mass=8.0, inertia=(1e-9, 1e-9, 1e-9),
+                     position=(length * np.sin(angle), -length * np.cos(angle), 0))
+    scene.joint("spherical", ("ball", (-length * np.sin(angle), length * np.cos(angle), 0)), (0, 0, 0))
+    scene.drag("ball", volume=1e-3, added_mass=(0.5, 0.5, 0.5))
+    effective = (8 - 1) / (8 + 0.5) * G
+    quarter = quad(lambda x: 1 / sqrt(1 - (np.sin(angle / 2) * np.sin(x)) ** 2), 0, pi / 2)[0]
+    period = 4 * sqrt(length / effective) * quarter
+    run = scene.run(period, tol=1e-7, integrator=integrator, output_step=period / 4)
+    assert np.abs(run["ball.position"][-1] - run["ball.position"][0]).max() < 1e-5
+    assert run["ball.position"][2, 0] == pytest.approx(-run["ball.position"][0, 0], abs=1e-5)
+    assert balance(run) < 1e-5
+    rest = scene.equilibrium()
+    assert rest["ball.position"] == pytest.approx([0, -1, 0], abs=1e-9)
+    assert scene.modes(1, about=rest).angular_frequency[0] == pytest.approx(0.0, abs=1e-3)  # about the rod, first
+
+
+def kirchhoff(mass, J, C, v, omega, duration):
+    """Return v, omega (body axes) after a time of a body with its fluid, by Kirchhoff's equations."""
+    M, J = mass * np.eye(3) + C, np.diag(J)
+
+    def rates(t, x):
+        p, m = M @ x[:3], J @ x[3:6]
+        return np.concatenate([np.linalg.solve(M, np.cross(p, x[3:6])),
+                               np.linalg.solve(J, np.cross(m, x[3:6]) + np.cross(p, x[:3]))])
+
+    return solve_ivp(rates, (0, duration), np.concatenate([v, omega]), rtol=1e-12, atol=1e-13).y[:, -1]
+
+
+@pytest.mark.parametrize("integrator", OF_BODIES)
+def test_a_body_that_tumbles_in_water_follows_kirchhoffs_equations(integrator):
+    C = np.array([[0.4, 0.1, 0.0], [0.1, 1.1, 0.2], [0.0, 0.2, 2.0]])
+    J, v, omega = (0.02, 0.05, 0.06), np.array([1.0, 0.3, -0.5]), np.array([0.5, -1.0, 2.0])
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.fluid(density=WATER)
+    scene.rigid_body("fish", mass=1.5, inertia=J, position=(0, 0, 0), velocity=v, angular_velocity=omega)
+    scene.drag("fish", volume=1e-3, added_mass=C)
+    run = scene.run(2.0, tol=1e-8 if integrator != "genalpha" else 1e-6, integrator=integrator, output_step=1.0)
+    exact = kirchhoff(1.5, J, C, v, omega, 2.0)
+    assert run["fish.angular_velocity"][-1] == pytest.approx(exact[3:], abs=1e-4 if integrator == "genalpha" else 1e-5)
+    assert np.ptp(run["energy.kinetic"]) < 1e-5
+    assert np.linalg.norm(run["fish.velocity"][-1]) == pytest.approx(np.linalg.norm(exact[:3]), abs=1e-4)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_what_moves_with_the_water_is_carried_by_its_acceleration(dim):
+    """A cable and a body of the density of water, in water that swings to and fro, stay in it: (1 + C) rho V DU/Dt."""
+    scene = fu.Scene()
+    wire = rope(scene, "beam24" if dim == 3 else "cable8p", (1, 0.5, 0), density=WATER)
+    scene.rigid_body("ball", mass=2.0, inertia=(1e-2, 1e-2, 1e-2), position=(0, 2, 0))
+    scene.fluid(density=WATER, velocity=(1, 0.5, 0), scale=fu.Harmonic(amplitude=0.3, frequency=1.0))
+    scene.drag(wire, normal=1.0, added_mass=1.0)
+    scene.drag("ball", area=0.01, volume=2e-3, added_mass=(0.3, 0.5, 0.7))
+    run = scene.run(0.75, tol=1e-8, integrator="radau", output_step=0.25)
+    way = 0.3 * (1 - np.cos(2 * pi * run.time)) / (2 * pi)
+    for name, at in (("wire", run["wire.nodal_vectors"][:, 2, 0]), ("ball", run["ball.position"])):
+        assert np.abs(at - at[0] - way[:, None] * np.array([1, 0.5, 0])).max() < 1e-7, name
+    assert np.abs(run["drag_2.force"][:, 1] - 2 * G - 2 * 0.5 * 0.3 * 2 * pi * np.cos(2 * pi * run.time)).max() < 1e-5
+
+
+def swimming(dim=3, body=True, drag=1.0, amplitude=0.5):
+    """Return a cable, and a body on it by a spring, in a current that grows with height and changes in time."""
+    scene = fu.Scene()
+    wire = rope(scene, "beam24" if dim == 3 else "cable8p", (1, 0.3, 0), 3, density=1500, youngs_modulus=1e6)
+    scene.pin(wire, s=0.0)
+    flow = (0.8, 0.2, -0.5) if dim == 3 else (0.8, 0.2, 0)
+    scene.fluid("sea", density=WATER, velocity=flow, scale=fu.Harmonic(amplitude=amplitude, frequency=1.0, offset=1.0),
+                profile=fu.TableProfile(height=[-2, 3], factors=[0.4, 2.0]))
+    scene.drag(wire, normal=1.1 * drag, tangential=0.05 * drag, added_mass=1.0, added_mass_tangential=0.1)
+    if body:
+        out = 0.2 * (dim == 3)
+        scene.rigid_body("buoy", mass=3.0, inertia=(0.02, 0.03, 0.04), position=(1.2, 0.3, 0), velocity=(1, -0.5, 0),
+                         angular_velocity=(0.5, 1.0, 2.0) if dim == 3 else (0, 0, 2.0))
+        scene.spring(("wire", wire.length), ("buoy", (0.1, 0, 0)), stiffness=200.0, length=0.05)
+        scene.drag("buoy", area=0.02 * drag, coefficient=0.8, at=(-0.1, 0.05, 0), volume=2e-3,
+                   added_mass=[[0.5, 0.1, 0], [0.1, 0.9, out], [0, out, 0.3]])
+    return scene
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_the_energy_of_the_water_is_in_the_balance(integrator, dim):
+    body = integrator != "energy"
+    run = swimming(dim, body).run(0.2, tol=1e-6, integrator=integrator, output_step=0.05)
+    assert abs(run["energy.external"][-1] - run["energy.external"][0]) > 0.1
+    assert balance(run) < (1e-11 if integrator == "energy" else 1e-5)
+    best = swimming(dim, body).run(0.2, tol=1e-9, integrator="explicit", output_step=0.05)
+    assert np.abs(run["wire.nodal_vectors"][:, :, 0] - best["wire.nodal_vectors"][:, :, 0]).max() < 2e-6
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("bodies", [False, True])
+def test_newtons_matrix_is_the_derivative_of_its_residual(dim, bodies):
+    """Of a cable in a flow whose gradient is constant; of a body but for the change of its point's acceleration."""
+    h, scene, errors = 0.02, swimming(dim, bodies, amplitude=0.0), []
+    for drags in (dict(scene.drags), {}):
+        scene.drags = drags
+        engine = Engine(build(scene))
+        engine.start(duration=1.0, output_step=1.0, tol=1e-6, step=h, first_step=h, method=GeneralisedAlpha(0.8))
+        n = engine.unknowns
+        _, matrix = engine.linearise(h, np.zeros(n))
+        columns = [(engine.linearise(h, d)[0] - engine.linearise(h, -d)[0]) / 2e-6 for d in 1e-6 * np.eye(n)]
+        errors.append((np.array(columns).T - matrix, matrix))
+    (with_drag, both), (without, other) = errors
+    allowed = 2e-2 if bodies else 1e-6
+    assert np.abs(with_drag - without).max() < allowed * np.abs(both - other).max()
+
+
+def test_a_kink_of_the_flow_is_a_jump_of_the_force():
+    """Water that begins to accelerate at an instant, carried on: the cable follows to the tolerance of its steps."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    rope(scene)
+    scene.fluid(density=WATER, velocity=(0, 1, 0),
+                scale=fu.TableSignal(time=[0, 0.3, 0.5, 1], value=[0, 0, 0.4, 0.4], interpolation="linear"))
+    scene.drag("wire", added_mass=1.0)
+    for integrator in INTEGRATORS:
+        run = scene.run(0.8, tol=1e-6, integrator=integrator, output_step=0.1)
+        exact = 0.4 * 2 * WATER / (STEEL + WATER)  # (1 + C) of the water's velocity
+        assert run["wire.nodal_velocity"][-1, 0, 0, 1] == pytest.approx(exact, rel=1e-6)
+
+
+def test_a_planar_scene_in_another_plane_has_the_same_added_mass():
+    runs = []
+    for element in ("cable8p", "cable12"):
+        scene = fu.Scene(gravity=(0, 0, -G))
+        wire = scene.cable("wire", start=(1, 0.5, 12), end=(3, 0.5, 14), elements=4, element=element, up=(0, 0, 1),
+                           strain="engineering", section=fu.Circle(radius=RADIUS),
+                           material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=2000))
+        scene.pin(wire, s=0.0)
+        scene.rigid_body("buoy", mass=3.0, inertia=(0.02, 0.03, 0.04), position=(3.1, 0.5, 14))
+        scene.spring(("wire", wire.length), ("buoy", (0.1, 0, 0)), stiffness=200.0, length=0.05)
+        scene.fluid(density=WATER, velocity=(0.3, 0, 0.1))
+        scene.drag(wire, normal=1.2, added_mass=1.0)
+        scene.drag("buoy", volume=1e-3, added_mass=[[0.5, 0, 0.2], [0, 0.9, 0], [0.2, 0, 0.3]])
+        runs.append(scene.run(0.1, tol=1e-8, integrator="radau", output_step=0.05))
+    planar, spatial = runs
+    assert np.abs(planar["wire.nodal_vectors"] - spatial["wire.nodal_vectors"]).max() < 1e-7
+    assert np.abs(planar["buoy.orientation"] - spatial["buoy.orientation"]).max() < 1e-7
+
+
+def test_a_modal_body_takes_it_at_a_node():
+    scene = fu.Scene()
+    scene.modal_body("bar", start=(0, 0, 0), end=(1, 0, 0), modes=4, section=fu.Rectangle(height=0.02, width=0.02),
+                     material=fu.Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1500))
+    scene.fluid(density=WATER, velocity=(0.3, 1.0, 0.2))
+    scene.drag("bar", area=0.02, at=(0.5, 0, 0), volume=1e-4, added_mass=(0.2, 1, 1))
+    runs = [scene.run(0.2, tol=1e-7, integrator=integrator, output_step=0.1) for integrator in OF_BODIES]
+    for run in runs:
+        assert balance(run) < 1e-6
+        assert np.abs(run["bar.position"] - runs[1]["bar.position"]).max() < 1e-5
+
+
+def test_scene_files_say_the_same():
+    text = swimming().to_toml()
+    again = fu.Scene.from_toml(text)
+    assert again.to_toml() == text and "added_mass = [[0.5, 0.1" in text
+    assert again.drags["drag_1"].added_mass == 1.0
+
+
+REFUSED = {
+    "tangential": (lambda s: s.drag("wire", normal=1, added_mass_tangential=0.1), "without added_mass"),
+    "nothing displaced": (lambda s: s.drag("wire", normal=1, displaced_area=0, added_mass=1), "give displaced_area"),
+    "no volume": (lambda s: s.drag("A", area=1, added_mass=1), "give volume"),
+    "matrix": (lambda s: s.drag("wire", added_mass=(1, 1, 1)), "is one number"),
+    "tangential of a body": (lambda s: s.drag("A", volume=1, added_mass=1, added_mass_tangential=1),
+                             "takes no added_mass_tangential"),
+    "negative": (lambda s: s.drag("wire", added_mass=-1), "must not be negative"),
+    "indefinite": (lambda s: s.drag("A", volume=1, added_mass=(1, -1, 1)), "must not be negative in any direction"),
+    "not symmetric": (lambda s: s.drag("A", volume=1, added_mass=[[1, 1, 0], [0, 1, 0], [0, 0, 1]]), "be symmetric"),
+    "energy": (lambda s: (s.drag("A", volume=1e-3, added_mass=1), s.run(0.1, integrator="energy")),
+               "knows no added mass of bodies"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_bad_input_is_refused(case):
+    scene = fu.Scene()
+    rope(scene)
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(0, 1, 0))
+    scene.fluid(density=WATER)
+    add, message = REFUSED[case]
+    with pytest.raises(fu.SceneError, match=message):
+        add(scene)
+
+
+def test_section_forces_in_balance_are_refused():
+    run = swimming(body=False).run(0.01, step=1e-3, integrator="genalpha")
+    with pytest.raises(fu.FunicularError, match='take method="constitutive"'):
+        run.section_forces("wire", 0.5)
+    assert np.isfinite(run.section_forces("wire", 0.5, method="constitutive")["force"]).all()
