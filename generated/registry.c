@@ -236,11 +236,15 @@ static const fu_resistance_kernels resistances[] = {
 };
 
 static const fu_drag_kernels drags[] = {
-    {"drag", 3, drag_along_cable, drag_lift_along_cable, drag_on_point, drag_on_foil, drag_impulse_of_cable,
-     drag_inertia_of_cable, drag_inertia_step, drag_impulse_of_point, drag_inertia_of_point},
-    {"planar_drag", 2, planar_drag_along_cable, 0, planar_drag_on_point, planar_drag_on_foil,
-     planar_drag_impulse_of_cable, planar_drag_inertia_of_cable, planar_drag_inertia_step, planar_drag_impulse_of_point,
-     planar_drag_inertia_of_point},
+    {"drag", 3, drag_along_cable, drag_on_point},
+    {"planar_drag", 2, planar_drag_along_cable, planar_drag_on_point},
+};
+
+static const fu_surface_kernels surfaces[] = {
+    {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz, surface_pressing,
+     surface_sticking, surface_sliding},
+    {"planar_surface", 2, planar_surface_flat, planar_surface_rounded, planar_surface_terrain, planar_surface_push,
+     planar_surface_push_hertz, planar_surface_pressing, planar_surface_sticking, planar_surface_sliding},
 };
 
 static const fu_point_law_kernels point_laws[] = {
@@ -694,22 +698,25 @@ static const fu_point_law_kernels point_laws[] = {
     X(resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
     X(planar_resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
     X(drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(drag_lift_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(drag_on_point, a[0], a[1], out[0], out[1]) \
-    X(drag_on_foil, a[0], a[1], a[2], a[3], out[0], out[1]) \
-    X(drag_impulse_of_cable, a[0], a[1], a[2], out[0], out[1]) \
-    X(drag_inertia_of_cable, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
-    X(drag_inertia_step, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
-    X(drag_impulse_of_point, a[0], a[1], a[2], out[0], out[1]) \
-    X(drag_inertia_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
     X(planar_drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(planar_drag_on_point, a[0], a[1], out[0], out[1]) \
-    X(planar_drag_on_foil, a[0], a[1], a[2], a[3], out[0], out[1]) \
-    X(planar_drag_impulse_of_cable, a[0], a[1], a[2], out[0], out[1]) \
-    X(planar_drag_inertia_of_cable, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
-    X(planar_drag_inertia_step, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
-    X(planar_drag_impulse_of_point, a[0], a[1], a[2], out[0], out[1]) \
-    X(planar_drag_inertia_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
+    X(surface_flat, a[0], a[1], out[0], out[1]) \
+    X(surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
+    X(surface_terrain, a[0], a[1], out[0], out[1], out[2]) \
+    X(surface_push, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(surface_push_hertz, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(surface_pressing, a[0], a[1], a[2], a[3], out[0], out[1], out[2]) \
+    X(surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2]) \
+    X(surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2]) \
+    X(planar_surface_flat, a[0], a[1], out[0], out[1]) \
+    X(planar_surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
+    X(planar_surface_terrain, a[0], a[1], out[0], out[1], out[2]) \
+    X(planar_surface_push, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(planar_surface_push_hertz, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(planar_surface_pressing, a[0], a[1], a[2], a[3], out[0], out[1], out[2]) \
+    X(planar_surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2]) \
+    X(planar_surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2]) \
     X(spring_energy, a[0], a[1], out[0]) \
     X(spring_dissipation, a[0], a[1], a[2], out[0]) \
     X(spring_force, a[0], a[1], a[2], out[0]) \
@@ -760,5 +767,6 @@ const fu_tables fu_all = {
     20, joints,
     2, resistances,
     2, drags,
+    2, surfaces,
     6, point_laws
 };

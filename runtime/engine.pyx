@@ -196,7 +196,7 @@ cdef class Engine(Report):
             shape = (rows, array.items) if array.axes == 2 else (rows,)
             fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
         output = self.arrays.pop("output")
-        for kind in ("slide", "joint", "point_force", "drag"):
+        for kind in ("slide", "joint", "point_force", "drag", "contact"):
             self.arrays[kind] = self._outputs(kind, output)
         cdef int status = fu_start(run)
         if status:
@@ -312,6 +312,17 @@ cdef class Engine(Report):
             return None
         return self._own("joint", left, 6)
 
+    def static_outputs(self, str kind):
+        """(couplings, numbers of one): of all couplings of a kind in the static state, as in rows of output."""
+        numbers = self._of(kind)
+        out = np.zeros((len(numbers), fu_coupling_type_of(kind.encode()).n_outputs))
+        cdef double[:, ::1] view = out
+        cdef int k, number
+        for k, number in enumerate(numbers):
+            c = self.couplings[number]
+            c.type.outputs(&self.model, c, &self.run.next, NULL, NULL, &view[k, 0])
+        return out
+
     def joint_forces(self):
         """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
         numbers = self._of("joint")
@@ -322,14 +333,4 @@ cdef class Engine(Report):
             c = self.couplings[number]
             fu_joint_outputs(&self.model, <fu_joint *>c, &self.run.next, self.run.next.forces + c.force,
                              <fu_joint_output *>&view[k, 0])
-        return out
-
-    def drag_forces(self):
-        """(drags, 3): forces of fluids on their cables and bodies in the static state, along the axes of the model."""
-        numbers = self._of("drag")
-        out = np.zeros((len(numbers), 3))
-        cdef double[:, ::1] view = out
-        cdef int k, number
-        for k, number in enumerate(numbers):
-            fu_drag_at_rest(&self.model, self.couplings[number], &self.run.next, &view[k, 0])
         return out

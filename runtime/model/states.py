@@ -5,10 +5,11 @@ All is along the axes of the model, in which the plane of a planar one is z = 0,
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from ..parts.contact import Contact
 from ..parts.drag import Drag
 from ..parts.locations import ends_of, joined, node_of
 from ..parts.point_force import PointForce
@@ -16,6 +17,7 @@ from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..rotations import cross, rotate
 from .attachments import AttachmentModel
+from .contacts import ContactModel
 from .joints import JointModel
 from .loads import PointForceModel
 from .model import BodyModel, Model
@@ -134,6 +136,14 @@ def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
     return {"force": force, "length": length, "tension": np.sum(force * along, axis=1)}
 
 
+def contact_state(contact: ContactModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what results tell of a contact from its numbers (time, 10); see engine/couplings/contact_results.c."""
+    touches = numbers[:, 7] > 0 if contact.cable >= 0 else np.zeros(len(numbers), dtype=bool)
+    first, last = (np.where(touches, numbers[:, k], np.nan) for k in (8, 9))
+    return {"force": numbers[:, :3], "friction_force": numbers[:, 3:6], "penetration": numbers[:, 6],
+            "touching": numbers[:, 7], "first": first, "last": last}
+
+
 def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
     """Return (time, 3): where an attachment is."""
     if attachment.cable >= 0:
@@ -149,6 +159,10 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
             arm = spatial(attachment.modal[0] + eta @ attachment.modal[1])
         return state["position"] + rotate(state["orientation"], arm)
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))
+
+
+AT_REST = ("drag", "contact")
+"""The kinds of couplings whose numbers in a row of output a state of rest has, too."""
 
 
 def free_states(model: Model, q: np.ndarray, s: np.ndarray, slide_forces: np.ndarray,
@@ -176,13 +190,14 @@ def free_states(model: Model, q: np.ndarray, s: np.ndarray, slide_forces: np.nda
 
 
 def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: np.ndarray, joints: np.ndarray,
-                      point_forces: np.ndarray, drags: np.ndarray,
+                      point_forces: np.ndarray, couplings: Mapping[str, np.ndarray],
                       alone: str | None = None) -> dict[str, dict[str, dict[str, np.ndarray]]]:
     """Return forces and moments of supports, ties, joints and forces between points, by group, label and quantity.
 
     Of a slide it is the moment that keeps its rider's axes. All arguments have the time first: q (time, n_q), reaction
     (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3),
-    drags (time, drags, 3). They are along the ground's axes. alone: of this label, None: of all.
+    couplings: of the kinds of AT_REST (time, couplings, numbers of one). They are along the ground's axes.
+    alone: of this label, None: of all.
     """
     def asked(label: str | None) -> bool:
         return alone is None or label == alone
@@ -202,7 +217,10 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
         "joints": {joint.name: state for joint, state in of_joints if joint.slide is None},
         PointForce.group: {force.name: point_force_state(model, force, point_forces[:, k], q)
                            for k, force in enumerate(model.point_forces) if asked(force.name)},
-        Drag.group: {drag.name: {"force": drags[:, k]} for k, drag in enumerate(model.drags) if asked(drag.name)},
+        Drag.group: {drag.name: {"force": couplings["drag"][:, k]} for k, drag in enumerate(model.drags)
+                     if asked(drag.name)},
+        Contact.group: {contact.name: contact_state(contact, couplings["contact"][:, k])
+                        for k, contact in enumerate(model.contacts) if asked(contact.name)},
     }
     return found if model.plane_axes is None else {
         group: {label: model.results(label, values) for label, values in of.items()} for group, of in found.items()}

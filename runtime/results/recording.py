@@ -11,6 +11,7 @@ from ..engine import Engine
 from ..model.joints import JointModel
 from ..model.model import Model, SlideModel
 from ..model.states import (
+    AT_REST,
     body_rates,
     body_state,
     connection_states,
@@ -69,7 +70,7 @@ def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
         if body.modes:
             modal[body.name] = model.results(body.name, modal_state(model, body, state, q, v))
     forces = connection_states(model, scene, q, rows["reaction"], rows["joint"], rows["point_force"],
-                               rows["drag"])
+                               {kind: rows[kind] for kind in AT_REST})
     slides = {}
     for k, slide in enumerate(model.slides):
         own = {"s": rows["s"][:, k], **engine.slide_row(rows["slide"][:, k])}

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError, near
-from ..model.drag_forces import drag_forces
 from ..model.states import connection_states, free_states, spatial
 from ..parts.cable import EXACT
 from ..parts.paths import COMPONENTS
@@ -96,10 +95,8 @@ class _Values:
         if part not in self.found:
             at, model = self.at, self.model
             self.found[part] = free_states(model, at.q, at.s, at.slide_force, part).get(part, {})
-            fluid = np.array([drag_forces(model, q[None]) for q in at.q]) if part in self.scene.drags else np.zeros(
-                (len(at), len(model.drags), 3))
             for group in connection_states(model, self.scene, at.q, at.reaction, at.joint_forces, at.point_force,
-                                           self.problem.fraction * fluid, part).values():
+                                           at.couplings, part).values():
                 self.found[part] |= group.get(part, {})
         return self.found[part][quantity]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import SceneError, UnknownResultError, near
 from ..model.model import Model
-from ..model.states import attachment_points, connection_states, free_states
+from ..model.states import AT_REST, attachment_points, connection_states, free_states
 from ..named_arrays import NamedArrays
 from ..parts.paths import path_of, value_at
 from ..parts.plane import called
@@ -112,12 +112,12 @@ class RestState(NamedArrays):
     static_state: dict
     reaction: np.ndarray
     joint_forces: np.ndarray
-    drag_forces: np.ndarray
     load_fraction: float
     iterations: int
     residual: float
     stability: Stability
     gravity_fraction: float
+    couplings: dict[str, np.ndarray]
     heading: np.ndarray | None = field(default=None, repr=False)
     quantities: dict[str, np.ndarray] = field(default_factory=dict)
     path: list[RestState] = field(default_factory=list, repr=False)
@@ -135,9 +135,9 @@ class RestState(NamedArrays):
         engine = problem.engine
         scene = problem.scene.as_drawn
         state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
-                    engine.drag_forces(),
                     problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
-                    problem.fraction if problem.settings.scale_gravity else 1.0, heading)
+                    problem.fraction if problem.settings.scale_gravity else 1.0, 
+                    {kind: engine.static_outputs(kind) for kind in AT_REST}, heading)
         state.quantities = state._quantities()
         state.path, state.layout = [state], layout(scene)
         return state
@@ -241,6 +241,6 @@ class RestState(NamedArrays):
         found = {f"{part}.{name}": value[0] for part, values in free.items() for name, value in values.items()}
         forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
                                    self.static_state["point_force"][None],
-                                   self.drag_forces[None])
+                                   {kind: numbers[None] for kind, numbers in self.couplings.items()})
         return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()
                         for name, value in values.items() if name != "residual"}

@@ -8,13 +8,15 @@ from typing import Self
 
 import numpy as np
 
+from ..model.states import AT_REST
 from .static_problem import StaticState
 
 
 @dataclass
 class Snapshots:
     """T static states of a scene: configurations q (T, n_q), arc-lengths s and forces of slides (T, slides, 3), forces
-    between points (T, point forces, 3), what supports give (T, n_dof), and forces of joints (T, joints, 7).
+    between points (T, point forces, 3), what supports give (T, n_dof), forces of joints (T, joints, 7), and the numbers
+    of other couplings by their kind, of AT_REST (T, couplings, numbers).
     """
 
     q: np.ndarray
@@ -23,6 +25,7 @@ class Snapshots:
     point_force: np.ndarray
     reaction: np.ndarray
     joint_forces: np.ndarray
+    couplings: dict[str, np.ndarray]
 
     def __len__(self) -> int:
         """Return the number of states."""
@@ -40,8 +43,10 @@ class Snapshots:
                 state.residual()
             kept = state.keep()
             rows.append((kept["q"], kept["s"], kept["force"], kept["point_force"], state.engine.reaction(),
-                         state.engine.joint_forces()))
-        return cls(*(np.array(each) for each in zip(*rows, strict=True)))
+                         state.engine.joint_forces(), *(state.engine.static_outputs(kind) for kind in AT_REST)))
+        arrays = [np.array(each) for each in zip(*rows, strict=True)]
+        first = len(arrays) - len(AT_REST)
+        return cls(*arrays[:first], dict(zip(AT_REST, arrays[first:], strict=True)))
 
 
 @dataclass(frozen=True)

@@ -392,11 +392,6 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     add_all(model, coupling, state, acceleration, &sums);
 }
 
-void fu_drag_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3])
-{
-    outputs(model, coupling, state, 0, 0, force);
-}
-
 /* Returns how far within its table all of what a fluid acts on is, as a part of the table's axes; negative beyond its edges. */
 static double margin(const fu_model *model, const fu_drag *drag, const fu_state *state)
 {

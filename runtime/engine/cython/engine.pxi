@@ -111,6 +111,8 @@ cdef extern from "engine.h" nogil:
         const fu_field *fields
         int n_outputs
         const char *(*excess)(const fu_coupling *coupling)
+        void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                        const double *acceleration, const void *work, double *out)
     ctypedef struct fu_coupling:
         const fu_coupling_type *type
         int index, number, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
@@ -341,8 +343,6 @@ cdef extern from "engine.h" nogil:
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)
     int fu_prepare(fu_run *run)
     int fu_probe_mechanism(fu_run *run, const double *along, double *left)
-    void fu_drag_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
-                         double *force) noexcept nogil
     void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                           fu_joint_output *out)
     int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)

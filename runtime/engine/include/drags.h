@@ -51,9 +51,6 @@ typedef struct {
     fu_drag_powers *power;
 } fu_drag_sums;
 
-/* Makes the whole force of the fluid at a state of rest. */
-void fu_drag_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3]);
-
 fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point);
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
                            fu_quadrature_point point, fu_drag_place *at);
