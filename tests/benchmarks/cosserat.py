@@ -1,0 +1,98 @@
+"""The experiments of cosseratbench with funicular, PyElastica and MuJoCo: the error that each experiment scores,
+and CPU time.
+
+    python tests/benchmarks/cosserat.py [--out FILE.csv] [--experiments crossing,capstan] [--solvers funicular]
+
+It needs cosseratbench; peers that are not installed are left out (pip install '.[bench]' brings all). All solvers get
+the number of elements that the experiment asks for. CPU time is that of the run alone: cosseratbench runs each solver
+once for a thousandth of the duration first. `error` is the experiment's first metric, `second` its next one: lengths
+are over that of the rod, other numbers over those of the reference; `slide` is in m. `lift` is how far the lower rope
+holds up the upper one.
+
+With --meshes funicular alone runs with half, once and twice the elements: an error that stays is of the reference, of
+the experiment, or of the time that it leaves to come to rest.
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from time import process_time
+from typing import Any
+
+from cosseratbench import registry
+from cosseratbench.experiment import run
+from table import parser, show
+
+METRICS = {"catenary": ("shape_error", "sag_error"), "cantilever": ("tip_deflection_error", None),
+           "pendulum": ("period_error", "amplitude_change"), "twist": ("critical_twist_error", None),
+           "crossing": ("shape_error", "lift_error"), "capstan": ("slide", None)}
+"""Of each experiment the metrics that are shown; how far it still moves is another one."""
+
+SOLVERS = ("funicular", "pyelastica", "mujoco")
+
+
+@dataclass
+class Timed:
+    """A solver that keeps the CPU time of its last run, in s."""
+
+    inner: Any
+    cpu: float = float("nan")
+    name: str = field(init=False)
+    capabilities: frozenset = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.name, self.capabilities = self.inner.name, self.inner.capabilities
+
+    def run(self, *args, **given) -> Any:
+        """Return what the solver returns."""
+        start = process_time()
+        try:
+            return self.inner.run(*args, **given)
+        finally:
+            self.cpu = process_time() - start
+
+
+def row(name: str, solver: str, factor: float = 1.0, **options: Any) -> dict | None:
+    """A row of the table; None where the solver is not installed."""
+    experiment = registry.load_experiment(name)
+    elements = round(experiment.n_elements * factor)
+    elements += name == "crossing" and elements % 2 == 0  # with a node where the ropes touch the contact is skewed
+    try:
+        timed = Timed(registry.load_solver(solver, **options))
+    except ImportError:
+        return None
+    result = run(experiment, timed, n_elements=elements)
+    first, second = METRICS[name]
+    seen = result.metrics | result.observations
+    return {"experiment": name, "solver": solver + "".join(f" {k}={v}" for k, v in options.items()),
+            "elements": elements, "error": seen.get(first, result.outcome), "second": seen.get(second, ""),
+            "overlap": seen.get("max_rod_overlap" if name == "crossing" else "max_penetration", ""),
+            "cpu_s": timed.cpu if result.metrics else ""}
+
+
+def rows(names: Iterable[str], solvers: Iterable[str], meshes: bool) -> list[dict]:
+    """All rows of solvers that are installed."""
+    found = []
+    for name in names:
+        if meshes:
+            found += [row(name, "funicular", factor) for factor in (0.5, 1.0, 2.0)]
+        else:
+            found += [row(name, solver) for solver in solvers]
+        if name == "catenary" and "funicular" in solvers:
+            found.append(row(name, "funicular", bending=False))
+    return [each for each in found if each is not None]
+
+
+if __name__ == "__main__":
+    command = parser(__doc__)
+    command.add_argument("--experiments", default=",".join(METRICS), help="names, by commas (default: all)")
+    command.add_argument("--solvers", default=",".join(SOLVERS), help="names, by commas (default: all)")
+    command.add_argument("--meshes", action="store_true", help="funicular with half, once and twice the elements")
+    given = command.parse_args()
+    show(rows(given.experiments.split(","), given.solvers.split(","), given.meshes), given.out)
