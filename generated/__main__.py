@@ -87,6 +87,8 @@ SOURCES = (
     "planar_drag.c",
     "crossing.c",
     "planar_crossing.c",
+    "surface.c",
+    "planar_surface.c",
     "spring.c",
     "planar_spring.c",
     "spring_piece.c",

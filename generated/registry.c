@@ -245,6 +245,13 @@ static const fu_crossing_kernels crossings[] = {
     {"planar_crossing", 2, planar_crossing_closest, planar_crossing_contact, planar_crossing_force},
 };
 
+static const fu_surface_kernels surfaces[] = {
+    {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz, surface_pressing,
+     surface_sticking, surface_sliding},
+    {"planar_surface", 2, planar_surface_flat, planar_surface_rounded, planar_surface_terrain, planar_surface_push,
+     planar_surface_push_hertz, planar_surface_pressing, planar_surface_sticking, planar_surface_sliding},
+};
+
 static const fu_point_law_kernels point_laws[] = {
     {"spring", 3, 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
     {"planar_spring", 2, 3, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
@@ -705,6 +712,22 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_crossing_closest, a[0], a[1], a[2], out[0]) \
     X(planar_crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4]) \
     X(planar_crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(surface_flat, a[0], a[1], out[0], out[1]) \
+    X(surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
+    X(surface_terrain, a[0], a[1], out[0], out[1], out[2]) \
+    X(surface_push, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(surface_push_hertz, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(surface_pressing, a[0], a[1], a[2], a[3], out[0], out[1], out[2]) \
+    X(surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2]) \
+    X(surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2]) \
+    X(planar_surface_flat, a[0], a[1], out[0], out[1]) \
+    X(planar_surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
+    X(planar_surface_terrain, a[0], a[1], out[0], out[1], out[2]) \
+    X(planar_surface_push, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(planar_surface_push_hertz, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(planar_surface_pressing, a[0], a[1], a[2], a[3], out[0], out[1], out[2]) \
+    X(planar_surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2]) \
+    X(planar_surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2]) \
     X(spring_energy, a[0], a[1], out[0]) \
     X(spring_dissipation, a[0], a[1], a[2], out[0]) \
     X(spring_force, a[0], a[1], a[2], out[0]) \
@@ -756,5 +779,6 @@ const fu_tables fu_all = {
     2, resistances,
     2, drags,
     2, crossings,
+    2, surfaces,
     6, point_laws
 };

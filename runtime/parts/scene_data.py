@@ -9,6 +9,7 @@ from typing import Any, Self
 from ..errors import SceneError, check_renamed
 from .attachment import Attachment
 from .cable import Cable
+from .contact import Contact
 from .crossing import Crossing
 from .drag import Drag
 from .event import Event
@@ -24,6 +25,7 @@ from .point_force import PointForce
 from .rigid_body import RigidBody
 from .slide import Slide
 from .support import Clamp, Motion, Pin, Support, Tie
+from .surface import Surface
 from .validation import vector
 
 RESERVED = ("energy", "time")
@@ -52,6 +54,8 @@ class SceneData:
     fluids: dict[str, Fluid]
     drags: dict[str, Drag]
     crossings: dict[str, Crossing]
+    surfaces: dict[str, Surface]
+    contacts: dict[str, Contact]
     events: dict[str, Event]
     plane_axes: PlaneAxes | None = None
     """Of a scene that `laid.laid` made in the axes of a plane: what turns its results into the ground's axes."""
