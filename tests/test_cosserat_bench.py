@@ -29,7 +29,7 @@ STILL = motion((0.0, 1.0))
     (Rod(STRAIGHT, start=CLAMPED, start_motion=STILL), DOWN, "beam24"),
 ])
 def test_the_cheapest_element(rod, gravity, element):
-    assert element_of(rod, gravity, alone=True) == element
+    assert element_of(Scenario(gravity=gravity), rod, alone=True) == element
     assert scene_of(Scenario(gravity=gravity), [rod], 4, RodOptions()).cables[0].element == element
 
 

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 
+from ..errors import FunicularWarning
+from ..parts.cable import Cable
 from ..results.run import Run
+from .contacts import beyond_a_cylinder, cross, near, overlapping, passes_into_itself, side_by_side
 from .directors import of_sections, untwisted
 from .rods import CLAMPED, RodOptions, RodScene, ends_of, scene_of
 
@@ -53,15 +59,55 @@ def moved(scenario: Scenario, elements: int, frames: int,
           choices: Choices) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return of each rod positions (frames, nodes, 3) in m and directors (frames, elements, 3).
 
-    Raises NotImplementedError for what cannot be modelled, ConvergenceError where a run ends early.
+    Rods that touch move together, the others each by itself: first those that start close to each other, then again
+    with those that have passed into each other. What is left out of that is warned of. Raises NotImplementedError for
+    what cannot be modelled, ConvergenceError where a run ends early.
     """
-    positions, directors = [], []
-    for rod in scenario.rods:
-        made = scene_of(scenario, [rod], elements, choices.rods_of(scenario))
-        run = _run(made, scenario, frames, choices)
-        positions.append(run["rod0.position"])
-        directors.append(_directors(rod, made, run, elements))
+    if scenario.self_contact and scenario.obstacles:
+        raise NotImplementedError("contact of a rod with itself")
+    close = near(scenario)
+    pairs = {pair for pair in close if not _side_by_side(scenario, pair)}
+    while True:
+        motions = _motions(scenario, pairs, elements, frames, choices)
+        positions, directors = [each[0] for each in motions], [each[1] for each in motions]
+        found = overlapping(scenario, positions)
+        if close & set(found):
+            raise NotImplementedError("contact of two rods at more than one point")
+        more = {pair for pair in found if not _side_by_side(scenario, pair)}
+        if not more - pairs:
+            break
+        pairs |= more
+    if beyond_a_cylinder(scenario, positions):
+        raise NotImplementedError("contact at the end of a cylinder")
+    _warn_of_what_is_left_out(scenario, positions, found)
     return positions, directors
+
+
+def _side_by_side(scenario: Scenario, pair: tuple[int, int]) -> bool:
+    return side_by_side(*(scenario.rods[k] for k in pair))
+
+
+def _motions(scenario: Scenario, pairs: set[tuple[int, int]], elements: int, frames: int,
+             choices: Choices) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return positions and directors of each rod, where pairs of rods touch."""
+    count = len(scenario.rods)
+    touching = np.zeros((count, count))
+    for pair in pairs:
+        touching[pair] = 1
+    groups, group_of = connected_components(csr_array(touching), directed=False)
+    motions: list = [None] * count
+    for group in range(groups):
+        members = np.flatnonzero(group_of == group).tolist()
+        rods = [scenario.rods[k] for k in members]
+        made = scene_of(scenario, rods, elements, choices.rods_of(scenario))
+        of = {k: (rod, cable) for k, rod, cable in zip(members, rods, made.cables, strict=True)}
+        for i, j in sorted(pairs):
+            if i in of:
+                cross(made.scene, scenario, of[i], of[j])
+        run = _run(made, scenario, frames, choices)
+        for k, rod, cable in zip(members, rods, made.cables, strict=True):
+            motions[k] = run[f"{cable.name}.position"], _directors(rod, cable, run, elements)
+    return motions
 
 
 def _run(made: RodScene, scenario: Scenario, frames: int, choices: Choices) -> Run:
@@ -71,10 +117,23 @@ def _run(made: RodScene, scenario: Scenario, frames: int, choices: Choices) -> R
                           initial=made.start or None)
 
 
-def _directors(rod: Rod, made: RodScene, run: Run, elements: int) -> np.ndarray:
-    """Return the directors (frames, elements, 3) of the only rod of a scene."""
-    positions, names = run["rod0.position"], made.cables[0].kind_of_element.nodal_vectors
+def _directors(rod: Rod, cable: Cable, run: Run, elements: int) -> np.ndarray:
+    """Return the directors (frames, elements, 3) of a rod."""
+    positions, names = run[f"{cable.name}.position"], cable.kind_of_element.nodal_vectors
     if "r_y" in names:
-        return of_sections(run["rod0.nodal_vectors"][:, :, names.index("r_y")], positions)
+        return of_sections(run[f"{cable.name}.nodal_vectors"][:, :, names.index("r_y")], positions)
     clamped = [end for end, (_, condition, _) in zip((0, -1), ends_of(rod), strict=True) if condition == CLAMPED]
     return untwisted(rod.directors(elements), positions, clamped[0] if clamped else None)
+
+
+def _warn_of_what_is_left_out(scenario: Scenario, positions: list[np.ndarray],
+                              found: dict[tuple[int, int], int]) -> None:
+    """Say which rods pass into themselves or, of those that started apart, into each other, and from when on."""
+    passing = [(f"rods {i} and {j} pass into each other", frame) for (i, j), frame in found.items()]
+    passing += [(f"rod {k} passes into itself", frame)
+                for k, (rod, nodes) in enumerate(zip(scenario.rods, positions, strict=True))
+                if (frame := passes_into_itself(rod, nodes)) is not None]
+    for what, frame in passing:
+        time = scenario.duration * frame / (len(positions[0]) - 1)
+        warnings.warn(f"{what} from t = {time:.4g} s on: this contact is not modelled, and from there on the motion is "
+                      "not that of the scenario", FunicularWarning, stacklevel=4)

@@ -18,6 +18,7 @@ from ..parts.section import Circle, GeneralSection
 from ..parts.signal import TableSignal
 from ..rotations import cross
 from ..scene import Scene
+from .contacts import stand
 
 if TYPE_CHECKING:
     from cosseratbench.scenario import Motion, Rod, Scenario
@@ -63,12 +64,25 @@ def ends_of(rod: Rod) -> list[tuple[float, str, Motion | None]]:
     return [(0.0, rod.start.value, rod.start_motion), (rod.length, rod.end.value, rod.end_motion)]
 
 
-def plane_normal(rod: Rod, gravity: tuple[float, ...]) -> np.ndarray | None:
-    """Return the unit normal (3,) of the plane that a rod lies and stays in, by its points and loads; None if there is
-    none, or where an end is driven. Of a straight rod along its loads it is the rod's own normal.
+def plane_normal(scenario: Scenario, rod: Rod) -> np.ndarray | None:
+    """Return the unit normal (3,) of the plane that a rod lies and stays in, by its points, loads and obstacles; None
+    if there is none, or where an end is driven. Of a straight rod along its loads it is the rod's own normal.
     """
     if rod.start_motion is not None or rod.end_motion is not None:
         return None
+    normal = _normal(scenario.gravity, rod)
+    if normal is None:
+        return None
+    square = [obstacle.kind == "plane" for obstacle in scenario.obstacles]
+    axes = [obstacle.unit_normal if flat else obstacle.unit_axis
+            for obstacle, flat in zip(scenario.obstacles, square, strict=True)]
+    along = [abs(float(axis @ normal)) for axis in axes]
+    fits = all(part <= FLAT if flat else part >= 1 - FLAT for part, flat in zip(along, square, strict=True))
+    return normal if fits else None
+
+
+def _normal(gravity: tuple[float, ...], rod: Rod) -> np.ndarray | None:
+    """Return the unit normal (3,) of the plane of a rod's points and loads, None if there is none."""
     points = np.asarray(rod.centerline, dtype=float)
     acting = [_unit(gravity), *(_unit(load.force) for load in rod.loads)]
     given = np.vstack([points - points[0], acting])
@@ -84,7 +98,7 @@ def plane_normal(rod: Rod, gravity: tuple[float, ...]) -> np.ndarray | None:
     return rounded / np.linalg.norm(rounded)
 
 
-def element_of(rod: Rod, gravity: tuple[float, ...], alone: bool) -> str:
+def element_of(scenario: Scenario, rod: Rod, alone: bool) -> str:
     """Return the cheapest element for a rod.
 
     A round rod without stress where it is straight carries torsion only if both its ends are clamped, or one of them is
@@ -94,16 +108,16 @@ def element_of(rod: Rod, gravity: tuple[float, ...], alone: bool) -> str:
     ends = ends_of(rod)
     if all(condition == CLAMPED for _, condition, _ in ends) or any(motion is not None for *_, motion in ends):
         return TORSION
-    return PLANAR if alone and plane_normal(rod, gravity) is not None else SPATIAL
+    return PLANAR if alone and plane_normal(scenario, rod) is not None else SPATIAL
 
 
 def scene_of(scenario: Scenario, rods: list[Rod], elements: int, options: RodOptions) -> RodScene:
     """Return a scene of these rods of a scenario, ``rod0`` and so on, each of so many equal elements."""
     made = RodScene(Scene(gravity=scenario.gravity), [])
     for number, rod in enumerate(rods):
-        kind = element_of(rod, scenario.gravity, alone=len(rods) == 1)
+        kind = element_of(scenario, rod, alone=len(rods) == 1)
         name = f"rod{number}"
-        cable = made.scene.cable(name, elements=elements, **_drawing(rod, kind, scenario.gravity),
+        cable = made.scene.cable(name, elements=elements, **_drawing(scenario, rod, kind),
                                  **_stiffness(rod, kind, options))
         made.cables.append(cable)
         for s, condition, motion in ends_of(rod):
@@ -112,6 +126,7 @@ def scene_of(scenario: Scenario, rods: list[Rod], elements: int, options: RodOpt
             made.scene.force(cable, s=0.0 if load.at.value == "start" else rod.length, value=load.force)
         if rod.rest_arc_length is not None:
             made.start[f"{name}.nodal_vectors"] = _stretched(rod, cable)
+    stand(made.scene, scenario, rods, made.cables)
     return made
 
 
@@ -120,12 +135,12 @@ def _unit(vector: tuple[float, ...]) -> np.ndarray:
     return np.asarray(vector, dtype=float) / (size if size else 1.0)
 
 
-def _drawing(rod: Rod, kind: str, gravity: tuple[float, ...]) -> dict:
+def _drawing(scenario: Scenario, rod: Rod, kind: str) -> dict:
     """Return how the cable is drawn: through the rod's points, free of stress where it is straight."""
     points = np.asarray(rod.centerline, dtype=float)
     up = np.asarray(rod.normal, dtype=float)
     if kind == PLANAR:
-        normal = plane_normal(rod, gravity)
+        normal = plane_normal(scenario, rod)
         assert normal is not None, "planar elements are taken where there is a plane"
         up = cross(normal, points[1] - points[0])
     drawn = {"rest_length": rod.length, "up": tuple(up.tolist()), "element": kind}

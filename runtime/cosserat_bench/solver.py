@@ -10,6 +10,7 @@ from cosseratbench.solver import Capability, Diverged
 from cosseratbench.trajectory import Trajectory
 
 from ..errors import ConvergenceError
+from .contacts import near
 from .motion import INTEGRATOR, Choices, moved
 from .rods import element_of
 
@@ -24,7 +25,8 @@ class FunicularSolver:
 
     name = "funicular"
     backend_version = version("funicular")
-    capabilities = frozenset({Capability.STRETCH})
+    capabilities = frozenset({Capability.STRETCH, Capability.ROD_CONTACT, Capability.CYLINDER_CONTACT,
+                              Capability.PLANE_CONTACT})
 
     def __init__(self, time_step_scale: float = 1.0, tol: float | None = None, bending: bool = True) -> None:
         self.choices = Choices(tol=tol, time_step_scale=time_step_scale, bending=bending)
@@ -35,7 +37,7 @@ class FunicularSolver:
             "integrator": INTEGRATOR,
             "tolerance": self.choices.tol_of(scenario),
             "damping_rate": self.choices.rods_of(scenario).damping_rate,
-            "elements": sorted({element_of(rod, scenario.gravity, alone=True) for rod in scenario.rods}),
+            "elements": sorted({element_of(scenario, rod, alone=not near(scenario)) for rod in scenario.rods}),
         }
 
     def run(self, scenario: Scenario, *, n_elements: int, n_frames: int) -> Trajectory:
