@@ -7,7 +7,7 @@ weight. Where a state of rest is the result, what hits does not bounce.
 from __future__ import annotations
 
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -46,11 +46,16 @@ TURNED = 0.9 * np.pi
 """rad: the least that a rod turns along itself before it can touch itself."""
 
 
+def obstacles_of(scenario: Scenario) -> list[tuple[bool, Any]]:
+    """Return whether it is a plane, else a cylinder, of each obstacle, and the obstacle."""
+    return [(obstacle.kind == "plane", obstacle) for obstacle in scenario.obstacles]
+
+
 def stand(scene: Scene, scenario: Scenario, rods: list[Rod], cables: list[Cable]) -> None:
     """Add the obstacles of a scenario to a scene, and what touches them: every rod."""
-    for k, obstacle in enumerate(scenario.obstacles):
+    for k, (flat, obstacle) in enumerate(obstacles_of(scenario)):
         name = f"obstacle{k}"
-        if obstacle.kind == "plane":
+        if flat:
             scene.surface(name, Plane(point=obstacle.point, normal=tuple(obstacle.unit_normal.tolist())))
         else:
             scene.surface(name, Cylinder(radius=obstacle.radius, length=obstacle.length,
@@ -113,8 +118,8 @@ def passes_into_itself(rod: Rod, positions: np.ndarray) -> int | None:
 
 def beyond_a_cylinder(scenario: Scenario, positions: list[np.ndarray]) -> bool:
     """Return whether a rod touches where a cylinder has already ended: those of scenes have no ends."""
-    for obstacle in scenario.obstacles:
-        if obstacle.kind == "plane":
+    for flat, obstacle in obstacles_of(scenario):
+        if flat:
             continue
         for rod, nodes in zip(scenario.rods, positions, strict=True):
             offset = nodes - np.asarray(obstacle.center)

@@ -18,7 +18,7 @@ from ..parts.section import Circle, GeneralSection
 from ..parts.signal import TableSignal
 from ..rotations import cross
 from ..scene import Scene
-from .contacts import stand
+from .contacts import obstacles_of, stand
 
 if TYPE_CHECKING:
     from cosseratbench.scenario import Motion, Rod, Scenario
@@ -73,12 +73,9 @@ def plane_normal(scenario: Scenario, rod: Rod) -> np.ndarray | None:
     normal = _normal(scenario.gravity, rod)
     if normal is None:
         return None
-    square = [obstacle.kind == "plane" for obstacle in scenario.obstacles]
-    axes = [obstacle.unit_normal if flat else obstacle.unit_axis
-            for obstacle, flat in zip(scenario.obstacles, square, strict=True)]
-    along = [abs(float(axis @ normal)) for axis in axes]
-    fits = all(part <= FLAT if flat else part >= 1 - FLAT for part, flat in zip(along, square, strict=True))
-    return normal if fits else None
+    parts = [(flat, abs(float((obstacle.unit_normal if flat else obstacle.unit_axis) @ normal)))
+             for flat, obstacle in obstacles_of(scenario)]
+    return normal if all(part <= FLAT if flat else part >= 1 - FLAT for flat, part in parts) else None
 
 
 def _normal(gravity: tuple[float, ...], rod: Rod) -> np.ndarray | None:
