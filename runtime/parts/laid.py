@@ -14,8 +14,8 @@ from .attachment import Attachment
 from .cable import Cable
 from .combined_signal import combined
 from .contact import Contact
-from .curves import shape_through
 from .crossing import Crossing
+from .curves import shape_through
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid
