@@ -48,3 +48,14 @@ class Scenario(SimpleNamespace):
         given = {"obstacles": (), "self_contact": False} | others
         super().__init__(rods=rods, duration=duration, gravity=gravity, quasi_static=quasi_static, **given)
         self.slowest_frequency = lambda: frequency
+
+
+def plane(point, normal, friction=0.0):
+    """A fixed plane."""
+    return SimpleNamespace(kind="plane", point=point, unit_normal=np.asarray(normal, dtype=float), friction=friction)
+
+
+def cylinder(center, axis, radius, length, friction=0.0):
+    """A fixed cylinder."""
+    return SimpleNamespace(kind="cylinder", center=center, unit_axis=np.asarray(axis, dtype=float), radius=radius,
+                           length=length, friction=friction)

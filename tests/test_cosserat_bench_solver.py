@@ -14,9 +14,10 @@ from cosseratbench.solver import Solver
 from funicular.cosserat_bench import solver as module
 
 
-def scored(name, elements, **options):
+def scored(name, elements, values=None, **options):
     """What an experiment says of a run with its metrics."""
-    return run(registry.load_experiment(name), registry.load_solver("funicular", **options), n_elements=elements)
+    return run(registry.load_experiment(name), registry.load_solver("funicular", **options), n_elements=elements,
+               values=values)
 
 
 def test_it_is_found():
@@ -24,7 +25,8 @@ def test_it_is_found():
     solver = registry.load_solver("funicular")
     assert isinstance(solver, Solver)
     assert solver.name == "funicular"
-    assert Capability.STRETCH in solver.capabilities
+    assert solver.capabilities == {Capability.STRETCH, Capability.ROD_CONTACT, Capability.CYLINDER_CONTACT,
+                                   Capability.PLANE_CONTACT}
 
 
 @pytest.mark.parametrize(("name", "elements", "options", "limits"), [
@@ -44,6 +46,27 @@ def test_errors(name, elements, options, limits):
     assert json.loads(json.dumps(result.summary()))["settings"]["integrator"] == "radau"
 
 
+@pytest.mark.parametrize(("drop", "elements", "error"), [(0.05, 20, 1e-4), (0.1, 40, 1e-5)])
+def test_crossing(drop, elements, error):
+    """With nodes at points of the reference, and one where the ropes touch, all that is left is the mesh's error."""
+    result = scored("crossing", elements, values={"drop": drop})
+    assert result.outcome == COMPLETED
+    assert result.metrics["shape_error"] < error
+    assert result.metrics["lift_error"] < 10 * error
+    assert result.metrics["settling_residual"] < 1e-6
+    assert result.observations["max_rod_overlap"] < 0.2  # radii, of polylines
+
+
+@pytest.mark.parametrize(("overhang", "holds"), [(0.95, True), (1.05, False)])
+def test_capstan(overhang, holds):
+    """The closed form says where friction no longer holds the rope."""
+    result = scored("capstan", 50, values={"overhang": overhang})
+    assert result.outcome == COMPLETED
+    assert (result.metrics["slide"] < 1e-3) == holds
+    assert holds or result.metrics["slide"] > 0.1
+    assert result.observations["max_penetration"] < 0.05
+
+
 @pytest.mark.slow
 def test_twist():
     """The experiment gives the uncertainty of its own measurement as 0.5 %."""
@@ -61,9 +84,9 @@ def test_steps_of_another_scale():
     assert 0 < apart < 1e-4
 
 
-def test_what_is_not_declared_is_unsupported():
+def test_contact_of_a_rope_with_itself_is_unsupported():
     result = scored("pile", 10)
-    assert result.outcome == UNSUPPORTED
+    assert (result.outcome, result.missing) == (UNSUPPORTED, ("contact of a rod with itself",))
 
 
 def test_a_run_that_stops_early_has_diverged(monkeypatch):

@@ -90,26 +90,51 @@ def side_by_side(first: Rod, second: Rod) -> bool:
     return bool(sine < PARALLEL)
 
 
-def overlapping(scenario: Scenario, positions: list[np.ndarray]) -> dict[tuple[int, int], int]:
-    """Return the pairs of rods that pass into each other, with the first frame in which they do; positions (frames,
-    nodes, 3) of each, in m.
+def line_of(vectors: np.ndarray, names: tuple[str, ...], rod: Rod) -> np.ndarray:
+    """Return points (frames, points, 3) in m on the axis of a rod, as its elements draw it between their nodes.
+
+    vectors: (frames, nodes, vectors, 3), with these names; the points are about `FINE` radii apart.
+    """
+    at, slope = vectors[:, :, names.index("r")], vectors[:, :, names.index("r_x")]
+    length = rod.length / (at.shape[1] - 1)
+    pieces = 1 + int(length / (FINE * rod.radius))
+    x = (np.arange(pieces) / pieces)[:, None]
+    inside = ((1 - 3 * x**2 + 2 * x**3) * at[:, :-1, None] + (3 * x**2 - 2 * x**3) * at[:, 1:, None]
+              + length * ((x - 2 * x**2 + x**3) * slope[:, :-1, None] + (x**3 - x**2) * slope[:, 1:, None]))
+    return np.concatenate([inside.reshape(len(at), -1, 3), at[:, -1:]], axis=1)
+
+
+def may_meet(scenario: Scenario, lines: list[np.ndarray]) -> set[tuple[int, int]]:
+    """Return the pairs of rods that may touch in a frame or between two: by their lines (frames, points, 3), in m."""
+    rods = scenario.rods
+    travels = [_travel(line) for line in lines]
+    return {(i, j) for i, j in combinations(range(len(rods)), 2)
+            if np.any(_within_reach(_gaps(rods[i], rods[j], lines[i], lines[j]), travels[i] + travels[j]))}
+
+
+def overlapping(scenario: Scenario, lines: list[np.ndarray]) -> dict[tuple[int, int], int]:
+    """Return the pairs of rods that pass into or through each other, with the first frame in which they have; lines
+    (frames, points, 3) of each, in m.
     """
     rods, found = scenario.rods, {}
     for i, j in combinations(range(len(rods)), 2):
-        deep = -DEEP * (rods[i].radius + rods[j].radius)
-        frames = np.flatnonzero(_gaps(rods[i], rods[j], positions[i], positions[j]) < deep)
-        if len(frames):
-            found[i, j] = int(frames[0])
+        gaps = _gaps(rods[i], rods[j], lines[i], lines[j])
+        inside = gaps < -DEEP * (rods[i].radius + rods[j].radius)
+        for k in np.flatnonzero(_within_reach(gaps, _travel(lines[i]) + _travel(lines[j]))).tolist():
+            before, after = (_between(rods[i], rods[j], lines[i][each], lines[j][each]) for each in (k, k + 1))
+            inside[k + 1] |= before @ after < 0  # they have changed sides
+        if inside.any():
+            found[i, j] = int(np.argmax(inside))
     return found
 
 
-def passes_into_itself(rod: Rod, positions: np.ndarray) -> int | None:
-    """Return the first frame in which a rod with nodes at positions (frames, nodes, 3) passes into itself, or None."""
-    chords = np.diff(positions, axis=1)
+def passes_into_itself(rod: Rod, line: np.ndarray) -> int | None:
+    """Return the first frame in which a rod along a line (frames, points, 3) passes into itself, or None."""
+    chords = np.diff(line, axis=1)
     tangents = chords / np.linalg.norm(chords, axis=-1, keepdims=True)
     turns = np.arccos(np.clip(np.sum(tangents[:, :-1] * tangents[:, 1:], axis=-1), -1, 1)).sum(axis=1)
     for frame in np.flatnonzero(turns > TURNED).tolist():
-        points, along = _points(positions[frame], rod)
+        points, along = _points(line[frame], rod)
         pairs = cKDTree(points).query_pairs(2 * (1 - DEEP) * rod.radius, output_type="ndarray")
         if np.any(along[pairs[:, 1]] - along[pairs[:, 0]] > np.pi * rod.radius):
             return frame
@@ -148,7 +173,7 @@ def _starts(first: Rod, second: Rod) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _gaps(first: Rod, second: Rod, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the distances (frames,) in m of the surfaces of two rods with nodes (frames, nodes, 3).
+    """Return the distances (frames,) in m of the surfaces of two rods along lines (frames, points, 3).
 
     They are negative where rods pass into each other; in frames in which boxes about them are apart, of the boxes.
     """
@@ -160,8 +185,26 @@ def _gaps(first: Rod, second: Rod, one: np.ndarray, other: np.ndarray) -> np.nda
     return gaps
 
 
-def _points(nodes: np.ndarray, rod: Rod) -> tuple[np.ndarray, np.ndarray]:
-    """Return points on a rod with these nodes, a part of its radius apart, and the distance to each along it, in m."""
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(nodes, axis=0), axis=1))])
+def _travel(line: np.ndarray) -> np.ndarray:
+    """Return how far a line (frames, points, 3) moves at most from each frame to the next, (frames - 1,) in m."""
+    return np.linalg.norm(np.diff(line, axis=0), axis=-1).max(axis=1)
+
+
+def _within_reach(gaps: np.ndarray, travels: np.ndarray) -> np.ndarray:
+    """Return whether a gap in a frame or the next one is less than what both rods move between them, (frames - 1,)."""
+    return np.minimum(gaps[:-1], gaps[1:]) < travels
+
+
+def _between(first: Rod, second: Rod, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the vector (3,) between the points of two lines (points, 3) that are closest, in m."""
+    points, others = _points(one, first)[0], _points(other, second)[0]
+    distance, nearest = cKDTree(others).query(points)
+    at = int(np.argmin(distance))
+    return points[at] - others[nearest[at]]
+
+
+def _points(line: np.ndarray, rod: Rod) -> tuple[np.ndarray, np.ndarray]:
+    """Return points on a line (points, 3), a part of the rod's radius apart, and the way to each along it, in m."""
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
     at = np.linspace(0, along[-1], 1 + int(np.ceil(along[-1] / (FINE * rod.radius))))
-    return np.stack([np.interp(at, along, nodes[:, d]) for d in range(3)], axis=1), at
+    return np.stack([np.interp(at, along, line[:, d]) for d in range(3)], axis=1), at

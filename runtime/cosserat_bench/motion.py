@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from ..errors import FunicularWarning
 from ..parts.cable import Cable
 from ..results.run import Run
-from .contacts import beyond_a_cylinder, cross, near, overlapping, passes_into_itself, side_by_side
+from .contacts import beyond_a_cylinder, cross, line_of, may_meet, near, overlapping, passes_into_itself, side_by_side
 from .directors import of_sections, untwisted
 from .rods import CLAMPED, RodOptions, RodScene, ends_of, scene_of
 
@@ -60,7 +60,7 @@ def moved(scenario: Scenario, elements: int, frames: int,
     """Return of each rod positions (frames, nodes, 3) in m and directors (frames, elements, 3).
 
     Rods that touch move together, the others each by itself: first those that start close to each other, then again
-    with those that have passed into each other. What is left out of that is warned of. Raises NotImplementedError for
+    with those that may have met. What is left out of that is warned of. Raises NotImplementedError for
     what cannot be modelled, ConvergenceError where a run ends early.
     """
     if scenario.self_contact and scenario.obstacles:
@@ -69,27 +69,37 @@ def moved(scenario: Scenario, elements: int, frames: int,
     pairs = {pair for pair in close if not _side_by_side(scenario, pair)}
     while True:
         motions = _motions(scenario, pairs, elements, frames, choices)
-        positions, directors = [each[0] for each in motions], [each[1] for each in motions]
-        found = overlapping(scenario, positions)
-        if close & set(found):
-            raise NotImplementedError("contact of two rods at more than one point")
-        more = {pair for pair in found if not _side_by_side(scenario, pair)}
-        if not more - pairs:
+        lines = [line_of(each.vectors, each.names, rod) for each, rod in zip(motions, scenario.rods, strict=True)]
+        more = {pair for pair in may_meet(scenario, lines) - pairs if not _side_by_side(scenario, pair)}
+        if not more:
             break
         pairs |= more
-    if beyond_a_cylinder(scenario, positions):
+    found = overlapping(scenario, lines)
+    if (close | pairs) & set(found):
+        raise NotImplementedError("contact of two rods at more than one point")
+    if beyond_a_cylinder(scenario, lines):
         raise NotImplementedError("contact at the end of a cylinder")
-    _warn_of_what_is_left_out(scenario, positions, found)
-    return positions, directors
+    _warn_of_what_is_left_out(scenario, lines, found)
+    return [each.positions for each in motions], [each.directors for each in motions]
 
 
 def _side_by_side(scenario: Scenario, pair: tuple[int, int]) -> bool:
     return side_by_side(*(scenario.rods[k] for k in pair))
 
 
+@dataclass(frozen=True)
+class _RodMotion:
+    """Positions (frames, nodes, 3), directors (frames, elements, 3) and nodal vectors (frames, nodes, vectors, 3)."""
+
+    positions: np.ndarray
+    directors: np.ndarray
+    vectors: np.ndarray
+    names: tuple[str, ...]
+
+
 def _motions(scenario: Scenario, pairs: set[tuple[int, int]], elements: int, frames: int,
-             choices: Choices) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return positions and directors of each rod, where pairs of rods touch."""
+             choices: Choices) -> list[_RodMotion]:
+    """Return the motion of each rod, where pairs of rods touch."""
     count = len(scenario.rods)
     touching = np.zeros((count, count))
     for pair in pairs:
@@ -105,8 +115,8 @@ def _motions(scenario: Scenario, pairs: set[tuple[int, int]], elements: int, fra
             if i in of:
                 cross(made.scene, scenario, of[i], of[j])
         run = _run(made, scenario, frames, choices)
-        for k, rod, cable in zip(members, rods, made.cables, strict=True):
-            motions[k] = run[f"{cable.name}.position"], _directors(rod, cable, run, elements)
+        for k, (rod, cable) in of.items():
+            motions[k] = _motion_of(rod, cable, run, elements)
     return motions
 
 
@@ -117,23 +127,26 @@ def _run(made: RodScene, scenario: Scenario, frames: int, choices: Choices) -> R
                           initial=made.start or None)
 
 
-def _directors(rod: Rod, cable: Cable, run: Run, elements: int) -> np.ndarray:
-    """Return the directors (frames, elements, 3) of a rod."""
-    positions, names = run[f"{cable.name}.position"], cable.kind_of_element.nodal_vectors
+def _motion_of(rod: Rod, cable: Cable, run: Run, elements: int) -> _RodMotion:
+    positions, names = run[f"{cable.name}.position"], tuple(cable.kind_of_element.nodal_vectors)
+    vectors = run[f"{cable.name}.nodal_vectors"]
     if "r_y" in names:
-        return of_sections(run[f"{cable.name}.nodal_vectors"][:, :, names.index("r_y")], positions)
-    clamped = [end for end, (_, condition, _) in zip((0, -1), ends_of(rod), strict=True) if condition == CLAMPED]
-    return untwisted(rod.directors(elements), positions, clamped[0] if clamped else None)
+        directors = of_sections(vectors[:, :, names.index("r_y")], positions)
+    else:
+        ends = zip((0, -1), ends_of(rod), strict=True)
+        clamped = [element for element, (_, condition, _) in ends if condition == CLAMPED]
+        directors = untwisted(rod.directors(elements), positions, clamped[0] if clamped else None)
+    return _RodMotion(positions, directors, vectors, names)
 
 
-def _warn_of_what_is_left_out(scenario: Scenario, positions: list[np.ndarray],
+def _warn_of_what_is_left_out(scenario: Scenario, lines: list[np.ndarray],
                               found: dict[tuple[int, int], int]) -> None:
     """Say which rods pass into themselves or, of those that started apart, into each other, and from when on."""
     passing = [(f"rods {i} and {j} pass into each other", frame) for (i, j), frame in found.items()]
     passing += [(f"rod {k} passes into itself", frame)
-                for k, (rod, nodes) in enumerate(zip(scenario.rods, positions, strict=True))
-                if (frame := passes_into_itself(rod, nodes)) is not None]
+                for k, (rod, line) in enumerate(zip(scenario.rods, lines, strict=True))
+                if (frame := passes_into_itself(rod, line)) is not None]
     for what, frame in passing:
-        time = scenario.duration * frame / (len(positions[0]) - 1)
+        time = scenario.duration * frame / (len(lines[0]) - 1)
         warnings.warn(f"{what} from t = {time:.4g} s on: this contact is not modelled, and from there on the motion is "
                       "not that of the scenario", FunicularWarning, stacklevel=4)
