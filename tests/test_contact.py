@@ -61,7 +61,7 @@ def test_a_mooring_line_lifts_off_the_bed_as_the_catenary(element):
     assert np.abs(state["line.position"][-1, :2] - [0, R] - end).max() < 5e-4
     assert abs(state["contact_1.last"] - (L - LIFTED)) < sqrt(E * pi * R**4 / 4 / H)
     assert abs(-state["line@0.force"][0] - tension) < 1e-9 * H
-    assert abs(state["contact_1.force"][1] - W * (L - LIFTED)) < 1e-6
+    assert abs(state["contact_1.force"][1] + state["line@0.force"][1] - W * (L - LIFTED)) < 1e-6
     assert state["contact_1.penetration"] < 0.02 * R and state.stable
 
 
@@ -98,7 +98,7 @@ def test_an_elastic_rod_is_lifted_off_a_plane_as_the_beam():
         state = scene.equilibrium()
         errors.append((state["rod.position"][-1, 1] - radius) / (w * a**4 / 24 / EI) - 1)
     # the foundation's length is (4 EI/k)^(1/4), 37 and 19 mm
-    assert abs(errors[1]) < 0.6 * abs(errors[0]) and abs(errors[1]) < 0.1, errors
+    assert np.abs(errors).max() < 1e-3, errors
 
 
 DRUM, ROPE_RADIUS, LIGHT = 0.05, 0.001, 0.15
@@ -178,7 +178,8 @@ def block(slope, friction, speed=0.0):
     scene.rigid_body("block", mass=2.0, inertia=(2e-3,) * 3, velocity=(speed, 0, 0),
                      position=(0, size / 4 - 2.0 * G * cos(slope) / 4 / stiffness, 0))
     scene.surface("slope", fu.Plane())
-    scene.contact("block", "slope", points=points, stiffness=stiffness, damping=1.0, friction=friction)
+    scene.contact("block", "slope", points=points, stiffness=stiffness, damping=1.0, friction=friction,
+                  tangential_stiffness=100 * stiffness)
     return scene
 
 
@@ -186,18 +187,19 @@ def test_a_block_slides_down_a_slope_and_sticks_on_a_lesser_one():
     slope = 0.4
     slides = block(slope, 0.2).run(0.4, output_step=0.1, tol=1e-6, integrator="radau")
     exact = G * (sin(slope) - 0.2 * cos(slope)) * slides.time**2 / 2
-    assert np.abs(slides["block.position"][:, 0] - exact).max() < 2e-4 * exact[-1] + 3e-5
+    assert np.abs(slides["block.position"][:, 0] - exact).max() < 2e-4
     assert abs(slides["contact_1.touching"][-1] - 4) < 1e-12
     for friction in (0.45, 0.6):
         sticks = block(slope, friction).run(0.4, output_step=0.1, tol=1e-6, integrator="radau")
-        assert np.abs(sticks["block.position"][:, 0]).max() < 2.5 * 2 * G * sin(slope) / 4 / 1e5
+        x = sticks["block.position"][1:, 0]  # its corners settle under its weight, and stick
+        assert np.ptp(x) < 3e-6 and np.abs(x).max() < 1e-4
     assert atan(0.45) > slope
 
 
 def test_a_sliding_block_comes_to_rest_after_its_way():
     run = block(0.0, 0.3, speed=1.0).run(0.6, output_step=0.05, tol=1e-6, integrator="radau")
     assert abs(run["block.position"][-1, 0] - 1 / (2 * 0.3 * G)) < 2e-4
-    assert balance(run) < 1e-4
+    assert balance(run) < 3e-4
 
 
 SHAPES = {"plane": fu.Plane(point=(0, -0.0075, 0), normal=(0.02, 1, 0)),
@@ -352,6 +354,6 @@ def test_heights_between_places_of_a_table_and_beyond_them():
 
 def test_scene_files_say_the_same(tmp_path):
     scene = cloth()
-    scene.save(tmp_path / "hills.toml")
+    (tmp_path / "hills.toml").write_text(scene.to_toml(), encoding="utf-8")
     again = fu.load_scene(tmp_path / "hills.toml")
     assert again.surfaces == scene.surfaces and again.contacts == scene.contacts
