@@ -18,7 +18,7 @@ from .codegen.family import (
     PointLawFamily,
     SlideFamily,
 )
-from .couplings import drag, frame, joint, point_law, resistance, slide, surface
+from .couplings import crossing, drag, frame, joint, point_law, resistance, slide, surface
 from .couplings.point_laws import LAWS as POINT_LAWS
 from .elements import ELEMENTS
 from .elements import kernels as element_kernels
@@ -96,6 +96,12 @@ def _drag(dim: int) -> CouplingFamily:
                           missing=() if dim == 3 else ("lift_along_cable",), facts={"dim": dim}, dim=dim)
 
 
+def _crossing(dim: int) -> CouplingFamily:
+    return CouplingFamily(crossing.CROSSINGS[dim], f"lines that touch at their closest points in {_SPACE[dim]}",
+                          partial(crossing.build, dim), ("couplings.crossing",), role="crossing",
+                          facts={"dim": dim}, dim=dim)
+
+
 def _surface(dim: int) -> CouplingFamily:
     return CouplingFamily(surface.SURFACES[dim], f"surfaces and contact with them in {_SPACE[dim]}",
                           partial(surface.build, dim), ("couplings.surface",), role="surface", facts={"dim": dim},
@@ -125,7 +131,7 @@ def of_element(element: Element) -> list[Family]:
 
 def families() -> dict[str, Family]:
     """Return every family by name: elements, laws, bodies, the slide of each element and rider, joints, resistances,
-    drag, surfaces, forces between two points.
+    drag, crossings, surfaces, forces between two points.
     """
     of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
     for element in ELEMENTS.values():
@@ -136,7 +142,7 @@ def families() -> dict[str, Family]:
              *(_modal(name, body) for name, body in modal.FRAMES.items()),
              *of_role["slide"],
              *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES), *map(_drag, drag.DRAGS),
-             *map(_surface, surface.SURFACES),
+             *map(_crossing, crossing.CROSSINGS), *map(_surface, surface.SURFACES),
              *(family for name, law in POINT_LAWS.items() for family in of_point_law(name, law))]
     return {f.name: f for f in every}
 

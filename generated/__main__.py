@@ -85,6 +85,8 @@ SOURCES = (
     "planar_resistance.c",
     "drag.c",
     "planar_drag.c",
+    "crossing.c",
+    "planar_crossing.c",
     "surface.c",
     "planar_surface.c",
     "spring.c",

@@ -16,6 +16,7 @@ from .errors import (
 from .many_scenes import run_many
 from .parts.cable import Cable
 from .parts.contact import Contact
+from .parts.crossing import Crossing
 from .parts.drag import Drag
 from .parts.end_stops import Buffer, HardStop
 from .parts.event import Event
@@ -53,6 +54,7 @@ __all__ = [
     "Clamp",
     "Contact",
     "ConvergenceError",
+    "Crossing",
     "Cylinder",
     "DistributedForce",
     "Drag",

@@ -196,7 +196,7 @@ cdef class Engine(Report):
             shape = (rows, array.items) if array.axes == 2 else (rows,)
             fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
         output = self.arrays.pop("output")
-        for kind in ("slide", "joint", "point_force", "drag", "contact"):
+        for kind in ("slide", "joint", "point_force", "drag", "crossing", "contact"):
             self.arrays[kind] = self._outputs(kind, output)
         cdef int status = fu_start(run)
         if status:
@@ -320,7 +320,7 @@ cdef class Engine(Report):
         cdef int k, number
         for k, number in enumerate(numbers):
             c = self.couplings[number]
-            c.type.outputs(&self.model, c, &self.run.next, NULL, NULL, &view[k, 0])
+            fu_outputs_at_rest(&self.model, c, &self.run.next, &view[k, 0])
         return out
 
     def joint_forces(self):

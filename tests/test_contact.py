@@ -238,7 +238,7 @@ def test_the_static_matrix_is_the_derivative_of_the_residual(element, shape, fri
             engine.move(side)
             sides.append(engine.static_residual())
         columns.append((sides[0] - sides[1]) / 2e-6)
-    assert np.abs(engine.contact_outputs()[0, 6]) > 0
+    assert np.abs(engine.static_outputs("contact")[0, 6]) > 0
     assert np.abs(np.array(columns).T - matrix).max() < 1e-6 * np.abs(matrix).max()
 
 
@@ -294,6 +294,9 @@ def test_a_scene_in_another_plane_touches_alike():
     found = there.run(0.15, output_step=0.05, tol=1e-6, integrator="radau")
     assert np.abs(found["wire.position"][..., [2, 1]] - here["wire.position"][..., :2]).max() < 1e-6
     assert np.abs(found["contact_1.force"][-1, [2, 1]] - here["contact_1.force"][-1, :2]).max() < 1e-2
+    friction = "contact_1.friction_force"
+    assert np.abs(found[friction][:, [2, 1]] - here[friction][:, :2]).max() < 1e-2 < np.abs(here[friction]).max()
+    assert not found[friction][:, 0].any()
 
 
 def test_an_energy_conserving_step_takes_no_moving_surface():

@@ -18,6 +18,7 @@ from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
 from .contacts import ContactModel
 from .coupling import CouplingModel
+from .crossings import CrossingModel
 from .drags import DragModel
 from .elimination import Elimination
 from .joints import JointModel
@@ -182,6 +183,7 @@ class Model:
     motions: list[MotionModel]
     loads: list[DeadLoadModel | LoadModel]
     drags: list[DragModel]
+    crossings: list[CrossingModel]
     contacts: list[ContactModel]
     q: np.ndarray
     v: np.ndarray
@@ -204,7 +206,8 @@ class Model:
     @property
     def couplings(self) -> list[CouplingModel]:
         """Return all couplings in the engine's order, which adds up what they give in it."""
-        return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags, *self.contacts]
+        return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags, *self.crossings,
+                *self.contacts]
 
     def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return results of a part by quantity, in three dimensions, along the ground's axes."""
@@ -241,5 +244,6 @@ class Model:
                       | {joint.kernel for joint in self.joints}
                       | {slide.resistance for slide in self.slides if slide.resistance}
                       | {force.law for force in self.point_forces} | {drag.kernel for drag in self.drags}
+                      | {crossing.kernel for crossing in self.crossings}
                       | {contact.kernel for contact in self.contacts}
                       | {body.modal_kernel for body in self.bodies if body.modes})

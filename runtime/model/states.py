@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from ..parts.contact import Contact
+from ..parts.crossing import Crossing
 from ..parts.drag import Drag
 from ..parts.locations import ends_of, joined, node_of
 from ..parts.point_force import PointForce
@@ -161,7 +162,13 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))
 
 
-AT_REST = ("drag", "contact")
+def crossing_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what results tell of a crossing, from the engine's numbers (time, 10) of it."""
+    return {"force": numbers[:, :3], "normal_force": numbers[:, 3], "penetration": numbers[:, 4], "s": numbers[:, 5],
+            "s_b": numbers[:, 6], "position": numbers[:, 7:]}
+
+
+AT_REST = ("drag", "contact", "crossing")
 """The kinds of couplings whose numbers in a row of output a state of rest has, too."""
 
 
@@ -219,6 +226,8 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
                            for k, force in enumerate(model.point_forces) if asked(force.name)},
         Drag.group: {drag.name: {"force": couplings["drag"][:, k]} for k, drag in enumerate(model.drags)
                      if asked(drag.name)},
+        Crossing.group: {crossing.name: crossing_state(couplings["crossing"][:, k])
+                         for k, crossing in enumerate(model.crossings) if asked(crossing.name)},
         Contact.group: {contact.name: contact_state(contact, couplings["contact"][:, k])
                         for k, contact in enumerate(model.contacts) if asked(contact.name)},
     }

@@ -2,6 +2,7 @@
 
 from .cable import Cable
 from .contact import Contact
+from .crossing import Crossing
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid
@@ -16,7 +17,7 @@ from .support import Clamp, Motion, Pin, Tie
 from .surface import Surface
 
 KINDS: tuple[type[Part], ...] = (Cable, Pin, Clamp, Motion, Tie, RigidBody, ModalBody, Joint, Slide, Force,
-                                 DistributedForce, Moment, Spring, Fluid, Drag, Surface, Contact, Event)
+                                 DistributedForce, Moment, Spring, Fluid, Drag, Crossing, Surface, Contact, Event)
 """In the order in which they can be added: a slide needs its cable and its body."""
 
 PARTS = {part.kind: part for part in KINDS}

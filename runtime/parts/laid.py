@@ -14,6 +14,7 @@ from .attachment import Attachment
 from .cable import Cable
 from .combined_signal import combined
 from .contact import Contact
+from .crossing import Crossing
 from .curves import shape_through
 from .drag import Drag
 from .event import Event
@@ -227,6 +228,15 @@ def _drag(part: Drag, axes: PlaneAxes, scene: SceneData) -> Drag:
     if isinstance(part.added_mass, tuple):
         changes["added_mass"] = _tensor(axes, part.on, part.added_mass)
     return part.model_copy(update=changes) if changes else part
+
+
+@turned.register
+def _crossing(part: Crossing, axes: PlaneAxes, scene: SceneData) -> Crossing:
+    changes: dict[str, Any] = {} if part.at is None else {"at": _place(axes, part.b, part.at)}
+    changes |= {} if part.side is None else {"side": _direction(axes, part.side)}
+    if part.axis is not None:
+        changes["axis"] = _direction(axes, part.axis) if part.b is None else _of_body(axes, part.b, part.axis)
+    return part.model_copy(update=changes)
 
 
 @turned.register

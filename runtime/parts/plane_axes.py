@@ -11,7 +11,8 @@ from ..rotations import conjugate, product, quaternion, rotate
 from .plane import Plane, flattened
 
 POINTS = ("position", "nodes")
-DIRECTIONS = ("nodal_vectors", "nodal_velocity", "velocity", "acceleration", "displacement", "force", "moment")
+DIRECTIONS = ("nodal_vectors", "nodal_velocity", "velocity", "acceleration", "displacement", "force", "friction_force",
+              "moment")
 IN_BODY_AXES = ("angular_velocity", "angular_acceleration", "rotation")
 """Quantities of results by how they turn; all others, but for orientations, are the same in all axes."""
 

@@ -10,6 +10,7 @@ from ..errors import SceneError, check_renamed
 from .attachment import Attachment
 from .cable import Cable
 from .contact import Contact
+from .crossing import Crossing
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid
@@ -52,6 +53,7 @@ class SceneData:
     point_forces: dict[str, PointForce]
     fluids: dict[str, Fluid]
     drags: dict[str, Drag]
+    crossings: dict[str, Crossing]
     surfaces: dict[str, Surface]
     contacts: dict[str, Contact]
     events: dict[str, Event]

@@ -211,6 +211,9 @@ def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine
         if drag.on in scene.bodies and drag.added_mass is not None and not integrator.takes_added_mass_of_bodies:
             raise SceneError(drag.where, f"{who} knows no added mass of bodies",
                              _take_another("takes_added_mass_of_bodies"))
+    for crossing in scene.crossings.values():
+        if integrator.needs_discrete_gradient:
+            raise SceneError(crossing.where, f"{who} has no discrete gradient of it", "take another integrator")
     if integrator.needs_discrete_gradient:
         _check_gradients(integrator, scene, model, engine)
 

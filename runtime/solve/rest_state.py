@@ -32,7 +32,8 @@ def layout(scene: SceneData) -> dict[str, list]:
     """Return what must be the same in two scenes for a state of one to be a state of the other."""
     return {"cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes) for c in scene.cables.values()],
             "plane": [called(scene.plane)], "bodies": list(scene.bodies), "slides": list(scene.slides),
-            "joints": [(j.name, j.joint_kind) for j in scene.joints.values()], "point_forces": list(scene.point_forces)}
+            "joints": [(j.name, j.joint_kind) for j in scene.joints.values()], "point_forces": list(scene.point_forces),
+            "crossings": list(scene.crossings)}
 
 
 @dataclass
@@ -136,7 +137,7 @@ class RestState(NamedArrays):
         scene = problem.scene.as_drawn
         state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
                     problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
-                    problem.fraction if problem.settings.scale_gravity else 1.0, 
+                    problem.fraction if problem.settings.scale_gravity else 1.0,
                     {kind: engine.static_outputs(kind) for kind in AT_REST}, heading)
         state.quantities = state._quantities()
         state.path, state.layout = [state], layout(scene)

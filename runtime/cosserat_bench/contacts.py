@@ -1,0 +1,210 @@
+"""Contact in cosseratbench's scenarios: of rods with fixed obstacles and with each other, and what of it is left out.
+
+Contact has a stiffness of the package's own: rods sink by a thousandth of their radius where they lie under their own
+weight. Where a state of rest is the result, what hits does not bounce.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..parts.cable import Cable
+from ..parts.solids import Cylinder
+from ..parts.surface_shapes import Plane
+from ..rotations import cross as cross_product
+from ..scene import Scene
+
+if TYPE_CHECKING:
+    from cosseratbench.scenario import Rod, Scenario
+
+SINKS = 1e-3
+"""How deep a rod sinks into what it lies on, in its radii."""
+
+SOFT = 10.0
+"""Damping of contact times the speed of a fall from a radius' height, where a state of rest is the result."""
+
+EARTH = 9.81
+"""m/s²: what stands for gravity where there is none."""
+
+NEAR = 0.1
+"""Rods that start closer than this, in lengths of the shorter one, are expected to touch."""
+
+DEEP = 0.25
+"""Of the distance of two axes that touch: rods closer by more have passed into each other."""
+
+PARALLEL = 0.1
+"""Sine of the angle of two rods that cross, at the least."""
+
+FINE = 0.5
+"""Distance of the points at which rods are looked at for that, in radii."""
+
+TURNED = 0.9 * np.pi
+"""rad: the least that a rod turns along itself before it can touch itself."""
+
+
+def obstacles_of(scenario: Scenario) -> list[tuple[bool, Any]]:
+    """Return whether it is a plane, else a cylinder, of each obstacle, and the obstacle."""
+    return [(obstacle.kind == "plane", obstacle) for obstacle in scenario.obstacles]
+
+
+def stand(scene: Scene, scenario: Scenario, rods: list[Rod], cables: list[Cable]) -> None:
+    """Add the obstacles of a scenario to a scene, and what touches them: every rod."""
+    for k, (flat, obstacle) in enumerate(obstacles_of(scenario)):
+        name = f"obstacle{k}"
+        if flat:
+            scene.surface(name, Plane(point=obstacle.point, normal=tuple(obstacle.unit_normal.tolist())))
+        else:
+            scene.surface(name, Cylinder(radius=obstacle.radius, length=obstacle.length,
+                                         axis=tuple(obstacle.unit_axis.tolist())), at=obstacle.center)
+        for rod, cable in zip(rods, cables, strict=True):
+            scene.contact(cable, name, stiffness=_weight(rod, scenario) / (SINKS * rod.radius),
+                          damping=_damping(rod, scenario), friction=max(obstacle.friction, rod.friction))
+
+
+def cross(scene: Scene, scenario: Scenario, first: tuple[Rod, Cable], second: tuple[Rod, Cable]) -> None:
+    """Let two rods touch at the points where they are closest, without friction."""
+    lighter = min(first[0], second[0], key=lambda rod: _weight(rod, scenario) * rod.length)
+    scene.crossing(first[1], second[1], damping=_damping(lighter, scenario),
+                   stiffness=_weight(lighter, scenario) * lighter.length / (SINKS * lighter.radius))
+
+
+def near(scenario: Scenario) -> set[tuple[int, int]]:
+    """Return the pairs of rods that are expected to touch: those that start close to each other."""
+    rods = scenario.rods
+    return {(i, j) for i, j in combinations(range(len(rods)), 2)
+            if _gaps(rods[i], rods[j], *_starts(rods[i], rods[j])).min()
+            < NEAR * min(rods[i].length, rods[j].length)}
+
+
+def side_by_side(first: Rod, second: Rod) -> bool:
+    """Return whether two rods start in parallel where they are closest, so that no single point would touch."""
+    points = [_points(nodes[0], rod)[0] for nodes, rod in zip(_starts(first, second), (first, second), strict=True)]
+    distance, nearest = cKDTree(points[1]).query(points[0])
+    at = int(np.argmin(distance))
+    tangents = [np.gradient(line, axis=0)[k] for line, k in zip(points, (at, nearest[at]), strict=True)]
+    sine = np.linalg.norm(cross_product(*tangents)) / np.prod(np.linalg.norm(tangents, axis=1))
+    return bool(sine < PARALLEL)
+
+
+def line_of(vectors: np.ndarray, names: tuple[str, ...], rod: Rod) -> np.ndarray:
+    """Return points (frames, points, 3) in m on the axis of a rod, as its elements draw it between their nodes.
+
+    vectors: (frames, nodes, vectors, 3), with these names; the points are about `FINE` radii apart.
+    """
+    at, slope = vectors[:, :, names.index("r")], vectors[:, :, names.index("r_x")]
+    length = rod.length / (at.shape[1] - 1)
+    pieces = 1 + int(length / (FINE * rod.radius))
+    x = (np.arange(pieces) / pieces)[:, None]
+    inside = ((1 - 3 * x**2 + 2 * x**3) * at[:, :-1, None] + (3 * x**2 - 2 * x**3) * at[:, 1:, None]
+              + length * ((x - 2 * x**2 + x**3) * slope[:, :-1, None] + (x**3 - x**2) * slope[:, 1:, None]))
+    return np.concatenate([inside.reshape(len(at), -1, 3), at[:, -1:]], axis=1)
+
+
+def may_meet(scenario: Scenario, lines: list[np.ndarray]) -> set[tuple[int, int]]:
+    """Return the pairs of rods that may touch in a frame or between two: by their lines (frames, points, 3), in m."""
+    rods = scenario.rods
+    travels = [_travel(line) for line in lines]
+    return {(i, j) for i, j in combinations(range(len(rods)), 2)
+            if np.any(_within_reach(_gaps(rods[i], rods[j], lines[i], lines[j]), travels[i] + travels[j]))}
+
+
+def overlapping(scenario: Scenario, lines: list[np.ndarray]) -> dict[tuple[int, int], int]:
+    """Return the pairs of rods that pass into or through each other, with the first frame in which they have; lines
+    (frames, points, 3) of each, in m.
+    """
+    rods, found = scenario.rods, {}
+    for i, j in combinations(range(len(rods)), 2):
+        gaps = _gaps(rods[i], rods[j], lines[i], lines[j])
+        inside = gaps < -DEEP * (rods[i].radius + rods[j].radius)
+        for k in np.flatnonzero(_within_reach(gaps, _travel(lines[i]) + _travel(lines[j]))).tolist():
+            before, after = (_between(rods[i], rods[j], lines[i][each], lines[j][each]) for each in (k, k + 1))
+            inside[k + 1] |= before @ after < 0  # they have changed sides
+        if inside.any():
+            found[i, j] = int(np.argmax(inside))
+    return found
+
+
+def passes_into_itself(rod: Rod, line: np.ndarray) -> int | None:
+    """Return the first frame in which a rod along a line (frames, points, 3) passes into itself, or None."""
+    chords = np.diff(line, axis=1)
+    tangents = chords / np.linalg.norm(chords, axis=-1, keepdims=True)
+    turns = np.arccos(np.clip(np.sum(tangents[:, :-1] * tangents[:, 1:], axis=-1), -1, 1)).sum(axis=1)
+    for frame in np.flatnonzero(turns > TURNED).tolist():
+        points, along = _points(line[frame], rod)
+        pairs = cKDTree(points).query_pairs(2 * (1 - DEEP) * rod.radius, output_type="ndarray")
+        if np.any(along[pairs[:, 1]] - along[pairs[:, 0]] > np.pi * rod.radius):
+            return frame
+    return None
+
+
+def beyond_a_cylinder(scenario: Scenario, positions: list[np.ndarray]) -> bool:
+    """Return whether a rod touches where a cylinder has already ended: those of scenes have no ends."""
+    for flat, obstacle in obstacles_of(scenario):
+        if flat:
+            continue
+        for rod, nodes in zip(scenario.rods, positions, strict=True):
+            offset = nodes - np.asarray(obstacle.center)
+            along = offset @ obstacle.unit_axis
+            across = np.linalg.norm(offset - along[..., None] * obstacle.unit_axis, axis=-1)
+            if np.any((np.abs(along) > obstacle.length / 2) & (across < obstacle.radius + rod.radius)):
+                return True
+    return False
+
+
+def _weight(rod: Rod, scenario: Scenario) -> float:
+    """Return the weight of a rod in N/m."""
+    gravity = float(np.linalg.norm(scenario.gravity))
+    return rod.material.density * rod.area * (gravity if gravity else EARTH)
+
+
+def _damping(rod: Rod, scenario: Scenario) -> float:
+    """Return the damping of contact in s/m."""
+    gravity = float(np.linalg.norm(scenario.gravity))
+    return SOFT / np.sqrt((gravity if gravity else EARTH) * rod.radius) if scenario.quasi_static else 0.0
+
+
+def _starts(first: Rod, second: Rod) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lines of two rods as they start, as the only frame (1, points, 3) of each, in m."""
+    return np.asarray([first.centerline], dtype=float), np.asarray([second.centerline], dtype=float)
+
+
+def _gaps(first: Rod, second: Rod, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the distances (frames,) in m of the surfaces of two rods along lines (frames, points, 3).
+
+    They are negative where rods pass into each other; in frames in which boxes about them are apart, of the boxes.
+    """
+    between = np.maximum(one.min(axis=1) - other.max(axis=1), other.min(axis=1) - one.max(axis=1))
+    gaps = np.linalg.norm(np.maximum(0, between), axis=-1) - first.radius - second.radius
+    for k in np.flatnonzero(gaps < 0).tolist():
+        tree = cKDTree(_points(one[k], first)[0])
+        gaps[k] = tree.query(_points(other[k], second)[0])[0].min() - first.radius - second.radius
+    return gaps
+
+
+def _travel(line: np.ndarray) -> np.ndarray:
+    """Return how far a line (frames, points, 3) moves at most from each frame to the next, (frames - 1,) in m."""
+    return np.linalg.norm(np.diff(line, axis=0), axis=-1).max(axis=1)
+
+
+def _within_reach(gaps: np.ndarray, travels: np.ndarray) -> np.ndarray:
+    """Return whether a gap in a frame or the next one is less than what both rods move between them, (frames - 1,)."""
+    return np.minimum(gaps[:-1], gaps[1:]) < travels
+
+
+def _between(first: Rod, second: Rod, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the vector (3,) between the points of two lines (points, 3) that are closest, in m."""
+    points, others = _points(one, first)[0], _points(other, second)[0]
+    distance, nearest = cKDTree(others).query(points)
+    at = int(np.argmin(distance))
+    return points[at] - others[nearest[at]]
+
+
+def _points(line: np.ndarray, rod: Rod) -> tuple[np.ndarray, np.ndarray]:
+    """Return points on a line (points, 3), a part of the rod's radius apart, and the way to each along it, in m."""
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    at = np.linspace(0, along[-1], 1 + int(np.ceil(along[-1] / (FINE * rod.radius))))
+    return np.stack([np.interp(at, along, line[:, d]) for d in range(3)], axis=1), at
