@@ -135,6 +135,7 @@ def everything() -> fu.Scene:
     scene.event("low", quantity="B.position.y", value=-2)
     scene.fluid("air", density=1.2, velocity=(3, 0, 0))
     scene.drag("rope", fluid="air", normal=1.2, name="gust")
+    scene.crossing("rope", "B", at=(0, 0.5, 0), axis=(0, 0, 1), length=0.2, stiffness=1e3, name="touch")
     return scene
 
 
@@ -172,6 +173,8 @@ OTHERS = {
               "profile": fu.PowerProfile(exponent=0.2, reference_height=10)},
     "drag": {"on": "hook", "fluid": "air", "normal": 1.0, "tangential": 0.01, "diameter": 0.03, "displaced_area": 0.0,
              "name": "x"},
+    "crossing": {"a": "hook", "b": "A", "at": (0, 0.6, 0), "axis": (0, 1, 1), "length": 0.3, "radius": 0.02,
+                 "stiffness": 2e3, "exponent": 1.5, "damping": 0.1, "side": (0, 1, 0), "name": "x"},
     "event": {"name": "x", "quantity": "B.position.x", "value": 1.0, "direction": "rising", "action": "stop"},
 }
 """Another value for fields, by the kind of the part."""

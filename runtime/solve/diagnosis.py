@@ -6,6 +6,7 @@ import numpy as np
 
 from ..engine import Engine
 from ..integrators import INTEGRATORS, stable_at
+from ..model.crossings import CrossingModel
 from ..model.model import CableModel, Model, SlideModel
 from ..model.redundant_constraints import redundant
 from ..parts.scene_data import SceneData
@@ -64,9 +65,13 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
             "lost_rider": f"{where} does not find its point on the cable any more",
             "not_finite": f"{where} diverges",
             "self_locking": f"friction is self-locking at {where}: the larger it is, the harder it presses the rider "
-                            "on the cable"}[cause]
+                            "on the cable",
+            "parallel": f"{where} finds no closest points: the lines are parallel where they are near each other, or "
+                        "one of them winds around the other"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
+    if cause == "parallel":
+        return f"no contact force is known at {when}: {what}; {KEPT}. Keep them at an angle: a crossing has one point"
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif cause == "self_locking":
@@ -98,6 +103,8 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
     """Return what a dof is of, or what a coupling of this number is."""
     if coupling is not None:
         failed = model.couplings[coupling]
+        if isinstance(failed, CrossingModel):
+            return f'crossing "{failed.name}"'
         assert isinstance(failed, SlideModel), "slides alone have coordinates of their own"
         return f'slide "{failed.name}" on cable "{model.cables[failed.cable].name}"'
     if (found := _node(model, dof)) is not None:

@@ -19,13 +19,18 @@ void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points
                               &out->dissipated);
 }
 
+int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const fu_crossing_contact *contact)
+{
+    return fu_dot(3, state->numbers + crossing->base.numbers + FU_CROSSING_NORMAL, contact->normal) < 0.0;
+}
+
 /* Makes the force on the first line; the closest points, and what the contact tells. Not a number where there are no such points. */
 static void contact_force(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *points,
                           fu_crossing_contact *contact, double force[3])
 {
     fu_find_closest(model, crossing, state, points);
     fu_crossing_contact_at(crossing, points, contact);
-    if (!points->found) contact->force = NAN;
+    if (!points->found || fu_crossing_swung(crossing, state, contact)) contact->force = NAN;
     for (int d = 0; d < 3; ++d) force[d] = points->touches ? contact->force * contact->normal[d] : 0.0;
 }
 
@@ -190,9 +195,14 @@ static double lost_in_step(const fu_model *model, const fu_coupling *coupling, c
 static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     fu_closest_points points;
+    fu_crossing_contact contact;
     double *numbers = state->numbers + coupling->numbers;
     fu_find_closest(model, crossing_of(coupling), state, &points);
-    if (points.found) memcpy(numbers + FU_CROSSING_S, points.s, sizeof points.s);
+    fu_crossing_contact_at(crossing_of(coupling), &points, &contact);
+    if (points.found && !fu_crossing_swung(crossing_of(coupling), state, &contact)) {
+        memcpy(numbers + FU_CROSSING_S, points.s, sizeof points.s);
+        memcpy(numbers + FU_CROSSING_NORMAL, contact.normal, sizeof contact.normal);
+    }
     numbers[FU_CROSSING_LEFT_BEHIND] = 0.0;
 }
 
@@ -202,11 +212,11 @@ static void reset(const fu_coupling *coupling, fu_state *state)
     memcpy(state->numbers + coupling->numbers + FU_CROSSING_S, crossing->start, sizeof crossing->start);
 }
 
-/* In statics lines touch where they penetrate. */
+/* In statics lines touch where they penetrate; where that is not known, so is no force. */
 static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     carry(model, coupling, state);
-    state->flags[coupling->flags] = fu_crossing_margin(model, crossing_of(coupling), state) > 0.0;
+    state->flags[coupling->flags] = !(fu_crossing_margin(model, crossing_of(coupling), state) <= 0.0);
 }
 
 static const char *const role[] = {"crossing", 0};
