@@ -700,10 +700,10 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(planar_drag_on_point, a[0], a[1], out[0], out[1]) \
     X(crossing_closest, a[0], a[1], a[2], out[0]) \
-    X(crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4]) \
+    X(crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(planar_crossing_closest, a[0], a[1], a[2], out[0]) \
-    X(planar_crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4]) \
+    X(planar_crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(planar_crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(spring_energy, a[0], a[1], out[0]) \
     X(spring_dissipation, a[0], a[1], a[2], out[0]) \

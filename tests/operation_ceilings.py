@@ -238,6 +238,6 @@ CEILINGS = {
     "planar_resistance": {"force": 207},
     "drag": {"along_cable": 370, "on_point": 31},
     "planar_drag": {"along_cable": 201, "on_point": 20},
-    "crossing": {"closest": 54, "contact": 51, "force": 696},
-    "planar_crossing": {"closest": 12, "contact": 35, "force": 186},
+    "crossing": {"closest": 54, "contact": 84, "force": 1034},
+    "planar_crossing": {"closest": 12, "contact": 59, "force": 309},
 }

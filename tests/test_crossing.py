@@ -96,7 +96,8 @@ def test_deflection_and_force_at_rest(exponent):
     assert rest["contact.normal_force"] == pytest.approx(np.linalg.norm(rest["contact.force"]), rel=1e-12)
     assert rest["contact.penetration"] == pytest.approx(depth, rel=1e-9)
     wire_up = rest["head.position"][1] + RADIUS - depth
-    assert wire_up == pytest.approx(force * 5 * 15 / (TENSION * 20), rel=5e-3)  # the mesh rounds the kink: 4.2e-3, 1e-2 with 40
+    # the mesh rounds off the kink: 4.2e-3, with 40 elements 1e-2
+    assert wire_up == pytest.approx(force * 5 * 15 / (TENSION * 20), rel=5e-3)
     run = scene.run(duration=0.1, output_step=0.05, initial="equilibrium")
     assert np.abs(run["contact.normal_force"] - rest["contact.normal_force"]).max() < 1e-6
 
@@ -153,7 +154,8 @@ def own_unknowns_eliminated(matrix: np.ndarray, own: int) -> np.ndarray:
 def touching(dim: int, other: str, exponent: float) -> fu.Scene:
     """A wire of three elements that a turning body's bar, or another wire, has come into, off the nodes and moving."""
     scene = wire(3, dim=dim)
-    law = {"stiffness": STIFFNESS, "exponent": exponent, "damping": 0.3, "radius": 0.01}
+    law = {"stiffness": STIFFNESS, "exponent": exponent, "damping": 0.3, "radius": 0.01,
+           "friction": fu.Friction(coefficient=0.3, velocity=2.0)}
     if other == "cable":
         scene.cable("other", start=(6.1, -0.004, -5), end=(7, -0.005, 6), elements=3, element="cable12",
                     section=fu.Circle(radius=RADIUS), velocity=(0.3, 2, 0), rest_length=11.0,
@@ -185,6 +187,18 @@ def test_matrix_is_the_derivative_of_the_residual(dim, other, exponent):
                        for d in step * np.eye(n)[:-own]]
             errors.append(np.abs(np.array(columns).T[:-own] - matrix).max() / np.abs(matrix).max())
         assert min(errors) < 1e-9  # measured: 1e-12 to 1e-10
+
+
+@pytest.mark.parametrize("integrator", ["radau", "genalpha", "explicit"])
+def test_friction_is_along_the_slip_and_its_work_goes_to_heat(integrator):
+    scene = collector(20, 20.0, dim=3, friction=fu.Friction(coefficient=0.3, velocity=1.0))
+    run = scene.run(duration=0.1, output_step=0.002, integrator=integrator, tol=1e-6)
+    touching = run["contact.normal_force"] > 1.0
+    friction = run["contact.force"][touching, 0] / run["contact.normal_force"][touching]
+    # the wire is dragged along by F/(2 sqrt(EA rho A)) at most, 1.6e-5 m/s, and its slope is 3e-3
+    assert np.abs(friction - 0.3 * 20 / np.sqrt(401)).max() < 6e-3
+    assert run["energy.dissipated"][-1] > 0.2 * 5.0 * 20 * 0.1
+    assert np.abs(total(run) - total(run)[0]).max() < 1e-4 * run["energy.dissipated"][-1]
 
 
 def test_section_forces_jump_by_the_contact_force():
@@ -226,6 +240,7 @@ BAR = {"axis": None, "length": None}
     ({"exponent": 2.0}, "exponent must be 1 or 1.5"),
     ({"stiffness": 0.0}, "stiffness must be positive"),
     ({"damping": -1.0}, "damping must not be negative"),
+    ({"friction": fu.Friction(coefficient=0.1, model="stick")}, "takes the coefficient of friction and its velocity"),
 ])
 def test_bad_input_is_refused(changes, message):
     with pytest.raises(fu.SceneError, match=message):

@@ -174,7 +174,8 @@ OTHERS = {
     "drag": {"on": "hook", "fluid": "air", "normal": 1.0, "tangential": 0.01, "diameter": 0.03, "displaced_area": 0.0,
              "name": "x"},
     "crossing": {"a": "hook", "b": "A", "at": (0, 0.6, 0), "axis": (0, 1, 1), "length": 0.3, "radius": 0.02,
-                 "stiffness": 2e3, "exponent": 1.5, "damping": 0.1, "side": (0, 1, 0), "name": "x"},
+                 "stiffness": 2e3, "exponent": 1.5, "damping": 0.1,
+                 "friction": fu.Friction(coefficient=0.2), "side": (0, 1, 0), "name": "x"},
     "event": {"name": "x", "quantity": "B.position.x", "value": 1.0, "direction": "rising", "action": "stop"},
 }
 """Another value for fields, by the kind of the part."""

@@ -359,7 +359,8 @@ def crossing_scope(name: str) -> Scope:
     """Return the scope of lines that touch at their closest points."""
     family = families()[name]
     assert isinstance(family, CouplingFamily), f"{name} is no coupling"
-    law = [Symbol(s, "c", entry(k)) for k, s in enumerate((r"\rho", r"\sigma", "k_{1}", "k_{2}", r"\lambda", "p_{0}"))]
+    letters = (r"\rho", r"\sigma", "k_{1}", "k_{2}", r"\lambda", "p_{0}", r"\mu", "v_{0}")
+    law = [Symbol(s, "c", entry(k)) for k, s in enumerate(letters)]
     rows = [Symbol(latex, argument, row(k)) for argument, names in (
         ("t", (r"\mathbf{a}", r"\mathbf{b}")), ("k", (r"\boldsymbol{\kappa}_{a}", r"\boldsymbol{\kappa}_{b}")),
         ("w", (r"\dot{\mathbf{a}}", r"\dot{\mathbf{b}}"))) for k, latex in enumerate(names[:family.dim - 1])]

@@ -6,7 +6,7 @@
 #include "attachments.h"
 #include "coupling.h"
 
-enum { FU_LINES = 2, FU_CROSSING_LAW = 6, FU_LAW_DAMPING = 4 };
+enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4 };
 #define FU_INSTANT 1e-3 /* s: makes lengths of velocities, to compare them */
 
 /* The first line is a cable, the second another one, or a bar through the attachment's point; in the plane the bar is square to
@@ -49,7 +49,7 @@ typedef struct {
 
 /* What kernel->contact tells. */
 typedef struct {
-    double normal[3], depth[2], force, energy, dissipated; /* depth: penetration and its rate */
+    double normal[3], depth[2], size, force[3], energy, dissipated; /* depth: penetration and its rate */
 } fu_crossing_contact;
 
 /* Makes how a point moves with its n coordinates: dr = P dq, dt = T dq; the numbers of these for fu_add in `at`. */
