@@ -198,6 +198,21 @@ void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const f
     out->apart = fmax(apart - reach - crossing->law[0], 0.0);
 }
 
+void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
+{
+    const double *kept = state->numbers + crossing->base.numbers + FU_CROSSING_S;
+    fu_closest_points other;
+    int moved = 0;
+    fu_find_closest(model, crossing, state, out);
+    for (int line = 0; line < model->dim - 1; ++line)
+        moved |= fabs(out->s[line] - kept[line]) > size_of(model, crossing, line);
+    if (!moved) return;
+    other = *out;
+    search(model, crossing, state, other.s);
+    other.found = converge(model, crossing, state, &other);
+    if (other.found && fu_dot(model->dim, other.d, other.d) < fu_dot(model->dim, out->d, out->d)) *out = other;
+}
+
 void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state,
                       const fu_line_point *point, fu_line_moves *out)
 {

@@ -192,18 +192,24 @@ static double lost_in_step(const fu_model *model, const fu_coupling *coupling, c
     return from->flags[coupling->flags] ? 0.0 : from->numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND];
 }
 
-static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+/* Notes in the state where the closest points are, unless the lines have been parallel. */
+static void note(const fu_coupling *coupling, const fu_closest_points *points, fu_state *state)
 {
-    fu_closest_points points;
     fu_crossing_contact contact;
     double *numbers = state->numbers + coupling->numbers;
-    fu_find_closest(model, crossing_of(coupling), state, &points);
-    fu_crossing_contact_at(crossing_of(coupling), &points, &contact);
-    if (points.found && !fu_crossing_swung(crossing_of(coupling), state, &contact)) {
-        memcpy(numbers + FU_CROSSING_S, points.s, sizeof points.s);
+    fu_crossing_contact_at(crossing_of(coupling), points, &contact);
+    if (points->found && !fu_crossing_swung(crossing_of(coupling), state, &contact)) {
+        memcpy(numbers + FU_CROSSING_S, points->s, sizeof points->s);
         memcpy(numbers + FU_CROSSING_NORMAL, contact.normal, sizeof contact.normal);
     }
     numbers[FU_CROSSING_LEFT_BEHIND] = 0.0;
+}
+
+static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    fu_closest_points points;
+    fu_find_closest(model, crossing_of(coupling), state, &points);
+    note(coupling, &points, state);
 }
 
 static void reset(const fu_coupling *coupling, fu_state *state)
@@ -215,7 +221,9 @@ static void reset(const fu_coupling *coupling, fu_state *state)
 /* In statics lines touch where they penetrate; where that is not known, so is no force. */
 static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
-    carry(model, coupling, state);
+    fu_closest_points points;
+    fu_find_closest_anew(model, crossing_of(coupling), state, &points);
+    note(coupling, &points, state);
     state->flags[coupling->flags] = !(fu_crossing_margin(model, crossing_of(coupling), state) <= 0.0);
 }
 

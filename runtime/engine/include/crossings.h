@@ -60,6 +60,8 @@ typedef struct {
 
 /* crossing_points.c */
 void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
+/* Does the same at a state that may be far from the one that the numbers are of: of two finds it takes the closer one. */
+void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
 void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state,
                       const fu_line_point *point, fu_line_moves *out);
 
