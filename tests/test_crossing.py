@@ -247,6 +247,12 @@ def test_bad_input_is_refused(changes, message):
         crossed(**{name: value for name, value in changes.items()})
 
 
+def test_lines_that_overlap_as_drawn_are_told_of():
+    with pytest.warns(fu.FunicularWarning, match=r"the lines overlap by 0.1 m as drawn, where the contact force is 1000"):
+        scene = crossed(at=(0, 0.4, 0), radius=0.2)
+    assert "overlap" in scene.messages[-1]
+
+
 def test_what_does_not_go_in_the_plane_is_refused():
     scene = wire(4)
     scene.rigid_body("head", mass=1.0, inertia=(1, 1, 1), position=(5, -0.5, 0))
@@ -292,3 +298,22 @@ def test_ropes_that_cross(drop, force):
     rest = crossing_ropes(drop, 40).equilibrium(seek_stable=False)
     assert rest["contact.normal_force"] == pytest.approx(force, rel=1e-4)  # measured: 2.4e-5, 3.9e-5
     assert rest["contact.s"] == pytest.approx(0.5, abs=1e-9)
+
+
+def test_a_planar_scene_in_another_plane():
+    """That of the wire along z, with y up."""
+    plain = collector(10, 20.0, damping=0.05)
+    turned = fu.Scene((0, 0, 0))
+    along = np.array([[0, 0, -1], [0, 1, 0], [1, 0, 0]])  # x to z, z to -x
+    for part in plain.parts():
+        changes = {name: tuple(map(float, along @ np.array(value))) for name, value in part.entries().items()
+                   if name in ("start", "end", "position", "velocity", "axis", "value", "side") and np.ndim(value) == 1}
+        for name in ("a", "b"):
+            end = getattr(part, name, None)
+            if getattr(end, "at", None) is not None:
+                changes[name] = end.model_copy(update={"at": tuple(map(float, along @ np.array(end.at)))})
+        turned.add(part.remade(changes | ({"up": (0, 1, 0)} if part.kind == "cable" else {})))
+    runs = [scene.run(duration=0.05, output_step=0.01, tol=1e-6, integrator="explicit") for scene in (plain, turned)]
+    for name in ("contact.force", "contact.position", "head.position"):
+        assert np.abs(runs[0][name] @ along.T - runs[1][name]).max() < 1e-9 * np.abs(runs[0][name]).max(), name
+    assert np.abs(runs[0]["contact.s"] - runs[1]["contact.s"]).max() < 1e-9
