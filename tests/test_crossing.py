@@ -248,7 +248,8 @@ def test_bad_input_is_refused(changes, message):
 
 
 def test_lines_that_overlap_as_drawn_are_told_of():
-    with pytest.warns(fu.FunicularWarning, match=r"the lines overlap by 0.1 m as drawn, where the contact force is 1000"):
+    message = "the lines overlap by 0.1 m as drawn, where the contact force is 1000"
+    with pytest.warns(fu.FunicularWarning, match=message):
         scene = crossed(at=(0, 0.4, 0), radius=0.2)
     assert "overlap" in scene.messages[-1]
 
