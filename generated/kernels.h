@@ -1422,23 +1422,23 @@ void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_r
 /* crossing: lines that touch at their closest points in space */
 /* a step of Newton's method to the closest points: d 3[m]; t 2x3[1]; k 2x3[1/m] -> step 2[m] */
 void crossing_closest(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
-/* penetration and contact force at closest points: d 3[m]; t 2x3[1]; u 3[m/s]; c 6[m, 1, N/m, N/m^1.5, s/m, m] -> n
- * 3[1]; p 2[m, m/s]; N 1[N]; U 1[J]; P 1[W] */
-void crossing_contact(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *U, fu_real *P);
+/* penetration and contact force at closest points: d 3[m]; t 2x3[1]; u 3[m/s]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1,
+ * m/s] -> n 3[1]; p 2[m, m/s]; N 1[N]; f 3[N]; U 1[J]; P 1[W] */
+void crossing_contact(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *f, fu_real *U, fu_real *P);
 /* contact force, and its derivatives with the closest points moving: d 3[m]; t 2x3[1]; k 2x3[1/m]; w 2x3[1/s]; u
- * 3[m/s]; c 6[m, 1, N/m, N/m^1.5, s/m, m] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N]; F_u 3x3[N s/m]; s_d 2x3[1]; s_t
- * 2x6[m] */
+ * 3[m/s]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N]; F_u 3x3[N s/m]; s_d 2x3[1];
+ * s_t 2x6[m] */
 void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
 
 /* planar_crossing: lines that touch at their closest points in the plane */
 /* a step of Newton's method to the closest points: d 2[m]; t 1x2[1]; k 1x2[1/m] -> step 1[m] */
 void planar_crossing_closest(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
-/* penetration and contact force at closest points: d 2[m]; t 1x2[1]; u 2[m/s]; c 6[m, 1, N/m, N/m^1.5, s/m, m] -> n
- * 2[1]; p 2[m, m/s]; N 1[N]; U 1[J]; P 1[W] */
-void planar_crossing_contact(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *U, fu_real *P);
+/* penetration and contact force at closest points: d 2[m]; t 1x2[1]; u 2[m/s]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1,
+ * m/s] -> n 2[1]; p 2[m, m/s]; N 1[N]; f 2[N]; U 1[J]; P 1[W] */
+void planar_crossing_contact(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *f, fu_real *U, fu_real *P);
 /* contact force, and its derivatives with the closest points moving: d 2[m]; t 1x2[1]; k 1x2[1/m]; w 1x2[1/s]; u
- * 2[m/s]; c 6[m, 1, N/m, N/m^1.5, s/m, m] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N]; F_u 2x2[N s/m]; s_d 1x2[1]; s_t
- * 1x2[m] */
+ * 2[m/s]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N]; F_u 2x2[N s/m]; s_d 1x2[1];
+ * s_t 1x2[m] */
 void planar_crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
 
 /* surface: surfaces and contact with them in space */
@@ -1714,7 +1714,7 @@ typedef struct {
     const char *name;
     int dim;
     void (*closest)(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
-    void (*contact)(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *U, fu_real *P);
+    void (*contact)(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *f, fu_real *U, fu_real *P);
     void (*force)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
 } fu_crossing_kernels;
 

@@ -723,10 +723,10 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_drag_impulse_of_point, a[0], a[1], a[2], out[0], out[1]) \
     X(planar_drag_inertia_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
     X(crossing_closest, a[0], a[1], a[2], out[0]) \
-    X(crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4]) \
+    X(crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(planar_crossing_closest, a[0], a[1], a[2], out[0]) \
-    X(planar_crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4]) \
+    X(planar_crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(planar_crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(surface_flat, a[0], a[1], out[0], out[1]) \
     X(surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \

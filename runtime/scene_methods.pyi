@@ -275,6 +275,7 @@ class SceneMethods(SceneData):
         radius: float | None = None,
         exponent: float = 1.0,
         damping: float = 0.0,
+        friction: Friction | None = None,
         side: Numbers | None = None,
         name: str | None = None,
     ) -> Crossing:

@@ -240,4 +240,6 @@ CEILINGS = {
              "inertia_of_cable": 1038, "inertia_step": 166, "impulse_of_point": 105, "inertia_of_point": 705},
     "planar_drag": {"along_cable": 201, "on_point": 20, "on_foil": 65, "impulse_of_cable": 25, "inertia_of_cable": 454,
                     "inertia_step": 105, "impulse_of_point": 30, "inertia_of_point": 134},
+    "crossing": {"closest": 54, "contact": 84, "force": 1034},
+    "planar_crossing": {"closest": 12, "contact": 59, "force": 309},
 }

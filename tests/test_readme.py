@@ -134,12 +134,19 @@ def chosen_model(space):
     assert space["run"].scene.cables["strip"].elements == space["choice"].models["strip"].elements
 
 
+def collector(space):
+    run = space["run"]
+    assert run.events[0]["what"] == "came into contact" and run["contact.normal_force"].max() > 100
+    assert run["contact.s"][-1] - run["contact.s"][0] == pytest.approx(10, abs=0.1)
+
+
 AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "The model for a tolerance"): chosen_model,
               ("runtime/README.md", "Scenes"): first_scene,
               ("runtime/README.md", "Cables and beams"): unequal_elements,
               ("runtime/README.md", "Wind and water"): towed_line,
               ("runtime/README.md", "Joints and springs"): trolley,
+              ("runtime/README.md", "Cables that touch bars and cables"): collector,
               ("runtime/README.md", "Running a scene"): named_quantities,
               ("runtime/README.md", "Events"): events,
               ("runtime/README.md", "Sweeps"): sweeps,

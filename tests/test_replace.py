@@ -138,6 +138,7 @@ def everything() -> fu.Scene:
     scene.surface("bed", fu.Plane(point=(0, -5, 0)))
     scene.surface("side", fu.Plane(point=(0, -6, 0)))
     scene.contact("hook", "bed", name="landing")
+    scene.crossing("rope", "B", at=(0, 0.5, 0), axis=(0, 0, 1), length=0.2, stiffness=1e3, name="touch")
     return scene
 
 
@@ -178,6 +179,9 @@ OTHERS = {
     "surface": {"name": "floor", "shape": fu.HeightField(x=(0, 1), heights=(-7, -8)), "on": "B", "at": (0, -1, 0)},
     "contact": {"a": "rope", "b": "side", "stiffness": 1e4, "exponent": 1.5, "damping": 0.1, "friction": 0.2,
                 "tangential_stiffness": 1e5, "radius": 0.02, "name": "x"},
+    "crossing": {"a": "hook", "b": "A", "at": (0, 0.6, 0), "axis": (0, 1, 1), "length": 0.3, "radius": 0.02,
+                 "stiffness": 2e3, "exponent": 1.5, "damping": 0.1,
+                 "friction": fu.Friction(coefficient=0.2), "side": (0, 1, 0), "name": "x"},
     "event": {"name": "x", "quantity": "B.position.x", "value": 1.0, "direction": "rising", "action": "stop"},
 }
 """Another value for fields, by the kind of the part."""

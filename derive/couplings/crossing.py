@@ -9,12 +9,15 @@ where the lines pass through each other.
 The force on the first line is N n, with N = k p^e (1 + damping p') of the penetration p = radii - n.d: the law of Hunt
 & Crossley, J. Appl. Mech. 42 (1975) 440-445. k p^e is c_1 p + c_2 p sqrt(|p|), of which one coefficient is zero. It is
 odd in p, so that it is smooth across p = 0, where a run ends contact.
+
+Friction is Coulomb's, -mu N v/sqrt(v.v + v0^2) by the slip v: the part of the relative velocity of both lines'
+particles at the points that is square to n. Both forces act at the points on the axes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -22,7 +25,7 @@ import sympy as sp
 from ..codegen.program import Program, jacobian
 
 CROSSINGS = {3: "crossing", 2: "planar_crossing"}
-PENALTY = ("radii", "side", "linear", "root", "damping", "least")
+PENALTY = ("radii", "side", "linear", "root", "damping", "least", "friction", "v0")
 SOURCE = "Hunt & Crossley 1975; closest points by the implicit function theorem"
 
 
@@ -89,20 +92,25 @@ def _normal(p: Program, lines: _Lines, side: sp.Expr) -> np.ndarray:
     return p.vector("n", p.define("side_m", side * inverse) * square)
 
 
-def _law(p: Program, n: np.ndarray, d: np.ndarray, u: np.ndarray, c: np.ndarray) -> dict[str, sp.Expr]:
-    """Return penetration, its rate, the force k p^e without damping, and with it."""
-    radii, _, linear, root, damping, least = c
+def _law(p: Program, n: np.ndarray, d: np.ndarray, u: np.ndarray, c: np.ndarray) -> dict[str, Any]:
+    """Return penetration, its rate, the force k p^e without damping, and with it, what friction divides slip by."""
+    radii, _, linear, root, damping, least, friction, v0 = c
     depth = p.define("depth", radii - n.dot(d))
     rate = p.define("rate", -n.dot(u))
     size = p.define("root_p", sp.sqrt(p.define("size_p", sp.sqrt(depth * depth + least * least))))
     elastic = p.define("elastic", depth * (linear + root * size))
-    return {"depth": depth, "rate": rate, "elastic": elastic, "root": size,
-            "force": p.define("N_law", elastic * (1 + damping * rate))}
+    normal = p.define("N_law", elastic * (1 + damping * rate))
+    slip = p.vector("slip", u + rate * n)
+    speed = p.define("inv_speed", 1 / p.define("speed", sp.sqrt(slip.dot(slip) + v0 * v0)))
+    rub = p.define("rub", friction * normal * speed)
+    return {"depth": depth, "rate": rate, "elastic": elastic, "root": size, "normal": normal, "rub": rub, "slip": slip,
+            "force": p.vector("F", normal * n - rub * slip)}
 
 
 def _penalty(p: Program) -> np.ndarray:
-    return p.input("c", len(PENALTY), "m, 1, N/m, N/m^1.5, s/m, m",
-                   "sum of the radii, sign of the normal, coefficients of p and p^1.5, damping, what |p| is not below")
+    return p.input("c", len(PENALTY), "m, 1, N/m, N/m^1.5, s/m, m, 1, m/s",
+                   "sum of the radii, sign of the normal, coefficients of p and p^1.5, damping, what |p| is not below, "
+                   "coefficient of friction, speed at which it is 0.7 of its full value")
 
 
 def contact(dim: int) -> Program:
@@ -118,9 +126,12 @@ def contact(dim: int) -> Program:
     depth, linear, root = law["depth"], c[2], c[3]
     p.output("n", n, "1", "normal, from the second line to the first")
     p.output("p", [depth, law["rate"]], "m, m/s", "penetration, and its rate")
-    p.output("N", [law["force"]], "N", "size of the force")
+    p.output("N", [law["normal"]], "N", "size of the force along the normal")
+    p.output("f", law["force"], "N", "force on the first line, with friction")
     p.output("U", [depth * depth * (linear / 2 + sp.Rational(2, 5) * root * law["root"])], "J", "energy of k p^e")
-    p.output("P", [law["elastic"] * c[4] * law["rate"] ** 2], "W", "power that the damping dissipates")
+    slip = law["slip"]
+    p.output("P", [law["elastic"] * c[4] * law["rate"] ** 2 + law["rub"] * slip.dot(slip)], "W",
+             "power that damping and friction dissipate")
     return p
 
 
@@ -135,7 +146,7 @@ def force(dim: int) -> Program:
     p.stage("normal")
     n = _normal(p, lines, c[1])
     p.stage("law")
-    F = p.vector("F", _law(p, n, lines.d, u, c)["force"] * n)
+    F = _law(p, n, lines.d, u, c)["force"]
     p.stage("closest points: derivatives of the arc-lengths by d and by the slopes")
     gaps = [slope.dot(lines.d) for slope in t]
     moving = [*lines.d, *t.ravel()]

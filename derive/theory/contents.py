@@ -13,7 +13,8 @@ LEAD = ("Formulas are printed from the specs and programs that make the kernels,
         "Equation numbers are those of the paper: J.-H. Seo, I.-H. Jung, T.-W. Park, H. Sugiyama, A. A. Shabana, The "
         "Development of a Sliding Joint for Very Flexible Multibody Dynamics, 2005 (in Korean).")
 MAIN = {"element": "beam24", "law": "beam24_continuum", "slide": "slide_beam24_rigid", "body": "rigid",
-        "modal": "modal", "frame": "frame", "point_law": "spring", "resistance": "resistance", "drag": "drag"}
+        "modal": "modal", "frame": "frame", "point_law": "spring", "resistance": "resistance", "drag": "drag",
+        "crossing": "crossing"}
 """What the theory is printed for: the element and the rider of the paper."""
 
 
@@ -39,18 +40,22 @@ def theory() -> Document:
     composer.add("couplings/slide", MAIN)
     composer.add("couplings/resistance", MAIN)
     composer.add("couplings/drag", MAIN)
+    composer.add("couplings/crossing", MAIN)
     return composer.document
 
 
 CHAPTERS = {"element": "elements/elements", "slide": "couplings/slide", "body": "bodies/rigid", "modal": "bodies/modal",
             "joint": "couplings/joint_kind", "frame": "couplings/frame", "point_law": "couplings/point_law",
-            "resistance": "couplings/resistance", "drag": "couplings/drag"}
+            "resistance": "couplings/resistance", "drag": "couplings/drag",
+            "crossing": "couplings/crossing"}
 
 
 def chapter_of(family: Family) -> str:
     """Return the chapter about a family."""
     if family.role == "point_law" and "spring" in family.name:
         return "couplings/spring"
+    if family.name == "planar_crossing":
+        return "couplings/planar_crossing"
     if family.role != "law":
         return CHAPTERS[family.role]
     assert family.traits is not None

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..catalogue import families
-from ..codegen.family import Family, PointLawFamily
+from ..codegen.family import CouplingFamily, Family, PointLawFamily
 from ..codegen.program import Argument, Program
 from ..verify import numbers as verify_numbers
 from ..verify.samples import states
@@ -75,6 +75,11 @@ def matrix(v: np.ndarray) -> np.ndarray:
 def entry(*index: int) -> Callable[[np.ndarray], float]:
     """Return what takes one entry."""
     return lambda v: float(np.asarray(v)[index])
+
+
+def row(k: int) -> Callable[[np.ndarray], Any]:
+    """Return what takes one row as a column."""
+    return lambda v: column(np.asarray(v)[k])
 
 
 def entries(first: int, last: int) -> Callable[[np.ndarray], Any]:
@@ -350,8 +355,20 @@ def drag_scope(name: str) -> Scope:
                                     *(Symbol(s, "c_point", entry(k)) for k, s in enumerate(("c_{p}", "w_{p}")))))
 
 
+def crossing_scope(name: str) -> Scope:
+    """Return the scope of lines that touch at their closest points."""
+    family = families()[name]
+    assert isinstance(family, CouplingFamily), f"{name} is no coupling"
+    letters = (r"\rho", r"\sigma", "k_{1}", "k_{2}", r"\lambda", "p_{0}", r"\mu", "v_{0}")
+    law = [Symbol(s, "c", entry(k)) for k, s in enumerate(letters)]
+    rows = [Symbol(latex, argument, row(k)) for argument, names in (
+        ("t", (r"\mathbf{a}", r"\mathbf{b}")), ("k", (r"\boldsymbol{\kappa}_{a}", r"\boldsymbol{\kappa}_{b}")),
+        ("w", (r"\dot{\mathbf{a}}", r"\dot{\mathbf{b}}"))) for k, latex in enumerate(names[:family.dim - 1])]
+    return Scope(family, (Symbol(r"\mathbf{d}", "d", column), *rows, Symbol(r"\mathbf{u}", "u", column), *law))
+
+
 def scope(role: str, name: str) -> Scope:
     """Return the scope of a family, by its role."""
     return {"element": element_scope, "law": law_scope, "slide": slide_scope, "body": body_scope,
             "modal": modal_scope, "frame": frame_scope, "joint": joint_scope, "point_law": point_law_scope,
-            "resistance": resistance_scope, "drag": drag_scope}[role](name)
+            "resistance": resistance_scope, "drag": drag_scope, "crossing": crossing_scope}[role](name)

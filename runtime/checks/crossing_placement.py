@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
-from ..errors import SceneError, near
+from ..errors import FunicularWarning, SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.crossing import Crossing
 from ..parts.crossing_start import Start, radii, start_of
@@ -73,15 +75,21 @@ def _check_start(scene: SceneData, part: Crossing, start: Start, radius: float) 
     if part.side is None and abs(gap) <= EXACT * size:
         raise SceneError(part.where, f"the lines meet as drawn, at {show(_place(scene, part, start), 'm')}",
                          "give side, the direction in which a is of b, or draw them apart")
-    if part.side is None:
-        return
-    cosine = float(np.dot(part.side, start.normal)) / float(np.linalg.norm(part.side))
-    if abs(cosine) < LEAST_SINE:
+    side = start.d if part.side is None else np.array(part.side)
+    cosine = float(np.dot(side, start.normal)) / float(np.linalg.norm(side))
+    if part.side is not None and abs(cosine) < LEAST_SINE:
         raise SceneError(part.where, f"side {show(part.side)} is not across both lines",
                          f"give a direction such as {show(start.normal)} or its opposite")
-    if gap * cosine < -radius - EXACT * size:
+    overlap = radius - gap * float(np.sign(cosine))
+    if overlap > 2 * radius + EXACT * size:
         raise SceneError(part.where, f"the lines are on the other side of each other as drawn, {abs(gap):.6g} m apart",
                          "draw them on their side, or give the opposite side")
+    if overlap > EXACT * size:
+        message = (f"{part.where}: the lines overlap by {overlap:.6g} m as drawn, where the contact force is "
+                   f"{part.stiffness * overlap**part.exponent:.4g} N; draw them apart, or start with "
+                   'initial="equilibrium"')
+        scene.messages.append(message)
+        warnings.warn(message, FunicularWarning, stacklevel=4)
 
 
 def _place(scene: SceneData, part: Crossing, start: Start) -> np.ndarray:

@@ -60,10 +60,11 @@ def crossing_model(part: Crossing, scene: SceneData, attachments: AttachmentBuil
     radius = radii(scene, part)
     linear = part.exponent == 1
     law = (radius, sign_of(part, start.normal, start.d), part.stiffness * linear, part.stiffness * (not linear),
-           part.damping, LEAST_PENETRATION)
+           part.damping, LEAST_PENETRATION, *((0.0, 1.0) if part.friction is None
+                                              else (part.friction.coefficient, part.friction.velocity)))
     return CrossingModel(
         kernel=KERNELS[dim], cables=numbers, attachments=ends, axis=axis, low=(0.0, low),
         high=(of_lines[0].mesh.total, high), law=law, start=tuple(start.s),
         stiffness=part.stiffness * (1.0 if linear else math.sqrt(max(radius, 1e-3))), type="crossing",
         name=part.name or "", scale=[max(*masses, *(end.mass for end in ends), 0.0)] * (2 * dim - 1),
-        is_damped=part.damping > 0, follows_law=True)
+        is_damped=part.damping > 0 or part.friction is not None, follows_law=True)

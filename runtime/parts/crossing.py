@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar
 from pydantic import model_validator
 
 from .cable import Cable
+from .friction import Friction
 from .part import Part
 from .plane import across
 from .quantity import Quantity, of_time, vector_of_time
@@ -26,7 +27,8 @@ class Crossing(Part):
     scene the bar is square to the plane and has neither. Bar and cables are round: radius: in m, the distance of both
     axes at which they touch, the sum of the radii of the cables' sections if not given, where a bar has none.
     stiffness k (N/m, or N/m^1.5) and exponent e of the contact force ``k p^e`` at the penetration p: 1, or 1.5 after
-    Hertz; damping in s/m: the force is ``k p^e (1 + damping p')``. side: the direction in which a is of b, along the
+    Hertz; damping in s/m: the force is ``k p^e (1 + damping p')``. friction: its coefficient and velocity; it acts
+    along both lines, and is smooth in the speed of slip. side: the direction in which a is of b, along the
     ground's axes, as at the start if not given: the lines cannot pass through each other. Beyond the ends of cables and
     bars there is no contact. A crossing has one point of contact; of several possible ones the one that is closest at
     the start.
@@ -53,12 +55,16 @@ class Crossing(Part):
     stiffness: Annotated[float, positive("N/m")]
     exponent: Annotated[float, positive()] = 1.0
     damping: Annotated[float, not_negative("s/m")] = 0.0
+    friction: Friction | None = None
     side: Annotated[Vector | None, direction()] = None
 
     @model_validator(mode="after")
     def _is_of_two_lines(self) -> Crossing:
         if self.a == self.b:
             raise ValueError(f'is of the cable "{self.a}" with itself', "name two cables, or a cable and a body")
+        if self.friction is not None and (self.friction.sticks or self.friction.viscous or self.friction.rolling):
+            raise ValueError("takes the coefficient of friction and its velocity alone",
+                             'leave out viscous, rolling and model="stick"')
         if self.exponent not in EXPONENTS:
             raise ValueError(f"exponent must be 1 or 1.5, got {self.exponent:.9g}")
         return self

@@ -17,6 +17,9 @@ from .scene_data import SceneData
 SAMPLES = 4
 """Of an element, between which the closest points are looked for."""
 
+OPEN = 257
+"""Samples of a cable whose elements are still to be chosen."""
+
 ITERATIONS = 50
 """Of Gauss and Newton's method to the closest points."""
 
@@ -65,8 +68,8 @@ class _Line:
         self.point, self.slope = cable.point, cable.slope
 
     def samples(self) -> np.ndarray:
-        """Return arc-lengths of nodes and points between them, m."""
-        return self.cable.divided(SAMPLES)
+        """Return arc-lengths of nodes and points between them, m; evenly apart where it has no elements yet."""
+        return np.linspace(0.0, self.length, OPEN) if self.cable.is_open else self.cable.divided(SAMPLES)
 
 
 def start_of(scene: SceneData, part: Crossing) -> Start:

@@ -109,6 +109,7 @@ class CableLoads:
         self._slides()
         self._joints()
         self._point_forces()
+        self._crossings()
 
     def _add(self, cable: int, element: ArrayLike, x: ArrayLike, f: np.ndarray) -> None:
         of, at = (np.broadcast_to(value, self.times) for value in (element, x))
@@ -231,6 +232,19 @@ class CableLoads:
                 force = self.at.value(f"{between.name}.force")
                 self._on_end(between.attachments[0], force, None)
                 self._on_end(between.attachments[1], -force, None)
+
+    def _crossings(self) -> None:
+        """Add contact forces at closest points, with the opposite on the other cable."""
+        for crossing in self.model.crossings:
+            force = self.at.value(f"{crossing.name}.force")
+            for number, sign, quantity in zip(crossing.cables, (1.0, -1.0), ("s", "s_b"), strict=True):
+                if number < 0:
+                    continue
+                cable = self.model.cables[number]
+                s = np.clip(self.at.value(f"{crossing.name}.{quantity}"), 0.0, cable.mesh.total)
+                element, x = at_element(cable, s)
+                N = shape_on_axis(cable, element, x)
+                self._add(number, element, x, sign * N[:, :, None] * force[:, None, : self.dim])
 
     def _on_end(self, end: AttachmentModel, force: np.ndarray | None, moment: np.ndarray | None) -> None:
         """Add a force and a moment (T, 3) on what carries an attachment, where that is a cable."""

@@ -230,6 +230,8 @@ def _places(state: Results | RestState, cable: Cable, s: Any, over_time: bool) -
         places = jumps(scene, name)
         if not over_time:
             riders = [state[f"{slide.name}.s"] for slide in scene.slides.values() if slide.along == name]
+            riders += [state[f"{crossing.name}.{s_of}"] for crossing in scene.crossings.values()
+                       for of, s_of in ((crossing.a, "s"), (crossing.b, "s_b")) if of == name]
             places = np.append(places, riders)
         return np.unique(with_sides(cable, even(cable), places))[None], False
     slide = scene.slides.get(getattr(s, "name", s)) if isinstance(getattr(s, "name", s), str) else None

@@ -64,12 +64,16 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
             "lost_rider": f"{where} does not find its point on the cable any more",
             "not_finite": f"{where} diverges",
             "self_locking": f"friction is self-locking at {where}: the larger it is, the harder it presses the rider "
-                            "on the cable"}[cause]
+                            "on the cable",
+             "parallel": f"{where} finds no closest points: the lines are parallel where they are near each other, or "
+                         "one of them winds around the other"}[cause]
     is_slide = coupling is None or isinstance(model.couplings[coupling], SlideModel)
     if cause == "self_locking" and not is_slide:
         what = f"{where} changes to and fro at one instant, again and again"
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
+    if cause == "parallel":
+        return f"no contact force is known at {when}: {what}; {KEPT}. Keep them at an angle: a crossing has one point"
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif cause == "self_locking" and not is_slide:

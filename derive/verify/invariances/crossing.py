@@ -21,11 +21,13 @@ def crossing(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invarianc
         points = out["s_d"] @ (spin @ s["d"]) + out["s_t"] @ slopes
         yield "the force turns with the scene", relative(turned - spin @ F, F), 512 * EPS
         yield "closest points stay where the scene turns", float(np.max(np.abs(points))), 512 * EPS
-    yield "the force is along the normal", relative(F - told["N"][0] * n, F), 64 * EPS
+    yield "the force along the normal is that of the law", relative(F @ n - told["N"], F), 64 * EPS
+    without = k("contact", {**s, "c": np.where(np.arange(8) == 6, 0.0, s["c"])})["f"]
+    yield "without friction the force is along the normal", relative(without - told["N"][0] * n, F), 64 * EPS
     yield "the normal is square to the lines", float(np.max(np.abs(s["t"] @ n))), 64 * EPS
     yield "the points are closest: no step is left", float(np.max(np.abs(k("closest", s)["step"]))), 64 * EPS
     depth, rate = told["p"]
     yield "way and penetration make the radii", abs(float(np.linalg.norm(s["d"])) + depth - s["c"][0]), 64 * EPS
     elastic = k("contact", {**s, "u": 0 * s["u"]})["N"][0]
-    power = relative(told["N"] * rate - elastic * rate - told["P"], told["P"])
+    power = relative(-F @ s["u"] - elastic * rate - told["P"], told["P"])
     yield "the force's power is stored or dissipated", power, 256 * EPS

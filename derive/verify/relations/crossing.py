@@ -90,13 +90,24 @@ def crossing(family: CouplingFamily) -> list[Relation]:
         p = depth(s)[0]
         return np.array([s["c"][2] * p * p / 2 + s["c"][3] * p * p * p**0.5 * 2 / 5])
 
+    def friction(s: State) -> tuple[Any, Any]:
+        """Return the force of friction, and the slip."""
+        n = across(s)
+        slip = s["u"] - n * n.dot(s["u"])
+        return -s["c"][6] * size(s)[0] / (slip.dot(slip) + s["c"][7] ** 2) ** 0.5 * slip, slip
+
     def dissipated(s: State) -> Any:
         p, rate = depth(s)
-        return np.array([(s["c"][2] * p + s["c"][3] * p * p**0.5) * s["c"][4] * rate * rate])
+        rubs, slip = friction(s)
+        return np.array([(s["c"][2] * p + s["c"][3] * p * p**0.5) * s["c"][4] * rate * rate - rubs.dot(slip)])
+
+    def whole(s: State) -> Any:
+        return size(s)[0] * across(s) + friction(s)[0]
 
     told = {"n": ("side * t_a x t_b/|t_a x t_b|", across), "p": ("radii - n.d, and -n.u", depth),
             "N": ("k p^e (1 + damping p')", size), "U": ("k p^(e+1)/(e+1)", stored),
-            "P": ("k p^e damping p'^2", dissipated)}
+            "f": ("N n - mu N v/sqrt(v.v + v0^2)", whole),
+            "P": ("k p^e damping p'^2 + mu N v.v/sqrt(v.v + v0^2)", dissipated)}
     numbers = {"d": dim, "t": lines * dim}
     return [*(Relation("force", f"F_{name}", f"dF by {name}, closest points found anew", 1, force_by(name), n)
               for name, n in (*numbers.items(), ("u", dim))),

@@ -15,4 +15,4 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     square = np.array([t[0, 1], -t[0, 0]]) if dim == 2 else np.cross(*t)
     side = float(random.choice([-1, 1]))
     return {"d": 0.4 * side * square / np.linalg.norm(square), "t": t, "k": k, "w": w,
-            "u": 0.3 * random.normal(size=dim), "c": np.array([0.7, side, 5.0, 3.0, 0.2, 1e-30])}
+            "u": 0.3 * random.normal(size=dim), "c": np.array([0.7, side, 5.0, 3.0, 0.2, 1e-30, 0.3, 0.1])}

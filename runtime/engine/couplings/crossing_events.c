@@ -15,16 +15,32 @@ double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, co
     fu_closest_points points;
     fu_crossing_contact contact;
     fu_find_closest(model, crossing, state, &points);
+    if (!points.found) return points.apart > 0.0 ? -points.apart : NAN;
     fu_crossing_contact_at(crossing, &points, &contact);
+    if (fu_crossing_swung(crossing, state, &contact)) return NAN;
     const double damping = crossing->law[FU_LAW_DAMPING];
-    double margin = points.found ? contact.depth[0] : NAN;
+    double margin = contact.depth[0];
     /* a length, that of a millisecond's motion */
     if (damping > 0.0) margin = fmin(margin, (1.0 / damping + contact.depth[1]) * FU_INSTANT);
     for (int line = 0; line < FU_LINES; ++line) {
         margin = fmin(margin, points.s[line] - crossing->low[line]);
         margin = fmin(margin, crossing->high[line] - points.s[line]);
     }
-    return points.found ? margin : NAN;
+    return margin;
+}
+
+/* The penetration, of lines that are closest within their ends. */
+static int approach(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double value[2])
+{
+    const fu_crossing *crossing = crossing_of(coupling);
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    fu_find_closest(model, crossing, state, &points);
+    fu_crossing_contact_at(crossing, &points, &contact);
+    for (int k = 0; k < 2; ++k) value[k] = points.touches ? -contact.depth[k] : contact.depth[k];
+    for (int line = 0; line < FU_LINES; ++line)
+        if (!(points.s[line] >= crossing->low[line] && points.s[line] <= crossing->high[line])) return 0;
+    return points.found;
 }
 
 static int watches(const fu_coupling *coupling, fu_watch *out)
@@ -76,6 +92,7 @@ const fu_coupling_events fu_crossing_events = {
     .watched = watched,
     .sign = sign,
     .act = act,
+    .approach = approach,
     .can_act = can_act,
     .begin = begin,
 };

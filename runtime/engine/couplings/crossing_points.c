@@ -168,8 +168,8 @@ static double distance_from_second(const fu_model *model, const fu_crossing *cro
     return least;
 }
 
-/* Begins the search anew: where samples of both lines are closest. */
-static void search(const fu_model *model, const fu_crossing *crossing, const fu_state *state, double s[FU_LINES])
+/* Begins the search anew: where samples of both lines are closest. Returns their distance, m. */
+static double search(const fu_model *model, const fu_crossing *crossing, const fu_state *state, double s[FU_LINES])
 {
     const fu_cable *cable = &model->cables[crossing->cables[0]];
     const int n = SAMPLES * cable->n_elements;
@@ -184,6 +184,7 @@ static void search(const fu_model *model, const fu_crossing *crossing, const fu_
         s[0] = at;
         s[1] = other;
     }
+    return sqrt(least);
 }
 
 void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
@@ -192,8 +193,24 @@ void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const f
     for (int line = 0; line < FU_LINES; ++line) out->s[line] = state->numbers[crossing->base.numbers + FU_CROSSING_S + line];
     out->found = converge(model, crossing, state, out);
     if (out->found) return;
-    search(model, crossing, state, out->s);
+    const double apart = search(model, crossing, state, out->s), reach = size_of(model, crossing, 0) / SAMPLES;
     out->found = converge(model, crossing, state, out);
+    out->apart = fmax(apart - reach - crossing->law[0], 0.0);
+}
+
+void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
+{
+    const double *kept = state->numbers + crossing->base.numbers + FU_CROSSING_S;
+    fu_closest_points other;
+    int moved = 0;
+    fu_find_closest(model, crossing, state, out);
+    for (int line = 0; line < model->dim - 1; ++line)
+        moved |= fabs(out->s[line] - kept[line]) > size_of(model, crossing, line);
+    if (!moved) return;
+    other = *out;
+    search(model, crossing, state, other.s);
+    other.found = converge(model, crossing, state, &other);
+    if (other.found && fu_dot(model->dim, other.d, other.d) < fu_dot(model->dim, out->d, out->d)) *out = other;
 }
 
 void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state,

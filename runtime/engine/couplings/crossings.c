@@ -15,8 +15,13 @@ static const fu_crossing *crossing_of(const fu_coupling *coupling)
 void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out)
 {
     memset(out, 0, sizeof *out);
-    crossing->kernel->contact(points->d, points->t, points->u, crossing->law, out->normal, out->depth, &out->force, &out->energy,
-                              &out->dissipated);
+    crossing->kernel->contact(points->d, points->t, points->u, crossing->law, out->normal, out->depth, &out->size, out->force,
+                              &out->energy, &out->dissipated);
+}
+
+int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const fu_crossing_contact *contact)
+{
+    return fu_dot(3, state->numbers + crossing->base.numbers + FU_CROSSING_NORMAL, contact->normal) < 0.0;
 }
 
 /* Makes the force on the first line; the closest points, and what the contact tells. Not a number where there are no such points. */
@@ -25,8 +30,8 @@ static void contact_force(const fu_model *model, const fu_crossing *crossing, co
 {
     fu_find_closest(model, crossing, state, points);
     fu_crossing_contact_at(crossing, points, contact);
-    if (!points->found) contact->force = NAN;
-    for (int d = 0; d < 3; ++d) force[d] = points->touches ? contact->force * contact->normal[d] : 0.0;
+    if (!points->found || fu_crossing_swung(crossing, state, contact)) contact->size = NAN;
+    for (int d = 0; d < 3; ++d) force[d] = !points->touches ? 0.0 : isnan(contact->size) ? NAN : contact->force[d];
 }
 
 /* Adds the contact force to the left of the equations of motion. */
@@ -152,7 +157,7 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     fu_crossing_contact contact;
     (void)acceleration, (void)work;
     contact_force(model, crossing_of(coupling), state, &points, &contact, out);
-    out[3] = points.touches ? contact.force : 0.0;
+    out[3] = points.touches ? contact.size : 0.0;
     out[4] = contact.depth[0];
     memcpy(out + 5, points.s, sizeof points.s);
     memcpy(out + 7, points.line[0].r, sizeof points.line[0].r);
@@ -187,13 +192,24 @@ static double lost_in_step(const fu_model *model, const fu_coupling *coupling, c
     return from->flags[coupling->flags] ? 0.0 : from->numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND];
 }
 
+/* Notes in the state where the closest points are, unless the lines have been parallel. */
+static void note(const fu_coupling *coupling, const fu_closest_points *points, fu_state *state)
+{
+    fu_crossing_contact contact;
+    double *numbers = state->numbers + coupling->numbers;
+    fu_crossing_contact_at(crossing_of(coupling), points, &contact);
+    if (points->found && !fu_crossing_swung(crossing_of(coupling), state, &contact)) {
+        memcpy(numbers + FU_CROSSING_S, points->s, sizeof points->s);
+        memcpy(numbers + FU_CROSSING_NORMAL, contact.normal, sizeof contact.normal);
+    }
+    numbers[FU_CROSSING_LEFT_BEHIND] = 0.0;
+}
+
 static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     fu_closest_points points;
-    double *numbers = state->numbers + coupling->numbers;
     fu_find_closest(model, crossing_of(coupling), state, &points);
-    if (points.found) memcpy(numbers + FU_CROSSING_S, points.s, sizeof points.s);
-    numbers[FU_CROSSING_LEFT_BEHIND] = 0.0;
+    note(coupling, &points, state);
 }
 
 static void reset(const fu_coupling *coupling, fu_state *state)
@@ -202,11 +218,13 @@ static void reset(const fu_coupling *coupling, fu_state *state)
     memcpy(state->numbers + coupling->numbers + FU_CROSSING_S, crossing->start, sizeof crossing->start);
 }
 
-/* In statics lines touch where they penetrate. */
+/* In statics lines touch where they penetrate; where that is not known, so is no force. */
 static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
-    carry(model, coupling, state);
-    state->flags[coupling->flags] = fu_crossing_margin(model, crossing_of(coupling), state) > 0.0;
+    fu_closest_points points;
+    fu_find_closest_anew(model, crossing_of(coupling), state, &points);
+    note(coupling, &points, state);
+    state->flags[coupling->flags] = !(fu_crossing_margin(model, crossing_of(coupling), state) <= 0.0);
 }
 
 static const char *const role[] = {"crossing", 0};

@@ -53,6 +53,10 @@ struct fu_coupling_events {
     void (*passed_force)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                          double factor, double *f);
 
+    /* Makes a number that is below zero while contact stays as it is, and its rate, 1/s of it: where it may pass zero and come back
+     * within a step, the step is shortened. Returns whether there is one. Null: there is none. */
+    int (*approach)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double value[2]);
+
     /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);
     int (*begin)(fu_run *run, const fu_coupling *coupling);

@@ -6,11 +6,12 @@
 #include "attachments.h"
 #include "coupling.h"
 
-enum { FU_LINES = 2, FU_CROSSING_LAW = 6, FU_LAW_DAMPING = 4 };
+enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4 };
 #define FU_INSTANT 1e-3 /* s: makes lengths of velocities, to compare them */
 
 /* The first line is a cable, the second another one, or a bar through the attachment's point; in the plane the bar is square to
- * it and has no axis. Numbers of a state: the arc-lengths of the closest points; the flag: whether the lines touch. */
+ * it and has no axis. Numbers of a state: the arc-lengths of the closest points, the energy that
+ * contact had stored when it ended, J, and the normal; the flag: whether the lines touch. */
 typedef struct {
     fu_coupling base;
     const fu_crossing_kernels *kernel;
@@ -26,7 +27,7 @@ extern const fu_coupling_type fu_crossing_type;
 extern const fu_coupling_events fu_crossing_events;
 
 /* Of the numbers of a state. */
-enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NUMBERS };
+enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3 };
 
 /* A point of a line, and its derivatives by arc-length and in time. */
 typedef struct {
@@ -36,9 +37,11 @@ typedef struct {
     fu_attachment on;                      /* of a bar: its point */
 } fu_line_point;
 
-/* Both closest points, as the kernels take them; found: not zero where they are the closest. */
+/* Both closest points, as the kernels take them; found: not zero where they are the closest. Else apart: how far the lines are apart
+ * at least, by samples, m; 0 where they may touch. */
 typedef struct {
     int found, touches;
+    double apart;
     double s[FU_LINES];
     fu_line_point line[FU_LINES];
     double d[3], u[3], t[6], k[6], w[6];
@@ -46,7 +49,7 @@ typedef struct {
 
 /* What kernel->contact tells. */
 typedef struct {
-    double normal[3], depth[2], force, energy, dissipated; /* depth: penetration and its rate */
+    double normal[3], depth[2], size, force[3], energy, dissipated; /* depth: penetration and its rate */
 } fu_crossing_contact;
 
 /* Makes how a point moves with its n coordinates: dr = P dq, dt = T dq; the numbers of these for fu_add in `at`. */
@@ -57,13 +60,17 @@ typedef struct {
 
 /* crossing_points.c */
 void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
+/* Does the same at a state that may be far from the one that the numbers are of: of two finds it takes the closer one. */
+void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
 void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state,
                       const fu_line_point *point, fu_line_moves *out);
 
-/* crossing_events.c: how far the lines are in contact, m, negative where they are not; not a number where none are the closest. */
+/* crossing_events.c: how far the lines are in contact, m, negative where they are not; not a number where no points are
+ * the closest, though the lines may touch. */
 double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state);
 
-/* crossings.c */
+/* crossings.c; the second: whether the normal has swung round since the last state, as where the lines have been parallel. */
 void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out);
+int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const fu_crossing_contact *contact);
 
 #endif

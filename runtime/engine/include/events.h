@@ -26,6 +26,7 @@ extern const fu_event fu_no_event;
 fu_event fu_find_event(const fu_run *run, fu_event but);
 fu_event fu_late_event(fu_run *run);
 double fu_locate(fu_run *run, fu_event event, double h);
+int fu_has_lost_a_watch(fu_run *run);
 void fu_watch_now(fu_run *run, fu_event event);
 void fu_watch_anew(fu_run *run, int coupling);
 

@@ -237,6 +237,16 @@ void fu_watch_now(fu_run *run, fu_event event)
     }
 }
 
+/* Returns whether a coupling's watch is not a number: then it can go on no more, and the cause is noted. */
+int fu_has_lost_a_watch(fu_run *run)
+{
+    for (int k = 0; k < run->n_watches; ++k) {
+        if (run->watches[k].kind != FU_WATCH_COUPLING || !isnan(run->watched[k])) continue;
+        return fu_fail(run, FU_PARALLEL, run->now.v, run->watches[k].index);
+    }
+    return 0;
+}
+
 /* Gives couplings' watches the sign that they have now that a coupling (its number, or -1) has changed, and has just had the
  * value of one of them zero. */
 void fu_watch_anew(fu_run *run, int coupling)

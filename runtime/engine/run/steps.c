@@ -7,6 +7,7 @@
 #define ACCEPTED 2.0          /* of what is allowed: a step with a larger error is rejected */
 #define DIVISIONS 8           /* rejections of a fixed step that each step taken makes up for: so often it may be divided */
 #define MOST_TURNS 2          /* of a coupling on one boundary before a step is taken all the same: it rests there */
+#define MOST_DIPS 4           /* times that a step is shortened, to end where a contact may be in between */
 #define PASSED_BY 0.5         /* of the step that was wanted: what is wanted after one whose event was not found */
 
 /* Takes the step just made: `next` becomes `now`. */
@@ -185,12 +186,20 @@ int fu_step_towards(fu_run *run, double target)
 {
     const fu_event late = fu_late_event(run);
     trial t = {.want = is_adaptive(run) ? run->h : run->fixed_step};
+    int dips = 0;
+    if (fu_has_lost_a_watch(run)) return FU_NO_CONVERGENCE;
     if (late.kind) return fu_let_happen(run, late);
     run->keep_pieces = must_keep_pieces(run);
     run->keep_forces = must_keep_forces(run);
     for (;;) {
         if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
         if (!attempt(run, &t)) continue;
+        const double dip = dips < MOST_DIPS ? fu_time_of_dip(run, t.h) : 0.0;
+        if (dip > shortest(run)) {
+            t.want = dip;
+            ++dips;
+            continue;
+        }
         find_event(run, &t);
         const double turn = run->keep_pieces ? fu_time_of_turn(run, t.h) : 0.0;
         if (turn > shortest(run) && run->turned < MOST_TURNS) {

@@ -12,7 +12,7 @@ from ...parts.load import DistributedForce, Force, Load, Moment
 from ...parts.locations import ends_of, node_of
 from ...parts.modal_body import ModalBody
 from ...parts.support import Clamp, Motion, Support
-from ...parts.validation import Vector, show
+from ...parts.validation import Vector, show, vector3
 from ...rotations import product, rotate, turned_by
 from ...view.animation import Mark, Segment
 from .frames import Frames, along, moving, one_or_all, place
@@ -60,6 +60,10 @@ def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
     for name, slide in scene.slides.items():
         yield Mark(name, "slide", still(slide_place(frames, name)),
                    f'slide of {_on(slide.rider)} along "{slide.along}"', slide_reference(frames, name))
+    for name, crossing in scene.crossings.items():
+        if frames.has(f"{name}.position"):
+            other = "a bar" if crossing.at is not None else f'"{crossing.b}"'
+            yield Mark(name, "point", still(frames.value(f"{name}.position")), f'contact of "{crossing.a}" and {other}')
     for part in scene.parts():
         for end in (value for _, value in part if isinstance(value, Attachment)):
             if end.on is None:
@@ -107,7 +111,18 @@ def segments(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
         if _apart(place(frames, joint.a), place(frames, joint.b), size):
             yield _between(frames, refs, name, "joint", joint.a, joint.b)
     yield from levers(frames, refs, size)
+    yield from _bars(frames, refs)
     yield from _loads(frames, refs, size)
+
+
+def _bars(frames: Frames, refs: Frames) -> Iterator[Segment]:
+    """Yield the bars that cables cross; in the plane a bar is a point."""
+    for name, crossing in frames.scene.crossings.items():
+        if crossing.axis is None or crossing.length is None or crossing.at is None:
+            continue
+        way = crossing.length * np.array(crossing.axis) / np.linalg.norm(crossing.axis)
+        ends = (Attachment(on=crossing.b, at=vector3(np.array(crossing.at) + sign * way)) for sign in (-1, 1))
+        yield _between(frames, refs, name, "lever", *ends)
 
 
 def _between(frames: Frames, refs: Frames, name: str, kind: Literal["spring", "lever", "joint"], a: Attachment,
