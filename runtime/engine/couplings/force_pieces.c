@@ -131,6 +131,71 @@ static int sign(const fu_model *model, const fu_coupling *coupling, const fu_sta
     return -1;
 }
 
+/* The distance of the points at a state, and what tells of the force: the gap, its rate, its acceleration. */
+typedef struct {
+    double distance, gap[3], rate[3], acceleration[3];
+} look;
+
+static look look_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
+{
+    look l = {0.0};
+    for (int e = 0; e < 2; ++e) {
+        fu_attachment_state at;
+        fu_attachment_at(model, &between->attachments[e], state, 0.0, FU_POINT, &at);
+        for (int d = 0; d < between->dim; ++d) {
+            double acceleration = at.bias[d];
+            for (int i = 0; i < at.n; ++i) acceleration += at.P[d * at.n + i] * state->acceleration[at.at[i]];
+            l.gap[d] += e ? at.p[d] : -at.p[d];
+            l.rate[d] += e ? at.v[d] : -at.v[d];
+            l.acceleration[d] += e ? acceleration : -acceleration;
+        }
+    }
+    l.distance = norm(between->dim, l.gap);
+    return l;
+}
+
+/* Returns by how much the distance is beyond that of a bound to a side, m, and its rate. */
+static fu_course beyond(const fu_point_force *between, int bound, int side, const look *l)
+{
+    const double rate = fu_dot(between->dim, l->gap, l->rate) / l->distance;
+    return (fu_course){side * (l->distance - between->bounds[bound]), side * rate};
+}
+
+/* Returns how far the force of a piece is on the wrong side of nil, m, and its rate. */
+static fu_course wrong_sense(const fu_point_force *between, int piece, const look *l)
+{
+    const int dim = between->dim;
+    double force[3], by_gap[9], by_rate[9], change = 0.0;
+    between->law->tangent(fu_piece_parameters(between, piece), l->gap, l->rate, force, by_gap, by_rate);
+    for (int i = 0; i < dim; ++i)
+        for (int k = 0; k < dim; ++k)
+            change += l->gap[i] * (by_gap[i * dim + k] * l->rate[k] + by_rate[i * dim + k] * l->acceleration[k]);
+    const double along = fu_dot(dim, force, l->gap) / l->distance, rate = fu_dot(dim, l->gap, l->rate) / l->distance;
+    const double slope = (change + fu_dot(dim, force, l->rate) - along * rate) / l->distance;
+    const double unit = -between->senses[piece] * between->compliance;
+    return (fu_course){unit * along, unit * slope};
+}
+
+/* Each of the passages alone is smooth. A piece with a force is entered at its bound first, as its damper then has its sense. */
+static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+{
+    const fu_point_force *between = force_of(coupling);
+    const int piece = fu_force_piece(between, &run->now), sense = between->senses[piece];
+    const look from = look_at(run->model, between, &run->now), to = look_at(run->model, between, &run->next);
+    double first = 0.0;
+    (void)which;
+    for (int side = -1; side <= 1; ++side) {
+        const int bound = piece - (side < 0), by_sense = side == 0;
+        if (by_sense ? sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE : bound < 0 || bound >= between->n_pieces - 1) continue;
+        const double found = by_sense ? fu_dip(wrong_sense(between, piece, &from), wrong_sense(between, piece, &to), -1, h,
+                                               run->round_off)
+                                      : fu_dip(beyond(between, bound, side, &from), beyond(between, bound, side, &to), -1, h,
+                                               run->round_off);
+        if (found > 0.0 && (first == 0.0 || found < first)) first = found;
+    }
+    return first;
+}
+
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     const fu_point_force *between = force_of(coupling);
@@ -162,6 +227,7 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 const fu_coupling_events fu_point_force_events = {
     .watches = watches,
     .watched = watched,
+    .dip = dip,
     .sign = sign,
     .act = act,
     .can_act = can_act,
