@@ -1380,6 +1380,58 @@ void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *
 /* drag on a point, and its derivatives: w 2[m/s]; c_point 2[N s^2/m^2, m/s] -> f 2[N]; f_w 2x2[N s/m] */
 void planar_drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
 
+/* surface: surfaces and contact with them in space */
+/* distance from a plane, and its gradient: y 3[m]; normal 3[1] -> g 1[m]; g_y 3[1] */
+void surface_flat(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
+/* distance from a sphere or a cylinder, with its derivatives: y 3[m]; axis 3[1]; radius [m] -> g 1[m]; g_y 3[1];
+ * g_yy 3x3[1/m] */
+void surface_rounded(const fu_real *y, const fu_real *axis, fu_real radius, fu_real *g, fu_real *g_y, fu_real *g_yy);
+/* distance from a height field, with its derivatives: y 3[m]; h 10[m, ...] -> g 1[m]; g_y 3[1]; g_yy 3x3[1/m] */
+void surface_terrain(const fu_real *y, const fu_real *h, fu_real *g, fu_real *g_y, fu_real *g_yy);
+/* what contact presses with, of the exponent 1, with its derivatives: depth [m]; depth_rate [m/s]; law 2[N/m^e (a
+ * length), s/m]; depth_next [m] -> p 1[N (a length)]; p_d 1[N/m (a length)]; p_rate 1[N s/m (a length)]; p_e 1[N (a
+ * length)]; U 1[J (a length)]; mean 1[N (a length)] */
+void surface_push(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
+/* what contact presses with, of the exponent 3/2, with its derivatives: depth [m]; depth_rate [m/s]; law 2[N/m^e (a
+ * length), s/m]; depth_next [m] -> p 1[N (a length)]; p_d 1[N/m (a length)]; p_rate 1[N s/m (a length)]; p_e 1[N (a
+ * length)]; U 1[J (a length)]; mean 1[N (a length)] */
+void surface_push_hertz(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
+/* normal force of contact, and its derivatives: n 3[1]; H 3x3[1/m]; w 3[m/s]; press 3[N, N/m, N s/m (a length)] -> f
+ * 3[N (a length)]; f_y 3x3[N/m (a length)]; f_w 3x3[N s/m (a length)] */
+void surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, fu_real *f, fu_real *f_y, fu_real *f_w);
+/* friction that sticks, and its derivatives: n 3[1]; H 3x3[1/m]; x 3[m]; k_t [N/m (a length)] -> f 3[N (a length)];
+ * f_y 3x3[N/m (a length)]; t 3[m] */
+void surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t);
+/* friction that slides, and its derivatives: n 3[1]; H 3x3[1/m]; w 3[m/s]; press 3[N, N/m, N s/m (a length)]; x
+ * 3[m]; mu [1] -> f 3[N (a length)]; f_y 3x3[N/m (a length)]; f_w 3x3[N s/m (a length)] */
+void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w);
+
+/* planar_surface: surfaces and contact with them in the plane */
+/* distance from a plane, and its gradient: y 2[m]; normal 2[1] -> g 1[m]; g_y 2[1] */
+void planar_surface_flat(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
+/* distance from a sphere or a cylinder, with its derivatives: y 2[m]; axis 2[1]; radius [m] -> g 1[m]; g_y 2[1];
+ * g_yy 2x2[1/m] */
+void planar_surface_rounded(const fu_real *y, const fu_real *axis, fu_real radius, fu_real *g, fu_real *g_y, fu_real *g_yy);
+/* distance from a height field, with its derivatives: y 2[m]; h 4[m, ...] -> g 1[m]; g_y 2[1]; g_yy 2x2[1/m] */
+void planar_surface_terrain(const fu_real *y, const fu_real *h, fu_real *g, fu_real *g_y, fu_real *g_yy);
+/* what contact presses with, of the exponent 1, with its derivatives: depth [m]; depth_rate [m/s]; law 2[N/m^e (a
+ * length), s/m]; depth_next [m] -> p 1[N (a length)]; p_d 1[N/m (a length)]; p_rate 1[N s/m (a length)]; p_e 1[N (a
+ * length)]; U 1[J (a length)]; mean 1[N (a length)] */
+void planar_surface_push(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
+/* what contact presses with, of the exponent 3/2, with its derivatives: depth [m]; depth_rate [m/s]; law 2[N/m^e (a
+ * length), s/m]; depth_next [m] -> p 1[N (a length)]; p_d 1[N/m (a length)]; p_rate 1[N s/m (a length)]; p_e 1[N (a
+ * length)]; U 1[J (a length)]; mean 1[N (a length)] */
+void planar_surface_push_hertz(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
+/* normal force of contact, and its derivatives: n 2[1]; H 2x2[1/m]; w 2[m/s]; press 3[N, N/m, N s/m (a length)] -> f
+ * 2[N (a length)]; f_y 2x2[N/m (a length)]; f_w 2x2[N s/m (a length)] */
+void planar_surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, fu_real *f, fu_real *f_y, fu_real *f_w);
+/* friction that sticks, and its derivatives: n 2[1]; H 2x2[1/m]; x 2[m]; k_t [N/m (a length)] -> f 2[N (a length)];
+ * f_y 2x2[N/m (a length)]; t 2[m] */
+void planar_surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t);
+/* friction that slides, and its derivatives: n 2[1]; H 2x2[1/m]; w 2[m/s]; press 3[N, N/m, N s/m (a length)]; x
+ * 2[m]; mu [1] -> f 2[N (a length)]; f_y 2x2[N/m (a length)]; f_w 2x2[N s/m (a length)] */
+void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w);
+
 /* spring: spring and damper between two points in space */
 /* stored energy: parameters 3[N/m, N s/m, m]; gap 3[m] -> U 1[J] */
 void spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
@@ -1589,6 +1641,20 @@ typedef struct {
     void (*on_point)(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
 } fu_drag_kernels;
 
+/* What the engine needs of a surface. */
+typedef struct {
+    const char *name;
+    int dim;
+    void (*flat)(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
+    void (*rounded)(const fu_real *y, const fu_real *axis, fu_real radius, fu_real *g, fu_real *g_y, fu_real *g_yy);
+    void (*terrain)(const fu_real *y, const fu_real *h, fu_real *g, fu_real *g_y, fu_real *g_yy);
+    void (*push)(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
+    void (*push_hertz)(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
+    void (*pressing)(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, fu_real *f, fu_real *f_y, fu_real *f_w);
+    void (*sticking)(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t);
+    void (*sliding)(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w);
+} fu_surface_kernels;
+
 /* What the engine needs of a point_law. */
 typedef struct {
     const char *name;
@@ -1621,6 +1687,8 @@ typedef struct {
     const fu_resistance_kernels *resistances;
     int n_drags;
     const fu_drag_kernels *drags;
+    int n_surfaces;
+    const fu_surface_kernels *surfaces;
     int n_point_laws;
     const fu_point_law_kernels *point_laws;
 } fu_tables;
@@ -1647,6 +1715,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
     for (int i = 0; i < tables->n_drags && !strcmp(role, "drag"); ++i)
         if (!strcmp(tables->drags[i].name, name)) return &tables->drags[i];
+    for (int i = 0; i < tables->n_surfaces && !strcmp(role, "surface"); ++i)
+        if (!strcmp(tables->surfaces[i].name, name)) return &tables->surfaces[i];
     for (int i = 0; i < tables->n_point_laws && !strcmp(role, "point_law"); ++i)
         if (!strcmp(tables->point_laws[i].name, name)) return &tables->point_laws[i];
     return 0;

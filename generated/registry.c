@@ -240,6 +240,13 @@ static const fu_drag_kernels drags[] = {
     {"planar_drag", 2, planar_drag_along_cable, planar_drag_on_point},
 };
 
+static const fu_surface_kernels surfaces[] = {
+    {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz, surface_pressing,
+     surface_sticking, surface_sliding},
+    {"planar_surface", 2, planar_surface_flat, planar_surface_rounded, planar_surface_terrain, planar_surface_push,
+     planar_surface_push_hertz, planar_surface_pressing, planar_surface_sticking, planar_surface_sliding},
+};
+
 static const fu_point_law_kernels point_laws[] = {
     {"spring", 3, 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
     {"planar_spring", 2, 3, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
@@ -694,6 +701,22 @@ static const fu_point_law_kernels point_laws[] = {
     X(drag_on_point, a[0], a[1], out[0], out[1]) \
     X(planar_drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(planar_drag_on_point, a[0], a[1], out[0], out[1]) \
+    X(surface_flat, a[0], a[1], out[0], out[1]) \
+    X(surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
+    X(surface_terrain, a[0], a[1], out[0], out[1], out[2]) \
+    X(surface_push, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(surface_push_hertz, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(surface_pressing, a[0], a[1], a[2], a[3], out[0], out[1], out[2]) \
+    X(surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2]) \
+    X(surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2]) \
+    X(planar_surface_flat, a[0], a[1], out[0], out[1]) \
+    X(planar_surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
+    X(planar_surface_terrain, a[0], a[1], out[0], out[1], out[2]) \
+    X(planar_surface_push, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(planar_surface_push_hertz, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(planar_surface_pressing, a[0], a[1], a[2], a[3], out[0], out[1], out[2]) \
+    X(planar_surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2]) \
+    X(planar_surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2]) \
     X(spring_energy, a[0], a[1], out[0]) \
     X(spring_dissipation, a[0], a[1], a[2], out[0]) \
     X(spring_force, a[0], a[1], a[2], out[0]) \
@@ -744,5 +767,6 @@ const fu_tables fu_all = {
     20, joints,
     2, resistances,
     2, drags,
+    2, surfaces,
     6, point_laws
 };

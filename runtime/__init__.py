@@ -15,6 +15,7 @@ from .errors import (
 )
 from .many_scenes import run_many
 from .parts.cable import Cable
+from .parts.contact import Contact
 from .parts.drag import Drag
 from .parts.end_stops import Buffer, HardStop
 from .parts.event import Event
@@ -34,6 +35,8 @@ from .parts.slide import Slide
 from .parts.solids import Box, Cylinder, MeshShape, Sphere
 from .parts.spring import Spring
 from .parts.support import Clamp, Motion, Pin, Tie
+from .parts.surface import Surface
+from .parts.surface_shapes import Capsule, HeightField, Plane
 from .results.combination import combine
 from .results.run import Run
 from .scene import Scene
@@ -43,8 +46,10 @@ __all__ = [
     "Box",
     "Buffer",
     "Cable",
+    "Capsule",
     "Circle",
     "Clamp",
+    "Contact",
     "ConvergenceError",
     "Cylinder",
     "DistributedForce",
@@ -62,6 +67,7 @@ __all__ = [
     "GeneralSection",
     "HardStop",
     "Harmonic",
+    "HeightField",
     "Joint",
     "Material",
     "MeshShape",
@@ -69,6 +75,7 @@ __all__ = [
     "Moment",
     "Motion",
     "Pin",
+    "Plane",
     "PowerProfile",
     "Pulse",
     "Ramp",
@@ -82,6 +89,7 @@ __all__ = [
     "Slide",
     "Sphere",
     "Spring",
+    "Surface",
     "TableProfile",
     "TableSignal",
     "Tie",

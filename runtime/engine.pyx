@@ -194,7 +194,7 @@ cdef class Engine(Report):
             shape = (rows, array.items) if array.axes == 2 else (rows,)
             fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
         output = self.arrays.pop("output")
-        for kind in ("slide", "joint", "point_force", "drag"):
+        for kind in ("slide", "joint", "point_force", "drag", "contact"):
             self.arrays[kind] = self._outputs(kind, output)
         cdef int status = fu_start(run)
         if status:
@@ -305,6 +305,17 @@ cdef class Engine(Report):
         if fu_probe_mechanism(&self.run, &path[0], &left[0]):
             return None
         return self._own("joint", left, 6)
+
+    def contact_outputs(self):
+        """(contacts, 10): numbers of contacts with surfaces in the static state; see fu_contact_outputs."""
+        numbers = self._of("contact")
+        out = np.zeros((len(numbers), fu_coupling_type_of(b"contact").n_outputs))
+        cdef double[:, ::1] view = out
+        cdef int k, number
+        for k, number in enumerate(numbers):
+            c = self.couplings[number]
+            c.type.outputs(&self.model, c, &self.run.next, NULL, NULL, &view[k, 0])
+        return out
 
     def joint_forces(self):
         """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from .parts.cable import Cable
+from .parts.contact import Contact
 from .parts.drag import Drag
 from .parts.end_stops import Stop
 from .parts.event import Event
@@ -28,6 +29,7 @@ from .parts.slide import Slide
 from .parts.solids import Solid
 from .parts.spring import Spring
 from .parts.support import Clamp, Motion, Pin, Tie
+from .parts.surface import Surface
 
 Numbers: TypeAlias = Sequence[float] | np.ndarray
 Points: TypeAlias = Sequence[Numbers] | np.ndarray
@@ -259,6 +261,32 @@ class SceneMethods(SceneData):
         name: str | None = None,
     ) -> Drag:
         """Add a Drag, which see."""
+
+    def surface(
+        self,
+        name: str,
+        shape: Part | dict[str, Any],
+        *,
+        on: Named | None = None,
+        at: Numbers = (0.0, 0.0, 0.0),
+    ) -> Surface:
+        """Add a Surface, which see."""
+
+    def contact(
+        self,
+        a: Named,
+        b: Named,
+        *,
+        stiffness: float | None = None,
+        exponent: float = 1.0,
+        damping: float = 0.0,
+        friction: float = 0.0,
+        tangential_stiffness: float | None = None,
+        radius: float | None = None,
+        points: Points | None = None,
+        name: str | None = None,
+    ) -> Contact:
+        """Add a Contact, which see."""
 
     def event(
         self,

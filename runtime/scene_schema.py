@@ -14,13 +14,15 @@ from .parts.schemas import TABLE_OF
 from .parts.section import SHAPES
 from .parts.signal import FORMS
 from .parts.solids import SOLIDS
+from .parts.surface_shapes import SURFACE_SHAPES
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 """The newest one that editors of TOML know."""
 
 GROUPS: dict[str, tuple[str, Iterable[type[Part]]]] = {
     "section": ("shape", SHAPES.values()), "signal": ("form", FORMS.values()), "stop": ("stop", STOPS.values()),
-    "solid": ("kind", SOLIDS.values()), "profile": ("form", PROFILES.values())}
+    "solid": ("kind", SOLIDS.values()), "profile": ("form", PROFILES.values()),
+    "surface_shape": ("kind", SURFACE_SHAPES.values())}
 """What tables describe that say by an entry which of several parts they are: that entry, and the parts."""
 
 

@@ -52,7 +52,7 @@ OTHERS = (Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Soli
 TYPES = {
     "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points", "nodes": "Numbers",
     "AnySection": "Section", "AnySolid": "Solid", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
-    "AnyProfile": "Profile", "CableEnd": "str | Stop",
+    "AnyProfile": "Profile", "AnySurfaceShape": "Part | dict[str, Any]", "CableEnd": "str | Stop",
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Material": "Material", "Friction": "Friction",

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..kernels.libraries import kernels_of
 from .attachments import AttachmentModel
+from .contacts import ContactModel
 from .coupling import CouplingModel
 from .elimination import DENSE, BorderGraph, Elimination, dense
 from .joints import JointModel
@@ -106,6 +107,8 @@ class _Border:
         newton = self.system == NEWTON
         first, count = ((coupling.unknown, coupling.n_coordinates + coupling.n_forces) if newton
                         else (coupling.multiplier, coupling.n_multipliers))
+        if isinstance(coupling, ContactModel) and newton:
+            self._contact(coupling)
         if not count:
             return
         ends = [coupling.rider] if isinstance(coupling, SlideModel) else getattr(coupling, "attachments", [])
@@ -121,6 +124,14 @@ class _Border:
         if newton and isinstance(coupling, JointModel) and _ties_turns(coupling, self.model.dim):
             self._touch(places[0].groups, places[1])
             self._touch(places[1].groups, places[0])
+
+    def _contact(self, contact: ContactModel) -> None:
+        """Join the body that a surface is on to what touches it, by forces without unknowns of their own."""
+        on = self._end(contact.on[0])
+        places = [self.cables[contact.cable]] if contact.cable >= 0 else [self._end(contact.attachments[0])]
+        for place in places:
+            self._touch(on.groups, place)
+            self._touch(place.groups, on)
 
     def _bodies_of(self, end: AttachmentModel) -> set[int]:
         """Return the groups of the bodies that an attachment is on, a slide's rider among them."""

@@ -26,6 +26,7 @@ class CouplingModel:
     n_coordinates: int = 0
     scale: Sequence[float] | np.ndarray = ()
     n_multipliers: int = 0
+    n_numbers: int = 0
     reacts: bool = False
     is_damped: bool = False
     drive: int = -1

@@ -16,6 +16,7 @@ from ..kernels.mesh import Mesh
 from ..parts.body_shape import Shape
 from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
+from .contacts import ContactModel
 from .coupling import CouplingModel
 from .drags import DragModel
 from .elimination import Elimination
@@ -181,6 +182,7 @@ class Model:
     motions: list[MotionModel]
     loads: list[DeadLoadModel | LoadModel]
     drags: list[DragModel]
+    contacts: list[ContactModel]
     q: np.ndarray
     v: np.ndarray
     weight: np.ndarray
@@ -202,7 +204,7 @@ class Model:
     @property
     def couplings(self) -> list[CouplingModel]:
         """Return all couplings in the engine's order, which adds up what they give in it."""
-        return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags]
+        return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags, *self.contacts]
 
     def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return results of a part by quantity, in three dimensions, along the ground's axes."""
@@ -239,4 +241,5 @@ class Model:
                       | {joint.kernel for joint in self.joints}
                       | {slide.resistance for slide in self.slides if slide.resistance}
                       | {force.law for force in self.point_forces} | {drag.kernel for drag in self.drags}
+                      | {contact.kernel for contact in self.contacts}
                       | {body.modal_kernel for body in self.bodies if body.modes})

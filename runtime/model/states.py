@@ -9,6 +9,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ..parts.contact import Contact
 from ..parts.drag import Drag
 from ..parts.locations import ends_of, joined, node_of
 from ..parts.point_force import PointForce
@@ -16,6 +17,7 @@ from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..rotations import cross, rotate
 from .attachments import AttachmentModel
+from .contacts import ContactModel
 from .joints import JointModel
 from .loads import PointForceModel
 from .model import BodyModel, Model
@@ -134,6 +136,14 @@ def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
     return {"force": force, "length": length, "tension": np.sum(force * along, axis=1)}
 
 
+def contact_state(contact: ContactModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what results tell of a contact from its numbers (time, 10); see engine/couplings/contact_results.c."""
+    touches = numbers[:, 7] > 0 if contact.cable >= 0 else np.zeros(len(numbers), dtype=bool)
+    first, last = (np.where(touches, numbers[:, k], np.nan) for k in (8, 9))
+    return {"force": numbers[:, :3], "friction_force": numbers[:, 3:6], "penetration": numbers[:, 6],
+            "touching": numbers[:, 7], "first": first, "last": last}
+
+
 def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
     """Return (time, 3): where an attachment is."""
     if attachment.cable >= 0:
@@ -152,12 +162,13 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
 
 
 def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: np.ndarray, joints: np.ndarray,
-                      point_forces: np.ndarray, drags: np.ndarray) -> dict[str, dict[str, dict[str, np.ndarray]]]:
+                      point_forces: np.ndarray, drags: np.ndarray, contacts: np.ndarray,
+                      ) -> dict[str, dict[str, dict[str, np.ndarray]]]:
     """Return forces and moments of supports, ties, joints and forces between points, by group, label and quantity.
 
     Of a slide it is the moment that keeps its rider's axes. All arguments have the time first: q (time, n_q), reaction
     (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3),
-    drags (time, drags, 3). They are along the ground's axes.
+    drags (time, drags, 3), contacts (time, contacts, 10). They are along the ground's axes.
     """
     def reactions(supports: Iterable[Support]) -> dict[str, dict[str, np.ndarray]]:
         return {support.label: support_reaction(model, scene, support, reaction, q) for support in supports}
@@ -173,6 +184,8 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
         PointForce.group: {force.name: point_force_state(model, force, point_forces[:, k], q)
                            for k, force in enumerate(model.point_forces)},
         Drag.group: {drag.name: {"force": drags[:, k]} for k, drag in enumerate(model.drags)},
+        Contact.group: {contact.name: contact_state(contact, contacts[:, k])
+                        for k, contact in enumerate(model.contacts)},
     }
     return found if model.plane_axes is None else {
         group: {label: model.results(label, values) for label, values in of.items()} for group, of in found.items()}

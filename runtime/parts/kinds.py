@@ -1,6 +1,7 @@
 """The kinds of parts that a scene is made of; a further kind is one file beside this one and one entry here."""
 
 from .cable import Cable
+from .contact import Contact
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid
@@ -12,9 +13,10 @@ from .rigid_body import RigidBody
 from .slide import Slide
 from .spring import Spring
 from .support import Clamp, Motion, Pin, Tie
+from .surface import Surface
 
 KINDS: tuple[type[Part], ...] = (Cable, Pin, Clamp, Motion, Tie, RigidBody, ModalBody, Joint, Slide, Force,
-                                 DistributedForce, Moment, Spring, Fluid, Drag, Event)
+                                 DistributedForce, Moment, Spring, Fluid, Drag, Surface, Contact, Event)
 """In the order in which they can be added: a slide needs its cable and its body."""
 
 PARTS = {part.kind: part for part in KINDS}

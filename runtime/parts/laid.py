@@ -13,6 +13,7 @@ from ..rotations import conjugate, product, quaternion, rotate
 from .attachment import Attachment
 from .cable import Cable
 from .combined_signal import combined
+from .contact import Contact
 from .curves import shape_through
 from .drag import Drag
 from .event import Event
@@ -28,6 +29,7 @@ from .scene_data import SceneData
 from .signal import Constant, Signal
 from .slide import Slide
 from .support import Motion, Rotation
+from .surface import Surface
 
 S = TypeVar("S", bound=SceneData)
 
@@ -214,6 +216,26 @@ def _fluid(part: Fluid, axes: PlaneAxes, scene: SceneData) -> Fluid:
 @turned.register
 def _drag(part: Drag, axes: PlaneAxes, scene: SceneData) -> Drag:
     return part if part.at is None else part.model_copy(update={"at": _place(axes, part.on, part.at)})
+
+
+@turned.register
+def _surface(part: Surface, axes: PlaneAxes, scene: SceneData) -> Surface:
+    def vector(v: Any) -> Any:
+        return _direction(axes, v) if part.on is None else _of_body(axes, part.on, v)
+
+    shape = part.shape
+    changes: dict[str, Any] = {name: vector(getattr(shape, name)) for name in ("normal", "axis", "along", "up")
+                               if name in type(shape).model_fields}
+    changes |= {name: vector(getattr(shape, name)) for name in ("point", "at") if name in type(shape).model_fields}
+    at = _point(axes, part.at) if part.on is None else _place(axes, part.on, part.at)
+    return part.model_copy(update={"shape": shape.model_copy(update=changes), "at": at})
+
+
+@turned.register
+def _contact(part: Contact, axes: PlaneAxes, scene: SceneData) -> Contact:
+    if part.points is None:
+        return part
+    return part.model_copy(update={"points": tuple(_place(axes, part.a, point) for point in part.points)})
 
 
 @turned.register

@@ -9,6 +9,7 @@ from typing import Any, Self
 from ..errors import SceneError, check_renamed
 from .attachment import Attachment
 from .cable import Cable
+from .contact import Contact
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid
@@ -23,6 +24,7 @@ from .point_force import PointForce
 from .rigid_body import RigidBody
 from .slide import Slide
 from .support import Clamp, Motion, Pin, Support, Tie
+from .surface import Surface
 from .validation import vector
 
 RESERVED = ("energy", "time")
@@ -50,6 +52,8 @@ class SceneData:
     point_forces: dict[str, PointForce]
     fluids: dict[str, Fluid]
     drags: dict[str, Drag]
+    surfaces: dict[str, Surface]
+    contacts: dict[str, Contact]
     events: dict[str, Event]
     plane_axes: PlaneAxes | None = None
     """Of a scene that `laid.laid` made in the axes of a plane: what turns its results into the ground's axes."""

@@ -101,7 +101,8 @@ class _Motion:
         self.unknown = unknown[self.free]
         self.units = np.where(problem.weight > 0, problem.weight, np.inf)
         self.largest_load = float(np.max(np.abs(problem.load_vector() / self.units), initial=0.0))
-        self.has_energy = not any(isinstance(load, LoadModel) for load in self.model.loads) and not self.model.drags
+        self.has_energy = not (any(isinstance(load, LoadModel) for load in self.model.loads) or self.model.drags
+                               or any(contact.friction for contact in self.model.contacts))
         self.time = float(np.sqrt(problem.size / (np.linalg.norm(scene.gravity) or G)))
         self.step = FIRST_STEP * self.time
         self.report = Relaxation()

@@ -121,6 +121,7 @@ class RestState(NamedArrays):
     residual: float
     stability: Stability
     gravity_fraction: float
+    contact_outputs: np.ndarray
     heading: np.ndarray | None = field(default=None, repr=False)
     quantities: dict[str, np.ndarray] = field(default_factory=dict)
     path: list[RestState] = field(default_factory=list, repr=False)
@@ -139,7 +140,7 @@ class RestState(NamedArrays):
         scene = problem.scene.as_drawn
         state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
                     problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
-                    problem.fraction if problem.settings.scale_gravity else 1.0, heading)
+                    problem.fraction if problem.settings.scale_gravity else 1.0, engine.contact_outputs(), heading)
         state.quantities = state._quantities()
         state.path, state.layout = [state], layout(scene)
         return state
@@ -240,6 +241,6 @@ class RestState(NamedArrays):
                       model.results(slide.name, {"force": self.static_state["force"][k]}).items()}
         forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
                                    self.static_state["point_force"][None],
-                                   self.load_fraction * drag_forces(self.model, q)[None])
+                                   self.load_fraction * drag_forces(self.model, q)[None], self.contact_outputs[None])
         return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()
                         for name, value in values.items() if name != "residual"}

@@ -7,6 +7,7 @@ const fu_field fu_coupling_fields[] = {
     FU_FIELD(fu_coupling, n_forces, FU_INTEGER, 0),
     FU_FIELD(fu_coupling, n_multipliers, FU_INTEGER, 0),
     FU_FIELD(fu_coupling, multiplier, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, n_numbers, FU_INTEGER, 0),
     FU_FIELD(fu_coupling, reacts, FU_INTEGER, 0),
     FU_FIELD(fu_coupling, is_damped, FU_INTEGER, 0),
     FU_FIELD(fu_coupling, is_driven, FU_INTEGER, 0),
@@ -36,7 +37,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
         model->n_coordinates += c->n_coordinates;
         model->n_forces += c->n_forces;
         model->n_outputs += c->type->n_outputs;
-        model->n_numbers += c->type->n_numbers;
+        model->n_numbers += c->type->n_numbers + c->n_numbers;
         model->n_flags += c->type->n_flags;
         model->n_scratch += c->type->n_scratch;
         model->n_reacting += c->reacts;

@@ -111,6 +111,8 @@ cdef extern from "engine.h" nogil:
         const fu_field *fields
         int n_outputs
         const char *(*excess)(const fu_coupling *coupling)
+        void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                        const double *acceleration, const void *work, double *out)
     ctypedef struct fu_coupling:
         const fu_coupling_type *type
         int index, number, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output

@@ -29,6 +29,7 @@ typedef struct {
     int output;                    /* its first number in a row of output */
     int numbers, flags;            /* its own part of a state: the first of them in state->numbers, state->flags */
     int scratch;                   /* its own part of fu_accelerator.scratch: the first of it */
+    int n_numbers;                 /* of its own in a state beyond those that its type has */
     int reacts;                    /* not zero where it has a force that depends on the multipliers of eq 38 */
     int is_damped;                 /* not zero where it has a force that depends on velocities */
     int is_driven;                 /* not zero where a signal does work on it */

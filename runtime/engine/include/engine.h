@@ -23,6 +23,7 @@
 #include "checkpoint.h"
 #include "common.h"
 #include "constraints.h"
+#include "contacts.h"
 #include "coupling.h"
 #include "coupling_events.h"
 #include "couplings.h"
@@ -48,6 +49,7 @@
 #include "run.h"
 #include "slides.h"
 #include "state.h"
+#include "surfaces.h"
 #include "threads.h"
 #include "unknowns.h"
 

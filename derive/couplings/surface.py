@@ -1,0 +1,209 @@
+"""Surfaces that cables and bodies touch: distance of each shape with its derivatives, and the force of contact.
+
+Places y are those of a point of the axis of a cable, or of the centre of a body's sphere, from the shape's origin along
+its axes. The distance of a plane and of a round shape (sphere, cylinder) is exact. That of a terrain of the height h is
+the vertical one over sqrt(1 + h'^2), which is exact to first order at the surface; forces are along its exact gradient.
+
+Contact presses by p = k d^e (1 + c d'), with the depth d below the surface and e = 1 or 3/2 (Hertz): the law of Hunt &
+Crossley, J. Appl. Mech. 42 (1975) 440-445, whose damping makes no jump where contact begins. Friction is Coulomb's with
+a tangential spring from an anchor on the surface: elastic while it sticks, of the size of friction where it slides
+(return mapping, Wriggers, Computational Contact Mechanics, 2nd ed. 2006, section 5.2).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ..codegen.program import DirectionalDerivative, Program
+
+SURFACES = {3: "surface", 2: "planar_surface"}
+SOURCE = "Hunt & Crossley 1975; Wriggers 2006"
+PLACE = "the point from the shape's origin, along its axes"
+HEIGHTS = {2: ("h", "h_1", "h_11", "h_111"),
+           3: ("h", "h_1", "h_2", "h_11", "h_12", "h_22", "h_111", "h_112", "h_122", "h_222")}
+"""What a terrain's kernel takes of its height: derivatives along the first and the second horizontal axis."""
+
+
+def build(dim: int) -> list[Program]:
+    """Return the kernels in space or in the plane."""
+    return [*(make(dim) for make in (flat, rounded, terrain)), push(dim, hertz=False), push(dim, hertz=True),
+            *(make(dim) for make in (pressing, sticking, sliding))]
+
+
+def _program(dim: int, name: str, doc: str) -> Program:
+    return Program(f"{SURFACES[dim]}_{name}", doc, SOURCE)
+
+
+def flat(dim: int) -> Program:
+    """Return the kernel of the distance from a plane."""
+    p = _program(dim, "flat", "distance from a plane, and its gradient")
+    y = p.input("y", dim, "m", PLACE)
+    normal = p.input("normal", dim, "1", "unit normal of the plane")
+    p.stage("distance")
+    p.output("g", y.dot(normal), "m", "distance")
+    p.output("g_y", normal, "1", "gradient")
+    return p
+
+
+def rounded(dim: int) -> Program:
+    """Return the kernel of the distance from a sphere, about an axis of no length, or from a cylinder."""
+    p = _program(dim, "rounded", "distance from a sphere or a cylinder, with its derivatives")
+    y = p.input("y", dim, "m", PLACE)
+    axis = p.input("axis", dim, "1", "unit vector along the axis; zero for a sphere")
+    radius = p.input("radius", (), "m", "radius")
+    p.stage("distance")
+    w = p.vector("w", y - p.define("along", axis.dot(y)) * axis)
+    size = p.define("size", sp.sqrt(w.dot(w)))
+    inverse = p.define("inv_size", 1 / size)
+    n = p.vector("n", inverse * w)
+    p.output("g", size - radius, "m", "distance")
+    p.output("g_y", n, "1", "gradient")
+    p.output("g_yy", inverse * (np.eye(dim, dtype=int) - np.outer(axis, axis) - np.outer(n, n)), "1/m",
+             "second derivative")
+    return p
+
+
+def terrain(dim: int) -> Program:
+    """Return the kernel of the distance from a surface given by its height over horizontal axes; y[1] is up."""
+    p = _program(dim, "terrain", "distance from a height field, with its derivatives")
+    y = p.input("y", dim, "m", PLACE)
+    heights = p.input("h", len(HEIGHTS[dim]), "m, ...", "height there, and its derivatives " + ", ".join(HEIGHTS[dim]))
+    value = dict(zip(HEIGHTS[dim], heights, strict=True))
+    axes = {1: 0} if dim == 2 else {1: 0, 2: 2}  # the entries of y that the horizontal axes are
+
+    def along(k: int) -> dict[sp.Symbol, sp.Expr]:
+        """Return what an entry of y changes: itself, and heights where it is horizontal."""
+        known = {s: sp.Integer(s == y[k]) for s in y}
+        axis = next((a for a, at in axes.items() if at == k), None)
+        for name, symbol in value.items():
+            more = "h_" + "".join(sorted(name[2:] + str(axis)))
+            known[symbol] = value.get(more, sp.S.Zero) if axis is not None else sp.S.Zero
+        return known
+
+    p.stage("distance")
+    slopes = [value[f"h_{axis}"] for axis in axes]
+    slant = p.define("slant", sp.sqrt(1 + sum(slope * slope for slope in slopes)))
+    inverse = p.define("inv_slant", 1 / slant)
+    g = p.define("distance", (y[1] - value["h"]) * inverse)
+    p.stage("derivatives")
+    by = [DirectionalDerivative(p, f"d{k}", along(k)) for k in range(dim)]
+    gradient = p.vector("n", [d(g) for d in by])
+    second: list[list[sp.Expr]] = [[sp.S.Zero] * dim for _ in range(dim)]
+    for i in range(dim):
+        for j in range(i + 1):
+            second[i][j] = second[j][i] = p.define(f"n_{i}{j}", by[j](gradient[i]))
+    p.output("g", g, "m", "distance")
+    p.output("g_y", gradient, "1", "gradient")
+    p.output("g_yy", second, "1/m", "second derivative")
+    return p
+
+
+def push(dim: int, hertz: bool) -> Program:
+    """Return the kernel of the law of contact at a depth: what presses, what is stored, and both over a step."""
+    p = _program(dim, "push_hertz" if hertz else "push",
+                 f"what contact presses with, of the exponent {'3/2' if hertz else '1'}, with its derivatives")
+    depth = p.input("depth", (), "m", "depth d below the surface")
+    rate = p.input("depth_rate", (), "m/s", "its rate")
+    k, c = p.input("law", 2, "N/m^e (a length), s/m", "stiffness, damping")
+    later = p.input("depth_next", (), "m", "depth at the end of a step")
+    p.stage("force")
+    if hertz:
+        root, next_root = p.define("root", sp.sqrt(depth)), p.define("next_root", sp.sqrt(later))
+        elastic = p.define("spring", k * depth * root)
+        by_depth = p.define("stiffness", sp.Rational(3, 2) * k * root)
+        stored = sp.Rational(2, 5) * elastic * depth
+        # of (b^5 - a^5)/(b^2 - a^2), with the roots a and b of the depths
+        total = p.define("inv_sum", 1 / (root + next_root))
+        mean = sp.Rational(2, 5) * k * p.define("sum_4", later * later + later * next_root * root + later * depth
+                                                + next_root * root * depth + depth * depth) * total
+    else:
+        elastic, by_depth, stored = p.define("spring", k * depth), k, k * depth * depth / 2
+        mean = k * (depth + later) / 2
+    damped = p.define("damped", 1 + c * rate)
+    p.output("p", elastic * damped, "N (a length)", "what presses")
+    p.output("p_d", by_depth * damped, "N/m (a length)", "derivative by the depth")
+    p.output("p_rate", elastic * c, "N s/m (a length)", "derivative by its rate")
+    p.output("p_e", elastic, "N (a length)", "the part that is elastic")
+    p.output("U", stored, "J (a length)", "stored energy")
+    p.output("mean", mean, "N (a length)", "change of the stored energy over a step over that of the depth")
+    return p
+
+
+def _moving(p: Program, dim: int, press: sp.Symbol, n: np.ndarray, H: np.ndarray, w: np.ndarray, by_d: sp.Symbol,
+            by_rate: sp.Symbol, x: np.ndarray | None = None) -> tuple[list, list]:
+    """Return what differentiates by the place y and by the velocity w: n by H, what presses by depth and its rate."""
+    turned = p.vector("Hw", H @ w)
+    of_place, of_rate = [], []
+    for k in range(dim):
+        known = {n[i]: H[i, k] for i in range(dim)} | {press: -by_d * n[k] - by_rate * turned[k]}
+        if x is not None:
+            known |= {x[i]: sp.Integer(i == k) for i in range(dim)}
+        of_place.append(DirectionalDerivative(p, f"dy{k}", known))
+        of_rate.append(DirectionalDerivative(p, f"dw{k}", {press: -by_rate * n[k]}))
+    return of_place, of_rate
+
+
+def _inputs(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    n = p.input("n", dim, "1", "gradient of the distance")
+    H = p.input("H", (dim, dim), "1/m", "its second derivative")
+    w = p.input("w", dim, "m/s", "velocity of the point past the surface")
+    press = p.input("press", 3, "N, N/m, N s/m (a length)", "p, and its derivatives by the depth and by its rate")
+    return n, H, w, press
+
+
+def _outputs(p: Program, f: np.ndarray, by: tuple[list, list]) -> Program:
+    p.stage("derivatives")
+    f_y, f_w = (np.stack([d.array(f) for d in each], axis=-1) for each in by)
+    p.output("f", f, "N (a length)", "force on the point")
+    p.output("f_y", f_y, "N/m (a length)", "derivatives by its place")
+    p.output("f_w", f_w, "N s/m (a length)", "derivatives by its velocity")
+    return p
+
+
+def pressing(dim: int) -> Program:
+    """Return the kernel of the normal force."""
+    p = _program(dim, "pressing", "normal force of contact, and its derivatives")
+    n, H, w, (press, by_d, by_rate) = _inputs(p, dim)
+    p.stage("normal force")
+    by = _moving(p, dim, press, n, H, w, by_d, by_rate)
+    return _outputs(p, press * n, by)
+
+
+def _across(p: Program, dim: int, n: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Return the part of x across the normal, whose length need not be one."""
+    square = p.define("nn", n.dot(n))
+    return p.vector("t", x - p.define("along", n.dot(x)) * p.define("inv_nn", 1 / square) * n)
+
+
+def sticking(dim: int) -> Program:
+    """Return the kernel of the spring that friction is while it sticks."""
+    p = _program(dim, "sticking", "friction that sticks, and its derivatives")
+    n = p.input("n", dim, "1", "gradient of the distance")
+    H = p.input("H", (dim, dim), "1/m", "its second derivative")
+    x = p.input("x", dim, "m", "the point from its anchor")
+    k = p.input("k_t", (), "N/m (a length)", "stiffness")
+    p.stage("friction")
+    t = _across(p, dim, n, x)
+    f = p.vector("F", -k * t)
+    by = [DirectionalDerivative(p, f"dy{j}", {n[i]: H[i, j] for i in range(dim)}
+                                | {x[i]: sp.Integer(i == j) for i in range(dim)}) for j in range(dim)]
+    p.stage("derivatives")
+    p.output("f", f, "N (a length)", "force on the point")
+    p.output("f_y", np.stack([d.array(f) for d in by], axis=-1), "N/m (a length)", "derivatives by its place")
+    p.output("t", t, "m", "the part of x along the surface")
+    return p
+
+
+def sliding(dim: int) -> Program:
+    """Return the kernel of friction that slides: its size is that of what presses, against x along the surface."""
+    p = _program(dim, "sliding", "friction that slides, and its derivatives")
+    n, H, w, (press, by_d, by_rate) = _inputs(p, dim)
+    x = p.input("x", dim, "m", "the point from its anchor")
+    mu = p.input("mu", (), "1", "coefficient of friction")
+    p.stage("friction")
+    t = _across(p, dim, n, x)
+    size = p.define("size", sp.sqrt(t.dot(t)))
+    inverse = p.define("inv_size", 1 / size)
+    f = p.vector("F", -mu * press * inverse * t)
+    return _outputs(p, f, _moving(p, dim, press, n, H, w, by_d, by_rate, x))

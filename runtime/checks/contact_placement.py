@@ -1,0 +1,127 @@
+"""Checks of surfaces, and of contact with them, against the scene that they join."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..errors import SceneError, near
+from ..parts.cable import Cable
+from ..parts.contact import Contact
+from ..parts.modal_body import ModalBody
+from ..parts.rigid_body import RigidBody
+from ..parts.scene_data import SceneData
+from ..parts.section import Circle, Tube
+from ..parts.surface import Surface
+from ..parts.validation import show
+
+SUNK = 0.01
+"""Of the radius: what the weight sinks in by with the stiffness that is taken where none is given."""
+OVERLAP = 0.5
+"""Of the radius: a start deeper below the surface is refused."""
+
+
+def placed_surface(scene: SceneData, surface: Surface) -> Surface:
+    """Return the surface, sure to be on the ground or on a rigid body. Raises SceneError."""
+    if surface.on is None:
+        return surface
+    if surface.on not in scene.bodies:
+        what = "a cable" if surface.on in scene.cables else None
+        raise SceneError(surface.where, f'"{surface.on}" is {what}, not a body' if what else
+                         f'there is no body "{surface.on}"', near(surface.on, scene.bodies))
+    if isinstance(scene.bodies[surface.on], ModalBody):
+        raise SceneError(surface.where, f'modal_body "{surface.on}" cannot have a surface, which would not bend',
+                         "take a rigid body")
+    return surface
+
+
+def placed_contact(scene: SceneData, contact: Contact) -> Contact:
+    """Return the contact complete, sure to be of a cable or body with a surface, apart at the start.
+
+    Raises SceneError.
+    """
+    if contact.a in scene.surfaces and contact.b not in scene.surfaces:
+        contact = contact.model_copy(update={"a": contact.b, "b": contact.a})
+    if contact.b not in scene.surfaces:
+        raise SceneError(contact.where, f'there is no surface "{contact.b}"',
+                         near(contact.b, scene.surfaces) if scene.surfaces else
+                         'add one before: scene.surface("ground", fu.Plane())')
+    for other in scene.contacts.values():
+        if (other.a, other.b) == (contact.a, contact.b):
+            raise SceneError(contact.where, f'"{contact.a}" and "{contact.b}" have the {other.where} already',
+                             "leave one of them out")
+    surface = scene.surfaces[contact.b]
+    if contact.a in scene.cables:
+        contact = _of_cable(scene, contact, scene.cables[contact.a])
+        drawn = _along(scene.cables[contact.a])
+    elif contact.a in scene.bodies:
+        contact = _of_body(scene, contact, scene.bodies[contact.a], surface)
+        drawn = np.array([scene.bodies[contact.a].point(point) for point in contact.points or ()])
+    else:
+        raise SceneError(contact.where, f'there is no cable or body "{contact.a}"',
+                         near(contact.a, [*scene.cables, *scene.bodies]))
+    if contact.exponent != 1.0 and contact.friction and contact.tangential_stiffness is None:
+        raise SceneError(contact.where, "tangential_stiffness is missing, which the stiffness of the exponent 1.5 is "
+                         "not", "give it, in N/m (a length of a cable)")
+    _check_start(scene, contact, surface, drawn)
+    return contact
+
+
+def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
+    if contact.points is not None:
+        raise SceneError(contact.where, f'acts along cable "{cable.name}" and takes no points', "leave points out")
+    radius = contact.radius
+    if radius is None:
+        if not isinstance(cable.section, Circle | Tube):
+            raise SceneError(contact.where, "radius is missing, which the section of the cable does not tell",
+                             "give radius, in m: how far the surface is from the axis where they touch")
+        radius = cable.section.radius if isinstance(cable.section, Circle) else cable.section.outer_radius
+    return _with_stiffness(scene, contact, radius, cable.material.density * cable.section.area)
+
+
+def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, surface: Surface) -> Contact:
+    if isinstance(body, ModalBody):
+        raise SceneError(contact.where, f'modal_body "{body.name}" cannot touch surfaces', "take a rigid body")
+    if surface.on == body.name:
+        raise SceneError(contact.where, f'surface "{surface.name}" is on that body itself', "name another one")
+    points = contact.points if contact.points is not None else ((0.0, 0.0, 0.0),)
+    made = _with_stiffness(scene, contact, 0.0 if contact.radius is None else contact.radius, body.mass)
+    return made.completed({"points": points})
+
+
+def _with_stiffness(scene: SceneData, contact: Contact, radius: float, mass: float) -> Contact:
+    """Return the contact with its radius and, where none is given, the stiffness that the weight asks for."""
+    found: dict[str, Any] = {"radius": radius}
+    if contact.stiffness is None:
+        weight = mass * float(np.linalg.norm(scene.gravity))
+        if not weight > 0 or not radius > 0:
+            lacks = "gravity" if not weight > 0 else "a radius"
+            raise SceneError(contact.where, f"stiffness is missing, and without {lacks} there is none to begin with",
+                             "give stiffness, in N/m (a length of a cable)")
+        found["stiffness"] = weight / (SUNK * radius) ** contact.exponent
+    return contact.completed(found)
+
+
+def _along(cable: Cable) -> np.ndarray:
+    """Return (n, 3): points of a cable as drawn, in m."""
+    return np.array([cable.point(float(s)) for s in np.linspace(0, cable.length, 4 * len(cable.node_s) + 1)])
+
+
+def _check_start(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray) -> None:
+    """Raise SceneError where a start is too deep below the surface, by more than a radius allows, or what it sinks."""
+    assert contact.radius is not None and contact.stiffness is not None, f"{contact.where} is not complete"
+    on = scene.bodies.get(surface.on or "")
+    depth = contact.radius - surface.distance(on, drawn)
+    k = int(np.argmax(depth))
+    g = float(np.linalg.norm(scene.gravity))
+    if contact.a in scene.cables:
+        cable = scene.cables[contact.a]
+        weight = cable.material.density * cable.section.area * g
+    else:
+        weight = scene.bodies[contact.a].mass * g
+    allowed = max(OVERLAP * contact.radius, 10 * (weight / contact.stiffness) ** (1 / contact.exponent))
+    if depth[k] > allowed:
+        raise SceneError(
+            contact.where, f'"{contact.a}" starts {show(float(depth[k]), "m")} below the surface "{contact.b}", at '
+            f"{show(drawn[k], 'm')}", f"draw it higher, or the surface lower; {show(float(allowed), 'm')} is allowed")

@@ -1,0 +1,233 @@
+/* What contact with a surface stores and takes, what results tell of it, and the anchors of its friction. */
+#include "engine.h"
+
+#include <math.h>
+#include <string.h>
+
+
+static const fu_contact *of(const fu_coupling *coupling)
+{
+    return (const fu_contact *)coupling;
+}
+
+/* Calls `visit` with each point that touches. */
+typedef void visitor(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
+                     const fu_touch_point *point, void *context);
+
+static void visit_touching(const fu_model *model, const fu_contact *contact, const fu_state *state, visitor *visit, void *context)
+{
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point point;
+            fu_contact_place(model, contact, state, e, k, &point);
+            if (fu_contact_touches(model, contact, &on, &point)) visit(model, contact, &on, e, k, &point, context);
+        }
+    }
+}
+
+static void add_energy(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
+                       const fu_touch_point *point, void *context)
+{
+    (void)model, (void)on;
+    *(double *)context += fu_contact_weight(contact, element, number) * point->energy;
+}
+
+double fu_contact_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    double sum = 0.0;
+    visit_touching(model, of(coupling), state, add_energy, &sum);
+    return sum;
+}
+
+static void add_power(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
+                      const fu_touch_point *point, void *context)
+{
+    (void)model, (void)on;
+    *(double *)context += fu_contact_weight(contact, element, number) * point->power;
+}
+
+/* That of damping in the normal force; friction's is counted step by step. */
+double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work)
+{
+    double sum = 0.0;
+    (void)work;
+    if (coupling->is_damped) visit_touching(model, of(coupling), state, add_power, &sum);
+    return sum;
+}
+
+/* Returns the energy that friction takes from one state to another, J: the mean force times the way along the surface that the spring
+ * does not stretch by. */
+double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+{
+    const fu_contact *contact = of(coupling);
+    const int dim = model->dim;
+    double sum = 0.0;
+    fu_attachment_state on, on_next;
+    if (contact->law.friction == 0.0) return 0.0;
+    fu_surface_at(model, &contact->surface, from, &on);
+    fu_surface_at(model, &contact->surface, to, &on_next);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on, from, e, 0.0) && !fu_contact_may_touch(model, contact, &on_next, to, e, 0.0)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point now, next;
+            double f[3], g[3];
+            fu_contact_place(model, contact, from, e, k, &now);
+            fu_contact_place(model, contact, to, e, k, &next);
+            const int touched = fu_contact_touches(model, contact, &on, &now), touches = fu_contact_touches(model, contact, &on_next, &next);
+            if (!touched) memset(now.stretch, 0, sizeof now.stretch);
+            if (!touches) memset(next.stretch, 0, sizeof next.stretch);
+            if (!touched && !touches) continue;
+            for (int d = 0; d < dim; ++d) {
+                const double force = 0.5 * contact->law.tangential * (now.stretch[d] + next.stretch[d]);
+                f[d] = force;
+                g[d] = next.distance.y[d] - now.distance.y[d] - (next.stretch[d] - now.stretch[d]);
+            }
+            sum += fu_contact_weight(contact, e, k) * fu_dot(dim, f, g);
+        }
+    }
+    return sum;
+}
+
+void fu_contact_reset(const fu_coupling *coupling, fu_state *state)
+{
+    const fu_contact *contact = of(coupling);
+    if (coupling->n_numbers) memcpy(state->numbers + coupling->numbers, contact->anchors, sizeof(double) * (size_t)coupling->n_numbers);
+}
+
+/* Takes the anchors along: to where friction's springs begin as they are stretched; of what does not touch they are where it is. */
+void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    const fu_contact *contact = of(coupling);
+    const int dim = model->dim;
+    fu_attachment_state on;
+    if (contact->law.friction == 0.0) return;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e)
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point point;
+            fu_contact_place(model, contact, state, e, k, &point);
+            const int touches = fu_contact_touches(model, contact, &on, &point);
+            double *anchor = state->numbers + coupling->numbers + ((long)e * contact->n_points + k) * dim;
+            for (int d = 0; d < dim; ++d) anchor[d] = point.distance.y[d] - (touches ? point.stretch[d] : 0.0);
+        }
+}
+
+/* Sums over the points of a contact in their order, and the ends of what touches: what is between two points is linear. */
+typedef struct {
+    double *force, *friction, *penetration, *length, *first, *last;
+    double s, depth;
+    int begun;
+} tally;
+
+/* Takes a next point at s, this deep, into the length that touches, and its ends. */
+static void take_into_length(tally *sum, double s, double depth)
+{
+    if (!sum->begun) sum->depth = depth; /* from the start of the cable, s = 0 */
+    if (depth > 0.0 || sum->depth > 0.0) {
+        const double part = sum->depth > 0.0 && depth > 0.0 ? 0.0 : sum->depth / (sum->depth - depth);
+        const double cut = sum->s + part * (s - sum->s);
+        const double from = sum->depth > 0.0 ? sum->s : cut, to = depth > 0.0 ? s : part > 0.0 ? cut : s;
+        if (*sum->length == 0.0) *sum->first = from;
+        *sum->length += to - from;
+        *sum->last = to;
+    }
+    sum->s = s;
+    sum->depth = depth;
+    sum->begun = 1;
+}
+
+/* Makes the force and the friction on the cable or body, the largest depth, the length that touches (of a body: how many points do), and
+ * the arc-lengths of its ends. */
+void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
+                        const fu_accelerator *work, double *out)
+{
+    const fu_contact *contact = of(coupling);
+    const int n = fu_contact_elements(model, contact);
+    fu_attachment_state on;
+    tally sum = {.force = out, .friction = out + 3, .penetration = out + 6, .length = out + 7, .first = out + 8, .last = out + 9};
+    (void)acceleration, (void)work;
+    memset(out, 0, sizeof(double[FU_CONTACT_OUTPUTS]));
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < n; ++e) {
+        const int near = fu_contact_may_touch(model, contact, &on, state, e, 0.0);
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point point;
+            const double weight = fu_contact_weight(contact, e, k);
+            fu_contact_place(model, contact, state, e, k, &point);
+            const int touches = fu_contact_touches(model, contact, &on, &point);
+            if (contact->cable >= 0) take_into_length(&sum, contact->arc[(long)e * contact->n_points + k], point.depth);
+            if (!touches || !near) continue;
+            for (int d = 0; d < model->dim; ++d) {
+                sum.force[d] += weight * point.f[d];
+                sum.friction[d] += weight * point.friction[d];
+            }
+            *sum.penetration = fmax(*sum.penetration, point.depth);
+            if (contact->cable < 0) *sum.length += 1.0;
+        }
+    }
+    if (contact->cable >= 0) take_into_length(&sum, contact->length, sum.depth); /* to its end */
+}
+
+/* Returns how deep the deepest point is, m; negative off the surface, where elements that are farther than others do not count. */
+static double deepest(const fu_model *model, const fu_contact *contact, const fu_state *state)
+{
+    double depth = -INFINITY;
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on, state, e, -depth)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point point;
+            fu_distance at;
+            fu_contact_place(model, contact, state, e, k, &point);
+            fu_surface_distance(model->dim, &contact->surface, &on, point.r, &at);
+            depth = fmax(depth, contact->radius - at.g);
+        }
+    }
+    return depth;
+}
+
+static int watches(const fu_coupling *coupling, fu_watch *out)
+{
+    (void)coupling;
+    if (out) *out = (fu_watch){.which = 0, .direction = 0};
+    return 1;
+}
+
+static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)which;
+    return deepest(run->model, of(coupling), state);
+}
+
+static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)model, (void)which;
+    return state->flags[coupling->flags] ? 1 : -1;
+}
+
+static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    (void)which;
+    run->now.flags[coupling->flags] = side > 0;
+    *what = side > 0 ? "came into contact" : "lost contact";
+    return FU_RUNNING;
+}
+
+static int can_act(const fu_coupling *coupling)
+{
+    (void)coupling;
+    return 1;
+}
+
+static int begin(fu_run *run, const fu_coupling *coupling)
+{
+    run->now.flags[coupling->flags] = deepest(run->model, of(coupling), &run->now) > 0.0;
+    return FU_RUNNING;
+}
+
+const fu_coupling_events fu_contact_events = {
+    .watches = watches, .watched = watched, .sign = sign, .act = act, .can_act = can_act, .begin = begin};

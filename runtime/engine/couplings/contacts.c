@@ -1,0 +1,304 @@
+/* Contact of a cable, along its length, or of points of a body with a surface: residuals and their derivatives.
+ *
+ * Along a cable the force is integrated by quadrature on each element, points of which touch one after the other as the element comes
+ * down: the sum has no jumps. Elements that are off the surface as a whole are passed over by a sphere about them.
+ */
+#include "engine.h"
+
+#include <math.h>
+#include <string.h>
+
+static const fu_contact *of(const fu_coupling *coupling)
+{
+    return (const fu_contact *)coupling;
+}
+
+/* Returns into how many elements the points are divided; those of a body are one. */
+int fu_contact_elements(const fu_model *model, const fu_contact *contact)
+{
+    return contact->cable >= 0 ? model->cables[contact->cable].n_elements : 1;
+}
+
+double fu_contact_weight(const fu_contact *contact, int element, int point)
+{
+    return contact->cable >= 0 ? contact->weights[(long)element * contact->stride + point] : 1.0;
+}
+
+const double *fu_contact_shapes(const fu_contact *contact, int n, int element, int point)
+{
+    return contact->N + ((long)element * contact->stride + point) * n;
+}
+
+/* Returns the first dof of an element. */
+int fu_contact_first(const fu_model *model, const fu_contact *contact, int element)
+{
+    const fu_cable *cable = &model->cables[contact->cable];
+    return cable->first + element * cable->per_node;
+}
+
+/* Returns whether any point of an element may be nearer to the surface than `below` is beyond the radius. */
+int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+                         double below)
+{
+    if (contact->cable < 0) return 1;
+    const fu_cable *cable = &model->cables[contact->cable];
+    const int dim = model->dim, n = cable->coordinates / dim;
+    const double *q = state->q + fu_contact_first(model, contact, element);
+    double points[8 * 3], middle[3] = {0.0, 0.0, 0.0}, square = 0.0;
+    for (int k = 0; k < contact->n_hull; ++k)
+        for (int d = 0; d < dim; ++d) {
+            double *x = points + k * 3 + d;
+            *x = 0.0;
+            for (int i = 0; i < n; ++i) *x += contact->hull[((long)(contact->stride ? element : 0) * contact->n_hull + k) * n + i] * q[i * dim + d];
+            middle[d] += *x / contact->n_hull;
+        }
+    for (int k = 0; k < contact->n_hull; ++k) {
+        double sum = 0.0;
+        for (int d = 0; d < dim; ++d) sum += (points[k * 3 + d] - middle[d]) * (points[k * 3 + d] - middle[d]);
+        square = fmax(square, sum);
+    }
+    return fu_surface_clearance(dim, &contact->surface, on, middle, sqrt(square)) <= contact->radius + below;
+}
+
+/* Makes the place and the velocity of a point, and its anchor. */
+void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_state *state, int element, int point, fu_touch_point *out)
+{
+    const int dim = model->dim;
+    const long number = (long)element * contact->n_points + point;
+    out->anchor = contact->law.friction > 0.0 ? state->numbers + contact->base.numbers + number * dim : 0;
+    memset(out->r, 0, sizeof out->r);
+    memset(out->v, 0, sizeof out->v);
+    if (contact->cable < 0) {
+        fu_attachment_state end;
+        fu_attachment_at(model, &contact->attachments[point], state, 0.0, FU_POINT, &end);
+        memcpy(out->r, end.p, sizeof out->r);
+        memcpy(out->v, end.v, sizeof out->v);
+        return;
+    }
+    const fu_cable *cable = &model->cables[contact->cable];
+    const int n = cable->coordinates / dim;
+    const double *N = fu_contact_shapes(contact, n, element, point), *q = state->q + fu_contact_first(model, contact, element), *v = state->v + fu_contact_first(model, contact, element);
+    for (int k = 0; k < n; ++k)
+        for (int d = 0; d < dim; ++d) {
+            out->r[d] += N[k] * q[k * dim + d];
+            out->v[d] += N[k] * v[k * dim + d];
+        }
+}
+
+/* Adds P' f of a motion, times a factor, to what stands on the left of the equations of motion. */
+static void add_to(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum)
+{
+    for (int d = 0; d < dim; ++d)
+        for (int i = 0; i < n; ++i) sum[at[i]] += factor * P[d * n + i] * f[d];
+}
+
+/* Adds the force on a point at r, and its reaction on the body that the surface is on, to what stands on the left of the equations. */
+void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
+                          int point, const double *r, const double *force, double *f)
+{
+    const int dim = model->dim;
+    const double weight = fu_contact_weight(contact, element, point);
+    double P[3 * FU_ATTACHMENT_COORDINATES];
+    if (on->n) {
+        fu_surface_motion(dim, on, r, P);
+        add_to(dim, on->n, on->at, P, force, weight, f);
+    }
+    if (contact->cable >= 0) {
+        const int n = model->cables[contact->cable].coordinates / dim, first = fu_contact_first(model, contact, element);
+        const double *N = fu_contact_shapes(contact, n, element, point);
+        for (int k = 0; k < n; ++k)
+            for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
+        return;
+    }
+    fu_attachment_state end;
+    fu_attachment_at(model, &contact->attachments[point], state, 0.0, FU_POINT, &end);
+    add_to(dim, end.n, end.at, end.P, force, -weight, f);
+}
+
+static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+{
+    const fu_contact *contact = of(coupling);
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point point;
+            fu_contact_place(model, contact, state, e, k, &point);
+            if (fu_contact_touches(model, contact, &on, &point))
+                fu_contact_add_force(model, contact, state, &on, e, k, point.r, point.f, f);
+        }
+    }
+}
+
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+{
+    (void)own;
+    force(model, coupling, at->next, f);
+}
+
+/* Adds the derivatives at a point on an element to the element's own, K. */
+static void add_to_element(int dim, int n, const double *N, const double *by, double scale, double *K)
+{
+    const int all = n * dim;
+    for (int k = 0; k < n; ++k)
+        for (int l = 0; l < n; ++l)
+            for (int i = 0; i < dim; ++i)
+                for (int j = 0; j < dim; ++j) K[(k * dim + i) * all + l * dim + j] -= scale * N[k] * N[l] * by[i * dim + j];
+}
+
+static void add_element(const fu_model *model, int first, int n, const double *K, fu_system *system)
+{
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, K[i * n + j]);
+}
+
+static void matrix(const fu_model *model, const fu_contact *contact, const fu_state *state, const double *psi, fu_weights weights,
+                   fu_system *system)
+{
+    const int dim = model->dim, alone = contact->cable >= 0 && contact->surface.on->body < 0;
+    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        int touches = 0;
+        if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
+        const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point point;
+            fu_contact_place(model, contact, state, e, k, &point);
+            if (!fu_contact_touches(model, contact, &on, &point)) continue;
+            fu_contact_derivatives(model, contact, &on, &point);
+            if (!alone) {
+                fu_contact_add_derivatives(model, contact, &on, state, e, k, &point, psi, weights, system);
+                continue;
+            }
+            const double weight = fu_contact_weight(contact, e, k);
+            if (!touches++) memset(K, 0, sizeof(double) * (size_t)(n * n));
+            for (int i = 0; i < dim * dim; ++i) point.by_place[i] += weights.rate * point.by_rate[i];
+            add_to_element(dim, n / dim, fu_contact_shapes(contact, n / dim, e, k), point.by_place, weights.stiffness * weight, K);
+        }
+        if (touches) add_element(model, fu_contact_first(model, contact, e), n, K, system);
+    }
+}
+
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    matrix(model, of(coupling), at->next, at->psi, at->weights, system);
+}
+
+/* Makes the two ends of a step of a point; returns whether it may touch in it. */
+static int ends_of_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_equations *at, int element,
+                        int point, fu_touch_point *now, fu_touch_point *next)
+{
+    fu_contact_place(model, contact, at->now, element, point, now);
+    fu_contact_place(model, contact, at->next, element, point, next);
+    const int touched = fu_contact_touches(model, contact, on, now);
+    return fu_contact_touches(model, contact, on, next) || touched;
+}
+
+/* Does for a step what `force` does for an instant; returns the energy that goes to heat in it, J. f may be null. */
+static double over_step(const fu_model *model, const fu_contact *contact, const fu_equations *at, double *f)
+{
+    const int dim = model->dim;
+    double lost = 0.0;
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, at->now, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on, at->now, e, 0.0) && !fu_contact_may_touch(model, contact, &on, at->next, e, 0.0)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point now, next;
+            double force[3], by_next[9];
+            if (!ends_of_step(model, contact, &on, at, e, k, &now, &next)) continue;
+            fu_contact_step(model, contact, &on, at->h, &now, &next, force, by_next);
+            const double weight = fu_contact_weight(contact, e, k);
+            for (int d = 0; d < dim; ++d) lost -= weight * force[d] * (next.r[d] - now.r[d]);
+            if (!f) continue;
+            if (contact->cable >= 0) {
+                fu_contact_add_force(model, contact, at->now, &on, e, k, now.r, force, f);
+                continue;
+            }
+            const fu_attachment *to = &contact->attachments[k];
+            const fu_body *body = &model->bodies[to->body];
+            fu_attachment_state end;
+            fu_attachment_at(model, to, at->now, 0.0, FU_POINT, &end);
+            body->kernel->discrete_point(at->now->q + body->configuration, to->u, at->next->q + body->configuration, end.P);
+            add_to(dim, end.n, end.at, end.P, force, -weight, f);
+        }
+    }
+    return lost;
+}
+
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+{
+    (void)own;
+    over_step(model, of(coupling), at, f);
+}
+
+/* The middle moves by half of psi, which weights.stiffness has: what the end does counts twice. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    const fu_contact *contact = of(coupling);
+    const int dim = model->dim;
+    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES], force[3];
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, at->now, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        int touches = 0;
+        if (!fu_contact_may_touch(model, contact, &on, at->now, e, 0.0) && !fu_contact_may_touch(model, contact, &on, at->next, e, 0.0)) continue;
+        const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point now, next;
+            if (!ends_of_step(model, contact, &on, at, e, k, &now, &next)) continue;
+            const fu_attachment_state still = on;
+            fu_contact_step(model, contact, &still, at->h, &now, &next, force, next.by_place);
+            for (int i = 0; i < dim * dim; ++i) next.by_place[i] *= 2.0;
+            memset(next.by_rate, 0, sizeof next.by_rate);
+            memcpy(next.f, force, sizeof next.f);
+            if (!n) {
+                fu_contact_add_derivatives(model, contact, &on, at->middle, e, k, &next, 0, at->weights, system);
+                continue;
+            }
+            if (!touches++) memset(K, 0, sizeof(double) * (size_t)(n * n));
+            add_to_element(dim, n / dim, fu_contact_shapes(contact, n / dim, e, k), next.by_place,
+                           at->weights.stiffness * fu_contact_weight(contact, e, k), K);
+        }
+        if (touches) add_element(model, fu_contact_first(model, contact, e), n, K, system);
+    }
+}
+
+/* All that goes to heat, less what fu_contact_lost counts. */
+static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
+{
+    const double stored = fu_contact_energy(model, coupling, at->next) - fu_contact_energy(model, coupling, at->now);
+    return over_step(model, of(coupling), at, 0) - stored - fu_contact_lost(model, coupling, at->now, at->next);
+}
+
+static const fu_field fields[] = {
+    FU_SURFACE_FIELDS(fu_contact),
+    {"stiffness", FU_REAL, offsetof(fu_contact, law.stiffness), 1, 0, NULL},
+    {"damping", FU_REAL, offsetof(fu_contact, law.damping), 1, 0, NULL},
+    {"friction", FU_REAL, offsetof(fu_contact, law.friction), 1, 0, NULL},
+    {"tangential", FU_REAL, offsetof(fu_contact, law.tangential), 1, 0, NULL},
+    {"hertz", FU_INTEGER, offsetof(fu_contact, law.hertz), 1, 0, NULL},
+    FU_FIELD(fu_contact, cable, FU_INTEGER, 0),
+    FU_FIELD(fu_contact, radius, FU_REAL, 0),
+    FU_FIELD(fu_contact, n_points, FU_INTEGER, 0),
+    FU_FIELD(fu_contact, stride, FU_INTEGER, 0),
+    FU_FIELD(fu_contact, weights, FU_REALS, 0),
+    FU_FIELD(fu_contact, N, FU_REALS, 0),
+    FU_FIELD(fu_contact, arc, FU_REALS, 0),
+    FU_FIELD(fu_contact, length, FU_REAL, 0),
+    FU_FIELD(fu_contact, n_hull, FU_INTEGER, 0),
+    FU_FIELD(fu_contact, hull, FU_REALS, 0),
+    FU_FIELD(fu_contact, anchors, FU_REALS, 0),
+    FU_FIELD_ARRAY(fu_contact, attachments, FU_ATTACHMENT),
+    {0},
+};
+
+const fu_coupling_type fu_contact_type = {
+    .name = "contact", .size = sizeof(fu_contact), .fields = fields, .n_outputs = FU_CONTACT_OUTPUTS, .n_flags = 1,
+    .events = &fu_contact_events, .residual = residual, .tangent = tangent, .step_residual = step_residual, .step_tangent = step_tangent,
+    .step_dissipation = step_dissipation, .force = force, .energy = fu_contact_energy, .dissipation = fu_contact_dissipation,
+    .lost_in_step = fu_contact_lost, .outputs = fu_contact_outputs, .reset = fu_contact_reset, .carry = fu_contact_carry};

@@ -1,0 +1,154 @@
+/* Surfaces that cables and bodies touch: distances by the kernels of derive/couplings/surface.py, in the axes of the ground. */
+#include "engine.h"
+
+#include <math.h>
+#include <string.h>
+
+const char *const fu_surface_role[] = {"surface", 0};
+const char *const fu_surface_shapes[] = {"flat", "round", "capsule", "terrain", 0};
+
+void fu_surface_at(const fu_model *model, const fu_surface *surface, const fu_state *state, fu_attachment_state *at)
+{
+    fu_attachment_at(model, surface->on, state, 0.0, FU_POINT | FU_AXES, at);
+}
+
+void fu_surface_out(int dim, const fu_attachment_state *at, const double *own, double *out)
+{
+    for (int i = 0; i < dim; ++i) out[i] = fu_dot(dim, at->A + i * dim, own);
+}
+
+void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *own)
+{
+    for (int i = 0; i < dim; ++i) {
+        own[i] = 0.0;
+        for (int k = 0; k < dim; ++k) own[i] += at->A[k * dim + i] * given[k];
+    }
+}
+
+/* Makes a point from the origin along the shape's axes. */
+static void local(int dim, const fu_attachment_state *at, const double *r, double *y)
+{
+    double from[3];
+    for (int d = 0; d < dim; ++d) from[d] = r[d] - at->p[d];
+    fu_surface_into(dim, at, from, y);
+}
+
+/* Returns the cell of a table's knots that x is in, and in *x where from its first knot; beyond the table that is its edge, and
+ * *inside is 0. */
+static int cell_of(int n, const double *knots, double *x, int *inside)
+{
+    int low = 0, high = n - 1;
+    *inside = *x >= knots[0] && *x <= knots[n - 1];
+    *x = fmin(fmax(*x, knots[0]), knots[n - 1]);
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (knots[middle] <= *x) low = middle;
+        else high = middle;
+    }
+    *x -= knots[low];
+    return low;
+}
+
+/* Makes powers of x by the order of their derivative: B[k] (4) are those of the k-th; those of what does not change are zero. */
+static void powers_of(double x, int changes, double B[4][4])
+{
+    const double x2 = x * x;
+    const double all[4][4] = {{1.0, x, x2, x2 * x}, {0.0, 1.0, 2.0 * x, 3.0 * x2}, {0.0, 0.0, 2.0, 6.0 * x}, {0.0, 0.0, 0.0, 6.0}};
+    memset(B, 0, sizeof all);
+    memcpy(B, all, changes ? sizeof all : sizeof all[0]);
+}
+
+/* Makes the height of a terrain and its derivatives in the order that the kernel takes. */
+static void heights_at(int dim, const fu_surface *surface, const double *y, double *h)
+{
+    static const int orders[10][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}, {3, 0}, {2, 1}, {1, 2}, {0, 3}};
+    double a = y[0], b = dim == 3 ? y[2] : 0.0, A[4][4], B[4][4];
+    int inside;
+    const int i = cell_of(surface->n_first, surface->first, &a, &inside);
+    powers_of(a, inside, A);
+    if (dim == 2) {
+        for (int k = 0; k < 4; ++k) h[k] = fu_dot(4, A[k], surface->heights + 4 * (long)i);
+        return;
+    }
+    const int j = cell_of(surface->n_second, surface->second, &b, &inside);
+    powers_of(b, inside, B);
+    const double *c = surface->heights + 16 * ((long)i * (surface->n_second - 1) + j);
+    for (int k = 0; k < 10; ++k) {
+        h[k] = 0.0;
+        for (int m = 0; m < 4; ++m) h[k] += A[orders[k][0]][m] * fu_dot(4, B[orders[k][1]], c + 4 * m);
+    }
+}
+
+void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, fu_distance *out)
+{
+    double y[3] = {0.0, 0.0, 0.0}, n[3], H[9], heights[10], half[9], axis[3] = {0.0, 0.0, 0.0};
+    local(dim, at, r, y);
+    memcpy(out->y, y, sizeof y);
+    memset(out->H, 0, sizeof out->H);
+    switch (surface->shape) {
+    case FU_FLAT:
+        surface->kernel->flat(y, surface->direction, &out->g, n);
+        fu_surface_out(dim, at, n, out->n);
+        return;
+    case FU_TERRAIN:
+        heights_at(dim, surface, y, heights);
+        surface->kernel->terrain(y, heights, &out->g, n, H);
+        break;
+    default: {
+        const double along = fu_dot(dim, surface->direction, y);
+        const double beyond = fabs(along) - surface->half_length;
+        if (surface->shape == FU_CAPSULE && beyond > 0.0)
+            for (int d = 0; d < dim; ++d) y[d] -= copysign(surface->half_length, along) * surface->direction[d];
+        else memcpy(axis, surface->direction, sizeof axis);
+        surface->kernel->rounded(y, axis, surface->round_radius, &out->g, n, H);
+    }
+    }
+    fu_surface_out(dim, at, n, out->n);
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) half[i * dim + j] = fu_dot(dim, at->A + i * dim, H + j * dim);
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) out->H[i * dim + j] = fu_dot(dim, half + i * dim, at->A + j * dim);
+}
+
+double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach)
+{
+    double y[3] = {0.0, 0.0, 0.0}, along;
+    local(dim, at, r, y);
+    if (surface->shape == FU_TERRAIN) return y[1] - reach - surface->highest;
+    along = fu_dot(dim, surface->direction, y);
+    if (surface->shape == FU_FLAT) return along - reach;
+    if (surface->shape == FU_CAPSULE) along = fmin(fmax(along, -surface->half_length), surface->half_length);
+    for (int d = 0; d < dim; ++d) y[d] -= along * surface->direction[d];
+    return sqrt(fu_dot(dim, y, y)) - surface->round_radius - reach;
+}
+
+void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r, double *v)
+{
+    const double *w = at->omega, x[3] = {r[0] - at->p[0], r[1] - at->p[1], dim == 3 ? r[2] - at->p[2] : 0.0};
+    if (dim == 2) {
+        v[0] = at->v[0] - w[0] * x[1];
+        v[1] = at->v[1] + w[0] * x[0];
+        return;
+    }
+    for (int d = 0; d < 3; ++d) {
+        const int e = (d + 1) % 3, f = (d + 2) % 3;
+        v[d] = at->v[d] + w[e] * x[f] - w[f] * x[e];
+    }
+}
+
+void fu_surface_motion(int dim, const fu_attachment_state *at, const double *r, double *P)
+{
+    const double x[3] = {r[0] - at->p[0], r[1] - at->p[1], dim == 3 ? r[2] - at->p[2] : 0.0};
+    const int n = at->n;
+    for (int i = 0; i < n; ++i) {
+        if (dim == 2) {
+            P[i] = at->P[i] - at->T[i] * x[1];
+            P[n + i] = at->P[n + i] + at->T[i] * x[0];
+            continue;
+        }
+        for (int d = 0; d < 3; ++d) {
+            const int e = (d + 1) % 3, f = (d + 2) % 3;
+            P[d * n + i] = at->P[d * n + i] + at->T[e * n + i] * x[f] - at->T[f * n + i] * x[e];
+        }
+    }
+}

@@ -1,0 +1,56 @@
+/* Surfaces that cables and bodies touch: couplings/surfaces.c. */
+#ifndef FUNICULAR_SURFACES_H
+#define FUNICULAR_SURFACES_H
+
+#include "attachments.h"
+#include "fields.h"
+
+/* Shapes: a plane; a sphere, or a cylinder without ends; a cylinder with half spheres at its ends; a height over a line or over
+ * two horizontal axes. */
+enum { FU_FLAT, FU_ROUND, FU_CAPSULE, FU_TERRAIN };
+
+/* A surface: its shape from an origin along axes that an attachment gives, of the ground or of a body. */
+typedef struct {
+    const fu_surface_kernels *kernel;
+    int shape;
+    double direction[3];        /* normal of a plane; axis of a cylinder or capsule, zero for a sphere */
+    double round_radius, half_length; /* m */
+    int n_first, n_second;      /* knots of a terrain along its horizontal axes, m; no second in the plane */
+    const double *first, *second, *heights; /* heights: 4 (or 4 x 4) coefficients of a cell's cubics, from its first knots */
+    double highest;             /* of a terrain, m */
+    fu_attachment on[1];
+} fu_surface;
+
+/* Where the surface is: the state of its attachment. Distance of a point, its gradient and its second derivative, by the ground's axes;
+ * the point from the origin along the shape's own. */
+typedef struct {
+    double g, n[3], H[9], y[3];
+} fu_distance;
+
+void fu_surface_at(const fu_model *model, const fu_surface *surface, const fu_state *state, fu_attachment_state *at);
+void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, fu_distance *out);
+/* The least that the distance of any point within `reach` of r can be, m. */
+double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach);
+/* Velocity of the point of the body at r that the surface is on. */
+void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r, double *v);
+/* How that point moves with the n coordinates of the body: P (dim x n). */
+void fu_surface_motion(int dim, const fu_attachment_state *at, const double *r, double *P);
+/* The vector of a shape's own axes along the ground's, and back. */
+void fu_surface_out(int dim, const fu_attachment_state *at, const double *own, double *out);
+void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *own);
+
+/* Fields of a structure's member `surface` (include/fields.h), which has the words of its shapes in fu_surface_shapes. */
+extern const char *const fu_surface_shapes[], *const fu_surface_role[];
+#define FU_SURFACE_FIELD(structure, member, kind, words) \
+    {#member, kind, offsetof(structure, surface.member), 1, 0, words}
+#define FU_SURFACE_FIELDS(structure)                                                                                     \
+    FU_SURFACE_FIELD(structure, kernel, FU_KERNELS, fu_surface_role),                                                    \
+    FU_SURFACE_FIELD(structure, shape, FU_WORD, fu_surface_shapes),                                                      \
+    {"direction", FU_REAL, offsetof(structure, surface.direction), 3, sizeof(double), NULL},                            \
+    FU_SURFACE_FIELD(structure, round_radius, FU_REAL, 0), FU_SURFACE_FIELD(structure, half_length, FU_REAL, 0),         \
+    FU_SURFACE_FIELD(structure, n_first, FU_INTEGER, 0), FU_SURFACE_FIELD(structure, n_second, FU_INTEGER, 0),           \
+    FU_SURFACE_FIELD(structure, first, FU_REALS, 0), FU_SURFACE_FIELD(structure, second, FU_REALS, 0),                   \
+    FU_SURFACE_FIELD(structure, heights, FU_REALS, 0), FU_SURFACE_FIELD(structure, highest, FU_REAL, 0),                 \
+    {"on", FU_ATTACHMENT, offsetof(structure, surface.on), 1, sizeof(fu_attachment), NULL}
+
+#endif

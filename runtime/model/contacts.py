@@ -1,0 +1,147 @@
+"""Surfaces and contact with them, as the engine takes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import comb
+from typing import Any
+
+import numpy as np
+
+from ..kernels.mesh import Mesh
+from ..parts.attachment import Attachment
+from ..parts.contact import Contact
+from ..parts.scene_data import SceneData
+from ..parts.surface import Surface
+from ..parts.surface_shapes import WIDE
+from .attachments import AttachmentBuilder, AttachmentModel
+from .coupling import CouplingModel
+
+GAUSS = np.polynomial.legendre.leggauss(6)
+"""Of an element: points enough for one that touches in part; see tests/benchmarks/contact.py."""
+DEGREES = range(3, 8)
+"""Of the curves that elements are: those between which the points of an element's hull are sought."""
+KERNELS = {2: "planar_surface", 3: "surface"}
+NONE = np.zeros(0)
+
+
+@dataclass(kw_only=True)
+class SurfaceModel:
+    """fu_surface of engine/include/surfaces.h, with a list of its one attachment."""
+
+    kernel: str
+    shape: str
+    direction: np.ndarray
+    round_radius: float
+    half_length: float
+    n_first: int
+    n_second: int
+    first: np.ndarray
+    second: np.ndarray
+    heights: np.ndarray
+    highest: float
+    on: list[AttachmentModel]
+
+
+@dataclass(kw_only=True)
+class ContactModel(CouplingModel, SurfaceModel):
+    """fu_contact of engine/include/contacts.h; cable -1: of a body, by its points, the attachments."""
+
+    stiffness: float
+    damping: float
+    friction: float
+    tangential: float
+    hertz: int
+    cable: int
+    radius: float
+    n_points: int
+    stride: int = 0
+    weights: np.ndarray = field(default_factory=lambda: NONE)
+    N: np.ndarray = field(default_factory=lambda: NONE)
+    arc: np.ndarray = field(default_factory=lambda: NONE)
+    length: float = 0.0
+    n_hull: int = 0
+    hull: np.ndarray = field(default_factory=lambda: NONE)
+    anchors: np.ndarray = field(default_factory=lambda: NONE)
+    attachments: list[AttachmentModel] = field(default_factory=list)
+
+
+def surface_entries(surface: Surface, scene: SceneData, attachments: AttachmentBuilder) -> dict[str, Any]:
+    """Return what a model has of a surface, by field: those of `SurfaceModel`."""
+    shape, dim = surface.geometry, scene.dim
+    origin = tuple(shape.origin.tolist())
+    on = attachments.model(Attachment(on=surface.on, at=origin))
+    on.axes = shape.axes[:dim, :dim].copy()
+    first, second = (NONE if knots is None else knots for knots in (shape.first, shape.second))
+    cells = NONE if shape.cells is None else shape.cells
+    if shape.word == "terrain" and dim == 3 and shape.second is None:  # the same heights from side to side
+        second = np.array([-WIDE, WIDE])
+        cells = np.zeros((len(first) - 1, 1, 4, 4))
+        cells[:, 0, :, 0] = shape.cells
+    return {"kernel": KERNELS[dim], "shape": shape.word, "direction": shape.direction[:dim],
+            "round_radius": shape.radius, "half_length": shape.half_length, "n_first": len(first),
+            "n_second": len(second), "first": first, "second": second, "heights": cells, "highest": shape.highest,
+            "on": [on]}
+
+
+def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilder) -> ContactModel:
+    """Return the model of a contact of the scene."""
+    assert part.stiffness is not None and part.radius is not None, f"{part.where} is not complete"
+    surface = scene.surfaces[part.b]
+    tangential = part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness
+    model = ContactModel(
+        **surface_entries(surface, scene, attachments), type="contact", name=part.name or "",
+        is_damped=part.damping > 0, stiffness=part.stiffness, damping=part.damping, friction=part.friction,
+        tangential=tangential, hertz=int(part.exponent == 1.5), cable=-1, radius=part.radius, n_points=0)
+    if part.a in attachments.cable_index:
+        drawn = _along_cable(model, attachments.cable_index[part.a], scene, attachments)
+    else:
+        assert part.points is not None, f"{part.where} is not complete"
+        body = scene.bodies[part.a]
+        model.attachments = [attachments.model(Attachment(on=part.a, at=point)) for point in part.points]
+        model.n_points = len(part.points)
+        drawn = np.array([body.point(point) for point in part.points])
+    if part.friction:
+        on = scene.bodies.get(surface.on or "")
+        model.anchors = surface.geometry.into(surface.in_axes(on, drawn))[:, : scene.dim].copy()
+        model.n_numbers = model.anchors.size
+    return model
+
+
+def _along_cable(model: ContactModel, index: int, scene: SceneData, attachments: AttachmentBuilder) -> np.ndarray:
+    """Add the quadrature on a cable; return (n, 3): where its points are drawn."""
+    cable = attachments.cables[index]
+    lengths = cable.mesh.lengths
+    x, weights = GAUSS
+    model.cable, model.n_points, model.length = index, len(x), cable.mesh.total
+    model.N = np.array([[cable.kernel("on_axis")(length, length * (1 + each) / 2)[0] for each in x]
+                        for length in lengths])
+    model.hull = np.array([_hull(cable.kernel("on_axis"), length) for length in lengths])
+    model.n_hull = model.hull.shape[1]
+    model.weights = np.outer(lengths, weights) / 2
+    model.stride = 0 if cable.mesh.is_even else model.n_points
+    model.arc = _arc_lengths(cable.mesh, x)
+    vectors = scene.cables[cable.name].nodal_vectors
+    both = np.concatenate([vectors[:-1], vectors[1:]], axis=1)
+    N = np.broadcast_to(model.N, (cable.n_elements, *model.N.shape[1:]))
+    return np.einsum("egk,ekd->egd", N, both).reshape(-1, 3)
+
+
+def _arc_lengths(mesh: Mesh, x: np.ndarray) -> np.ndarray:
+    """Return (elements points,): arc-lengths of points on all elements, in m."""
+    starts = mesh.node_s[:-1, None]
+    return (starts + np.diff(mesh.node_s)[:, None] * (1 + x) / 2).ravel()
+
+
+def _hull(on_axis: Any, length: float) -> np.ndarray:
+    """Return (points, vectors): factors of an element's vectors that give Bézier points, between which its axis lies."""
+    for degree in DEGREES:
+        at = np.linspace(0, 1, 2 * degree)
+        order = np.arange(degree + 1)
+        several = np.array([comb(degree, int(k)) for k in order])
+        basis = several * at[:, None] ** order * (1 - at[:, None]) ** (degree - order)
+        values = np.array([on_axis(length, length * t)[0] for t in at])
+        points, *_ = np.linalg.lstsq(basis, values, rcond=None)
+        if np.abs(basis @ points - values).max() < 1e-9:
+            return points
+    raise ValueError(f"the axis of the element is no polynomial of degree {DEGREES[-1]} or less")

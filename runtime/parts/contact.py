@@ -1,0 +1,73 @@
+"""Contact of cables and bodies with surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar
+
+from .part import Part
+from .plane import across
+from .quantity import Quantity, vector_of_time
+from .schemas import checked, list_schema
+from .validation import Name, Reference, Vector, not_negative, number, positive, shown, vector3
+
+EXPONENTS = (1.0, 1.5)
+MOST_POINTS = 16
+"""Of a body: engine/include/contacts.h."""
+
+
+def _points(value: Any) -> tuple[Vector, ...]:
+    """Return a list of points, in m."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if not isinstance(value, list | tuple) or not 1 <= len(value) <= MOST_POINTS:
+        raise ValueError(f"must be a list of 1 to {MOST_POINTS} points, got {shown(value)}")
+    return tuple(vector3(point, "m") for point in value)
+
+
+def _exponent(value: Any) -> float:
+    """Return one of the exponents."""
+    if (given := number(value)) not in EXPONENTS:
+        raise ValueError(f"must be 1 or 1.5, got {shown(value)}")
+    return given
+
+
+class Contact(Part):
+    """Contact of a cable along its length, or of points of a body, with a `Surface`: it presses and never pulls.
+
+    a: the cable or the body; b: the surface. The depth d by which it is below the surface gives the force
+    ``stiffness d^exponent (1 + damping d')`` a length of a cable, or on each point of a body, with the exponent 1 or
+    1.5 (Hertz) and the damping in s/m (Hunt and Crossley). stiffness in N/m a length in m, or in N/m; if not given,
+    that which the weight sinks by 1 % of the radius. radius in m: of the cable, that of its section if not given; of
+    spheres about a body's points. points: of a body, in its axes, in m; its origin if not given.
+    friction: Coulomb's coefficient. What sticks is kept by a spring of tangential_stiffness, that of the normal
+    force if not given, and slides where that exceeds friction. In statics friction is against the way from the places
+    drawn.
+    """
+
+    kind: ClassVar[str] = "contact"
+    group: ClassVar[str] = "contacts"
+    positional: ClassVar[tuple[str, ...]] = ("a", "b")
+    results: ClassVar[dict[str, Quantity]] = {
+        "force": vector_of_time("N", "force of the surface on the cable or body"),
+        "friction_force": vector_of_time("N", "the part of it that is friction"),
+        "penetration": Quantity(("time",), "m", "largest depth below the surface"),
+        "touching": Quantity(("time",), "1", "length of the cable that touches, m, or number of points that do"),
+        "first": Quantity(("time",), "m", "arc-length of the cable where it begins to touch, NaN where it does not"),
+        "last": Quantity(("time",), "m", "arc-length of the cable where it touches last, NaN where it does not"),
+    }
+    name: Name | None = None
+    a: Reference
+    b: Reference
+    stiffness: Annotated[float, positive("N/m")] | None = None
+    exponent: Annotated[float, checked(_exponent, {"enum": [1, 1.0, 1.5]})] = 1.0
+    damping: Annotated[float, not_negative("s/m")] = 0.0
+    friction: Annotated[float, not_negative()] = 0.0
+    tangential_stiffness: Annotated[float, positive("N/m")] | None = None
+    radius: Annotated[float, not_negative("m")] | None = None
+    points: Annotated[tuple[Vector, ...], checked(_points, {
+        "type": "array", "items": list_schema("m"), "minItems": 1, "maxItems": MOST_POINTS})] | None = None
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
+        for point in self.points or ():
+            yield from across("points", point, "m")

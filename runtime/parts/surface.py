@@ -1,0 +1,61 @@
+"""Surfaces that cables and bodies touch, on the ground or on a body."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+
+from ..rotations import conjugate, rotate
+from .part import Part
+from .plane import FLAT, across
+from .solids import Cylinder
+from .surface_shapes import AnySurfaceShape, Capsule, Geometry, geometry
+from .validation import Name, Reference, Vector, show, xyz
+
+
+class Surface(Part):
+    """A surface of the ground or of a rigid body; what touches it, a `Contact` says.
+
+    shape: a `Plane`, `HeightField`, `Sphere`, `Cylinder` or `Capsule`; on: the body, whose axes those of the shape are
+    then, the ground if not given; at: from where the shape's own places count, in m, the origin if not given. A
+    cylinder has no ends: its length is what pictures draw.
+    """
+
+    kind: ClassVar[str] = "surface"
+    group: ClassVar[str] = "surfaces"
+    positional: ClassVar[tuple[str, ...]] = ("name", "shape")
+    name: Name
+    shape: AnySurfaceShape
+    on: Reference | None = None
+    at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+
+    @property
+    def geometry(self) -> Geometry:
+        """Return its geometry in the axes of the ground, or of its body."""
+        return geometry(self.shape).moved(self.at)
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
+        lies = True
+        if isinstance(self.shape, Cylinder | Capsule):
+            axis = np.abs(np.array(self.shape.axis)) / np.linalg.norm(self.shape.axis)
+            lies = bool(axis[2] <= FLAT)
+            if not lies and max(axis[:2]) > FLAT:
+                yield f"axis {show(self.shape.axis)}"
+        if lies:  # what stands square to the plane reaches it from anywhere
+            yield from across("at", self.at, "m")
+            yield from across("shape.at", getattr(self.shape, "at", None), "m")
+        yield from self.shape.off_plane()
+
+    def in_axes(self, body: Any, points: np.ndarray) -> np.ndarray:
+        """Return points (..., 3) of the ground along the axes of the body that it is on, as drawn; None: the ground."""
+        if body is None:
+            return points
+        position, orientation = body.frame
+        return rotate(conjugate(orientation), points - position)
+
+    def distance(self, body: Any, points: np.ndarray) -> np.ndarray:
+        """Return the distances (...) of points (..., 3) of the ground from it as drawn, negative inside, in m."""
+        return self.geometry.distance(self.in_axes(body, points))

@@ -1,0 +1,231 @@
+"""Shapes of surfaces that cables and bodies touch, and how far points are from them.
+
+`Sphere` and `Cylinder` are those that pictures draw bodies with, too. A further shape is one class, its entry in
+`SURFACE_SHAPES`, and what `geometry` makes of it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import model_validator
+
+from .part import Part, part_of_table
+from .plane import across, aligned
+from .schemas import checked, list_schema, tagged
+from .solids import Cylinder, Length, Sphere
+from .validation import Vector, check_function, direction, list_of, shown, vector, xyz
+
+WIDE = 1e6
+"""m: half the width of a height field that does not change across."""
+
+
+class Plane(Part):
+    """A plane through ``point`` (m) across ``normal``, which points to the side where things may be."""
+
+    kind: ClassVar[str] = "plane"
+    positional: ClassVar[tuple[str, ...]] = ("point", "normal")
+    point: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+    normal: Annotated[Vector, direction()] = (0.0, 1.0, 0.0)
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
+        yield from across("point", self.point, "m")
+        yield from across("normal", self.normal)
+
+
+class Capsule(Part):
+    """A cylinder with half spheres at its ends: ``radius``, ``length`` between their centres in m, along ``axis``.
+
+    ``at``: its middle, in m.
+    """
+
+    kind: ClassVar[str] = "capsule"
+    positional: ClassVar[tuple[str, ...]] = ("radius", "length", "axis")
+    radius: Length
+    length: Length
+    axis: Annotated[Vector, direction()] = (0.0, 0.0, 1.0)
+    at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+
+
+def _heights(value: Any) -> tuple[Any, ...]:
+    """Return a list of heights in m, or one for each place along of lists across."""
+    value = value.tolist() if isinstance(value, np.ndarray) else value
+    if not isinstance(value, list | tuple) or len(value) < 2:
+        raise ValueError(f"must be a list of 2 heights or more, or of lists of them, got {shown(value)}")
+    if not any(isinstance(row, list | tuple | np.ndarray) for row in value):
+        return vector(value, "m", len(value))
+    rows = [row.tolist() if isinstance(row, np.ndarray) else row for row in value]
+    if not all(isinstance(row, list | tuple) and len(row) == len(rows[0]) for row in rows):
+        raise ValueError("must have lists of equal length, one for each place along")
+    return tuple(vector(row, "m", len(row)) for row in rows)
+
+
+class HeightField(Part):
+    """The ground by a table of heights in m, with a cubic spline between them; beyond its edges they stay.
+
+    x: places in m along the direction ``along``; heights: one for each of them, or, with ``across``, places across in
+    m, a list for each of them. Across is square to ``along`` and ``up``, on the side of the axis that it is nearest to.
+    Without ``across`` heights do not change that way. `HeightField.of` makes the table of a function.
+    """
+
+    kind: ClassVar[str] = "height_field"
+    positional: ClassVar[tuple[str, ...]] = ("x", "heights")
+    x: Annotated[tuple[float, ...], list_of("m", least=2)]
+    heights: Annotated[tuple[Any, ...], checked(_heights, {"anyOf": [
+        list_schema("m", 2, None), {"type": "array", "items": list_schema("m", 2, None), "minItems": 2}]})]
+    across: Annotated[tuple[float, ...], list_of("m", least=2)] | None = None
+    along: Annotated[Vector, direction()] = (1.0, 0.0, 0.0)
+    up: Annotated[Vector, direction()] = (0.0, 1.0, 0.0)
+
+    @classmethod
+    def of(cls, function: Callable[..., Any], x: Any, across: Any = None, **directions: Any) -> HeightField:
+        """Return the height field of function(x) or function(x, across), in m, asked at these places."""
+        table = [float(function(a)) if across is None else [float(function(a, b)) for b in across] for a in x]
+        given = {} if across is None else {"across": [float(b) for b in across]}
+        return cls(x=[float(a) for a in x], heights=table, **given, **directions)
+
+    @model_validator(mode="after")
+    def _is_a_table(self) -> HeightField:
+        check_function(self.x, "x", "m", self.heights, "heights")
+        rows = isinstance(self.heights[0], tuple)
+        if rows != (self.across is not None):
+            raise ValueError("heights are a list of lists where across is given, and only there")
+        if self.across is not None:
+            check_function(self.across, "across", "m", self.heights[0], "the lists of heights")
+        if abs(float(np.dot(self.along, self.up))) > 1e-9 * np.linalg.norm(self.along) * np.linalg.norm(self.up):
+            raise ValueError(f"along must be square to up, got {self.along} and {self.up}")
+        return self
+
+    @property
+    def axes(self) -> np.ndarray:
+        """Return (3, 3): unit vectors along, up and across, as columns."""
+        along, up = (np.array(v) / np.linalg.norm(v) for v in (self.along, self.up))
+        third = np.cross(along, up)
+        return np.column_stack([along, up, third * np.sign(third[np.argmax(np.abs(third))])])
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
+        yield from across("along", self.along)
+        yield from across("up", self.up)
+        if self.across is not None:
+            yield "across"
+
+
+SURFACE_SHAPES: dict[str, type[Part]] = {shape.kind: shape for shape in (Plane, HeightField, Sphere, Cylinder, Capsule)}
+
+
+def _shape(value: Any) -> Part:
+    """Return a shape from itself or from a table such as {kind="plane"}."""
+    if isinstance(value, Part) and type(value) in SURFACE_SHAPES.values():
+        return value
+    return part_of_table(value, "a shape such as Plane(point=(0, 0, 0), normal=(0, 1, 0))", "kind", SURFACE_SHAPES)
+
+
+AnySurfaceShape = Annotated[Part, checked(_shape, tagged("surface_shape"))]
+
+
+@dataclass
+class Geometry:
+    """A surface as the engine takes it (engine/include/surfaces.h), from an origin (3,) along axes (3, 3) by columns.
+
+    word: the kind of shape; direction (3,): a normal or an axis; radius, half_length in m; first, second: knots of a
+    height field, and cells (first, second, 4, 4) of its coefficients, or (first, 4) where there is no second.
+    """
+
+    word: str
+    origin: np.ndarray
+    axes: np.ndarray
+    direction: np.ndarray
+    radius: float = 0.0
+    half_length: float = 0.0
+    first: np.ndarray | None = None
+    second: np.ndarray | None = None
+    cells: np.ndarray | None = None
+    highest: float = 0.0
+
+    def moved(self, by: Any) -> Geometry:
+        """Return it with its origin farther by (3,), in m."""
+        return replace(self, origin=self.origin + np.array(by))
+
+    def into(self, points: np.ndarray) -> np.ndarray:
+        """Return points (..., 3), in m, from its origin along its axes."""
+        return (points - self.origin) @ self.axes
+
+    def distance(self, points: np.ndarray) -> np.ndarray:
+        """Return the distances (...) of points (..., 3) outside of it, negative inside, in m."""
+        y = self.into(points)
+        if self.word == "terrain":
+            return self._above(y)
+        along = y @ self.direction
+        if self.word == "flat":
+            return along
+        if self.word == "capsule":
+            along = np.clip(along, -self.half_length, self.half_length)
+        return np.linalg.norm(y - along[..., None] * self.direction, axis=-1) - self.radius
+
+    def heights(self, x: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return the heights (...) of a height field at places (...), in m, and the slopes along and across."""
+        assert self.first is not None and self.cells is not None, "only of height fields"
+        x, across = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(across, dtype=float))
+        i, a, da = _powers(self.first, x)
+        if self.second is None:
+            c = self.cells[i]
+            return np.sum(c * a, axis=-1), np.sum(c * da, axis=-1), np.zeros(x.shape)
+        j, b, db = _powers(self.second, across)
+        c = self.cells[i, j]
+        return tuple(np.einsum("...mk,...m,...k->...", c, m, k) for m, k in ((a, b), (da, b), (a, db)))
+
+    def _above(self, y: np.ndarray) -> np.ndarray:
+        height, slope, slope_across = self.heights(y[..., 0], y[..., 2])
+        return (y[..., 1] - height) / np.sqrt(1 + slope**2 + slope_across**2)
+
+
+def _powers(knots: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the cells that places are in, and powers of what they are from the first knots of these, with slopes."""
+    inside = np.clip(x, knots[0], knots[-1])
+    cell = np.clip(np.searchsorted(knots, inside, "right") - 1, 0, len(knots) - 2)
+    u = (inside - knots[cell])[..., None]
+    order = np.arange(4)
+    slopes = order * np.where(order > 0, u ** np.maximum(order - 1, 0), 0.0)
+    return cell, u**order, np.where(((x >= knots[0]) & (x <= knots[-1]))[..., None], slopes, 0.0)
+
+
+def geometry(shape: Part) -> Geometry:
+    """Return the geometry of a shape, in the axes that its vectors are given in."""
+    if isinstance(shape, HeightField):
+        return _terrain(shape)
+    if isinstance(shape, Plane):
+        return Geometry("flat", np.array(shape.point), np.eye(3), _unit(shape.normal))
+    assert isinstance(shape, Sphere | Cylinder | Capsule), f"{shape!r} is no shape of a surface"
+    axis = np.zeros(3) if isinstance(shape, Sphere) else _unit(shape.axis)
+    half = shape.length / 2 if isinstance(shape, Capsule) else 0.0
+    return Geometry("capsule" if half else "round", np.array(shape.at), np.eye(3), axis, shape.radius, half)
+
+
+def _unit(v: Vector) -> np.ndarray:
+    return aligned(np.array(v) / np.linalg.norm(v))
+
+
+def _terrain(shape: HeightField) -> Geometry:
+    """Return the geometry of a height field: the coefficients of cubic splines, by powers from each cell's knots."""
+    from scipy.interpolate import CubicSpline  # 30 ms, for those alone
+
+    x, heights = np.array(shape.x), np.array(shape.heights, dtype=float)
+    along = CubicSpline(x, heights, bc_type="natural").c[::-1]  # (4, cells along) or (4, cells along, across)
+    made = Geometry("terrain", np.zeros(3), shape.axes, np.array([0.0, 1.0, 0.0]), first=x)
+    if shape.across is None:
+        made.cells = along.T.copy()
+    else:
+        made.second = np.array(shape.across)
+        both = CubicSpline(made.second, along, axis=2, bc_type="natural").c[::-1]  # (4, cells across, 4, cells along)
+        made.cells = both.transpose(3, 1, 2, 0).copy()
+    fine = [np.concatenate([np.linspace(a, b, 9) for a, b in itertools.pairwise(k)])
+            for k in (x, np.zeros(2) if made.second is None else made.second)]
+    found = made.heights(fine[0][:, None], fine[1][None, :])[0]
+    made.highest = float(found.max() + 0.05 * np.ptp(found))
+    return made
