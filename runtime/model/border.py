@@ -13,6 +13,7 @@ from .attachments import AttachmentModel
 from .contacts import ContactModel
 from .coupling import CouplingModel
 from .elimination import DENSE, BorderGraph, Elimination, dense
+from .hard_contacts import HardContactModel
 from .joints import JointModel
 from .model import Model, SlideModel
 
@@ -112,6 +113,8 @@ class _Border:
         if not count:
             return
         ends = [coupling.rider] if isinstance(coupling, SlideModel) else getattr(coupling, "attachments", [])
+        if isinstance(coupling, HardContactModel):
+            ends = [*ends, *coupling.on]
         bodies = {body for end in ends for body in self._bodies_of(end)}
         own = self.graph.group(range(self.model.n_border_dof + first, self.model.n_border_dof + first + count),
                                None if coupling.follows_law else bodies)

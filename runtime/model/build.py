@@ -15,6 +15,7 @@ from .cables import cable_gravity, cable_model, cable_rates, cable_weights
 from .contacts import contact_model
 from .coupling import number
 from .drags import drag_model
+from .hard_contacts import hard_contact_models
 from .joints import JointModel, frame_joint_model, joint_model
 from .loads import LoadBuilder
 from .model import CableModel, Model, MotionModel
@@ -48,14 +49,18 @@ def build(scene: SceneData) -> Model:
     joints = _joints(scene, attachments, loads)
     point_forces = [loads.point_force(force) for force in scene.point_forces.values()]
     drags = [drag_model(drag, scene, attachments, loads) for drag in scene.drags.values()]
-    contacts = [contact_model(contact, scene, attachments) for contact in scene.contacts.values()]
-    n_extra, n_multipliers = number([*loads.dead, *loads.turning, *slides, *joints, *point_forces, *drags, *contacts])
+    contacts = [contact_model(contact, scene, attachments) for contact in scene.contacts.values()
+                if not contact.is_hard]
+    hard = [model for contact in scene.contacts.values() if contact.is_hard
+            for model in hard_contact_models(contact, scene, attachments)]
+    n_extra, n_multipliers = number([*loads.dead, *loads.turning, *slides, *joints, *point_forces, *drags, *contacts,
+                                    *hard])
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     model = Model(
         dim, cables, bodies, slides, joints, point_forces, loads.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
-        [*loads.dead, *loads.turning], drags, contacts,
+        [*loads.dead, *loads.turning], drags, contacts, hard,
         q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
         v=_joined(cable_rates(scene, reduction), *(velocity_of(body, dim) for body in described)),
         weight=_joined(*map(cable_weights, drawn), *(body_weights(body, dim) for body in described)),

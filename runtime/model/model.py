@@ -20,6 +20,7 @@ from .contacts import ContactModel
 from .coupling import CouplingModel
 from .drags import DragModel
 from .elimination import Elimination
+from .hard_contacts import HardContactModel
 from .joints import JointModel
 from .loads import DeadLoadModel, LoadModel, PointForceModel, SignalModel
 from .unknowns import Node
@@ -183,6 +184,7 @@ class Model:
     loads: list[DeadLoadModel | LoadModel]
     drags: list[DragModel]
     contacts: list[ContactModel]
+    hard_contacts: list[HardContactModel]
     q: np.ndarray
     v: np.ndarray
     weight: np.ndarray
@@ -204,7 +206,8 @@ class Model:
     @property
     def couplings(self) -> list[CouplingModel]:
         """Return all couplings in the engine's order, which adds up what they give in it."""
-        return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags, *self.contacts]
+        return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags, *self.contacts,
+                *self.hard_contacts]
 
     def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return results of a part by quantity, in three dimensions, along the ground's axes."""
@@ -241,5 +244,5 @@ class Model:
                       | {joint.kernel for joint in self.joints}
                       | {slide.resistance for slide in self.slides if slide.resistance}
                       | {force.law for force in self.point_forces} | {drag.kernel for drag in self.drags}
-                      | {contact.kernel for contact in self.contacts}
+                      | {contact.kernel for contact in [*self.contacts, *self.hard_contacts]}
                       | {body.modal_kernel for body in self.bodies if body.modes})

@@ -141,7 +141,22 @@ def contact_state(contact: ContactModel, numbers: np.ndarray) -> dict[str, np.nd
     touches = numbers[:, 7] > 0 if contact.cable >= 0 else np.zeros(len(numbers), dtype=bool)
     first, last = (np.where(touches, numbers[:, k], np.nan) for k in (8, 9))
     return {"force": numbers[:, :3], "friction_force": numbers[:, 3:6], "penetration": numbers[:, 6],
-            "touching": numbers[:, 7], "first": first, "last": last}
+            "touching": numbers[:, 7], "first": first, "last": last, "gap": np.full(len(numbers), np.nan)}
+
+
+def hard_contact_states(model: Model, numbers: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
+    """Return what results tell of hard contacts, by name, from the numbers of their points (time, points, 4), which are
+    forces and distances; see fu_hard_contact_output of the engine.
+    """
+    found: dict[str, dict[str, np.ndarray]] = {}
+    for name in dict.fromkeys(point.name for point in model.hard_contacts):
+        of = numbers[:, [k for k, point in enumerate(model.hard_contacts) if point.name == name]]
+        force, none = of[:, :, :3].sum(axis=1), np.full(len(numbers), np.nan)
+        found[name] = {"force": force, "friction_force": np.zeros_like(force),
+                       "penetration": np.maximum(-of[:, :, 3].min(axis=1), 0.0),
+                       "touching": np.any(of[:, :, :3] != 0, axis=2).sum(axis=1).astype(float), "first": none,
+                       "last": none, "gap": of[:, :, 3].min(axis=1)}
+    return found
 
 
 def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
@@ -163,12 +178,13 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
 
 def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: np.ndarray, joints: np.ndarray,
                       point_forces: np.ndarray, drags: np.ndarray, contacts: np.ndarray,
-                      ) -> dict[str, dict[str, dict[str, np.ndarray]]]:
+                      hard_contacts: np.ndarray) -> dict[str, dict[str, dict[str, np.ndarray]]]:
     """Return forces and moments of supports, ties, joints and forces between points, by group, label and quantity.
 
     Of a slide it is the moment that keeps its rider's axes. All arguments have the time first: q (time, n_q), reaction
     (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3),
-    drags (time, drags, 3), contacts (time, contacts, 10). They are along the ground's axes.
+    drags (time, drags, 3), contacts (time, contacts, 10), hard_contacts (time, points, 4). They are along the ground's
+    axes.
     """
     def reactions(supports: Iterable[Support]) -> dict[str, dict[str, np.ndarray]]:
         return {support.label: support_reaction(model, scene, support, reaction, q) for support in supports}
@@ -185,7 +201,7 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
                            for k, force in enumerate(model.point_forces)},
         Drag.group: {drag.name: {"force": drags[:, k]} for k, drag in enumerate(model.drags)},
         Contact.group: {contact.name: contact_state(contact, contacts[:, k])
-                        for k, contact in enumerate(model.contacts)},
+                        for k, contact in enumerate(model.contacts)} | hard_contact_states(model, hard_contacts),
     }
     return found if model.plane_axes is None else {
         group: {label: model.results(label, values) for label, values in of.items()} for group, of in found.items()}

@@ -241,6 +241,7 @@ class RestState(NamedArrays):
                       model.results(slide.name, {"force": self.static_state["force"][k]}).items()}
         forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
                                    self.static_state["point_force"][None],
-                                   self.load_fraction * drag_forces(self.model, q)[None], self.contact_outputs[None])
+                                   self.load_fraction * drag_forces(self.model, q)[None], self.contact_outputs[None],
+                                   self.hard_contact_outputs[None])
         return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()
                         for name, value in values.items() if name != "residual"}

@@ -33,6 +33,7 @@
 #include "equations.h"
 #include "events.h"
 #include "failure.h"
+#include "hard_contacts.h"
 #include "integrator.h"
 #include "joints.h"
 #include "linear.h"

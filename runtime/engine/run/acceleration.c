@@ -211,6 +211,21 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     return 0;
 }
 
+/* Makes ready for fu_response at a state; returns 0 where there is one solution. */
+int fu_prepare_response(const fu_model *model, const fu_state *state, fu_accelerator *work)
+{
+    evaluate(model, state, work);
+    return factor_border(model, state, work);
+}
+
+/* Makes `change`, the jump of velocities (or the accelerations) by impulses (or forces) on the dofs where constraints stay as they are. */
+void fu_response(const fu_model *model, fu_accelerator *work, const double *force, double *change)
+{
+    double *lambda = work->rhs + model->n_band + model->n_border_dof;
+    memset(lambda, 0, sizeof(double) * (size_t)model->n_multipliers);
+    solve(model, work, force, change);
+}
+
 /* A constraint that has been struck, and the rate at which it opens again. */
 typedef struct {
     int row, constraint;

@@ -1,0 +1,58 @@
+/* Hard contact of a point of a body with a surface: it presses by a multiplier, and never pulls. */
+#ifndef FUNICULAR_HARD_CONTACTS_H
+#define FUNICULAR_HARD_CONTACTS_H
+
+#include "contacts.h"
+
+#define FU_MOST_HARD_CONTACTS 48 /* of a scene: model/hard_contacts.py */
+
+/* One point, the contact's only one. A row g = 0 of its distance, less its radius, has a multiplier while it is closed: minus the
+ * force that presses. */
+typedef struct {
+    fu_contact contact;      /* surface, point, radius */
+    double restitution;      /* of the normal velocity, 0 to 1 */
+    double rest_velocity;    /* m/s: what would leave more slowly stays */
+} fu_hard_contact;
+extern const fu_coupling_type fu_hard_contact_type;
+extern const fu_coupling_events fu_hard_contact_events;
+
+/* A point's own part of a state: how it is, what has happened to it, and when, s. */
+typedef struct {
+    int mode, news;
+} fu_hard_flags;
+typedef struct {
+    double time;
+} fu_hard_numbers;
+
+/* Apart; closed, with its row among the constraints; closed as others' rows imply: its own multiplier is nil. */
+enum { FU_APART, FU_CLOSED, FU_IMPLIED };
+enum { FU_NO_NEWS, FU_STRUCK, FU_CAME_TO_REST, FU_LOST_CONTACT };
+
+/* A number of a row of output: the force on the body, the distance. */
+typedef struct {
+    double force[3], gap;
+} fu_hard_contact_output;
+_Static_assert(sizeof(fu_hard_contact_output) == 4 * sizeof(double), "rows of output are arrays of doubles");
+
+/* A point's row: distance g and its rate, what g'' is where accelerations of the coordinates are zero, normal; H over the n dofs
+ * `at`, those of the body, then those of the body that the surface is on. */
+typedef struct {
+    double g, rate, bias, normal[3], curvature[9];
+    int n, at[2 * FU_ATTACHMENT_COORDINATES];
+    double H[2 * FU_ATTACHMENT_COORDINATES];
+} fu_hard_row;
+
+/* couplings/hard_contacts.c */
+fu_hard_flags *fu_hard_flags_of(const fu_coupling *coupling, const fu_state *state);
+fu_hard_numbers *fu_hard_numbers_of(const fu_coupling *coupling, const fu_state *state);
+void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, fu_hard_row *out);
+
+/* couplings/impacts.c: finds how hard contacts go on at `now`, where one of them, which is `first` to (null: at the start), has come
+ * together or would pull; returns a status. What has happened to each it notes in its news. */
+int fu_resolve_hard_contacts(fu_run *run, const fu_coupling *first);
+
+/* linear/complementarity.c */
+enum { FU_IS_POSITIVE, FU_IS_BASIC, FU_IS_DEPENDENT };
+int fu_complement(int n, const double *G, const double *b, double least, double *x, int *kind);
+
+#endif
