@@ -306,10 +306,10 @@ cdef class Engine(Report):
             return None
         return self._own("joint", left, 6)
 
-    def contact_outputs(self):
-        """(contacts, 10): numbers of contacts with surfaces in the static state; see fu_contact_outputs."""
-        numbers = self._of("contact")
-        out = np.zeros((len(numbers), fu_coupling_type_of(b"contact").n_outputs))
+    def static_outputs(self, str kind):
+        """(couplings, numbers of one): of all couplings of a kind in the static state, as in rows of output."""
+        numbers = self._of(kind)
+        out = np.zeros((len(numbers), fu_coupling_type_of(kind.encode()).n_outputs))
         cdef double[:, ::1] view = out
         cdef int k, number
         for k, number in enumerate(numbers):

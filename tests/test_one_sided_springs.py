@@ -205,7 +205,7 @@ STEP = 0.05
 
 
 def grazing(beyond, peak=0.5125, **law):
-    """Return a mass that is thrown against gravity, so that its spring would be extended by `beyond` (m) at the peak."""
+    """Return a mass that is thrown against gravity, whose spring would be extended by `beyond` (m) at the peak."""
     scene = fu.Scene(gravity=(0, 0, GRAVITY))
     speed = GRAVITY * peak
     scene.rigid_body("m", mass=MASS, inertia=(1, 1, 1), position=(0, 0, -1 - beyond + speed * peak / 2),

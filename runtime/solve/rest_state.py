@@ -122,6 +122,7 @@ class RestState(NamedArrays):
     stability: Stability
     gravity_fraction: float
     contact_outputs: np.ndarray
+    hard_contact_outputs: np.ndarray
     heading: np.ndarray | None = field(default=None, repr=False)
     quantities: dict[str, np.ndarray] = field(default_factory=dict)
     path: list[RestState] = field(default_factory=list, repr=False)
@@ -140,7 +141,8 @@ class RestState(NamedArrays):
         scene = problem.scene.as_drawn
         state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
                     problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
-                    problem.fraction if problem.settings.scale_gravity else 1.0, engine.contact_outputs(), heading)
+                    problem.fraction if problem.settings.scale_gravity else 1.0, engine.static_outputs("contact"),
+                    engine.static_outputs("hard_contact"), heading)
         state.quantities = state._quantities()
         state.path, state.layout = [state], layout(scene)
         return state

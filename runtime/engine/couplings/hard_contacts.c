@@ -226,7 +226,8 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
                     const fu_accelerator *work, double *out)
 {
     fu_hard_contact_output *numbers = (fu_hard_contact_output *)out;
-    const double press = is_closed(coupling, state) ? -work->multipliers[coupling->multiplier] : 0.0;
+    const double *multiplier = work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* or statics' */
+    const double press = is_closed(coupling, state) ? -*multiplier : 0.0;
     fu_hard_row row;
     (void)acceleration;
     *numbers = (fu_hard_contact_output){.gap = 0.0};
@@ -251,6 +252,7 @@ static int is_possible(const fu_model *model, const fu_coupling *coupling, const
 
 static const fu_field fields[] = {
     FU_SURFACE_FIELDS(fu_contact),
+    FU_FIELD(fu_contact, cable, FU_INTEGER, 0),
     FU_FIELD(fu_contact, radius, FU_REAL, 0),
     FU_FIELD_ARRAY(fu_contact, attachments, FU_ATTACHMENT),
     FU_FIELD(fu_hard_contact, restitution, FU_REAL, 0),
