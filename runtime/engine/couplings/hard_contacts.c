@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#define NEAR 1e-9 /* m: what is no farther apart touches in statics */
+
 static const fu_hard_contact *contact_of(const fu_coupling *coupling)
 {
     return (const fu_hard_contact *)coupling;
@@ -98,10 +100,17 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
     rows->rate[0] = 0.0;
 }
 
+/* Returns by how much the distance gives way with the multiplier, m/N: in statics, else nil. */
+static double compliance(const fu_coupling *coupling, fu_weights weights)
+{
+    return weights.inertia == 0.0 ? 1.0 / contact_of(coupling)->stiffness : 0.0;
+}
+
 /* Writes the equation of the own unknown: what is left of the distance, or that it is nil. */
 static void own_row(const fu_coupling *coupling, const fu_equations *at, double g, double *own)
 {
-    if (is_closed(coupling, at->next)) own[coupling->unknown] = -fu_row_unit(at->weights.inertia, coupling->scale[0]) * g;
+    const double multiplier = at->next->forces[coupling->force], left = g - compliance(coupling, at->weights) * multiplier;
+    if (is_closed(coupling, at->next)) own[coupling->unknown] = -fu_row_unit(at->weights.inertia, coupling->scale[0]) * left;
     else own[coupling->unknown] = -at->weights.stiffness * at->next->forces[coupling->force];
 }
 
@@ -133,6 +142,7 @@ static void tangent_at(const fu_model *model, const fu_coupling *coupling, const
         fu_add(model, system, row->at[i], own, unit * row->H[i]);
         fu_add(model, system, own, row->at[i], unit * turned[i]);
     }
+    fu_add(model, system, own, own, -unit * compliance(coupling, weights) / weights.stiffness);
     fu_attachment_state at;
     fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT, &at);
     memcpy(point.r, at.p, sizeof point.r);
@@ -243,6 +253,16 @@ static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_st
     out[0] = is_closed(coupling, state) ? row.g : 0.0;
 }
 
+/* In statics a point touches where it presses, or is nearer than that: the active set follows from both (Hintermueller). */
+static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    const fu_hard_contact *contact = contact_of(coupling);
+    fu_hard_row row;
+    fu_hard_row_at(model, contact, state, &row);
+    const double press = -state->forces[coupling->force];
+    fu_hard_flags_of(coupling, state)->mode = press > contact->stiffness * (row.g - NEAR) ? FU_CLOSED : FU_APART;
+}
+
 static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     (void)model;
@@ -257,6 +277,7 @@ static const fu_field fields[] = {
     FU_FIELD_ARRAY(fu_contact, attachments, FU_ATTACHMENT),
     FU_FIELD(fu_hard_contact, restitution, FU_REAL, 0),
     FU_FIELD(fu_hard_contact, rest_velocity, FU_REAL, 0),
+    FU_FIELD_AS("static_stiffness", fu_hard_contact, stiffness, FU_REAL),
     {0},
 };
 
@@ -266,4 +287,4 @@ const fu_coupling_type fu_hard_contact_type = {
     .n_flags = (int)(sizeof(fu_hard_flags) / sizeof(int)), .n_numbers = (int)(sizeof(fu_hard_numbers) / sizeof(double)),
     .events = &fu_hard_contact_events,
     .residual = residual, .tangent = tangent, .step_residual = step_residual, .step_tangent = step_tangent, .rows = rows,
-    .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .is_possible = is_possible};
+    .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .touch = touch, .is_possible = is_possible};

@@ -12,6 +12,7 @@ typedef struct {
     fu_contact contact;      /* surface, point, radius */
     double restitution;      /* of the normal velocity, 0 to 1 */
     double rest_velocity;    /* m/s: what would leave more slowly stays */
+    double stiffness;        /* N/m: in statics; that of a contact which gives way by little, so that points that hold the same share it */
 } fu_hard_contact;
 extern const fu_coupling_type fu_hard_contact_type;
 extern const fu_coupling_events fu_hard_contact_events;
