@@ -21,25 +21,27 @@ GIVES_WAY = 1e-10
 class HardContactModel(ContactModel):
     """fu_hard_contact of engine/include/hard_contacts.h, of one point of a body; without what a penalty has.
 
-    restitution: of the normal velocity; rest_velocity: m/s, below which what would part stays;
+    restitution: of the normal velocity; rest_velocity: m/s, below which what would part stays; sliding: Coulomb's
+    coefficient;
     static_stiffness: N/m, of the little by which it gives way in statics, so that points that hold the same share it.
     """
 
     restitution: float
     rest_velocity: float
+    sliding: float
     static_stiffness: float
 
 
 def hard_contact_models(part: Contact, scene: SceneData, attachments: AttachmentBuilder) -> list[HardContactModel]:
     """Return the models of a hard contact of the scene, one for each of its points."""
     assert part.restitution is not None and part.points is not None, f"{part.where} is not complete"
-    models = []
+    models, rows = [], scene.dim if part.friction else 1
     weight = scene.bodies[part.a].mass * (float(np.linalg.norm(scene.gravity)) or 1.0)
     for point in part.points:
         at = attachments.model(Attachment(on=part.a, at=point))
         models.append(HardContactModel(
             **surface_entries(scene.surfaces[part.b], scene, attachments), type="hard_contact", name=part.name or "",
             stiffness=0.0, damping=0.0, friction=0.0, tangential=0.0, hertz=0, cable=-1, radius=part.radius or 0.0,
-            n_points=1, attachments=[at], scale=[at.mass], n_multipliers=1, restitution=part.restitution,
+            n_points=1, attachments=[at], scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction, restitution=part.restitution,
             rest_velocity=part.rest_velocity, static_stiffness=weight / GIVES_WAY))
     return models

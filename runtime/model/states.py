@@ -145,17 +145,17 @@ def contact_state(contact: ContactModel, numbers: np.ndarray) -> dict[str, np.nd
 
 
 def hard_contact_states(model: Model, numbers: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
-    """Return what results tell of hard contacts, by name, from the numbers of their points (time, points, 4), which are
-    forces and distances; see fu_hard_contact_output of the engine.
+    """Return what results tell of hard contacts, by name, from the numbers of their points (time, points, 7), which are
+    forces, friction and distances; see fu_hard_contact_output of the engine.
     """
     found: dict[str, dict[str, np.ndarray]] = {}
     for name in dict.fromkeys(point.name for point in model.hard_contacts):
         of = numbers[:, [k for k, point in enumerate(model.hard_contacts) if point.name == name]]
         force, none = of[:, :, :3].sum(axis=1), np.full(len(numbers), np.nan)
-        found[name] = {"force": force, "friction_force": np.zeros_like(force),
-                       "penetration": np.maximum(-of[:, :, 3].min(axis=1), 0.0),
+        found[name] = {"force": force, "friction_force": of[:, :, 3:6].sum(axis=1),
+                       "penetration": np.maximum(-of[:, :, 6].min(axis=1), 0.0),
                        "touching": np.any(of[:, :, :3] != 0, axis=2).sum(axis=1).astype(float), "first": none,
-                       "last": none, "gap": of[:, :, 3].min(axis=1)}
+                       "last": none, "gap": of[:, :, 6].min(axis=1)}
     return found
 
 
@@ -183,7 +183,7 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
 
     Of a slide it is the moment that keeps its rider's axes. All arguments have the time first: q (time, n_q), reaction
     (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3),
-    drags (time, drags, 3), contacts (time, contacts, 10), hard_contacts (time, points, 4). They are along the ground's
+    drags (time, drags, 3), contacts (time, contacts, 10), hard_contacts (time, points, 7). They are along the ground's
     axes.
     """
     def reactions(supports: Iterable[Support]) -> dict[str, dict[str, np.ndarray]]:

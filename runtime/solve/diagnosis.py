@@ -98,7 +98,8 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
     """Return what a dof is of, or what a coupling of this number is."""
     if coupling is not None:
         failed = model.couplings[coupling]
-        assert isinstance(failed, SlideModel), "slides alone have coordinates of their own"
+        if not isinstance(failed, SlideModel):
+            return f'contact "{failed.name}"'
         return f'slide "{failed.name}" on cable "{model.cables[failed.cable].name}"'
     if (found := _node(model, dof)) is not None:
         cable, node = found

@@ -27,6 +27,11 @@ static int is_closed(const fu_coupling *coupling, const fu_state *state)
     return fu_hard_flags_of(coupling, state)->mode == FU_CLOSED;
 }
 
+static int has_friction(const fu_coupling *coupling)
+{
+    return contact_of(coupling)->friction > 0.0;
+}
+
 static void cross(const double *a, const double *b, double *out)
 {
     for (int d = 0; d < 3; ++d) out[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
@@ -84,6 +89,26 @@ void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const
     out->bias = bias_of(dim, &distance, point.p, &point, &on);
 }
 
+/* Adds rows of what friction holds, or what it is against where the point slides. */
+static void friction_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_hard_row *row, fu_rows *rows)
+{
+    const fu_hard_contact *contact = contact_of(coupling);
+    fu_hard_along along;
+    fu_hard_along_at(model, contact, state, row, &along);
+    if (!fu_hard_flags_of(coupling, state)->sticks) {
+        rows->is_pushed = 1;
+        for (int i = 0; i < row->n; ++i) rows->column[i] = row->H[i] - contact->friction * along.slip[i];
+        return;
+    }
+    rows->rows = model->dim;
+    for (int k = 1; k < model->dim; ++k) {
+        memcpy(rows->H + k * row->n, along.H[k - 1], sizeof(double) * (size_t)row->n);
+        rows->W[k] = -along.bias[k - 1];
+        rows->C[k] = rows->rate[k] = 0.0;
+        rows->soft[k] = fu_hard_softness(contact, state->forces[coupling->force]);
+    }
+}
+
 static void rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
     fu_rows *rows = &work->rows[coupling->row];
@@ -98,6 +123,7 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
     rows->W[0] = -row.bias;
     rows->C[0] = row.g;
     rows->rate[0] = 0.0;
+    if (has_friction(coupling)) friction_rows(model, coupling, state, &row, rows);
 }
 
 /* Returns by how much the distance gives way with the multiplier, m/N: in statics, else nil. */
@@ -114,19 +140,63 @@ static void own_row(const fu_coupling *coupling, const fu_equations *at, double 
     else own[coupling->unknown] = -at->weights.stiffness * at->next->forces[coupling->force];
 }
 
+/* Adds friction: against sliding, or the forces that keep velocities past the surface nil, as lengths over a step. */
+static void friction_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_hard_row *row,
+                              double *f, double *own)
+{
+    const fu_hard_contact *contact = contact_of(coupling);
+    const double *multipliers = at->next->forces + coupling->force, unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
+    fu_hard_along along;
+    fu_hard_along_at(model, contact, at->next, row, &along);
+    if (!fu_hard_flags_of(coupling, at->next)->sticks) {
+        for (int i = 0; i < row->n; ++i) f[row->at[i]] -= contact->friction * along.slip[i] * multipliers[0];
+        return;
+    }
+    const double step = 1.0 / at->weights.rate, soft = step * step * fu_hard_softness(contact, at->now->forces[coupling->force]);
+    for (int k = 1; k < coupling->n_forces; ++k) {
+        for (int i = 0; i < row->n; ++i) f[row->at[i]] += along.H[k - 1][i] * multipliers[k];
+        own[coupling->unknown + k] = -unit * (step * fu_dot(model->dim, along.t[k - 1], along.past) - soft * multipliers[k]);
+    }
+}
+
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
 {
     fu_hard_row row = {.g = 0.0};
+    for (int k = 1; k < coupling->n_forces; ++k)
+        own[coupling->unknown + k] = -at->weights.stiffness * at->next->forces[coupling->force + k];
     if (is_closed(coupling, at->next)) {
         fu_hard_row_at(model, contact_of(coupling), at->next, &row);
         for (int i = 0; i < row.n; ++i) f[row.at[i]] += row.H[i] * at->next->forces[coupling->force];
+        if (has_friction(coupling)) friction_residual(model, coupling, at, &row, f, own);
     }
     own_row(coupling, at, row.g, own);
 }
 
+/* Adds what friction's forces are by its own unknowns, and its rows by velocities; how both turn with the unknowns is left out. */
+static void friction_tangent(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_state *last,
+                             fu_weights weights, const fu_hard_row *row, fu_system *system)
+{
+    const fu_hard_contact *contact = contact_of(coupling);
+    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), step = weights.rate > 0.0 ? 1.0 / weights.rate : 0.0;
+    const int first = fu_extra(model, coupling->unknown), sticks = fu_hard_flags_of(coupling, state)->sticks;
+    fu_hard_along along;
+    fu_hard_along_at(model, contact, state, row, &along);
+    for (int k = 1; k < coupling->n_forces; ++k) {
+        const double soft = step * step * fu_hard_softness(contact, last->forces[coupling->force]);
+        fu_add(model, system, first + k, first + k, sticks ? -unit * soft * unit / weights.stiffness : unit);
+        for (int i = 0; i < row->n && sticks; ++i) {
+            fu_add(model, system, row->at[i], first + k, unit * along.H[k - 1][i]);
+            fu_add(model, system, first + k, row->at[i], unit * along.H[k - 1][i]);
+        }
+    }
+    for (int i = 0; i < row->n && !sticks; ++i)
+        fu_add(model, system, row->at[i], first, -unit * contact->friction * along.slip[i]);
+}
+
 /* Adds what moves the distance by the unknowns, and the multiplier's part; `by_turns`: columns of it are turned by psi. */
 static void tangent_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double multiplier,
-                       const double *psi, fu_weights weights, const fu_hard_row *row, fu_system *system)
+                       const double *psi, const fu_state *last, fu_weights weights, const fu_hard_row *row,
+                       fu_system *system)
 {
     const fu_hard_contact *contact = contact_of(coupling);
     const int dim = model->dim, own = fu_extra(model, coupling->unknown);
@@ -142,6 +212,7 @@ static void tangent_at(const fu_model *model, const fu_coupling *coupling, const
         fu_add(model, system, row->at[i], own, unit * row->H[i]);
         fu_add(model, system, own, row->at[i], unit * turned[i]);
     }
+    if (has_friction(coupling)) friction_tangent(model, coupling, state, last, weights, row, system);
     fu_add(model, system, own, own, -unit * compliance(coupling, weights) / weights.stiffness);
     fu_attachment_state at;
     fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT, &at);
@@ -157,11 +228,12 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const int own = fu_extra(model, coupling->unknown);
     fu_hard_row row;
     if (!is_closed(coupling, at->next)) {
-        fu_add(model, system, own, own, fu_row_unit(at->weights.inertia, coupling->scale[0]));
+        for (int k = 0; k < coupling->n_forces; ++k)
+            fu_add(model, system, own + k, own + k, fu_row_unit(at->weights.inertia, coupling->scale[0]));
         return;
     }
     fu_hard_row_at(model, contact_of(coupling), at->next, &row);
-    tangent_at(model, coupling, at->next, at->next->forces[coupling->force], at->psi, at->weights, &row, system);
+    tangent_at(model, coupling, at->next, at->next->forces[coupling->force], at->psi, at->now, at->weights, &row, system);
 }
 
 /* Makes the row over a step: H psi is what the distance changes by (Gonzalez). */
@@ -229,7 +301,9 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
 {
     (void)model;
-    state->forces[coupling->force] = is_closed(coupling, state) ? work->multipliers[coupling->multiplier] : 0.0;
+    const int closed = is_closed(coupling, state);
+    for (int k = 0; k < coupling->n_forces; ++k)
+        state->forces[coupling->force + k] = closed ? work->multipliers[coupling->multiplier + k] : 0.0;
 }
 
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
@@ -238,11 +312,21 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     fu_hard_contact_output *numbers = (fu_hard_contact_output *)out;
     const double *multiplier = work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* or statics' */
     const double press = is_closed(coupling, state) ? -*multiplier : 0.0;
+    fu_hard_along along;
     fu_hard_row row;
     (void)acceleration;
     *numbers = (fu_hard_contact_output){.gap = 0.0};
     fu_hard_row_at(model, contact_of(coupling), state, &row);
     for (int d = 0; d < model->dim; ++d) numbers->force[d] = press * row.normal[d];
+    if (has_friction(coupling) && press != 0.0) {
+        fu_hard_along_at(model, contact_of(coupling), state, &row, &along);
+        for (int d = 0; d < model->dim; ++d) {
+            if (fu_hard_flags_of(coupling, state)->sticks)
+                for (int k = 1; k < model->dim; ++k) numbers->friction[d] -= multiplier[k] * along.t[k - 1][d];
+            else numbers->friction[d] = -contact_of(coupling)->friction * press * along.direction[d];
+            numbers->force[d] += numbers->friction[d];
+        }
+    }
     numbers->gap = row.g;
 }
 
@@ -250,7 +334,30 @@ static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_st
 {
     fu_hard_row row;
     fu_hard_row_at(model, contact_of(coupling), state, &row);
-    out[0] = is_closed(coupling, state) ? row.g : 0.0;
+    for (int k = 0; k < coupling->n_forces; ++k) out[k] = 0.0;
+    if (is_closed(coupling, state)) out[0] = row.g;
+}
+
+static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work)
+{
+    const double press = -(work ? work->multipliers + coupling->multiplier : state->forces + coupling->force)[0];
+    fu_hard_row row;
+    fu_hard_along along;
+    if (!has_friction(coupling) || !is_closed(coupling, state) || fu_hard_flags_of(coupling, state)->sticks) return 0.0;
+    fu_hard_row_at(model, contact_of(coupling), state, &row);
+    fu_hard_along_at(model, contact_of(coupling), state, &row, &along);
+    return contact_of(coupling)->friction * press * fu_dot(model->dim, along.direction, along.past);
+}
+
+/* The direction of sliding goes along. */
+static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    fu_hard_row row;
+    fu_hard_along along;
+    if (!has_friction(coupling) || !is_closed(coupling, state) || fu_hard_flags_of(coupling, state)->sticks) return;
+    fu_hard_row_at(model, contact_of(coupling), state, &row);
+    fu_hard_along_at(model, contact_of(coupling), state, &row, &along);
+    memcpy(fu_hard_numbers_of(coupling, state)->direction, along.direction, sizeof(double) * (size_t)model->dim);
 }
 
 /* In statics a point touches where it presses, or is nearer than that: the active set follows from both (Hintermueller). */
@@ -277,6 +384,7 @@ static const fu_field fields[] = {
     FU_FIELD_ARRAY(fu_contact, attachments, FU_ATTACHMENT),
     FU_FIELD(fu_hard_contact, restitution, FU_REAL, 0),
     FU_FIELD(fu_hard_contact, rest_velocity, FU_REAL, 0),
+    FU_FIELD_AS("sliding", fu_hard_contact, friction, FU_REAL),
     FU_FIELD_AS("static_stiffness", fu_hard_contact, stiffness, FU_REAL),
     {0},
 };
@@ -287,4 +395,4 @@ const fu_coupling_type fu_hard_contact_type = {
     .n_flags = (int)(sizeof(fu_hard_flags) / sizeof(int)), .n_numbers = (int)(sizeof(fu_hard_numbers) / sizeof(double)),
     .events = &fu_hard_contact_events,
     .residual = residual, .tangent = tangent, .step_residual = step_residual, .step_tangent = step_tangent, .rows = rows,
-    .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .touch = touch, .is_possible = is_possible};
+    .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .dissipation = dissipation, .carry = carry, .touch = touch, .is_possible = is_possible};
