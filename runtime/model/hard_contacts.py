@@ -22,13 +22,14 @@ class HardContactModel(ContactModel):
     """fu_hard_contact of engine/include/hard_contacts.h, of one point of a body; without what a penalty has.
 
     restitution: of the normal velocity; rest_velocity: m/s, below which what would part stays; sliding: Coulomb's
-    coefficient;
+    coefficient; weight: N, of the body;
     static_stiffness: N/m, of the little by which it gives way in statics, so that points that hold the same share it.
     """
 
     restitution: float
     rest_velocity: float
     sliding: float
+    weight: float
     static_stiffness: float
 
 
@@ -43,5 +44,6 @@ def hard_contact_models(part: Contact, scene: SceneData, attachments: Attachment
             **surface_entries(scene.surfaces[part.b], scene, attachments), type="hard_contact", name=part.name or "",
             stiffness=0.0, damping=0.0, friction=0.0, tangential=0.0, hertz=0, cable=-1, radius=part.radius or 0.0,
             n_points=1, attachments=[at], scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction, restitution=part.restitution,
-            rest_velocity=part.rest_velocity, static_stiffness=weight / GIVES_WAY))
+            rest_velocity=part.rest_velocity, weight=weight,
+            static_stiffness=weight / GIVES_WAY))
     return models

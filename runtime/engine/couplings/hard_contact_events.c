@@ -1,6 +1,7 @@
 /* What a hard contact does by itself (include/coupling_events.h): it comes together, and opens where it would pull. */
 #include "engine.h"
 
+#define LEAST_PULL 3e-10 /* of the weight: what is pulled by less stays closed, as three of four points that bear have none to spare */
 #define AT_ONCE 1e-12 /* of the duration: news that is older is none */
 
 static const char *const words[] = {"", "struck", "came into contact", "lost contact", "stuck", "broke loose"};
@@ -39,7 +40,7 @@ static double friction_margin(const fu_run *run, const fu_coupling *coupling, co
     fu_hard_along along;
     if (fu_hard_flags_of(coupling, state)->sticks) {
         const double *held = multipliers(run, coupling, state);
-        return sqrt(fu_dot(dim - 1, held + 1, held + 1)) + contact->friction * held[0];
+        return sqrt(fu_dot(dim - 1, held + 1, held + 1)) - fu_hard_grip(contact, held[0]);
     }
     fu_hard_row_at(run->model, contact, state, &row);
     fu_hard_along_at(run->model, contact, state, &row, &along);
@@ -52,7 +53,7 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
     const int mode = fu_hard_flags_of(coupling, state)->mode;
     fu_hard_row row;
     if (which == OF_FRICTION) return mode == FU_CLOSED ? friction_margin(run, coupling, state) : -1.0;
-    if (mode == FU_CLOSED) return multipliers(run, coupling, state)[0];
+    if (mode == FU_CLOSED) return multipliers(run, coupling, state)[0] - LEAST_PULL * contact_of(coupling)->weight;
     if (mode == FU_IMPLIED) return -1.0;
     fu_hard_row_at(run->model, contact_of(coupling), state, &row);
     return -row.g;

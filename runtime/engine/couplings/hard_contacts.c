@@ -385,6 +385,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_hard_contact, restitution, FU_REAL, 0),
     FU_FIELD(fu_hard_contact, rest_velocity, FU_REAL, 0),
     FU_FIELD_AS("sliding", fu_hard_contact, friction, FU_REAL),
+    FU_FIELD(fu_hard_contact, weight, FU_REAL, 0),
     FU_FIELD_AS("static_stiffness", fu_hard_contact, stiffness, FU_REAL),
     {0},
 };

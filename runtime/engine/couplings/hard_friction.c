@@ -5,7 +5,8 @@
 
 #define SLOW 1e-6  /* of the velocity below which a point comes to rest: what turns the direction of sliding */
 #define SOFT 1e-10 /* m/s^2 over N: so little do points that stick give way, and share by their normal forces what holds them */
-#define LEAST 1e-6 /* m/s^2: normal force over mass, below which it counts as that */
+#define SLACK 1e-9 /* of the weight: so much more is held, as a point may bear nothing, and be held by rounding */
+#define LEAST 1e-10 /* m/s^2: normal force over mass, below which it counts as that */
 
 static void cross(const double *a, const double *b, double *out)
 {
@@ -100,6 +101,12 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
                 H[i] += t[d] * (i < point.n ? P[d * point.n + i] : -Q[d * on.n + i - point.n]);
         }
     }
+}
+
+/* Returns what friction can take of a point that sticks, N. */
+double fu_hard_grip(const fu_hard_contact *contact, double multiplier)
+{
+    return contact->friction * fmax(SLACK * contact->weight - multiplier, SLACK * contact->weight);
 }
 
 double fu_hard_softness(const fu_hard_contact *contact, double multiplier)

@@ -10,6 +10,7 @@
 #define CONVERGED 1e-14   /* change of an impulse in a sweep, over the largest */
 #define STOPPED 0.1       /* of the velocity below which a point comes to rest: what is slower sticks, if it can */
 #define EXCESS 1e-9       /* of what friction can take: so much more breaks it loose */
+#define PULL 1e-10        /* of the largest force: more opens a point, less is rounding */
 #define APPROACH 1e-6     /* of the accelerations: more than what sticking gives way by */
 #define MOST_CHANGES 200  /* of how points go on, before there is no motion */
 
@@ -138,10 +139,10 @@ static void begin(fu_run *run, const fu_touching *t, int k)
 static double excess(const fu_run *run, const fu_coupling *c)
 {
     const double *multipliers = run->now.forces + c->force;
-    const double most = -contact_of(c)->friction * multipliers[0];
+    const double most = fu_hard_grip(contact_of(c), multipliers[0]);
     double square = 0.0;
     for (int k = 1; k < c->n_forces; ++k) square += multipliers[k] * multipliers[k];
-    return most > 0.0 ? sqrt(square) / most - 1.0 : square > 0.0 ? INFINITY : -1.0;
+    return sqrt(square) / most - 1.0;
 }
 
 /* Makes the direction in which a point that sticks would slide: against what holds it. */
@@ -185,7 +186,7 @@ static int change_one(fu_run *run, const fu_touching *t, const fu_coupling *loos
     for (int k = 0; k < t->n; ++k) {
         fu_hard_flags *flags = fu_hard_flags_of(t->of[k], &run->now);
         if (!t->stays[k]) continue;
-        if (flags->mode == FU_CLOSED && run->now.forces[t->of[k]->force] > EXCESS * largest) {
+        if (flags->mode == FU_CLOSED && run->now.forces[t->of[k]->force] > PULL * largest) {
             flags->mode = FU_APART;
             return 1;
         }

@@ -13,6 +13,7 @@ typedef struct {
     double restitution;      /* of the normal velocity, 0 to 1 */
     double rest_velocity;    /* m/s: what would leave more slowly stays */
     double friction;         /* Coulomb's coefficient */
+    double weight;           /* N: of the body, or where there is no gravity as under 1 m/s^2 */
     double stiffness;        /* N/m: in statics; that of a contact which gives way by little, so that points that hold the same share it */
 } fu_hard_contact;
 extern const fu_coupling_type fu_hard_contact_type;
@@ -59,6 +60,7 @@ void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const
 /* couplings/hard_friction.c */
 void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, const fu_hard_row *row,
                       fu_hard_along *out);
+double fu_hard_grip(const fu_hard_contact *contact, double multiplier);
 double fu_hard_softness(const fu_hard_contact *contact, double multiplier);
 
 /* The points that touch: how they were; their rows, compliance, normal velocities before and after, what these shall be at least,
