@@ -6,6 +6,7 @@ import numpy as np
 
 from ..engine import Engine
 from ..integrators import INTEGRATORS, stable_at
+from ..model.hard_contacts import HardContactModel
 from ..model.model import CableModel, Model, SlideModel
 from ..model.redundant_constraints import redundant
 from ..parts.scene_data import SceneData
@@ -63,14 +64,13 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
             "error": f"the error stays above what tol allows, most of all at {where}",
             "lost_rider": f"{where} does not find its point on the cable any more",
             "not_finite": f"{where} diverges",
-            "self_locking": f"friction is self-locking at {where}: the larger it is, the harder it presses the rider "
-                            "on the cable"}[cause]
+            "self_locking": _self_locking(model, coupling, where)}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif cause == "self_locking":
-        remedy = "Take a smaller coefficient, or the rider's point nearer to its centre of mass"
+        remedy = "Take a smaller coefficient, or the point nearer to the centre of mass"
     elif folded:
         remedy = f"The cable folds up there: take more elements{damping(model, dof)}"
     else:
@@ -92,6 +92,14 @@ def _too_large(engine: Engine, settings: RunSettings) -> str:
         stable = (", or a spectral_radius below 1, as at 1 nothing damps the vibrations that joints excite from step "
                   'to step; integrator="energy" needs no damping')
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
+
+
+def _self_locking(model: Model, coupling: int | None, where: str) -> str:
+    """Return what has no solution where friction has none."""
+    if coupling is not None and isinstance(model.couplings[coupling], HardContactModel):
+        return (f"no forces that press and rub let {where} go on: friction is self-locking, or changes follow each "
+                "other at once")
+    return f"friction is self-locking at {where}: the larger it is, the harder it presses the rider on the cable"
 
 
 def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:

@@ -8,6 +8,7 @@
 
 #define TOUCHING 1e-12 /* of the extent: distances at which points touch */
 #define ROUNDING 1e-11 /* of velocities, or of accelerations: less is none */
+#define SLOW 1e-3      /* of the velocity below which a point comes to rest: what parts more slowly stays, if it is pressed */
 #define STILL 1e-6     /* of the velocity below which a point comes to rest: the same */
 #define GROWTH 1e-9    /* of the kinetic energy of the jump: more than that an impact must not bring */
 
@@ -132,7 +133,7 @@ static int press(fu_run *run, fu_touching *t, double least)
     int n = 0, at[MOST], kind[MOST];
     double G[MOST * MOST], b[MOST], force[MOST], largest = 0.0;
     for (int k = 0; k < t->n; ++k) {
-        t->stays[k] = t->after[k] <= least;
+        t->stays[k] = t->after[k] <= fmax(least, SLOW * contact_of(t->of[k])->rest_velocity);
         if (t->stays[k]) at[n++] = k;
     }
     if (!n) return 0;
