@@ -217,11 +217,25 @@ static int change_one(fu_run *run, const fu_touching *t, const fu_coupling *loos
     return breaks != 0;
 }
 
+/* Takes from points that stick what velocity they have left. */
+static int stop(fu_run *run)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    if (fu_project_velocities(model, now, &run->accelerator, run->work)) return 1;
+    run->dissipated += fu_kinetic_energy(model, now->q, now->v);
+    for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
+    run->dissipated -= fu_kinetic_energy(model, now->q, now->v);
+    return 0;
+}
+
 int fu_settle_friction(fu_run *run, fu_touching *t, const fu_coupling *loose)
 {
     int closed = -1, changes = 0, aimed[MOST] = {0};
     for (int k = 0; k < t->n; ++k)
         if (fu_hard_flags_of(t->of[k], &run->now)->mode == FU_CLOSED && t->of[k]->n_forces > 1) begin(run, t, k);
+    if (stop(run)) return 1;
+    fu_complete(run, &run->now); /* points that stick share by normal forces, which the next one takes from here */
     for (; changes < MOST_CHANGES; ++changes) {
         if (fu_complete(run, &run->now)) {
             if (closed < 0) return 1;
