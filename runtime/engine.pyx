@@ -197,7 +197,7 @@ cdef class Engine(Report):
             shape = (rows, array.items) if array.axes == 2 else (rows,)
             fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
         output = self.arrays.pop("output")
-        for kind in ("slide", "joint", "point_force", "drag", "crossing", "contact"):
+        for kind in ("slide", "joint", "point_force", "drag", "crossing", "contact", "hard_contact"):
             self.arrays[kind] = self._outputs(kind, output)
         cdef int status = fu_start(run)
         if status:

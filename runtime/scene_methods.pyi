@@ -302,6 +302,8 @@ class SceneMethods(SceneData):
         friction: float = 0.0,
         tangential_stiffness: float | None = None,
         radius: float | None = None,
+        restitution: float | None = None,
+        rest_velocity: float = 0.001,
         points: Points | None = None,
         name: str | None = None,
     ) -> Contact:

@@ -239,3 +239,57 @@ def test_a_resumed_run_tells_the_same_events(tmp_path, integrator):
     assert scene.run(**given, save=tmp_path / "out.nc", progress=stop).status == "interrupted"
     assert scene.run(**given, save=tmp_path / "out.nc", resume=True).events == whole.events
     assert whole.events[-1]["time"] > 1.0
+INTEGRATORS = (*BY_TOL, *BY_STEP)
+STEP = 0.05
+
+
+def grazing(beyond, peak=0.5125, **law):
+    """Return a mass that is thrown against gravity, whose spring would be extended by `beyond` (m) at the peak."""
+    scene = fu.Scene(gravity=(0, 0, GRAVITY))
+    speed = GRAVITY * peak
+    scene.rigid_body("m", mass=MASS, inertia=(1, 1, 1), position=(0, 0, -1 - beyond + speed * peak / 2),
+                     velocity=(0, 0, -speed))
+    scene.spring((0, 0, 10), "m", length=11.0, name="dropper", stiffness=STIFFNESS, tension_only=True, **law)
+    return scene
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("damping", [0.0, DAMPING])
+@pytest.mark.parametrize("part", [1e-3, 0.1])
+def test_a_spring_that_is_taut_for_a_part_of_a_step_is_not_missed(integrator, damping, part):
+    """Free until the instant from which it is taut, and taut for a quarter of a thousandth of a vibration at most."""
+    half, peak = STEP * part / 2, 0.5125
+    run = grazing(GRAVITY * half**2 / 2, peak, damping=damping).run(duration=1.0, output_step=STEP, step=STEP,
+                                                                   integrator=integrator)
+    events = run.report["events"]
+    assert [event["what"] for event in events] == ["became taut", "became slack"]
+    found = [event["time"] for event in events]
+    assert found[0] == pytest.approx(peak - half, abs=1e-9)
+    assert found[0] < found[1] < peak + half * (1 + part)
+    assert run.report["steps"] < 1.5 / STEP
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("size", ["fixed", "by tol"])
+def test_a_quantity_that_passes_a_value_and_is_back_within_a_step_is_noted(integrator, size):
+    """By the closed form of its height, of one event or of both directions; a miss by 1e-3 of the way is none."""
+    half, peak = 1e-3, 0.5125
+    beyond = GRAVITY * half**2 / 2
+    scene = grazing(-1.0, peak)
+    for name, value, direction in (("both", beyond, "both"), ("rising", beyond, "rising"), ("missed", -1e-3, "both")):
+        scene.event(name, quantity="m.position.z", value=value, direction=direction)
+    run = scene.run(duration=1.0, output_step=STEP, step=STEP if size == "fixed" else None, integrator=integrator)
+    found = {name: [event["time"] for event in run.report["events"] if event["name"] == name]
+             for name in ("both", "rising", "missed")}
+    assert found["both"] == pytest.approx([peak - half, peak + half], abs=1e-9)
+    assert found["rising"] == pytest.approx([peak + half], abs=1e-9)
+    assert found["missed"] == []
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_a_quantity_that_turns_in_the_step_after_its_event_is_seen_to_pass_back(integrator):
+    peak, half = 0.5125, 0.02
+    scene = grazing(-1.0, peak)
+    scene.event("low", quantity="m.position.z", value=GRAVITY * half**2 / 2)
+    run = scene.run(duration=1.0, output_step=0.2, step=0.2, integrator=integrator)
+    assert [event["time"] for event in run.report["events"]] == pytest.approx([peak - half, peak + half], abs=1e-9)

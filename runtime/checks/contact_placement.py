@@ -22,6 +22,12 @@ OVERLAP = 0.5
 """Of the radius: a start deeper below the surface is refused."""
 
 
+OVERLAP_HARD = 1e-9
+"""Of 1 m and of the largest coordinate: rounding of places, by which a start of hard contact may be below."""
+MOST_HARD = 48
+"""Points in hard contact of a scene: FU_MOST_HARD_CONTACTS of engine/include/hard_contacts.h."""
+
+
 def placed_surface(scene: SceneData, surface: Surface) -> Surface:
     """Return the surface, sure to be on the ground or on a rigid body. Raises SceneError."""
     if surface.on is None:
@@ -61,6 +67,9 @@ def placed_contact(scene: SceneData, contact: Contact) -> Contact:
     else:
         raise SceneError(contact.where, f'there is no cable or body "{contact.a}"',
                          near(contact.a, [*scene.cables, *scene.bodies]))
+    if contact.is_hard:
+        _check_hard_start(scene, contact, surface, drawn)
+        return contact
     if contact.exponent != 1.0 and contact.friction and contact.tangential_stiffness is None:
         raise SceneError(contact.where, "tangential_stiffness is missing, which the stiffness of the exponent 1.5 is "
                          "not", "give it, in N/m (a length of a cable)")
@@ -69,6 +78,9 @@ def placed_contact(scene: SceneData, contact: Contact) -> Contact:
 
 
 def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
+    if contact.is_hard:
+        raise SceneError(contact.where, f'hard contact is of points of bodies, and "{cable.name}" is a cable',
+                         "leave restitution out and give stiffness, in N/m a length")
     if contact.points is not None:
         raise SceneError(contact.where, f'acts along cable "{cable.name}" and takes no points', "leave points out")
     radius = contact.radius
@@ -86,6 +98,8 @@ def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, su
     if surface.on == body.name:
         raise SceneError(contact.where, f'surface "{surface.name}" is on that body itself', "name another one")
     points = contact.points if contact.points is not None else ((0.0, 0.0, 0.0),)
+    if contact.is_hard:
+        return contact.completed({"points": points, "radius": contact.radius or 0.0})
     made = _with_stiffness(scene, contact, 0.0 if contact.radius is None else contact.radius, body.mass)
     return made.completed({"points": points})
 
@@ -106,6 +120,20 @@ def _with_stiffness(scene: SceneData, contact: Contact, radius: float, mass: flo
 def _along(cable: Cable) -> np.ndarray:
     """Return (n, 3): points of a cable as drawn, in m."""
     return np.array([cable.point(float(s)) for s in np.linspace(0, cable.length, 4 * len(cable.node_s) + 1)])
+
+
+def _check_hard_start(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray) -> None:
+    """Raise SceneError where a point with a hard contact starts below the surface, or there are too many points."""
+    n = len(drawn) + sum(len(other.points or ()) for other in scene.contacts.values() if other.is_hard)
+    if n > MOST_HARD:
+        raise SceneError(contact.where, f"the scene has {n} points in hard contact, and {MOST_HARD} are the most",
+                         "give some of the contacts stiffness in place of restitution")
+    depth = (contact.radius or 0.0) - surface.distance(scene.bodies.get(surface.on or ""), drawn)
+    k = int(np.argmax(depth))
+    if depth[k] > OVERLAP_HARD * (1 + np.abs(drawn).max()):
+        raise SceneError(
+            contact.where, f'"{contact.a}" starts {show(float(depth[k]), "m")} below the surface "{contact.b}", at '
+            f"{show(drawn[k], 'm')}", "draw it higher, or the surface lower: a hard contact has no depth")
 
 
 def _check_start(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray) -> None:

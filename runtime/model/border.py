@@ -14,6 +14,7 @@ from .contacts import ContactModel
 from .coupling import CouplingModel
 from .crossings import CrossingModel
 from .elimination import DENSE, BorderGraph, Elimination, dense
+from .hard_contacts import HardContactModel
 from .joints import JointModel
 from .model import Model, SlideModel
 
@@ -113,6 +114,8 @@ class _Border:
         if not count:
             return
         ends = [coupling.rider] if isinstance(coupling, SlideModel) else getattr(coupling, "attachments", [])
+        if isinstance(coupling, HardContactModel):
+            ends = [*ends, *coupling.on]
         bodies = {body for end in ends for body in self._bodies_of(end)}
         own = self.graph.group(range(self.model.n_border_dof + first, self.model.n_border_dof + first + count),
                                None if coupling.follows_law else bodies)

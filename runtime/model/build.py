@@ -14,6 +14,7 @@ from .contacts import contact_model
 from .coupling import number
 from .crossings import crossing_model
 from .drags import drag_model
+from .hard_contacts import hard_contact_models
 from .joints import JointModel, frame_joint_model, joint_model
 from .loads import LoadBuilder
 from .model import CableModel, Model, MotionModel
@@ -48,15 +49,18 @@ def build(scene: SceneData) -> Model:
     point_forces = [loads.point_force(force) for force in scene.point_forces.values()]
     drags = [drag_model(drag, scene, attachments, loads) for drag in scene.drags.values()]
     crossings = [crossing_model(crossing, scene, attachments) for crossing in scene.crossings.values()]
-    contacts = [contact_model(contact, scene, attachments) for contact in scene.contacts.values()]
+    contacts = [contact_model(contact, scene, attachments) for contact in scene.contacts.values()
+                if not contact.is_hard]
+    hard = [model for contact in scene.contacts.values() if contact.is_hard
+            for model in hard_contact_models(contact, scene, attachments)]
     n_extra, n_multipliers = number([*loads.dead, *loads.turning, *slides, *joints, *point_forces, *drags, *crossings,
-                                     *contacts])
+                                     *contacts, *hard])
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     model = Model(
         dim, cables, bodies, slides, joints, point_forces, loads.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
-        [*loads.dead, *loads.turning], drags, crossings, contacts,
+        [*loads.dead, *loads.turning], drags, crossings, contacts, hard,
         q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
         v=_joined(cable_rates(scene, reduction), *(velocity_of(body, dim) for body in described)),
         weight=_joined(*map(cable_weights, drawn), *(body_weights(body, dim) for body in described)),

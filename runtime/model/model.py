@@ -21,6 +21,7 @@ from .coupling import CouplingModel
 from .crossings import CrossingModel
 from .drags import DragModel
 from .elimination import Elimination
+from .hard_contacts import HardContactModel
 from .joints import JointModel
 from .loads import DeadLoadModel, LoadModel, PointForceModel, SignalModel
 from .unknowns import Node
@@ -185,6 +186,7 @@ class Model:
     drags: list[DragModel]
     crossings: list[CrossingModel]
     contacts: list[ContactModel]
+    hard_contacts: list[HardContactModel]
     q: np.ndarray
     v: np.ndarray
     weight: np.ndarray
@@ -207,7 +209,7 @@ class Model:
     def couplings(self) -> list[CouplingModel]:
         """Return all couplings in the engine's order, which adds up what they give in it."""
         return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags, *self.crossings,
-                *self.contacts]
+                *self.contacts, *self.hard_contacts]
 
     def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return results of a part by quantity, in three dimensions, along the ground's axes."""
@@ -245,5 +247,5 @@ class Model:
                       | {slide.resistance for slide in self.slides if slide.resistance}
                       | {force.law for force in self.point_forces} | {drag.kernel for drag in self.drags}
                       | {crossing.kernel for crossing in self.crossings}
-                      | {contact.kernel for contact in self.contacts}
+                      | {contact.kernel for contact in [*self.contacts, *self.hard_contacts]}
                       | {body.modal_kernel for body in self.bodies if body.modes})

@@ -142,7 +142,22 @@ def contact_state(contact: ContactModel, numbers: np.ndarray) -> dict[str, np.nd
     touches = numbers[:, 7] > 0 if contact.cable >= 0 else np.zeros(len(numbers), dtype=bool)
     first, last = (np.where(touches, numbers[:, k], np.nan) for k in (8, 9))
     return {"force": numbers[:, :3], "friction_force": numbers[:, 3:6], "penetration": numbers[:, 6],
-            "touching": numbers[:, 7], "first": first, "last": last}
+            "touching": numbers[:, 7], "first": first, "last": last, "gap": np.full(len(numbers), np.nan)}
+
+
+def hard_contact_states(model: Model, numbers: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
+    """Return what results tell of hard contacts, by name, from the numbers of their points (time, points, 7), which are
+    forces, friction and distances; see fu_hard_contact_output of the engine.
+    """
+    found: dict[str, dict[str, np.ndarray]] = {}
+    for name in dict.fromkeys(point.name for point in model.hard_contacts):
+        of = numbers[:, [k for k, point in enumerate(model.hard_contacts) if point.name == name]]
+        force, none = of[:, :, :3].sum(axis=1), np.full(len(numbers), np.nan)
+        found[name] = {"force": force, "friction_force": of[:, :, 3:6].sum(axis=1),
+                       "penetration": np.maximum(-of[:, :, 6].min(axis=1), 0.0),
+                       "touching": np.any(of[:, :, :3] != 0, axis=2).sum(axis=1).astype(float), "first": none,
+                       "last": none, "gap": of[:, :, 6].min(axis=1)}
+    return found
 
 
 def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
@@ -168,7 +183,7 @@ def crossing_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
             "s_b": numbers[:, 6], "position": numbers[:, 7:]}
 
 
-AT_REST = ("drag", "contact", "crossing")
+AT_REST = ("drag", "contact", "hard_contact", "crossing")
 """The kinds of couplings whose numbers in a row of output a state of rest has, too."""
 
 
@@ -229,7 +244,8 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
         Crossing.group: {crossing.name: crossing_state(couplings["crossing"][:, k])
                          for k, crossing in enumerate(model.crossings) if asked(crossing.name)},
         Contact.group: {contact.name: contact_state(contact, couplings["contact"][:, k])
-                        for k, contact in enumerate(model.contacts) if asked(contact.name)},
+                        for k, contact in enumerate(model.contacts) if asked(contact.name)}
+        | {name: state for name, state in hard_contact_states(model, couplings["hard_contact"]).items() if asked(name)},
     }
     return found if model.plane_axes is None else {
         group: {label: model.results(label, values) for label, values in of.items()} for group, of in found.items()}

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
+from pydantic import model_validator
+
 from .part import Part
 from .plane import across
 from .quantity import Quantity, vector_of_time
 from .schemas import checked, list_schema
-from .validation import Name, Reference, Vector, not_negative, number, positive, shown, vector3
+from .validation import Name, Reference, Vector, not_negative, number, positive, shown, vector3, within
 
 EXPONENTS = (1.0, 1.5)
 MOST_POINTS = 16
@@ -34,11 +36,14 @@ def _exponent(value: Any) -> float:
 class Contact(Part):
     """Contact of a cable along its length, or of points of a body, with a `Surface`: it presses and never pulls.
 
+    By penalty, with ``stiffness``, or hard, with ``restitution``.
     a: the cable or the body; b: the surface. The depth d by which it is below the surface gives the force
     ``stiffness d^exponent (1 + damping d')`` a length of a cable, or on each point of a body, with the exponent 1 or
     1.5 (Hertz) and the damping in s/m (Hunt and Crossley). stiffness in N/m a length in m, or in N/m; if not given,
     that which the weight sinks by 1 % of the radius. radius in m: of the cable, that of its section if not given; of
     spheres about a body's points. points: of a body, in its axes, in m; its origin if not given.
+    restitution: of hard contact of a body's points, which do not sink in: what part of the normal velocity they come
+    back with, 0 to 1 (Newton). What would come back by less than rest_velocity, in m/s, stays.
     friction: Coulomb's coefficient. What sticks is kept by a spring of tangential_stiffness, that of the normal
     force if not given, and slides where that exceeds friction. In statics friction is against the way from the places
     drawn.
@@ -54,6 +59,7 @@ class Contact(Part):
         "touching": Quantity(("time",), "1", "length of the cable that touches, m, or number of points that do"),
         "first": Quantity(("time",), "m", "arc-length of the cable where it begins to touch, NaN where it does not"),
         "last": Quantity(("time",), "m", "arc-length of the cable where it touches last, NaN where it does not"),
+        "gap": Quantity(("time",), "m", "of a hard contact: least distance of its points from the surface, else NaN"),
     }
     name: Name | None = None
     a: Reference
@@ -64,8 +70,24 @@ class Contact(Part):
     friction: Annotated[float, not_negative()] = 0.0
     tangential_stiffness: Annotated[float, positive("N/m")] | None = None
     radius: Annotated[float, not_negative("m")] | None = None
+    restitution: Annotated[float, within(0, 1, ends=True)] | None = None
+    rest_velocity: Annotated[float, positive("m/s")] = 1e-3
     points: Annotated[tuple[Vector, ...], checked(_points, {
         "type": "array", "items": list_schema("m"), "minItems": 1, "maxItems": MOST_POINTS})] | None = None
+
+    @property
+    def is_hard(self) -> bool:
+        """Return whether it has a constraint in place of a stiffness."""
+        return self.restitution is not None
+
+    @model_validator(mode="after")
+    def _has_one_law(self) -> Contact:
+        given = [name for name in ("stiffness", "exponent", "damping", "tangential_stiffness")
+                 if name in self.model_fields_set and getattr(self, name) is not None]
+        if self.is_hard and given:
+            raise ValueError(f"is hard by its restitution, and {given[0]} is of a contact by penalty",
+                             f"leave restitution out, or {given[0]}")
+        return self
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""

@@ -5,9 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.sparse import csc_array
+from scipy.linalg import qr
+from scipy.sparse import csc_array, csr_array
 
 from ..model.model import Model
+
+
+DEPENDENT = 1e-9
+"""Of the largest: what is left of a contact's row that those of others imply."""
 
 
 def fastest(K: csc_array, M: csc_array, unknowns: np.ndarray | slice = slice(None)) -> float:
@@ -25,7 +30,21 @@ def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
     kept = np.concatenate([np.arange(n), np.array(own, dtype=int)])
     full = full.tocsr()
     K = without_forces(full, kept, model)
-    return K.tocsc(), full[np.array(forces, dtype=int)][:, kept].tocsc()
+    touching = {n + k for contact in model.hard_contacts for k in contact.force_unknowns}
+    return K.tocsc(), _independent(full[np.array(forces, dtype=int)][:, kept],
+                                   [row for row, k in enumerate(forces) if k in touching]).tocsc()
+
+
+def _independent(rows: csr_array, of_contacts: list[int]) -> csr_array:
+    """Return the constraints without those of contacts that are open, whose rows are nil, and that others imply."""
+    if not of_contacts:
+        return rows
+    own = rows[of_contacts].toarray()
+    _, factor, order = qr(own.T, mode="economic", pivoting=True)
+    sizes = np.abs(np.diagonal(factor))
+    rank = int(np.count_nonzero(sizes > DEPENDENT * max(sizes.max(initial=0.0), np.finfo(float).tiny)))
+    others = set(range(rows.shape[0])) - set(of_contacts)
+    return rows[sorted(others | {of_contacts[k] for k in order[:rank]})]
 
 
 def without_forces(full: Any, kept: np.ndarray | slice, model: Model) -> Any:

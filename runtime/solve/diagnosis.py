@@ -6,6 +6,7 @@ import numpy as np
 
 from ..engine import Engine
 from ..integrators import INTEGRATORS, stable_at
+from ..model.hard_contacts import HardContactModel
 from ..model.model import CableModel, Model, SlideModel
 from ..model.redundant_constraints import redundant
 from ..parts.scene_data import SceneData
@@ -63,23 +64,19 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
             "error": f"the error stays above what tol allows, most of all at {where}",
             "lost_rider": f"{where} does not find its point on the cable any more",
             "not_finite": f"{where} diverges",
-            "self_locking": f"friction is self-locking at {where}: the larger it is, the harder it presses the rider "
-                            "on the cable",
-             "parallel": f"{where} finds no closest points: the lines are parallel where they are near each other, or "
-                         "one of them winds around the other"}[cause]
-    is_slide = coupling is None or isinstance(model.couplings[coupling], SlideModel)
-    if cause == "self_locking" and not is_slide:
-        what = f"{where} changes to and fro at one instant, again and again"
+            "self_locking": _self_locking(model, coupling, where),
+            "parallel": f"{where} finds no closest points: the lines are parallel where they are near each other, or "
+                        "one of them winds around the other"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if cause == "parallel":
         return f"no contact force is known at {when}: {what}; {KEPT}. Keep them at an angle: a crossing has one point"
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
-    elif cause == "self_locking" and not is_slide:
+    elif cause == "self_locking" and _is_force(model, coupling):
         remedy = "Take a smaller stiffness or tol, or give it damping"
     elif cause == "self_locking":
-        remedy = "Take a smaller coefficient, or the rider's point nearer to its centre of mass"
+        remedy = "Take a smaller coefficient, or the point nearer to the centre of mass"
     elif folded:
         remedy = f"The cable folds up there: take more elements{damping(model, dof)}"
     else:
@@ -103,12 +100,27 @@ def _too_large(engine: Engine, settings: RunSettings) -> str:
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
 
 
+def _is_force(model: Model, coupling: int | None) -> bool:
+    """Return whether what failed is a coupling that gives a force by a law, and has no constraint."""
+    return coupling is not None and not isinstance(model.couplings[coupling], SlideModel | HardContactModel)
+
+
+def _self_locking(model: Model, coupling: int | None, where: str) -> str:
+    """Return what has no solution where friction has none."""
+    if coupling is not None and isinstance(model.couplings[coupling], HardContactModel):
+        return (f"no forces that press and rub let {where} go on: friction is self-locking, or changes follow each "
+                "other at once")
+    if _is_force(model, coupling):
+        return f"{where} changes to and fro at one instant, again and again"
+    return f"friction is self-locking at {where}: the larger it is, the harder it presses the rider on the cable"
+
+
 def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
     """Return what a dof is of, or what a coupling of this number is."""
     if coupling is not None:
         failed = model.couplings[coupling]
         if not isinstance(failed, SlideModel):
-            return f'{failed.type.replace("_", " ")} "{failed.name}"'
+            return f'{failed.type.removeprefix("hard_").replace("_", " ")} "{failed.name}"'
         return f'slide "{failed.name}" on cable "{model.cables[failed.cable].name}"'
     if (found := _node(model, dof)) is not None:
         cable, node = found

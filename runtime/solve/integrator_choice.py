@@ -190,7 +190,8 @@ def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: En
     """Return what a scene asks of an integrator."""
     frequency, decay = fastest_rates(model, engine)
     decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
-    rubs = any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values())
+    rubs = any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values()) or any(
+        contact.is_hard and contact.friction for contact in scene.contacts.values())
     return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), rubs, settings.tol)
 
 
@@ -214,6 +215,14 @@ def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine
     for crossing in scene.crossings.values():
         if integrator.needs_discrete_gradient:
             raise SceneError(crossing.where, f"{who} has no discrete gradient of it", "take another integrator")
+    for contact in scene.contacts.values():
+        if contact.is_hard and contact.friction and not integrator.takes_friction_and_stops:
+            raise SceneError(contact.where, f"{who} does not know friction of hard contacts",
+                             _take_another("takes_friction_and_stops"))
+        on = scene.surfaces[contact.b].on
+        if contact.is_hard and on is not None and integrator.needs_discrete_gradient:
+            raise SceneError(contact.where, f'{who} has no discrete gradient of a hard contact with a surface that '
+                             f'moves, and "{contact.b}" is on body "{on}"', "take another integrator")
     if integrator.needs_discrete_gradient:
         _check_gradients(integrator, scene, model, engine)
 

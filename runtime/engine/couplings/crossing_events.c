@@ -29,18 +29,26 @@ double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, co
     return margin;
 }
 
-/* The penetration, of lines that are closest within their ends. */
-static int approach(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double value[2])
+/* Makes the gap of lines that touch less or more than nil, m, and its rate; returns whether they are closest within their ends. */
+static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_course *gap)
 {
-    const fu_crossing *crossing = crossing_of(coupling);
     fu_closest_points points;
     fu_crossing_contact contact;
     fu_find_closest(model, crossing, state, &points);
     fu_crossing_contact_at(crossing, &points, &contact);
-    for (int k = 0; k < 2; ++k) value[k] = points.touches ? -contact.depth[k] : contact.depth[k];
+    *gap = (fu_course){-contact.depth[0], -contact.depth[1]};
     for (int line = 0; line < FU_LINES; ++line)
         if (!(points.s[line] >= crossing->low[line] && points.s[line] <= crossing->high[line])) return 0;
     return points.found;
+}
+
+static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+{
+    const fu_crossing *crossing = crossing_of(coupling);
+    fu_course from, to;
+    (void)which;
+    if (!gap_of(run->model, crossing, &run->now, &from) || !gap_of(run->model, crossing, &run->next, &to)) return 0.0;
+    return fu_dip(from, to, run->now.flags[coupling->flags] ? -1 : 1, h, run->round_off);
 }
 
 static int watches(const fu_coupling *coupling, fu_watch *out)
@@ -92,7 +100,7 @@ const fu_coupling_events fu_crossing_events = {
     .watched = watched,
     .sign = sign,
     .act = act,
-    .approach = approach,
+    .dip = dip,
     .can_act = can_act,
     .begin = begin,
 };

@@ -139,14 +139,13 @@ static const char *words(const fu_point_force *between, int before, int after)
     return is_free ? "became slack" : !was_free ? "" : after > before ? "became taut" : "came into contact";
 }
 
-/* The distance of the points, less that at which a piece ends, m, and its rate. */
-static void beyond(const fu_model *model, const fu_point_force *between, const fu_state *state, double bound, double *way, double *rate)
+/* Returns the distance of the points, less that at which a piece ends, m, and its rate. */
+static fu_course from_bound(const fu_model *model, const fu_point_force *between, const fu_state *state, int bound)
 {
     double gap[3], gap_rate[3];
     fu_gap(model, between, state->q, state->v, gap, gap_rate);
     const double distance = norm(between->dim, gap);
-    *way = distance - bound;
-    *rate = fu_dot(between->dim, gap, gap_rate) / distance;
+    return (fu_course){distance - between->bounds[bound], fu_dot(between->dim, gap, gap_rate) / distance};
 }
 
 /* By the cubic of the distance through both ends of the step; where a damper turns the force round, by the line of its margins. */
@@ -156,18 +155,18 @@ static double passed(const fu_model *model, const fu_coupling *coupling, const f
     const fu_point_force *between = force_of(coupling);
     const int before = fu_force_piece(between, from), there = fu_force_piece(between, to);
     const int after = there == before ? passage_from(model, between, to, before).piece : there, up = after > before;
-    double a, b, rate_a, rate_b, low = 0.0, high = 1.0;
+    double low = 0.0, high = 1.0;
     *what = words(between, before, after);
     if (coupling->is_damped) {
-        a = passage_from(model, between, from, before).margin;
-        b = passage_from(model, between, to, before).margin;
+        const double a = passage_from(model, between, from, before).margin, b = passage_from(model, between, to, before).margin;
         return a < 0.0 && b > 0.0 ? a / (a - b) : 1.0;
     }
-    beyond(model, between, from, between->bounds[up ? before : before - 1], &a, &rate_a);
-    beyond(model, between, to, between->bounds[up ? before : before - 1], &b, &rate_b);
+    const int bound = up ? before : before - 1;
+    const fu_course a = from_bound(model, between, from, bound), b = from_bound(model, between, to, bound);
     for (int i = 0; i < BISECTIONS; ++i) {
         const double x = 0.5 * (low + high), y = 1.0 - x;
-        const double way = y * y * ((1.0 + 2.0 * x) * a + x * h * rate_a) + x * x * ((1.0 + 2.0 * y) * b - y * h * rate_b);
+        const double way = y * y * ((1.0 + 2.0 * x) * a.value + x * h * a.rate) +
+                           x * x * ((1.0 + 2.0 * y) * b.value - y * h * b.rate);
         if ((up ? way : -way) < 0.0) low = x;
         else high = x;
     }
@@ -178,10 +177,9 @@ static double since(const fu_model *model, const fu_coupling *coupling, const fu
 {
     const fu_point_force *between = force_of(coupling);
     const int before = fu_force_piece(between, state), up = next_passage(model, between, state).piece > before;
-    double way, rate;
     if (coupling->is_damped) return NAN;
-    beyond(model, between, state, between->bounds[up ? before : before - 1], &way, &rate);
-    return way / rate;
+    const fu_course course = from_bound(model, between, state, up ? before : before - 1);
+    return course.value / course.rate;
 }
 
 static void passed_force(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
@@ -207,6 +205,71 @@ static int sign(const fu_model *model, const fu_coupling *coupling, const fu_sta
 {
     (void)model, (void)coupling, (void)state, (void)which;
     return -1;
+}
+
+/* The distance of the points at a state, and what tells of the force: the gap, its rate, its acceleration. */
+typedef struct {
+    double distance, gap[3], rate[3], acceleration[3];
+} look;
+
+static look look_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
+{
+    look l = {0.0};
+    for (int e = 0; e < 2; ++e) {
+        fu_attachment_state at;
+        fu_attachment_at(model, &between->attachments[e], state, 0.0, FU_POINT, &at);
+        for (int d = 0; d < between->dim; ++d) {
+            double acceleration = at.bias[d];
+            for (int i = 0; i < at.n; ++i) acceleration += at.P[d * at.n + i] * state->acceleration[at.at[i]];
+            l.gap[d] += e ? at.p[d] : -at.p[d];
+            l.rate[d] += e ? at.v[d] : -at.v[d];
+            l.acceleration[d] += e ? acceleration : -acceleration;
+        }
+    }
+    l.distance = norm(between->dim, l.gap);
+    return l;
+}
+
+/* Returns by how much the distance is beyond that of a bound to a side, m, and its rate. */
+static fu_course beyond(const fu_point_force *between, int bound, int side, const look *l)
+{
+    const double rate = fu_dot(between->dim, l->gap, l->rate) / l->distance;
+    return (fu_course){side * (l->distance - between->bounds[bound]), side * rate};
+}
+
+/* Returns how far the force of a piece is on the wrong side of nil, m, and its rate. */
+static fu_course wrong_sense(const fu_point_force *between, int piece, const look *l)
+{
+    const int dim = between->dim;
+    double force[3], by_gap[9], by_rate[9], change = 0.0;
+    between->law->tangent(fu_piece_parameters(between, piece), l->gap, l->rate, force, by_gap, by_rate);
+    for (int i = 0; i < dim; ++i)
+        for (int k = 0; k < dim; ++k)
+            change += l->gap[i] * (by_gap[i * dim + k] * l->rate[k] + by_rate[i * dim + k] * l->acceleration[k]);
+    const double along = fu_dot(dim, force, l->gap) / l->distance, rate = fu_dot(dim, l->gap, l->rate) / l->distance;
+    const double slope = (change + fu_dot(dim, force, l->rate) - along * rate) / l->distance;
+    const double unit = -between->senses[piece] * between->compliance;
+    return (fu_course){unit * along, unit * slope};
+}
+
+/* Each of the passages alone is smooth. A piece with a force is entered at its bound first, as its damper then has its sense. */
+static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+{
+    const fu_point_force *between = force_of(coupling);
+    const int piece = fu_force_piece(between, &run->now), sense = between->senses[piece];
+    const look from = look_at(run->model, between, &run->now), to = look_at(run->model, between, &run->next);
+    double first = 0.0;
+    (void)which;
+    for (int side = -1; side <= 1; ++side) {
+        const int bound = piece - (side < 0), by_sense = side == 0;
+        if (by_sense ? sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE : bound < 0 || bound >= between->n_pieces - 1) continue;
+        const double found = by_sense ? fu_dip(wrong_sense(between, piece, &from), wrong_sense(between, piece, &to), -1, h,
+                                               run->round_off)
+                                      : fu_dip(beyond(between, bound, side, &from), beyond(between, bound, side, &to), -1, h,
+                                               run->round_off);
+        if (found > 0.0 && (first == 0.0 || found < first)) first = found;
+    }
+    return first;
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
@@ -239,6 +302,7 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 const fu_coupling_events fu_point_force_events = {
     .watches = watches,
     .watched = watched,
+    .dip = dip,
     .sign = sign,
     .act = act,
     .pass = pass,

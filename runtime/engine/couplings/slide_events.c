@@ -74,6 +74,18 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
                              : fu_buffer_margin(run, state, coupling->index, which);
 }
 
+/* A slide comes into a buffer at its end. */
+static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+{
+    const fu_model *model = run->model;
+    const int j = coupling->index;
+    const fu_slide_flags *flags = fu_slide_flags_of(model, &run->now, j);
+    if (which == STICKING || flags->mode == FU_LEFT || flags->contact == which) return 0.0;
+    const fu_course from = {fu_compression(model, &run->now, j, which), which * fu_slide_rate(model, &run->now, j)};
+    const fu_course to = {fu_compression(model, &run->next, j, which), which * fu_slide_rate(model, &run->next, j)};
+    return fu_dip(from, to, -1, h, run->round_off);
+}
+
 static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
 {
     return which != STICKING && fu_slide_flags_of(model, state, coupling->index)->contact == which ? 1 : -1;
@@ -95,6 +107,7 @@ const fu_coupling_events fu_slide_events = {
     .reach_end = fu_reach_end,
     .watches = watches,
     .watched = watched,
+    .dip = dip,
     .sign = sign,
     .act = act,
     .can_act = can_act,

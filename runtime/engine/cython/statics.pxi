@@ -70,9 +70,9 @@ cdef class Statics(Translation):
         fu_system_solve(&self.run.newton, &LAPACK, self.run.rhs)
         return np.array([self.run.rhs[i] for i in range(total)]), bool(self.run.newton.definite)
 
-    def set_state(self, double t=0.0, q=None, s=None, force=None, multipliers=None, point_force=None):
+    def set_state(self, double t=0.0, q=None, s=None, force=None, multipliers=None, point_force=None, hard_contact=None):
         """Set the static state: time, configuration (n_q,), arc-lengths, forces of slides (n, 3), multipliers of joints
-        (n, 6), forces between points (n, 3); None: as built.
+        (n, 6), forces between points (n, 3), of hard contacts (n, 3); None: as built.
 
         Prescribed dofs take their values at t.
         """
@@ -85,14 +85,15 @@ cdef class Statics(Translation):
         self._rest(state)
         self._view(state, "s")[:] = self._view(&self.run.now, "s") if s is None else s
         fu_find_pieces(&self.model, state)
-        fu_touch(&self.model, state)
         forces = self._view(state, "forces")
-        given = {"slide": force, "joint": multipliers, "point_force": point_force}
+        given = {"slide": force, "joint": multipliers, "point_force": point_force,
+                 "hard_contact": hard_contact}
         for i in range(self.model.n_couplings):
             c = self.couplings[i]
             values = given.get(self._kind(c))
             for k in range(c.n_forces):
                 forces[c.force + k] = 0.0 if values is None else values[c.index][k]
+        fu_touch(&self.model, state)
 
     cdef _rest(self, fu_state *state):
         self._view(state, "v")[:] = 0.0
@@ -104,7 +105,8 @@ cdef class Statics(Translation):
         forces = self._view(state, "forces")
         return {"q": self._view(state, "q").copy(), "s": self._view(state, "s").copy(),
                 "force": self._own("slide", forces, 3), "multipliers": self._own("joint", forces, 6),
-                "point_force": self._own("point_force", forces, 3)}
+                "point_force": self._own("point_force", forces, 3),
+                "hard_contact": self._own("hard_contact", forces, 3)}
 
     cdef _own(self, str kind, forces, int width):
         """(couplings of a kind, width): entries of `forces`, zeros after those that one has."""

@@ -11,6 +11,9 @@ typedef struct {
     int slide; /* that an end of a joint is on, -1; by_s: derivatives by its s */
     double by_s[6];
     double H[6 * FU_ROW_COORDINATES], W[6], C[6], rate[6], scale[6];
+    int is_pushed; /* the first row's multiplier acts by `column` in place of its row of H: with it goes friction */
+    double column[FU_ROW_COORDINATES];
+    double soft[6]; /* 1/kg: accelerations that rows give way by for a multiplier of 1 N, so that rows that hold the same share it */
     const double *by_push; /* null, or over the dofs `at`: what a force `push` beside the multipliers puts on them */
     double push;
     double opposed;        /* W: of the constraints' driving power, what a force on them takes */

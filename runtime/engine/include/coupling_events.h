@@ -33,6 +33,9 @@ struct fu_coupling_events {
      * and returns how many they are. */
     int (*watches)(const fu_coupling *coupling, fu_watch *out);
     double (*watched)(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which);
+    /* When a watched number is farthest beyond zero in the step just made, of h, at both ends of which it is on one side, as fu_dip
+     * (include/events.h) predicts it. Null: such steps are not known of this coupling. */
+    double (*dip)(const fu_run *run, const fu_coupling *coupling, int which, double h);
     /* The sign that a watched number has from here on, after it has been zero and the coupling has changed: 1 or -1. */
     int (*sign)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which);
     /* Lets happen what follows where a watched number has passed zero to this side; returns a status. *what says in words
@@ -52,10 +55,6 @@ struct fu_coupling_events {
     /* Adds to f, times a factor, by how much the force at `to` differs from that without the passage. */
     void (*passed_force)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                          double factor, double *f);
-
-    /* Makes a number that is below zero while contact stays as it is, and its rate, 1/s of it: where it may pass zero and come back
-     * within a step, the step is shortened. Returns whether there is one. Null: there is none. */
-    int (*approach)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double value[2]);
 
     /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);

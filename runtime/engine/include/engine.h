@@ -36,6 +36,7 @@
 #include "passages.h"
 #include "slack_cables.h"
 #include "failure.h"
+#include "hard_contacts.h"
 #include "integrator.h"
 #include "joints.h"
 #include "linear.h"

@@ -27,8 +27,16 @@ fu_event fu_find_event(const fu_run *run, fu_event but);
 fu_event fu_late_event(fu_run *run);
 double fu_locate(fu_run *run, fu_event event, double h);
 int fu_has_lost_a_watch(fu_run *run);
-void fu_watch_now(fu_run *run, fu_event event);
+void fu_watch_now(fu_run *run, fu_event event, double h);
 void fu_watch_anew(fu_run *run, int coupling);
+
+/* run/dips.c: what is watched, and its rate; when it is farthest beyond zero in a step of h, s after the start, where it leaves the
+ * side (1 or -1) on which it is at both ends; 0 where it is not predicted to, or not by more than `least`. */
+typedef struct {
+    double value, rate;
+} fu_course;
+double fu_dip(fu_course from, fu_course to, int side, double h, double least);
+double fu_time_of_dip(const fu_run *run, double h);
 
 /* Loops over the couplings: couplings/coupling_events.c. */
 int fu_coupling_watches(const fu_model *model, fu_watch *out);

@@ -21,6 +21,8 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
         rows->redundant_rows = 0;
         rows->slide = -1;
         rows->by_push = 0;
+        rows->is_pushed = 0;
+        memset(rows->soft, 0, sizeof rows->soft);
         rows->opposed = 0.0;
         memcpy(rows->scale, c->scale, sizeof rows->scale);
         c->type->rows(model, c, state, work);
@@ -79,8 +81,15 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
             const int row = fu_extra(model, rows->first + c);
             if (c >= rows->rows || rows->redundant_rows >> c & 1)
                 fu_add(model, s, row, row, rows->scale[c]); /* not in use: its multiplier is nil */
+            else if (rows->is_pushed && !c)
+                for (int k = 0; k < rows->n; ++k) {
+                    fu_add(model, s, row, rows->at[k], rows->scale[c] * rows->H[k]);
+                    fu_add(model, s, rows->at[k], row, rows->scale[c] * rows->column[k]);
+                }
             else /* rows in kg, so that the border is of one scale */
                 fu_add_row_and_column(model, s, row, rows->n, rows->at, rows->H + c * rows->n, rows->scale[c]);
+            if (c < rows->rows && rows->soft[c] != 0.0)
+                fu_add(model, s, row, row, -rows->soft[c] * rows->scale[c] * rows->scale[c]);
         }
     }
     return fu_system_factor_border(s, model->lapack);
@@ -194,7 +203,7 @@ static void reactions(const fu_model *model, const fu_state *state, fu_accelerat
         const fu_rows *rows = &work->rows[r];
         for (int c = 0; c < rows->rows; ++c)
             for (int k = 0; k < rows->n; ++k)
-                reaction[rows->at[k]] += rows->H[c * rows->n + k] * lambda[rows->first + c];
+                reaction[rows->at[k]] += (rows->is_pushed && !c ? rows->column : rows->H + c * rows->n)[k] * lambda[rows->first + c];
         for (int k = 0; k < rows->n && rows->by_push; ++k) reaction[rows->at[k]] -= rows->by_push[k] * rows->push;
     }
 }
@@ -224,6 +233,21 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     memcpy(work->multipliers, lambda, sizeof(double) * (size_t)model->n_multipliers);
     if (reaction) reactions(model, state, work, acceleration, lambda, reaction);
     return 0;
+}
+
+/* Makes ready for fu_response at a state; returns 0 where there is one solution. */
+int fu_prepare_response(const fu_model *model, const fu_state *state, fu_accelerator *work)
+{
+    evaluate(model, state, work);
+    return factor_border(model, state, work);
+}
+
+/* Makes `change`, the jump of velocities (or the accelerations) by impulses (or forces) on the dofs where constraints stay as they are. */
+void fu_response(const fu_model *model, fu_accelerator *work, const double *force, double *change)
+{
+    double *lambda = work->rhs + model->n_band + model->n_border_dof;
+    memset(lambda, 0, sizeof(double) * (size_t)model->n_multipliers);
+    solve(model, work, force, change);
 }
 
 /* A constraint that has been struck, and the rate at which it opens again. */

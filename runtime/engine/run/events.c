@@ -10,6 +10,7 @@
 #define LITTLE 1e-2       /* of the allowed error: what a passage beside a boundary may make */
 #define NEAR 1e-6         /* of what a distance changes by in the step: how close to a passage an adaptive step ends */
 #define LARGEST_MISS 1e-6 /* of a piece: how close to a boundary a step ends at least */
+#define AT_ONCE 1e-12     /* of the duration: events of steps no longer than that are at one instant */
 #define SMALLEST 1e-300   /* a value that has a sign and is nearly zero */
 
 const fu_event fu_no_event = {FU_NO_EVENT, 0, 0, 0};
@@ -223,16 +224,17 @@ double fu_locate(fu_run *run, fu_event event, double h)
     return found;
 }
 
-/* Takes the values of what is watched at `now`, but not of those that have just passed, or rounding would let them pass again.
- * `late` tells which did together with the one that the step was for. */
-void fu_watch_now(fu_run *run, fu_event event)
+/* Takes the values of what is watched at `now`, after a step of h, but not of those that have just passed, or rounding would let
+ * them pass again. `late` tells which did together with the one that the step was for. */
+void fu_watch_now(fu_run *run, fu_event event, double h)
 {
+    const int moved = h > AT_ONCE * run->duration;
     for (int k = 0; k < run->n_watches; ++k) {
         const int expected = event.kind == FU_WATCHED && event.which == k;
         const double value = expected ? 0.0 : watched(run, &run->now, k);
         const fu_event late = passes(run, k, value);
         if (expected || late.kind) run->watched[k] = 0.0;
-        else if (value != 0.0) run->watched[k] = value;
+        else if (value != 0.0 && (moved || run->watched[k] != 0.0)) run->watched[k] = value;
         if (!expected && late.kind) run->late[k] = late.side;
     }
 }

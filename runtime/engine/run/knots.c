@@ -32,6 +32,6 @@ int fu_pass_knot(fu_run *run, const fu_knot *knot, int event)
         run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before;
     }
     fu_prescribe(model, now);
-    if (!event) fu_watch_now(run, fu_no_event);
+    if (!event) fu_watch_now(run, fu_no_event, INFINITY);
     return fu_start_scheme(run, 0);
 }

@@ -73,7 +73,7 @@ int fu_start(fu_run *run)
         const double d = run->controlled[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
         if (d > run->least_motion) run->least_motion = d;
     }
-    fu_watch_now(run, fu_no_event);
+    fu_watch_now(run, fu_no_event, INFINITY);
     fu_watch_anew(run, -1);
     return FU_RUNNING;
 }

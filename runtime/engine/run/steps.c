@@ -7,7 +7,7 @@
 #define ACCEPTED 2.0          /* of what is allowed: a step with a larger error is rejected */
 #define DIVISIONS 8           /* rejections of a fixed step that each step taken makes up for: so often it may be divided */
 #define MOST_TURNS 2          /* of a coupling on one boundary before a step is taken all the same: it rests there */
-#define MOST_DIPS 4           /* times that a step is shortened, to end where a contact may be in between */
+#define MOST_CUTS 4           /* of a step before what is watched dips beyond zero in it: then it is taken all the same */
 #define PASSED_BY 0.5         /* of the step that was wanted: what is wanted after one whose event was not found */
 
 /* Takes the step just made: `next` becomes `now`. */
@@ -27,7 +27,7 @@ static void accept(fu_run *run, double h, fu_event event)
     const double moved = fu_largest_motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
     run->controlled_motion = run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
-    fu_watch_now(run, event);
+    fu_watch_now(run, event, h);
     run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
     fu_statistics *s = &run->statistics;
     ++s->steps;
@@ -67,20 +67,22 @@ static int must_keep_forces(const fu_run *run)
     return !is_adaptive(run) || !run->integrator->crosses_boundaries;
 }
 
-/* A step that is tried: the size that is wanted and the one that is taken, s; its error, m, and that over what is allowed;
- * how many boundaries couplings have passed in it, and how many passages it goes over; the event that it ends on. */
+/* A step that is tried: the size that is wanted and the one that is taken, s; where it is cut, as something watched is farthest
+ * beyond zero there, s, else 0, and how often; its error, m, and that over what is allowed; how many boundaries couplings have
+ * passed in it, and how many passages it goes over; the event that it ends on. */
 typedef struct {
-    double want, h, error, ratio;
-    int changes, passages;
+    double want, h, cut, error, ratio;
+    int cuts, changes, passages;
     fu_event event;
 } trial;
 
 /* Chooses the size of the step; returns 0 where there is none that is large enough. */
 static int choose_size(fu_run *run, trial *t, double remaining)
 {
-    t->h = fu_fit_step(remaining, t->want);
+    t->h = t->cut > 0.0 ? fmin(t->cut, remaining) : fu_fit_step(remaining, t->want);
     if ((t->h < shortest(run) && remaining > shortest(run)) || run->net_rejections > MOST_REJECTIONS) return 0;
     if (run->keep_pieces) t->h = fmin(t->h, fu_time_to_boundary(run) + BEYOND * t->h);
+    t->cut = 0.0;
     return 1;
 }
 
@@ -170,6 +172,16 @@ static int is_accurate_without_jump(fu_run *run, trial *t)
     return 0;
 }
 
+/* Returns whether something watched passes zero within the step and is back: the step is then cut there. */
+static int is_cut_at_dip(fu_run *run, trial *t)
+{
+    const double dip = t->cuts < MOST_CUTS ? fu_time_of_dip(run, t->h) : 0.0;
+    if (!(dip > shortest(run))) return 0;
+    ++t->cuts;
+    t->cut = dip;
+    return 1;
+}
+
 /* Takes a step that ends on no event; returns a status. */
 static int take_step(fu_run *run, const trial *t)
 {
@@ -186,7 +198,6 @@ int fu_step_towards(fu_run *run, double target)
 {
     const fu_event late = fu_late_event(run);
     trial t = {.want = is_adaptive(run) ? run->h : run->fixed_step};
-    int dips = 0;
     if (fu_has_lost_a_watch(run)) return FU_NO_CONVERGENCE;
     if (late.kind) return fu_let_happen(run, late);
     run->keep_pieces = must_keep_pieces(run);
@@ -194,18 +205,13 @@ int fu_step_towards(fu_run *run, double target)
     for (;;) {
         if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
         if (!attempt(run, &t)) continue;
-        const double dip = dips < MOST_DIPS ? fu_time_of_dip(run, t.h) : 0.0;
-        if (dip > shortest(run)) {
-            t.want = dip;
-            ++dips;
-            continue;
-        }
         find_event(run, &t);
         const double turn = run->keep_pieces ? fu_time_of_turn(run, t.h) : 0.0;
         if (turn > shortest(run) && run->turned < MOST_TURNS) {
             t.want = turn;
             continue;
         }
+        if (run->n_watches && is_cut_at_dip(run, &t)) continue;
         if (t.event.kind == FU_CROSSING && run->turned >= MOST_TURNS) t.event = fu_no_event;
         if (fu_stands_on_boundary(run, t.event)) {
             ++run->turned;
@@ -217,6 +223,7 @@ int fu_step_towards(fu_run *run, double target)
             continue;
         }
         if ((t.changes || t.passages) && !is_accurate_without_jump(run, &t)) continue;
+        if (run->n_watches && is_cut_at_dip(run, &t)) continue;
         accept(run, t.h, t.event);
         const int status = t.event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, t.h);
         return status ? status : fu_let_happen(run, t.event);

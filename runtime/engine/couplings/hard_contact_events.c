@@ -1,0 +1,114 @@
+/* What a hard contact does by itself (include/coupling_events.h): it comes together, and opens where it would pull. */
+#include "engine.h"
+
+#define LEAST_PULL 3e-10 /* of the weight: what is pulled by less stays closed, as three of four points that bear have none to spare */
+#define AT_ONCE 1e-12 /* of the duration: news that is older is none */
+
+static const char *const words[] = {"", "struck", "came into contact", "lost contact", "stuck", "broke loose"};
+
+static const fu_hard_contact *contact_of(const fu_coupling *coupling)
+{
+    return (const fu_hard_contact *)coupling;
+}
+
+/* Watches: of the distance, or where it is closed of the force that presses; of friction. */
+enum { OF_DISTANCE, OF_FRICTION };
+
+static int watches(const fu_coupling *coupling, fu_watch *out)
+{
+    const int n = coupling->n_forces > 1 ? 2 : 1;
+    for (int k = 0; k < n && out; ++k) out[k] = (fu_watch){.which = k, .direction = 1};
+    return n;
+}
+
+/* Returns the multipliers of a contact that is closed, N: by eq 38, as a Newton method's have the rounding of positions over h^2. */
+static const double *multipliers(const fu_run *run, const fu_coupling *coupling, const fu_state *state)
+{
+    static const double none[FU_SPACE] = {NAN, NAN, NAN};
+    fu_accelerator work = run->accelerator;
+    if (!run->integrator->newton) return state->forces + coupling->force;
+    if (fu_accelerations(run->model, state, &work, run->work, 0)) return none;
+    return run->accelerator.multipliers + coupling->multiplier;
+}
+
+/* Returns by how much what holds the point exceeds what friction can take, N; or how fast it slides backwards, m/s. */
+static double friction_margin(const fu_run *run, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_hard_contact *contact = contact_of(coupling);
+    const int dim = run->model->dim;
+    fu_hard_row row;
+    fu_hard_along along;
+    if (fu_hard_flags_of(coupling, state)->sticks) {
+        const double *held = multipliers(run, coupling, state);
+        return sqrt(fu_dot(dim - 1, held + 1, held + 1)) - fu_hard_grip(contact, held[0]);
+    }
+    fu_hard_row_at(run->model, contact, state, &row);
+    fu_hard_along_at(run->model, contact, state, &row, &along);
+    return -fu_dot(dim, fu_hard_numbers_of(coupling, state)->direction, along.past);
+}
+
+/* How deep it is below the surface, m; where it is closed by how much it pulls, N. */
+static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    const int mode = fu_hard_flags_of(coupling, state)->mode;
+    fu_hard_row row;
+    if (which == OF_FRICTION) return mode == FU_CLOSED ? friction_margin(run, coupling, state) : -1.0;
+    if (mode == FU_CLOSED) return multipliers(run, coupling, state)[0] - LEAST_PULL * contact_of(coupling)->weight;
+    if (mode == FU_IMPLIED) return -1.0;
+    fu_hard_row_at(run->model, contact_of(coupling), state, &row);
+    return -row.g;
+}
+
+static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+{
+    fu_hard_row from, to;
+    if (which == OF_FRICTION || fu_hard_flags_of(coupling, &run->now)->mode != FU_APART) return 0.0;
+    fu_hard_row_at(run->model, contact_of(coupling), &run->now, &from);
+    fu_hard_row_at(run->model, contact_of(coupling), &run->next, &to);
+    return fu_dip((fu_course){from.g, from.rate}, (fu_course){to.g, to.rate}, 1, h, run->round_off);
+}
+
+static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)model, (void)coupling, (void)state, (void)which;
+    return -1;
+}
+
+static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    fu_hard_flags *flags = fu_hard_flags_of(coupling, &run->now);
+    const double *time = &fu_hard_numbers_of(coupling, &run->now)->time;
+    (void)side;
+    *what = words[FU_NO_NEWS];
+    if (which == OF_FRICTION && flags->mode != FU_CLOSED) return FU_RUNNING;
+    if (flags->news && run->now.t - *time <= AT_ONCE * run->duration) { /* of what another one has brought */
+        *what = words[flags->news];
+        flags->news = FU_NO_NEWS;
+        return FU_RUNNING;
+    }
+    flags->news = FU_NO_NEWS;
+    const int slid = which == OF_FRICTION && !flags->sticks;
+    const int status = fu_resolve_hard_contacts(run, coupling, which == OF_FRICTION && flags->sticks);
+    if (status == FU_NO_CONVERGENCE) fu_fail(run, FU_SELF_LOCKING, run->now.v, coupling->number);
+    *what = slid && !flags->news ? "turned round" : words[flags->news];
+    flags->news = FU_NO_NEWS;
+    return status;
+}
+
+static int can_act(const fu_coupling *coupling)
+{
+    (void)coupling;
+    return 1;
+}
+
+/* The first of them finds how all are. */
+static int begin(fu_run *run, const fu_coupling *coupling)
+{
+    fu_hard_flags *flags = fu_hard_flags_of(coupling, &run->now);
+    if (!coupling->index && fu_resolve_hard_contacts(run, 0, 0)) return FU_SINGULAR;
+    flags->news = FU_NO_NEWS;
+    return FU_RUNNING;
+}
+
+const fu_coupling_events fu_hard_contact_events = {
+    .watches = watches, .watched = watched, .dip = dip, .sign = sign, .act = act, .can_act = can_act, .begin = begin};

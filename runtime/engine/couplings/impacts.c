@@ -1,0 +1,197 @@
+/* How hard contacts go on where one of them comes together or would pull: impacts by Newton's law of restitution, all that touch at
+ * once; then which of them press, by the accelerations that follow. Both are problems of complementarity over the compliance
+ * H M^-1 H' of the points that touch, with all other constraints as they are.
+ */
+#include "engine.h"
+
+#include <string.h>
+
+#define TOUCHING 1e-12 /* of the extent: distances at which points touch */
+#define ROUNDING 1e-11 /* of velocities, or of accelerations: less is none */
+#define SLOW 1e-3      /* of the velocity below which a point comes to rest: what parts more slowly stays, if it is pressed */
+#define STILL 1e-6     /* of the velocity below which a point comes to rest: the same */
+#define GROWTH 1e-9    /* of the kinetic energy of the jump: more than that an impact must not bring */
+
+enum { MOST = FU_MOST_HARD_CONTACTS };
+
+static const fu_hard_contact *contact_of(const fu_coupling *coupling)
+{
+    return (const fu_hard_contact *)coupling;
+}
+
+static double along(const fu_hard_row *row, const double *dofs)
+{
+    double sum = 0.0;
+    for (int i = 0; i < row->n; ++i) sum += row->H[i] * dofs[row->at[i]];
+    return sum;
+}
+
+/* Finds what touches, and parts all of it, so that its rows are none of eq 38's. */
+static void collect(fu_run *run, const fu_coupling *first, fu_touching *t)
+{
+    const fu_model *model = run->model;
+    t->n = t->friction = 0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type != &fu_hard_contact_type) continue;
+        fu_hard_flags *flags = fu_hard_flags_of(c, &run->now);
+        fu_hard_row *row = &t->row[t->n];
+        fu_hard_row_at(model, contact_of(c), &run->now, row);
+        if (flags->mode == FU_APART && c != first && row->g > TOUCHING * run->extent) continue;
+        t->was[t->n] = flags->mode;
+        t->stuck[t->n] = flags->sticks;
+        t->friction |= contact_of(c)->friction > 0.0;
+        t->before[t->n] = row->rate;
+        t->of[t->n++] = c;
+        flags->mode = FU_APART;
+    }
+}
+
+/* Makes the compliance of what touches; returns not zero where other constraints have no solution. */
+static int comply(fu_run *run, fu_touching *t)
+{
+    const fu_model *model = run->model;
+    if (fu_prepare_response(model, &run->now, &run->accelerator)) return 1;
+    for (int k = 0; k < t->n; ++k) {
+        const fu_hard_row *row = &t->row[k];
+        for (int i = 0; i < model->n_dof; ++i) run->before[i] = 0.0;
+        for (int i = 0; i < row->n; ++i) run->before[row->at[i]] += row->H[i];
+        fu_response(model, &run->accelerator, run->before, run->work);
+        for (int j = 0; j < t->n; ++j) t->G[j * t->n + k] = along(&t->row[j], run->work);
+    }
+    for (int k = 0; k < t->n; ++k)
+        for (int j = 0; j < k; ++j) t->G[j * t->n + k] = t->G[k * t->n + j] = 0.5 * (t->G[j * t->n + k] + t->G[k * t->n + j]);
+    return 0;
+}
+
+/* Makes the jump of velocities by the impulses, in run->work. */
+static void jump(fu_run *run, const fu_touching *t)
+{
+    const fu_model *model = run->model;
+    for (int i = 0; i < model->n_dof; ++i) run->before[i] = 0.0;
+    for (int k = 0; k < t->n; ++k)
+        for (int i = 0; i < t->row[k].n; ++i) run->before[t->row[k].at[i]] += t->impulse[k] * t->row[k].H[i];
+    fu_response(model, &run->accelerator, run->before, run->work);
+}
+
+/* Finds the impulses by which nothing leaves more slowly than by its restitution; returns not zero where there are none. */
+static int solve_impulses(fu_touching *t, double least)
+{
+    double b[MOST];
+    for (int k = 0; k < t->n; ++k) b[k] = t->before[k] - t->target[k];
+    if (fu_complement(t->n, t->G, b, least, t->impulse, t->kind)) return 1;
+    for (int k = 0; k < t->n; ++k) t->after[k] = t->before[k] + fu_dot(t->n, t->G + k * t->n, t->impulse);
+    return 0;
+}
+
+/* Returns the energy that the impulses take, J: minus their work at the mean of the velocities before and after. */
+static double lost(const fu_touching *t)
+{
+    double sum = 0.0;
+    for (int k = 0; k < t->n; ++k) sum -= 0.5 * t->impulse[k] * (t->before[k] + t->after[k]);
+    return sum;
+}
+
+/* Makes the jump of velocities, in run->work, by the impulses that the law asks for; returns not zero where there are none. */
+static int solve(fu_run *run, fu_touching *t, double least)
+{
+    if (t->friction) return fu_rub(run, t);
+    if (solve_impulses(t, least)) return 1;
+    jump(run, t);
+    t->taken = lost(t);
+    return 0;
+}
+
+/* Lets what comes together part by its restitution, or stay where it would part too slowly. Restitution that differs from point to
+ * point may bring energy: then there is none. Returns not zero where no impulses part it. */
+static int strike(fu_run *run, fu_touching *t, double least)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    for (int k = 0; k < t->n; ++k) {
+        const fu_hard_contact *contact = contact_of(t->of[k]);
+        const double back = -contact->restitution * t->before[k];
+        t->target[k] = back > contact->rest_velocity ? back : 0.0;
+    }
+    if (solve(run, t, least)) return 1;
+    if (t->taken < -GROWTH * fu_kinetic_energy(model, now->t, now->q, run->work)) {
+        memset(t->target, 0, sizeof t->target);
+        if (solve(run, t, least)) return 1;
+    }
+    const double before = fu_kinetic_energy(model, now->t, now->q, now->v), taken = t->taken;
+    for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
+    run->dissipated += taken;
+    if (model->n_driven || model->n_motions) run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before + taken;
+    fu_couplings_take_velocities(run);
+    return 0;
+}
+
+/* Finds which of the points that do not part press, by the accelerations without them; returns not zero where that has no solution. */
+static int press(fu_run *run, fu_touching *t, double least)
+{
+    const fu_model *model = run->model;
+    int n = 0, at[MOST], kind[MOST];
+    double G[MOST * MOST], b[MOST], force[MOST], largest = 0.0;
+    for (int k = 0; k < t->n; ++k) {
+        t->stays[k] = t->after[k] <= fmax(least, SLOW * contact_of(t->of[k])->rest_velocity);
+        if (t->stays[k]) at[n++] = k;
+    }
+    if (!n) return 0;
+    if (fu_accelerations(model, &run->now, &run->accelerator, run->work, 0)) return 1;
+    for (int i = 0; i < n; ++i) {
+        fu_hard_row row;
+        fu_hard_row_at(model, contact_of(t->of[at[i]]), &run->now, &row); /* velocities have jumped */
+        b[i] = along(&row, run->work) + row.bias;
+        largest = fmax(largest, fabs(b[i]));
+        for (int j = 0; j < n; ++j) G[i * n + j] = t->G[at[i] * t->n + at[j]];
+    }
+    if (fu_complement(n, G, b, ROUNDING * largest, force, kind)) return 1;
+    for (int i = 0; i < n; ++i)
+        fu_hard_flags_of(t->of[at[i]], &run->now)->mode =
+            kind[i] == FU_IS_BASIC ? FU_CLOSED : kind[i] == FU_IS_DEPENDENT ? FU_IMPLIED : FU_APART;
+    return 0;
+}
+
+/* Returns what has happened to a point that touches. */
+static int news_of(const fu_touching *t, int k, const fu_hard_flags *flags)
+{
+    if (t->was[k] == FU_APART)
+        return flags->mode != FU_APART ? FU_CAME_INTO_CONTACT : t->impulse[k] > 0.0 ? FU_STRUCK : FU_NO_NEWS;
+    if (flags->mode == FU_APART) return FU_LOST_CONTACT;
+    return flags->sticks == t->stuck[k] ? FU_NO_NEWS : flags->sticks ? FU_STUCK : FU_BROKE_LOOSE;
+}
+
+/* Lets a coupling's watch happen at once, too. */
+static void let_happen(fu_run *run, const fu_coupling *coupling)
+{
+    for (int k = 0; k < run->n_watches; ++k)
+        if (run->watches[k].kind == FU_WATCH_COUPLING && run->watches[k].index == coupling->number && !run->watches[k].which)
+            run->late[k] = 1;
+}
+
+int fu_resolve_hard_contacts(fu_run *run, const fu_coupling *first, int yields)
+{
+    fu_touching t = {.n = 0};
+    double approach = 0.0;
+    collect(run, first, &t);
+    if (!t.n) return FU_RUNNING;
+    double least = ROUNDING * fu_size(run->model, run->now.v);
+    for (int k = 0; k < t.n; ++k) least = fmax(least, STILL * contact_of(t.of[k])->rest_velocity);
+    if (comply(run, &t)) return FU_SINGULAR;
+    for (int k = 0; k < t.n; ++k) {
+        t.after[k] = t.before[k];
+        approach = fmax(approach, -t.before[k]);
+    }
+    if (approach > least && strike(run, &t, least)) return FU_NO_CONVERGENCE;
+    if (press(run, &t, least)) return FU_NO_CONVERGENCE;
+    if (t.friction && fu_settle_friction(run, &t, yields ? first : 0)) return FU_NO_CONVERGENCE;
+    for (int k = 0; k < t.n; ++k) {
+        fu_hard_flags *flags = fu_hard_flags_of(t.of[k], &run->now);
+        const int news = news_of(&t, k, flags);
+        if (!news) continue;
+        flags->news = news;
+        fu_hard_numbers_of(t.of[k], &run->now)->time = run->now.t;
+        if (first && t.of[k] != first) let_happen(run, t.of[k]);
+    }
+    return FU_RUNNING;
+}

@@ -1,0 +1,89 @@
+/* Hard contact of a point of a body with a surface: it presses by a multiplier, and never pulls. */
+#ifndef FUNICULAR_HARD_CONTACTS_H
+#define FUNICULAR_HARD_CONTACTS_H
+
+#include "contacts.h"
+
+#define FU_MOST_HARD_CONTACTS 48 /* of a scene: model/hard_contacts.py */
+
+/* One point, the contact's only one. A row g = 0 of its distance, less its radius, has a multiplier while it is closed: minus the
+ * force that presses. */
+typedef struct {
+    fu_contact contact;      /* surface, point, radius */
+    double restitution;      /* of the normal velocity, 0 to 1 */
+    double rest_velocity;    /* m/s: what would leave more slowly stays */
+    double friction;         /* Coulomb's coefficient */
+    double weight;           /* N: of the body, or where there is no gravity as under 1 m/s^2 */
+    double stiffness;        /* N/m: in statics; that of a contact which gives way by little, so that points that hold the same share it */
+} fu_hard_contact;
+extern const fu_coupling_type fu_hard_contact_type;
+extern const fu_coupling_events fu_hard_contact_events;
+
+/* A point's own part of a state: how it is, what has happened to it, whether friction holds it, and when, s; the direction in which it
+ * slides, or did last. */
+typedef struct {
+    int mode, news, sticks;
+} fu_hard_flags;
+typedef struct {
+    double time, direction[FU_SPACE];
+} fu_hard_numbers;
+
+/* Apart; closed, with its row among the constraints; closed as others' rows imply: its own multiplier is nil. */
+enum { FU_APART, FU_CLOSED, FU_IMPLIED };
+enum { FU_NO_NEWS, FU_STRUCK, FU_CAME_INTO_CONTACT, FU_LOST_CONTACT, FU_STUCK, FU_BROKE_LOOSE };
+
+/* Numbers of a row of output: the force on the body, the part of it that is friction, the distance. */
+typedef struct {
+    double force[3], friction[3], gap;
+} fu_hard_contact_output;
+_Static_assert(sizeof(fu_hard_contact_output) == 7 * sizeof(double), "rows of output are arrays of doubles");
+
+/* How a point goes along the surface: velocity past it, two directions across the normal, rows of them over the dofs of the row, what
+ * the rates of these velocities are where accelerations are zero, and the direction that friction is against. */
+typedef struct {
+    double past[3], t[2][3], H[2][2 * FU_ATTACHMENT_COORDINATES], bias[2], direction[3], slip[2 * FU_ATTACHMENT_COORDINATES];
+} fu_hard_along;
+
+/* A point's row: distance g and its rate, what g'' is where accelerations of the coordinates are zero, normal; H over the n dofs
+ * `at`, those of the body, then those of the body that the surface is on. */
+typedef struct {
+    double g, rate, bias, normal[3], curvature[9];
+    int n, at[2 * FU_ATTACHMENT_COORDINATES];
+    double H[2 * FU_ATTACHMENT_COORDINATES];
+} fu_hard_row;
+
+/* couplings/hard_contacts.c */
+fu_hard_flags *fu_hard_flags_of(const fu_coupling *coupling, const fu_state *state);
+fu_hard_numbers *fu_hard_numbers_of(const fu_coupling *coupling, const fu_state *state);
+void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, fu_hard_row *out);
+
+/* couplings/hard_friction.c */
+void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, const fu_hard_row *row,
+                      fu_hard_along *out);
+double fu_hard_grip(const fu_hard_contact *contact, double multiplier);
+double fu_hard_softness(const fu_hard_contact *contact, double multiplier);
+
+/* The points that touch: how they were; their rows, compliance, normal velocities before and after, what these shall be at least,
+ * impulses, the energy that these take, J; whether they stay together; whether any has friction. */
+typedef struct {
+    int n, friction, was[FU_MOST_HARD_CONTACTS], stuck[FU_MOST_HARD_CONTACTS], stays[FU_MOST_HARD_CONTACTS], kind[FU_MOST_HARD_CONTACTS];
+    const fu_coupling *of[FU_MOST_HARD_CONTACTS];
+    fu_hard_row row[FU_MOST_HARD_CONTACTS];
+    double G[FU_MOST_HARD_CONTACTS * FU_MOST_HARD_CONTACTS], before[FU_MOST_HARD_CONTACTS], after[FU_MOST_HARD_CONTACTS];
+    double target[FU_MOST_HARD_CONTACTS], impulse[FU_MOST_HARD_CONTACTS], taken;
+} fu_touching;
+
+/* couplings/rubbing.c: the jump of velocities by impulses with friction, in run->work; how friction and pressing go on, where one of
+ * them, `loose`, may be known to break loose. They return not zero where there is no solution. */
+int fu_rub(fu_run *run, fu_touching *touching);
+int fu_settle_friction(fu_run *run, fu_touching *touching, const fu_coupling *loose);
+
+/* couplings/impacts.c: finds how hard contacts go on at `now`, where one of them, which is `first` to (null: at the start), has come
+ * together, would pull, or stops sliding, or breaks loose, if it `yields`; returns a status. What has happened to each it notes in its news. */
+int fu_resolve_hard_contacts(fu_run *run, const fu_coupling *first, int yields);
+
+/* linear/complementarity.c */
+enum { FU_IS_POSITIVE, FU_IS_BASIC, FU_IS_DEPENDENT };
+int fu_complement(int n, const double *G, const double *b, double least, double *x, int *kind);
+
+#endif

@@ -1,0 +1,49 @@
+"""Hard contact of points of bodies with surfaces, as the engine takes it: a coupling for each point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..parts.attachment import Attachment
+from ..parts.contact import Contact
+from ..parts.scene_data import SceneData
+from .attachments import AttachmentBuilder
+from .contacts import ContactModel, surface_entries
+
+
+GIVES_WAY = 1e-10
+"""m: what a hard contact gives way by in statics under the weight of its body."""
+
+
+@dataclass(kw_only=True)
+class HardContactModel(ContactModel):
+    """fu_hard_contact of engine/include/hard_contacts.h, of one point of a body; without what a penalty has.
+
+    restitution: of the normal velocity; rest_velocity: m/s, below which what would part stays; sliding: Coulomb's
+    coefficient; weight: N, of the body;
+    static_stiffness: N/m, of the little by which it gives way in statics, so that points that hold the same share it.
+    """
+
+    restitution: float
+    rest_velocity: float
+    sliding: float
+    weight: float
+    static_stiffness: float
+
+
+def hard_contact_models(part: Contact, scene: SceneData, attachments: AttachmentBuilder) -> list[HardContactModel]:
+    """Return the models of a hard contact of the scene, one for each of its points."""
+    assert part.restitution is not None and part.points is not None, f"{part.where} is not complete"
+    models, rows = [], scene.dim if part.friction else 1
+    weight = scene.bodies[part.a].mass * (float(np.linalg.norm(scene.gravity)) or 1.0)
+    for point in part.points:
+        at = attachments.model(Attachment(on=part.a, at=point))
+        models.append(HardContactModel(
+            **surface_entries(scene.surfaces[part.b], scene, attachments), type="hard_contact", name=part.name or "",
+            stiffness=0.0, damping=0.0, friction=0.0, tangential=0.0, hertz=0, cable=-1, radius=part.radius or 0.0,
+            n_points=1, attachments=[at], scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction, restitution=part.restitution,
+            rest_velocity=part.rest_velocity, weight=weight,
+            static_stiffness=weight / GIVES_WAY))
+    return models
