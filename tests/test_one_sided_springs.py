@@ -201,7 +201,7 @@ def test_ends_that_meet_are_refused_where_the_spring_then_has_a_force(law, loses
     assert run["m.position"][-1, 1] == pytest.approx(-GRAVITY * 0.1**2 / 2, rel=1e-9)
 
 
-@pytest.mark.parametrize("tol", [1e-2, 1e-3])
+@pytest.mark.parametrize("tol", [3e-2, 1e-2])
 def test_steps_go_over_what_tol_allows_and_tell_when(tol):
     scene = hanging(0.5, stiffness=STIFFNESS, tension_only=True)
     run = scene.run(duration=2.0, output_step=0.01, integrator="genalpha", tol=tol)
