@@ -236,18 +236,13 @@ cdef class Engine(Report):
                 if stream is not None:
                     stream.between()
                 PyErr_CheckSignals()
-                if status == FU_EVENT and run.event.kind == FU_GAVE_WAY:
-                    if self.watcher is not None:
-                        self.watcher.gives_way(run.event.which, run.event.what.decode(), run.event_time, run.event.side)
-                    status = FU_RUNNING
-                if status == FU_EVENT and run.event.kind in (FU_ACTED, FU_PASSED):
-                    if self.watcher is not None:
-                        c = self.couplings[run.event.which]
-                        self.watcher.acts(c.number, run.event.what.decode(), run.event_time,
-                                          run.event.kind == FU_PASSED, self._view(&run.now, "s")[c.coordinate] if c.n_coordinates else None)
+                if status == FU_EVENT and run.event.kind in (FU_ACTED, FU_PASSED, FU_GAVE_WAY):
+                    self._tell()
                     status = FU_RUNNING
                 if status == FU_EVENT:
                     if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):
+                        while fu_take_passage(run):  # of the step that ended there
+                            self._tell()
                         with nogil:
                             status = fu_stop(run)
                         break
@@ -258,6 +253,18 @@ cdef class Engine(Report):
         except KeyboardInterrupt:
             return "interrupted"
         return STATUS[status]
+
+    cdef _tell(self):
+        """Let the watcher know of what a part has done by itself."""
+        event = self.run.event
+        if self.watcher is None:
+            return
+        if event.kind == FU_GAVE_WAY:
+            self.watcher.gives_way(event.which, event.what.decode(), self.run.event_time, event.side)
+            return
+        c = self.couplings[event.which]
+        s = self._view(&self.run.now, "s")[c.coordinate] if c.n_coordinates else None
+        self.watcher.acts(c.number, event.what.decode(), self.run.event_time, event.kind == FU_PASSED, s)
 
     def rows(self):
         """Recorded arrays by name, cut to the rows that are in them."""

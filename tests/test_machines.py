@@ -40,3 +40,15 @@ def test_a_zip_line_ends_in_its_buffer():
     assert 0.7 * np.sqrt(2 * G * drop) < run["wheels.s_rate"][before].max() < np.sqrt(2 * G * drop)
     assert (np.diff(run["energy.dissipated"]) > -1e-9).all()
     assert energy_error(run) < 1e-3  # measured: 5e-5
+
+
+def test_the_droppers_of_an_overhead_span_get_their_lengths_and_become_slack():
+    rest = load_scene("overhead_span").equilibrium()
+    lengths = [rest.scene.point_forces[f"dropper_{k}"].length for k in range(9)]
+    np.testing.assert_allclose(lengths[:5], [1.017, 0.896, 0.810, 0.758, 0.741], atol=2e-3)  # of a published line
+    run = rest.scene.run(duration=0.3, output_step=0.005, initial=rest)
+    tension = np.array([run[f"dropper_{k}.tension"] for k in range(9)])
+    assert tension[:, 0].min() > 40.0
+    assert tension.min() == 0.0
+    assert {event["what"] for event in run.events} == {"became slack", "became taut"}
+    assert energy_error(run) < 1e-4

@@ -134,3 +134,15 @@ def test_a_resumed_run_notes_the_same(tmp_path):
     resumed = let_loose().run(**given, save=tmp_path / "out.nc", resume=True)
     assert resumed.events == whole.events
     assert whole.events[-1]["time"] > 0.06
+
+
+def test_a_slack_rope_comes_to_rest_by_a_damped_motion():
+    scene = let_loose()
+    length = 1 / 1.001
+    at_rest = fu.Scene(gravity=(0, -9.81, 0))
+    cable = scene.cables["wire"].as_made().entries() | {"end": (0.98, 0, 0)}
+    at_rest.cable(cable.pop("name"), **cable)
+    for s in (0, length):
+        at_rest.pin("wire", s=s)
+    relaxed, found = at_rest.relax(), at_rest.equilibrium()
+    assert relaxed["wire.position"] == pytest.approx(found["wire.position"], abs=1e-6)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import insort
 from collections.abc import Callable
 from typing import Any
 
@@ -138,14 +139,19 @@ class EventWatcher:
         happened: dict = {"name": self.model.couplings[which].name, "time": time, "what": what}
         if passed:
             happened["passed"] = True
-        self.happened.append(happened if s is None else happened | {"s": s})
+        self._note(happened if s is None else happened | {"s": s})
 
     def gives_way(self, cable: int, what: str, time: float, element: int) -> None:
         """Note that the first element of a cable has become slack, or that all are taut again; element: which was
         first, or last.
         """
-        self.happened.append({"name": self.model.cables[cable].name, "time": time, "what": what, "element": element,
-                              "passed": True})
+        self._note({"name": self.model.cables[cable].name, "time": time, "what": what, "element": element,
+                    "passed": True})
+
+    def _note(self, happened: dict) -> None:
+        """Keep an event, before those that were told first and are later: steps tell at their end what they went over.
+        """
+        insort(self.happened, happened, key=lambda each: each["time"])
 
     def notes(self) -> list[str]:
         """Return a message for each drag that has left the table of its fluid."""
@@ -162,7 +168,7 @@ class EventWatcher:
         at = {f"{body.name}.{k}": np.asarray(state[f"{body.name}.{k}"]).tolist() for body in self.model.bodies
               for k in ("position", "velocity")}
         at |= {f"{slide.name}.s": state[f"{slide.name}.s"] for slide in self.model.slides}
-        self.happened.append({"name": event.name, "time": time, "state": at})
+        self._note({"name": event.name, "time": time, "state": at})
         if event.action == "stop":
             self.stopped_by = event.name
         return event.action != "stop"

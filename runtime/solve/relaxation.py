@@ -77,8 +77,11 @@ class _NoEvents:
 
     watches: list = field(default_factory=list)
 
-    def acts(self, which: int, what: str, time: float, s: float | None) -> None:
+    def acts(self, which: int, what: str, time: float, passed: bool, s: float | None) -> None:
         """Do nothing: what sticks and strikes does so in the engine."""
+
+    def gives_way(self, cable: int, what: str, time: float, element: int) -> None:
+        """Do nothing: cables become slack and taut as the motion goes on."""
 
 
 @dataclass

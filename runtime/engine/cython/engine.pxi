@@ -361,4 +361,5 @@ cdef extern from "engine.h" nogil:
     long fu_save(const fu_run *run, char *bytes)
     int fu_restore(fu_run *run, const char *bytes, int rows)
     int fu_stop(fu_run *run)
+    int fu_take_passage(fu_run *run)
     void fu_part_timing(fu_run *run, double *seconds)

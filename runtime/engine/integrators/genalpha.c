@@ -19,6 +19,7 @@
 #include <string.h>
 
 #define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
+#define PASSAGE 1.0 /* of a step: twice the most that a velocity errs by over the force of a passage, lest energy come of it */
 
 
 typedef struct {
@@ -192,7 +193,7 @@ static double error(fu_run *run, double h)
     const double smooth = fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
     const double factor = h * h * (fu_count_changes(run) ? JUMP : smooth);
     fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration, run->work);
-    return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run, JUMP * h * h);
+    return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run, PASSAGE * h * h);
 }
 
 static void account(fu_run *run, double h)
