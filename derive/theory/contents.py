@@ -39,6 +39,7 @@ def theory() -> Document:
     composer.add("couplings/slide", MAIN)
     composer.add("couplings/resistance", MAIN)
     composer.add("couplings/drag", MAIN)
+    composer.add("couplings/added_mass", MAIN)
     return composer.document
 
 
