@@ -336,8 +336,8 @@ def moored(elements, element="cable12"):
     """Return a buoy of 0.5 m³ held under water by 60 m of line, in a current that grows with height."""
     scene = fu.Scene()
     area = pi * 0.03**2 / 4
-    line = scene.cable("line", start=(0, 0, 0), end=(0, 60, 0), elements=elements, element=element, strain="engineering",
-                       section=fu.GeneralSection(area=area, second_moment_about_z=1e-13),
+    line = scene.cable("line", start=(0, 0, 0), end=(0, 60, 0), elements=elements, element=element,
+                       strain="engineering", section=fu.GeneralSection(area=area, second_moment_about_z=1e-13),
                        material=fu.Material(youngs_modulus=2e6 / area, poisson_ratio=0, density=1400))
     scene.pin(line, s=0.0)
     scene.rigid_body("buoy", mass=100.0, inertia=(5, 5, 5), position=(0, 60, 0))

@@ -26,6 +26,7 @@ sea = fu.VelocityTable(y=height, velocity=current)
 
 
 def mooring(added_mass: bool = True, **fluid) -> fu.Scene:
+    """Return the mooring in a fluid described by these arguments, with or without the inertia of the water."""
     scene = fu.Scene()
     line = scene.cable("line", start=(0, 0, 0), end=(0, 60, 0), elements=16, element="cable12", strain="engineering",
                        section=fu.GeneralSection(area=7.07e-4, second_moment_about_z=1e-10),
