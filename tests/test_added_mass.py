@@ -337,3 +337,15 @@ def test_a_scene_in_a_plane_is_recognised_unless_lift_leaves_it():
         assert (found.scene is None) == (lift != 0)
         if lift:
             assert "lift" in found.reasons[0]
+
+
+def test_pictures_show_the_flow_and_the_forces_of_the_law():
+    run = swimming().run(0.02, step=1e-3, integrator="genalpha", output_step=0.01)
+    animation = run.animation("swimming")
+    arrows = {segment.name: segment.end - segment.start for segment in animation.clips[0].segments
+              if segment.kind == "load"}
+    assert set(arrows) == {"sea, drag_1", "sea, drag_2"}
+    way = arrows["sea, drag_1"][0]
+    assert way / np.linalg.norm(way) == pytest.approx(np.array([0.8, 0.2, -0.5]) / sqrt(0.93))
+    assert not any("could not be computed" in note for note in animation.notes)
+    assert "tension" in {quantity.key for quantity in animation.clips[0].cables[0].quantities}
