@@ -169,10 +169,9 @@ OTHERS = {
     "spring": {"a": "A", "b": (0, -4, 0), "stiffness": 20.0, "damping": 2.0, "length": 1.0, "tension_only": True,
                "free_play": 0.1, "name": "x"},
     "fluid": {"name": "breeze", "density": 1.3, "velocity": (0, 0, 2.0), "scale": 2.0,
-              "profile": fu.PowerProfile(exponent=0.2, reference_height=10),
-              "table": {"y": [-9, 9], "velocity": [[0, 0, 1], [0, 0, 2]], "interpolation": "linear"}},
+              "profile": fu.PowerProfile(exponent=0.2, reference_height=10)},
     "drag": {"on": "hook", "fluid": "air", "normal": 1.0, "tangential": 0.01, "diameter": 0.03, "displaced_area": 0.0,
-             "lift": 0.2, "added_mass": 1.0, "added_mass_tangential": 0.1, "name": "x"},
+             "lift": 0.2, "added_mass": 1.0, "name": "x"},
     "event": {"name": "x", "quantity": "B.position.x", "value": 1.0, "direction": "rising", "action": "stop"},
 }
 """Another value for fields, by the kind of the part."""
@@ -190,7 +189,8 @@ ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_bod
               ("modal_body", "orientation"), ("joint", "second_axis"), ("joint", "up"), ("joint", "distance"),
               ("joint", "velocity"), ("joint", "length"), ("slide", "body_s"), ("spring", "table"),
               ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume"),
-              ("drag", "polar"), ("drag", "span"), ("drag", "chord")}
+              ("drag", "polar"), ("drag", "span"), ("drag", "chord"), ("drag", "added_mass_tangential"),
+              ("fluid", "table")}
 """Fields of parts that are described otherwise, or of other kinds of joints."""
 
 
