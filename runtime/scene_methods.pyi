@@ -22,6 +22,7 @@ from .parts.load import DistributedForce, Force, Moment
 from .parts.material import Material
 from .parts.modal_body import ModalBody
 from .parts.part import Part
+from .parts.polar import Polar
 from .parts.rigid_body import RigidBody
 from .parts.scene_data import SceneData
 from .parts.section import Section
@@ -31,6 +32,7 @@ from .parts.solids import Solid
 from .parts.spring import Spring
 from .parts.support import Clamp, Motion, Pin, Tie
 from .parts.surface import Surface
+from .parts.velocity_table import VelocityTable
 
 Numbers: TypeAlias = Sequence[float] | np.ndarray
 Points: TypeAlias = Sequence[Numbers] | np.ndarray
@@ -243,6 +245,7 @@ class SceneMethods(SceneData):
         velocity: Numbers = (0.0, 0.0, 0.0),
         scale: Scale = 1.0,
         profile: Profile | None = None,
+        table: VelocityTable | dict[str, Any] | None = None,
     ) -> Fluid:
         """Add a Fluid, which see."""
 
@@ -255,10 +258,16 @@ class SceneMethods(SceneData):
         tangential: float = 0.0,
         diameter: float | None = None,
         displaced_area: float | None = None,
+        lift: float = 0.0,
         area: float = 0.0,
         coefficient: float = 1.0,
+        polar: Polar | dict[str, Any] | None = None,
+        span: Numbers | None = None,
+        chord: Numbers | None = None,
         at: Numbers | None = None,
         volume: float = 0.0,
+        added_mass: float | Numbers | Points | None = None,
+        added_mass_tangential: float = 0.0,
         name: str | None = None,
     ) -> Drag:
         """Add a Drag, which see."""

@@ -15,10 +15,12 @@ from funicular.parts.friction import Friction
 from funicular.parts.kinds import KINDS
 from funicular.parts.material import Material
 from funicular.parts.part import Part
+from funicular.parts.polar import Polar
 from funicular.parts.scene_data import SceneData
 from funicular.parts.section import Section
 from funicular.parts.signal import Signal
 from funicular.parts.solids import Solid
+from funicular.parts.velocity_table import VelocityTable
 from funicular.scene_methods import signature
 
 FILE = Path(__file__).parents[1] / "runtime" / "scene_methods.pyi"
@@ -46,13 +48,16 @@ def signature(kind: type[Part]) -> Signature: ...
 class SceneMethods(SceneData):
 '''
 
-OTHERS = (Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Solid, Profile, Part)
+OTHERS = (Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Solid, Polar, Profile, VelocityTable,
+          Part)
 """What signatures need beside the kinds of parts."""
 
 TYPES = {
     "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points", "nodes": "Numbers",
     "AnySection": "Section", "AnySolid": "Solid", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
     "AnyProfile": "Profile", "AnySurfaceShape": "Part | dict[str, Any]", "CableEnd": "str | Stop",
+    "VelocityTable": "VelocityTable | dict[str, Any]", "Polar": "Polar | dict[str, Any]",
+    "added_mass": "float | Numbers | Points",
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Material": "Material", "Friction": "Friction",
@@ -61,7 +66,8 @@ TYPES = {
 }
 """What may be given for fields that are annotated so; ``inertia``, ``points`` and ``nodes`` are fields of their own."""
 
-BY_NAME = {"inertia": "inertia", "points": "points", "nodes": "nodes", "library": "path", "data": "path",
+BY_NAME = {"inertia": "inertia", "added_mass": "added_mass",
+           "points": "points", "nodes": "nodes", "library": "path", "data": "path",
            "body": "rider"}
 PATHS = {"path": "str | os.PathLike[str]", "rider": "Named | tuple[Named, float] | Numbers"}
 

@@ -5,6 +5,7 @@ from math import pi, sqrt
 import funicular as fu
 import numpy as np
 import pytest
+from funicular.choice.planar import planar_of
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
@@ -293,3 +294,58 @@ def test_section_forces_in_balance_are_refused():
     with pytest.raises(fu.FunicularError, match='take method="constitutive"'):
         run.section_forces("wire", 0.5)
     assert np.isfinite(run.section_forces("wire", 0.5, method="constitutive")["force"]).all()
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_a_driven_end_gives_what_the_water_takes(integrator):
+    scene = fu.Scene()
+    wire = rope(scene, "cable12", (1, 0, 0), density=1500, youngs_modulus=1e6)
+    scene.motion(wire, s=0.0, displacement=(0, fu.Ramp(start=0, end=0.3, after=0.2),
+                                            fu.TableSignal(time=[0, 0.1, 0.2, 0.4], value=[0, 0.01, -0.01, 0.02])))
+    scene.fluid(density=WATER, velocity=(0.4, 0.1, 0))
+    scene.drag(wire, normal=1.0, added_mass=1.0)
+    run = scene.run(0.3, tol=1e-6, integrator=integrator, output_step=0.05)
+    assert run["energy.external"][-1] > 0.1
+    assert balance(run) < (1e-12 if integrator == "energy" else 1e-6)
+
+
+@pytest.mark.parametrize("integrator", OF_BODIES)
+def test_a_stop_that_is_struck_in_water_balances(integrator):
+    scene = fu.Scene()
+    wire = rope(scene, "cable12", (1, -0.3, 0), density=1500)
+    scene.pin(wire, s=0.0)
+    scene.pin(wire, s=wire.length)
+    scene.rigid_body("A", mass=0.5, inertia=(1e-3,) * 3, position=wire.point(0.7), velocity=3 * wire.axes[0])
+    scene.slide("A", along=wire, s=0.7, name="trolley", at_end=fu.HardStop(restitution=0.5))
+    scene.fluid(density=WATER, velocity=(0.4, 0.1, 0))
+    scene.drag(wire, normal=1.0, added_mass=1.0)
+    scene.drag("A", area=0.003, volume=1e-4, added_mass=(0.3, 0.5, 0.7))
+    run = scene.run(0.2, tol=1e-6, integrator=integrator, output_step=0.02)
+    assert run.report["events"]
+    assert run["energy.dissipated"][-1] > 0.5
+    assert balance(run) < 1e-5
+
+
+def test_a_scene_in_a_plane_is_recognised_unless_lift_leaves_it():
+    for lift in (0.0, 0.3):
+        scene = fu.Scene()
+        wire = rope(scene, "cable12", (1, 0, 0))
+        scene.pin(wire, s=0.0)
+        scene.fluid(density=WATER, velocity=(1, 0, 0))
+        scene.drag(wire, normal=1.0, lift=lift, added_mass=1.0)
+        found = planar_of(scene)
+        assert (found.scene is None) == (lift != 0)
+        if lift:
+            assert "lift" in found.reasons[0]
+
+
+def test_pictures_show_the_flow_and_the_forces_of_the_law():
+    run = swimming().run(0.02, step=1e-3, integrator="genalpha", output_step=0.01)
+    animation = run.animation("swimming")
+    arrows = {segment.name: segment.end - segment.start for segment in animation.clips[0].segments
+              if segment.kind == "load"}
+    assert set(arrows) == {"sea, drag_1", "sea, drag_2"}
+    way = arrows["sea, drag_1"][0]
+    assert way / np.linalg.norm(way) == pytest.approx(np.array([0.8, 0.2, -0.5]) / sqrt(0.93))
+    assert not any("could not be computed" in note for note in animation.notes)
+    assert "tension" in {quantity.key for quantity in animation.clips[0].cables[0].quantities}

@@ -330,3 +330,52 @@ def test_a_load_path_puts_on_as_much_of_the_flow_as_of_the_loads():
         cut = sum(each[f"wire@{s}.force"] for s in (0, 12))
         weight = np.array([0, 3000 * 1e-4 * 12.0 * G * each.gravity_fraction, 0])
         assert cut + each["drag_1.force"] == pytest.approx(weight, abs=1e-6)
+
+
+def moored(elements, element="cable12"):
+    """Return a buoy of 0.5 m³ held under water by 60 m of line, in a current that grows with height."""
+    scene = fu.Scene()
+    area = pi * 0.03**2 / 4
+    line = scene.cable("line", start=(0, 0, 0), end=(0, 60, 0), elements=elements, element=element,
+                       strain="engineering", section=fu.GeneralSection(area=area, second_moment_about_z=1e-13),
+                       material=fu.Material(youngs_modulus=2e6 / area, poisson_ratio=0, density=1400))
+    scene.pin(line, s=0.0)
+    scene.rigid_body("buoy", mass=100.0, inertia=(5, 5, 5), position=(0, 60, 0))
+    scene.joint("spherical", (line, 60.0), "buoy")
+    scene.fluid("sea", density=1025, velocity=(1, 0, 0),
+                profile=fu.TableProfile(height=[-10, 0, 100], factors=[0.3, 0.5, 2.5]))
+    scene.drag(line, normal=1.2, tangential=0.02, diameter=0.03)
+    scene.drag("buoy", area=0.8, coefficient=0.6, volume=0.5)
+    return scene
+
+
+@pytest.mark.parametrize("element", ["cable12", "cable8p"])
+def test_a_mooring_in_a_current_stands_as_the_boundary_value_problem(element):
+    state = moored(24, element).equilibrium()
+    weight = (1400 - 1025) * pi * 0.03**2 / 4 * G
+    normal, tangential = 1025 / 2 * 0.03 * 1.2, 1025 / 2 * pi * 0.03 * 0.02
+
+    def flow(y):
+        return 0.5 + 0.02 * y
+
+    def rates(s, x):
+        n, T = x[2:], np.hypot(*x[2:])
+        i, U = n / T, np.array([flow(x[1]), 0 * x[1]])
+        w_t = np.sum(i * U, axis=0)
+        w_n = U - w_t * i
+        f = (1 + T / 2e6) * (normal * np.hypot(*w_n) * w_n + tangential * np.abs(w_t) * w_t * i)
+        f[1] -= weight
+        return np.vstack([(1 + T / 2e6) * i, -f])
+
+    def ends(a, b):
+        return np.array([a[0], a[1], b[2] - 1025 / 2 * 0.8 * 0.6 * flow(b[1]) ** 2, b[3] - (1025 * 0.5 - 100) * G])
+
+    s = np.linspace(0, 60, 101)
+    guess = np.vstack([0 * s, s, 0 * s, 0 * s + 4000])
+    found = solve_bvp(rates, ends, s, guess, tol=1e-10, max_nodes=100000)
+    assert found.success
+    exact = found.sol(np.linspace(0, 60, 25))
+    assert exact[0, -1] > 20.0  # it is carried far
+    assert np.abs(state["line.position"][:, :2] - exact[:2].T).max() < 2e-6
+    assert state["buoy.position"][:2] == pytest.approx(exact[:2, -1], abs=1e-6)
+    assert np.abs(state["line@0.force"][:2] + exact[2:, 0]).max() < 1e-5

@@ -175,6 +175,7 @@ OTHERS = {
     "fluid": {"name": "breeze", "density": 1.3, "velocity": (0, 0, 2.0), "scale": 2.0,
               "profile": fu.PowerProfile(exponent=0.2, reference_height=10)},
     "drag": {"on": "hook", "fluid": "air", "normal": 1.0, "tangential": 0.01, "diameter": 0.03, "displaced_area": 0.0,
+             "lift": 0.2, "added_mass": 1.0,
              "name": "x"},
     "surface": {"name": "floor", "shape": fu.HeightField(x=(0, 1), heights=(-7, -8)), "on": "B", "at": (0, -1, 0)},
     "contact": {"a": "rope", "b": "side", "stiffness": 1e4, "exponent": 1.5, "damping": 0.1, "friction": 0.2,
@@ -200,7 +201,9 @@ ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_bod
               ("modal_body", "orientation"), ("joint", "second_axis"), ("joint", "up"), ("joint", "distance"),
               ("joint", "velocity"), ("joint", "length"), ("slide", "body_s"), ("spring", "table"),
               ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume"),
-              ("contact", "points")}
+              ("contact", "points"),
+              ("drag", "polar"), ("drag", "span"), ("drag", "chord"), ("drag", "added_mass_tangential"),
+              ("fluid", "table")}
 """Fields of parts that are described otherwise, or of other kinds of joints."""
 
 

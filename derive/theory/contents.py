@@ -40,6 +40,7 @@ def theory() -> Document:
     composer.add("couplings/slide", MAIN)
     composer.add("couplings/resistance", MAIN)
     composer.add("couplings/drag", MAIN)
+    composer.add("couplings/added_mass", MAIN)
     composer.add("couplings/crossing", MAIN)
     return composer.document
 

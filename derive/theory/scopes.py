@@ -352,7 +352,17 @@ def drag_scope(name: str) -> Scope:
     """Return the scope of drag."""
     return Scope(families()[name], (Symbol(r"\mathbf{t}", "t", column), Symbol(r"\mathbf{w}", "w", column),
                                     *(Symbol(s, "c", entry(k)) for k, s in enumerate(("c_{n}", "c_{t}", "w_{0}"))),
-                                    *(Symbol(s, "c_point", entry(k)) for k, s in enumerate(("c_{p}", "w_{p}")))))
+                                    *(Symbol(s, "c_lift", entry(k)) for k, s in enumerate(("c_{l}", "w_{l}"))),
+                                    *(Symbol(s, "c_point", entry(k)) for k, s in enumerate(("c_{p}", "w_{p}"))),
+                                    *(Symbol(s, "c_foil", entry(k)) for k, s in enumerate(("c_{f}", "w_{f}"))),
+                                    *(Symbol(s, "coefficients", entry(k)) for k, s in enumerate(
+                                        ("C_{D}", "C_{D,1}", "C_{L}", "C_{L,1}"))),
+                                    Symbol(r"\dot{\mathbf{t}}", "t_rate", column),
+                                    Symbol(r"\dot{\mathbf{w}}", "w_rate", column),
+                                    *(Symbol(s, "m", entry(k)) for k, s in enumerate(("m_{n}", "m_{t}"))),
+                                    Symbol(r"\mathbf{s}", "s", column), Symbol(r"\mathbf{A}", "A", matrix),
+                                    Symbol(r"\mathbf{C}", "C", matrix),
+                                    Symbol(r"\boldsymbol{\omega}", "omega", column)))
 
 
 def crossing_scope(name: str) -> Scope:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..errors import SceneError, near
@@ -11,13 +13,17 @@ from ..parts.scene_data import SceneData
 from ..parts.validation import EXACT, show
 from .placement import placed_attachment
 
+PLACES = 65
+"""On a cable, that are looked at."""
+
 
 def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     """Return the drag with its fluid and its place complete, sure to act on something. Raises SceneError."""
     drag = drag.completed({"fluid": _fluid(scene, drag)})
     if drag.on in scene.cables:
         _check_cable(scene, drag)
-        _check_table(scene, drag, scene.cables[drag.on].nodal_vectors[:, 0])
+        cable = scene.cables[drag.on]
+        _check_table(scene, drag, lambda: np.stack([cable.point(s) for s in np.linspace(0, cable.length, PLACES)]))
         return drag
     placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
     _refuse(drag, OF_CABLE, "body")
@@ -26,15 +32,16 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     if not acts and drag.volume == 0:
         raise SceneError(drag.where, "has neither drag nor buoyancy", "give an area with a coefficient, or a volume")
     _check_added_mass(drag, drag.volume, "volume, in m³")
-    _check_table(scene, drag, scene.bodies[drag.on].point(placed.point)[None])
+    _check_table(scene, drag, lambda: scene.bodies[drag.on].point(placed.point)[None])
     return drag.completed({"at": placed.at})
 
 
-def _check_table(scene: SceneData, drag: Drag, places: np.ndarray) -> None:
-    """Raise SceneError where a drag begins outside of the table of its fluid; places (n, 3), in m."""
+def _check_table(scene: SceneData, drag: Drag, places_of: Callable[[], np.ndarray]) -> None:
+    """Raise SceneError where a drag begins outside of the table of its fluid; places_of: gives places (n, 3), in m."""
     fluid = scene.fluids[drag.fluid or ""]
     if fluid.table is None:
         return
+    places = places_of()
     margin, axis = fluid.table.margin(np.zeros(len(places)), places)
     if margin < -EXACT:
         values = fluid.table.grid.axes[axis]

@@ -97,7 +97,9 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     force, moment, axes, strain = constitutive(cable, nodal, cuts)
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
-    _refuse_added_mass(scene, model, name, number, at_rest)
+    if (drag := unbalanced_drag(scene, model, number, at_rest)) is not None:
+        raise FunicularError(f'section forces of "{name}": the balance does not know added mass, which drag '
+                             f'"{drag}" has; take method="constitutive"')
     loads = CableLoads(scene, model, at)
     forces = element_forces(scene, model, at, loads, number, at_rest)
     balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
@@ -106,13 +108,21 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
 
 
-def _refuse_added_mass(scene: SceneData, model: Model, name: str, number: int, at_rest: bool) -> None:
-    """Raise FunicularError where the inertia of a fluid has a part in the balance, which does not know it."""
+def unbalanced_drag(scene: SceneData, model: Model, number: int, at_rest: bool) -> str | None:
+    """Return the name of a drag on a cable of this number, or on one tied to it, whose inertia the balance does not
+    know; None: there is none.
+    """
     for drag in model.drags:
         is_still = at_rest and not drag.fluid.moves
         if drag.has_inertia and not is_still and drag.cable in tied_cables(scene, model, number):
-            raise FunicularError(f'section forces of "{name}": the balance does not know added mass, which drag '
-                                 f'"{drag.name}" has; take method="constitutive"')
+            return drag.name
+    return None
+
+
+def known_method(scene: SceneData, model: Model, name: str, at_rest: bool) -> str:
+    """Return the method for pictures of a cable: "balance" where that knows all that acts, else "constitutive"."""
+    number = list(scene.cables).index(name)
+    return "balance" if unbalanced_drag(scene, model, number, at_rest) is None else "constitutive"
 
 
 def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",

@@ -9,6 +9,7 @@ import numpy as np
 from ...errors import FunicularError
 from ...view.animation import Curve, EventMark
 from ..quantities import ENERGIES, Variable
+from ..section_forces import known_method
 from ..section_forces import of_run as forces_of_run
 from .recorded import Recorded
 
@@ -80,7 +81,9 @@ def _tension_at(run: Recorded, slide: str, notes: list[str]) -> Iterator[Curve]:
     chosen = thinned(len(run.time), AT)
     s = np.clip(run[f"{slide}.s"][chosen], 0.0, run.scene.cables[name].length)[:, None]
     try:
-        sides = [forces_of_run(run, name, s, chosen, side=side)["tension"][:, 0] for side in ("before", "after")]
+        method = known_method(run.scene, run.model, name, False)
+        sides = [forces_of_run(run, name, s, chosen, side=side, method=method)["tension"][:, 0]
+                 for side in ("before", "after")]
     except (FunicularError, RuntimeError) as error:
         notes.append(f'the tension of "{name}" at slide "{slide}" could not be computed: {error}')
         return

@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from ...model.drags import up_of
 from ...parts.attachment import Attachment
 from ...parts.load import DistributedForce, Force, Load, Moment
 from ...parts.locations import ends_of, node_of
@@ -113,6 +114,7 @@ def segments(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
     yield from levers(frames, refs, size)
     yield from _bars(frames, refs)
     yield from _loads(frames, refs, size)
+    yield from _flows(frames, refs, size)
 
 
 def _bars(frames: Frames, refs: Frames) -> Iterator[Segment]:
@@ -170,6 +172,27 @@ def _loads(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
             if largest > 0:
                 at, of, arrow = place(frames, end), place(refs, end), ARROW * size / largest * value
                 yield Segment(name, "load", at - arrow, at, _both(of - arrow, of))
+
+
+def _flows(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
+    """Yield velocities of fluids as arrows that end at the middle of cables and at the points of bodies that feel them,
+    in proportion to each other.
+    """
+    scene, found = frames.scene, []
+    up = up_of(scene)
+    time = frames.time if frames.moves else np.zeros(len(frames))
+    for name, drag in scene.drags.items():
+        if not scene.fluids[drag.fluid or ""].moves:
+            continue
+        cable = scene.cables.get(drag.on)
+        end = Attachment(on=drag.on, at=drag.at) if cable is None else Attachment(on=drag.on, s=cable.length / 2)
+        at = np.broadcast_to(place(frames, end), (len(time), 3))
+        found.append((f"{drag.fluid}, {name}", end, scene.fluids[drag.fluid or ""].velocity_at(time, at @ up, at)))
+    largest = max((np.linalg.norm(value, axis=-1).max() for _, _, value in found), default=0.0)
+    for label, end, value in found:
+        if largest > 0:
+            at, of, arrow = place(frames, end), place(refs, end), ARROW * size / largest * value
+            yield Segment(label, "load", at - arrow, at, _both(of - arrow, of))
 
 
 def _scale(frames: Frames, load: Load) -> np.ndarray:

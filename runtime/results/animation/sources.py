@@ -16,7 +16,7 @@ from ...solve.modes import Modes
 from ...solve.rest_state import RestState
 from ..section_balance import Cuts
 from ..section_components import components
-from ..section_forces import constitutive, of_equilibrium
+from ..section_forces import constitutive, known_method, of_equilibrium
 from ..section_forces import of_run as forces_of_run
 from .frames import Frames, SectionForces
 from .recorded import Recorded
@@ -98,7 +98,7 @@ def of_run(run: Recorded, numbers: np.ndarray) -> Frames:
     by_law = _law(run.scene, found)
 
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
-        if not is_balanced(len(numbers), len(s)):
+        if not is_balanced(len(numbers), len(s)) or known_method(run.scene, run.model, cable, False) != "balance":
             return by_law(cable, s)
         return forces_of_run(run, cable, s[None], numbers)
 
@@ -110,7 +110,8 @@ def of_states(states: Sequence[RestState]) -> Frames:
     scene, load = states[0].scene, np.array([state.load_fraction for state in states])
 
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
-        found = [of_equilibrium(state, cable, s[None]) for state in states]
+        method = known_method(scene, states[0].model, cable, True)
+        found = [of_equilibrium(state, cable, s[None], method=method) for state in states]
         return {key: np.concatenate([each[key] for each in found]) for key in found[0]}
 
     found = {name: np.stack([state[name] for state in states]) for name in states[0].keys()}
