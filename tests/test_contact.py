@@ -117,7 +117,7 @@ def capstan(heavy, mu, elements=40):
     points += [(to, -y, 0) for y in np.linspace(0, heavy, 12)[1:]]
     scene.cable("rope", points=points, elements=elements, element="cable8p", law="engineering_exact", rest="straight",
                 section=fu.Circle(radius=ROPE_RADIUS),
-                material=fu.Material(youngs_modulus=3e5, poisson_ratio=0, density=1000, damping_time=0.02))
+                material=fu.Material(youngs_modulus=3e5, poisson_ratio=0, density=1000, damping_time=0.1))
     scene.surface("drum", fu.Cylinder(radius=DRUM, length=0.1))
     scene.contact("rope", "drum", stiffness=3e4, friction=mu, damping=10)
     return scene
@@ -125,16 +125,15 @@ def capstan(heavy, mu, elements=40):
 
 @pytest.mark.parametrize(("mu", "limit"), [(0.1, 0.22929), (0.3, 0.48507)])
 def test_a_rope_holds_on_a_drum_up_to_the_capstans_limit(mu, limit):
-    """It holds 5 % below the limit, and slides 2 % above it; what stretches slides, so that it is not exact."""
+    """It holds 4 % below the limit, and slides 2 % above it; the rope's stretch slides, so that it is not exact."""
     assert abs(heaviest(mu) - limit) < 1e-5
-    slips = []
-    for part in (0.95, 1.02):
-        stuck = capstan(part * heaviest(mu), 100.0).equilibrium()
-        run = capstan(part * heaviest(mu), mu).run(0.4, output_step=0.1, tol=1e-4, integrator="genalpha", initial=stuck)
-        slips.append(run["rope.position"][-2:, 0, 1] - stuck["rope.position"][0, 1])
-    (before, after), (sliding, slid) = slips
-    assert abs(after - before) < 2e-5 and abs(after) < 1.5e-3
-    assert slid - sliding > 1e-3
+    ends = []
+    for part in (0.96, 1.02):
+        run = capstan(part * heaviest(mu), mu).run(0.5, output_step=0.05, tol=1e-4, integrator="genalpha")
+        ends.append(run["rope.position"][:, 0, 1] + LIGHT)
+    held, slid = ends
+    assert held.max() <= 0 and abs(held[-1] - held[-3]) < 3e-5
+    assert slid[-1] > 0.01 and slid[-1] - slid[-2] > 1e-3
 
 
 def ball(damping=0.0, exponent=1.0, stiffness=1e4, gravity=(0, 0, 0), height=0.2, speed=1.0, friction=0.0):
@@ -287,7 +286,8 @@ def test_a_cable_thrown_on_hills_keeps_the_energy_balance(integrator):
 def test_a_scene_in_another_plane_touches_alike():
     here = cloth("cable8p").run(0.15, output_step=0.05, tol=1e-6, integrator="radau")
     there = fu.Scene()
-    there.cable("wire", start=(3, 0.1, 0), end=(3, 0.15, 1), elements=8, element="cable8p", velocity=(0, 0, 1.0), **ROPE)
+    there.cable("wire", start=(3, 0.1, 0), end=(3, 0.15, 1), elements=8, element="cable8p", velocity=(0, 0, 1.0),
+                **ROPE)
     table = SHAPES["terrain"]
     there.surface("hills", fu.HeightField(x=table.x, heights=table.heights, along=(0, 0, 1)))
     there.contact("wire", "hills", stiffness=2e4, damping=0.5, friction=0.3)
@@ -313,7 +313,7 @@ def wire(scene):
 
 REFUSED = {
     "too deep": (lambda s: (wire(s), s.surface("bed", fu.Plane()), s.contact("wire", "bed")),
-                 r'contact "contact_1": "wire" starts 0.01 m below the surface "bed", at \(0, 0, 0\) m; draw it higher'),
+                 r'"contact_1": "wire" starts 0.01 m below the surface "bed", at \(0, 0, 0\) m; draw it higher'),
     "no surface": (lambda s: (wire(s), s.contact("wire", "bed")), 'there is no surface "bed"; add one before'),
     "nothing": (lambda s: (s.surface("bed", fu.Plane()), s.contact("rope", "bed")),
                 'there is no cable or body "rope"'),
@@ -328,7 +328,8 @@ REFUSED = {
                          s.contact("bed", "wire")), '"wire" and "bed" have the contact "contact_1" already'),
     "exponent": (lambda s: s.contact("wire", "bed", exponent=2), "exponent must be 1 or 1.5, got 2"),
     "tangential": (lambda s: (wire(s), s.surface("bed", fu.Plane((0, -1, 0))),
-                              s.contact("wire", "bed", exponent=1.5, friction=0.1)), "tangential_stiffness is missing"),
+                              s.contact("wire", "bed", exponent=1.5, friction=0.1)),
+                   "tangential_stiffness is missing"),
     "points": (lambda s: (wire(s), s.surface("bed", fu.Plane((0, -1, 0))),
                           s.contact("wire", "bed", points=[(0, 0, 0)])), "takes no points"),
     "table": (lambda s: s.surface("bed", fu.HeightField(x=(0, 1), heights=(0, 1, 2))), "must be of equal length"),
