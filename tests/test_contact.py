@@ -1,6 +1,6 @@
 """Surfaces and contact with them by penalty: closed forms, derivatives, energy balance, refusals."""
 
-from math import asinh, atan, cos, exp, log, pi, sin, sqrt
+from math import asinh, atan, cos, exp, hypot, log, pi, sin, sqrt
 
 import funicular as fu
 import numpy as np
@@ -358,3 +358,58 @@ def test_scene_files_say_the_same(tmp_path):
     (tmp_path / "hills.toml").write_text(scene.to_toml(), encoding="utf-8")
     again = fu.load_scene(tmp_path / "hills.toml")
     assert again.surfaces == scene.surfaces and again.contacts == scene.contacts
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("with_cable", [False, True])
+def test_no_contact_within_a_step_is_missed(integrator, with_cable):
+    """Something flies past a drum, which it grazes for a hundredth of its way: steps of free flight are longer."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    if with_cable:
+        scene.cable("A", start=(-1, 0.1099, -0.1), end=(-1, 0.1099, 0.1), elements=2, velocity=(1, 0, 0), **ROPE)
+    else:
+        scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(-1, 0.1099, 0), velocity=(1, 0, 0))
+    scene.surface("s", fu.Cylinder(radius=0.1, length=1.0))
+    scene.contact("A", "s", stiffness=1e3, radius=0.01)
+    run = scene.run(2.0, output_step=1.0, tol=1e-3, integrator=integrator)
+    assert [event["what"] for event in run.report["events"]] == ["came into contact", "lost contact"]
+    assert abs(run.report["events"][0]["time"] - (1 - sqrt(0.11**2 - 0.1099**2))) < 1e-6
+
+
+def test_section_forces_hold_what_the_bed_presses():
+    state = mooring(60).equilibrium()
+    found = state.section_forces("line", [4.0, 10.0, 29.0])
+    exact = [H, H, hypot(H, 13 * W)]
+    assert np.abs(np.array(found["tension"]) - exact).max() < 2e-2
+    rubbing = mooring(60, friction=0.3).equilibrium()
+    along = np.array([2.5, 6.5, 10.5])
+    found = rubbing.section_forces("line", along)
+    assert np.abs(np.array(found["tension"]) - (H - 0.3 * W * (L - LIFTED - along))).max() < 0.3 * W * 0.2
+
+
+def test_section_forces_of_a_run_with_friction_are_refused():
+    run = cloth().run(0.02, output_step=0.01, tol=1e-3)
+    with pytest.raises(fu.SceneError, match='contact "contact_1": has friction, which results do not tell along "wire"'):
+        run.section_forces("wire", 0.5)
+
+
+@pytest.mark.parametrize("name", ["mooring", "rope_over_drum"])
+def test_installed_scenes(name):
+    scene = fu.load_scene(name)
+    run = scene.run(0.1, progress=False, **{
+        key: value for key, value in scene.run_settings.items() if key != "duration"})
+    contact = next(iter(scene.contacts))
+    assert run[f"{contact}.touching"][-1] > 0.1 and run[f"{contact}.force"][-1, 1] > 0
+    shapes = {body.name for body in run.animation("it").clips[0].bodies}
+    assert shapes == set(scene.surfaces)
+
+
+def test_all_shapes_are_drawn():
+    for name, shape in SHAPES.items():
+        scene = fu.Scene()
+        scene.cable("wire", start=(0, 0.5, 0), end=(1, 0.5, 0), elements=2, **ROPE)
+        scene.rigid_body("B", mass=1, inertia=(1, 2, 3), position=(0, 0, 0))
+        scene.surface("here", shape)
+        scene.surface("there", shape, on="B")
+        bodies = scene.run(0.01, output_step=0.01).animation("it").clips[0].bodies
+        assert [body.name for body in bodies] == ["B", "here", "there"], name
