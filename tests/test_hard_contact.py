@@ -1,4 +1,4 @@
-"""Hard contact of bodies with surfaces: bounces, rest, friction, several points at once, curved and moving surfaces, statics, refusals."""
+"""Hard contact: bounces, rest, friction, several points at once, curved and moving surfaces, statics, refusals."""
 
 from math import asin, cos, pi, sin, sqrt, tan
 
@@ -299,7 +299,8 @@ def test_a_load_that_lifts_opens_a_contact_and_closes_it_again():
     scene.surface("ground", fu.Plane())
     scene.rigid_body("block", mass=1.0, inertia=(0.01,) * 3, position=(0, 0, 0))
     scene.contact("block", "ground", name="foot", restitution=0.0)
-    scene.force("block", value=(0, 2 * G, 0), scale=fu.TableSignal(time=(0, 1, 2), value=(0, 1, 0), interpolation="linear"))
+    triangle = fu.TableSignal(time=(0, 1, 2), value=(0, 1, 0), interpolation="linear")
+    scene.force("block", value=(0, 2 * G, 0), scale=triangle)
     for integrator in INTEGRATORS:
         run = scene.run(duration=1.0, output_step=0.1, integrator=integrator, tol=1e-7)
         what, times = happened(run)

@@ -135,6 +135,9 @@ def everything() -> fu.Scene:
     scene.event("low", quantity="B.position.y", value=-2)
     scene.fluid("air", density=1.2, velocity=(3, 0, 0))
     scene.drag("rope", fluid="air", normal=1.2, name="gust")
+    scene.surface("bed", fu.Plane(point=(0, -5, 0)))
+    scene.surface("side", fu.Plane(point=(0, -6, 0)))
+    scene.contact("hook", "bed", name="landing")
     return scene
 
 
@@ -172,6 +175,9 @@ OTHERS = {
               "profile": fu.PowerProfile(exponent=0.2, reference_height=10)},
     "drag": {"on": "hook", "fluid": "air", "normal": 1.0, "tangential": 0.01, "diameter": 0.03, "displaced_area": 0.0,
              "name": "x"},
+    "surface": {"name": "floor", "shape": fu.HeightField(x=(0, 1), heights=(-7, -8)), "on": "B", "at": (0, -1, 0)},
+    "contact": {"a": "rope", "b": "side", "stiffness": 1e4, "exponent": 1.5, "damping": 0.1, "friction": 0.2,
+                "tangential_stiffness": 1e5, "radius": 0.02, "name": "x"},
     "event": {"name": "x", "quantity": "B.position.x", "value": 1.0, "direction": "rising", "action": "stop"},
 }
 """Another value for fields, by the kind of the part."""
@@ -182,13 +188,15 @@ REFUSED = {
     ("cable", "name"): 'there is no cable "rope"',
     ("rigid_body", "name"): 'there is no cable or body "A"',
     ("fluid", "name"): 'there is no fluid "air"',
+    ("surface", "name"): 'there is no surface "bed"',
 }
 """Why another value is refused, as another entry, or another part, does not go with it."""
 
 ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_body", "data"), ("modal_body", "position"),
               ("modal_body", "orientation"), ("joint", "second_axis"), ("joint", "up"), ("joint", "distance"),
               ("joint", "velocity"), ("joint", "length"), ("slide", "body_s"), ("spring", "table"),
-              ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume")}
+              ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume"),
+              ("contact", "points"), ("contact", "restitution"), ("contact", "rest_velocity")}
 """Fields of parts that are described otherwise, or of other kinds of joints."""
 
 

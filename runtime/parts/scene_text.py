@@ -26,12 +26,13 @@ from .section import Section
 from .settings import EquilibriumSettings, RelaxationSettings, RunSettings
 from .signal import Signal
 from .solids import Solid
+from .surface_shapes import SurfaceShape
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 """A key that a scene file need not quote."""
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings, "relax": RelaxationSettings}
 
-TAGS = {Section: "shape", Signal: "form", Stop: "stop", Solid: "kind", Profile: "form"}
+TAGS = {Section: "shape", Signal: "form", Stop: "stop", Solid: "kind", SurfaceShape: "kind", Profile: "form"}
 """The word in a table that says which of several parts it is."""
 
 TABLES = ("gravity", *PARTS, *SETTINGS)

@@ -10,7 +10,7 @@ import numpy as np
 from ..rotations import conjugate, rotate
 from .part import Part
 from .plane import FLAT, across
-from .solids import Cylinder
+from .solids import Cylinder, Sphere
 from .surface_shapes import AnySurfaceShape, Capsule, Geometry, geometry
 from .validation import Name, Reference, Vector, show, xyz
 
@@ -38,13 +38,13 @@ class Surface(Part):
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        lies = True
+        lies = isinstance(self.shape, Sphere)
         if isinstance(self.shape, Cylinder | Capsule):
             axis = np.abs(np.array(self.shape.axis)) / np.linalg.norm(self.shape.axis)
             lies = bool(axis[2] <= FLAT)
             if not lies and max(axis[:2]) > FLAT:
                 yield f"axis {show(self.shape.axis)}"
-        if lies:  # what stands square to the plane reaches it from anywhere
+        if lies:  # what stands square to the plane, or has no end that way, reaches it from anywhere
             yield from across("at", self.at, "m")
             yield from across("shape.at", getattr(self.shape, "at", None), "m")
         yield from self.shape.off_plane()

@@ -24,7 +24,11 @@ WIDE = 1e6
 """m: half the width of a height field that does not change across."""
 
 
-class Plane(Part):
+class SurfaceShape(Part):
+    """Base of the shapes that are of surfaces alone."""
+
+
+class Plane(SurfaceShape):
     """A plane through ``point`` (m) across ``normal``, which points to the side where things may be."""
 
     kind: ClassVar[str] = "plane"
@@ -34,11 +38,10 @@ class Plane(Part):
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        yield from across("point", self.point, "m")
         yield from across("normal", self.normal)
 
 
-class Capsule(Part):
+class Capsule(SurfaceShape):
     """A cylinder with half spheres at its ends: ``radius``, ``length`` between their centres in m, along ``axis``.
 
     ``at``: its middle, in m.
@@ -65,7 +68,7 @@ def _heights(value: Any) -> tuple[Any, ...]:
     return tuple(vector(row, "m", len(row)) for row in rows)
 
 
-class HeightField(Part):
+class HeightField(SurfaceShape):
     """The ground by a table of heights in m, with a cubic spline between them; beyond its edges they stay.
 
     x: places in m along the direction ``along``; heights: one for each of them, or, with ``across``, places across in

@@ -1,0 +1,46 @@
+"""What surfaces and contact are in cases known without derivation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...codegen.family import CouplingFamily
+from ..numbers import EPS, Numbers, State
+from .measures import Invariance, relative
+
+
+def surface(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
+    """Yield that distances and forces are those of cases that need no kernel."""
+    y, axis, dim = s["y"], s["axis"], family.dim
+    out = k("rounded", s)
+    yield "the normal of what is round has the length one", abs(float(out["g_y"] @ out["g_y"]) - 1), 64 * EPS
+    across = y - (axis @ y) * axis
+    yield "the distance of a cylinder is that from its axis", relative(
+        np.atleast_1d(out["g"]) - (np.linalg.norm(across) - s["radius"]), y), 64 * EPS
+    level = k("terrain", {**s, "h": np.append(s["h"][:1], 0 * s["h"][1:])})
+    yield "the distance of level ground is the height above it", relative(
+        np.atleast_1d(level["g"]) - (y[1] - s["h"][0]), y), 64 * EPS
+    if dim == 3:
+        slope = 0 * s["h"]
+        slope[:3] = s["h"][:3]
+        normal = np.array([-slope[1], 1.0, -slope[2]]) / np.sqrt(1 + slope[1] ** 2 + slope[2] ** 2)
+        yield "the normal of a slope is that of a plane", relative(k("terrain", {**s, "h": slope})["g_y"] - normal,
+                                                                  normal), 64 * EPS
+    for name in ("push", "push_hertz"):
+        pressed = k(name, s)
+        later = k(name, {**s, "depth": s["depth_next"]})
+        work = pressed["mean"] * (s["depth_next"] - s["depth"])
+        yield f"{name}: what presses over a step gives the change of the stored energy", relative(
+            np.atleast_1d(later["U"] - pressed["U"] - work), np.atleast_1d(pressed["U"])), 64 * EPS
+        still = k(name, {**s, "depth_rate": 0 * s["depth_rate"]})
+        yield f"{name}: without a rate all of it is elastic", relative(
+            np.atleast_1d(still["p"] - still["p_e"]), np.atleast_1d(still["p"])), 64 * EPS
+    slides = k("sliding", s)["f"]
+    yield "friction is along the surface", relative(np.atleast_1d(slides @ s["n"]), slides), 64 * EPS
+    yield "friction that slides has its coefficient's size", abs(
+        float(np.linalg.norm(slides)) / float(s["mu"] * s["press"][0]) - 1), 64 * EPS
+    sticks = k("sticking", s)
+    yield "friction that sticks is a spring along the surface", relative(sticks["f"] + s["k_t"] * sticks["t"],
+                                                                        sticks["f"]), 64 * EPS

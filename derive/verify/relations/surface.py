@@ -1,0 +1,109 @@
+"""What the kernels of surfaces and contact are derivatives of: distances, stored energy, forces along a normal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...codegen.family import CouplingFamily
+from ...couplings.surface import HEIGHTS
+from ..methods import Relation
+from .paths import entry, from_kernel, unit
+
+
+def surface(family: CouplingFamily) -> list[Relation]:
+    """Return the relations of distances, laws and forces."""
+    return [*_distances(family.dim), *_laws(), *_forces(family.dim)]
+
+
+def _distances(dim: int) -> list[Relation]:
+    """Return those of distances. Of a terrain the heights are those of their Taylor series at the place."""
+    horizontal = {1: 0} if dim == 2 else {1: 0, 2: 2}
+
+    def height(s: Any, move: Any) -> list:
+        """Return the heights and derivatives of the series of third order, this far from the place."""
+        value = dict(zip(HEIGHTS[dim], s["h"], strict=True))
+
+        def at(name: str) -> Any:
+            total = value[name]
+            axes = list(horizontal)
+            for a in axes:
+                total = total + _get(value, name, a) * move[horizontal[a]]
+                for b in axes:
+                    total = total + _get(value, name, a, b) * move[horizontal[a]] * move[horizontal[b]] / 2
+                    for c in axes:
+                        total = total + (_get(value, name, a, b, c) * move[horizontal[a]] * move[horizontal[b]]
+                                         * move[horizontal[c]] / 6)
+            return total
+
+        return [at(name) for name in HEIGHTS[dim]]
+
+    def on_terrain(output: str) -> Any:
+        def path(k: Any, s: Any, t: Any, j: int) -> Any:
+            move = t * unit(s["y"], j)
+            h = s["h"] * 0 + height(s, move)
+            return k("terrain", s, y=s["y"] + move, h=h)[output]
+        return path
+
+    found = []
+    for kernel in ("flat", "rounded"):
+        found.append(Relation(kernel, "g_y", "dg by y", 1, from_kernel(kernel, "g", y=entry("y")), dim))
+        found.append(Relation(kernel, "g", "at 50 digits; see distances below", 0, from_kernel(kernel, "g")))
+    found.append(Relation("rounded", "g_yy", "d2g by y", 1, from_kernel("rounded", "g_y", y=entry("y")), dim))
+    found.append(Relation("terrain", "g", "at 50 digits; see distances below", 0, from_kernel("terrain", "g")))
+    found.append(Relation("terrain", "g_y", "dg by y, heights by their series", 1, on_terrain("g"), dim))
+    found.append(Relation("terrain", "g_yy", "d2g by y, heights by their series", 1, on_terrain("g_y"), dim))
+    return found
+
+
+def _get(value: dict[str, Any], name: str, *axes: int) -> Any:
+    """Return a further derivative of a height, zero beyond the third."""
+    return value.get("h_" + "".join(sorted(name[2:] + "".join(map(str, axes)))), 0)
+
+
+def _laws() -> list[Relation]:
+    """Return those of the laws by the depth and its rate."""
+    def by_depth(s: Any, j: int) -> int:
+        return 1
+
+    found = []
+    for kernel in ("push", "push_hertz"):
+        found += [Relation(kernel, "p_d", "dp by the depth", 1, from_kernel(kernel, "p", depth=by_depth)),
+                  Relation(kernel, "p_rate", "dp by the rate", 1, from_kernel(kernel, "p", depth_rate=by_depth)),
+                  Relation(kernel, "p_e", "dU by the depth", 1, from_kernel(kernel, "U", depth=by_depth)),
+                  Relation(kernel, "p", "at 50 digits; see laws below", 0, from_kernel(kernel, "p")),
+                  Relation(kernel, "U", "at 50 digits; see laws below", 0, from_kernel(kernel, "U")),
+                  Relation(kernel, "mean", "at 50 digits; see laws below", 0, from_kernel(kernel, "mean"))]
+    return found
+
+
+def _forces(dim: int) -> list[Relation]:
+    """Return those of forces: along a place the normal turns by H, and what presses changes with depth and rate."""
+    def by_place(kernel: str, with_x: bool, presses: bool) -> Any:
+        def path(k: Any, s: Any, t: Any, j: int) -> Any:
+            move = t * unit(s["n"], j)
+            changed: dict[str, Any] = {"n": s["n"] + s["H"] @ move}
+            if presses:
+                p, by_d, by_rate = s["press"]
+                depth, rate = -(s["n"] @ move), -((s["H"] @ s["w"]) @ move)
+                changed["press"] = s["press"] * 0 + [p + by_d * depth + by_rate * rate, by_d, by_rate]
+            if with_x:
+                changed["x"] = s["x"] + move
+            return k(kernel, s, **changed)["f"]
+        return path
+
+    def by_rate(kernel: str) -> Any:
+        def path(k: Any, s: Any, t: Any, j: int) -> Any:
+            p, by_d, by_rate = s["press"]
+            press = s["press"] * 0 + [p - by_rate * (s["n"] @ (t * unit(s["n"], j))), by_d, by_rate]
+            return k(kernel, s, press=press)["f"]
+        return path
+
+    return [Relation("pressing", "f", "at 50 digits", 0, from_kernel("pressing", "f")),
+            Relation("pressing", "f_y", "df by the place", 1, by_place("pressing", False, True), dim),
+            Relation("pressing", "f_w", "df by the velocity", 1, by_rate("pressing"), dim),
+            Relation("sticking", "f", "at 50 digits", 0, from_kernel("sticking", "f")),
+            Relation("sticking", "t", "at 50 digits", 0, from_kernel("sticking", "t")),
+            Relation("sticking", "f_y", "df by the place", 1, by_place("sticking", True, False), dim),
+            Relation("sliding", "f", "at 50 digits", 0, from_kernel("sliding", "f")),
+            Relation("sliding", "f_y", "df by the place", 1, by_place("sliding", True, True), dim),
+            Relation("sliding", "f_w", "df by the velocity", 1, by_rate("sliding"), dim)]
