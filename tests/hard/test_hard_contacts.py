@@ -1,4 +1,4 @@
-"""Hard cases of hard contact: chatter to rest, grazing, a wedge, a tall box that tips, a light ball between two bodies."""
+"""Hard cases of hard contact: chatter to rest, grazing, a wedge, a tall box that tips over its edge."""
 
 from math import sqrt
 
