@@ -371,6 +371,6 @@ def test_a_scene_file_has_it_and_a_run_goes_on_from_its_state(tmp_path):
     again = fu.load_scene(path)
     whole = again.run(duration=5.0, output_step=0.1, integrator="explicit")
     first = again.run(duration=4.9, output_step=0.1, integrator="explicit")
-    rest = again.run(duration=0.1, output_step=0.1, integrator="explicit", initial=first)
+    rest = again.run(duration=0.1, output_step=0.1, integrator="explicit", initial=first.at(4.9))
     assert rest["ball.position"][-1] == pytest.approx(whole["ball.position"][-1], abs=1e-6)
     assert rest["foot.force"][-1, 1] == pytest.approx(2 * G)
