@@ -242,4 +242,8 @@ CEILINGS = {
                     "inertia_step": 105, "impulse_of_point": 30, "inertia_of_point": 134},
     "crossing": {"closest": 54, "contact": 84, "force": 1034},
     "planar_crossing": {"closest": 12, "contact": 59, "force": 309},
+    "surface": {"flat": 5, "rounded": 61, "terrain": 116, "push": 12, "push_hertz": 29, "pressing": 90, "sticking": 155,
+                "sliding": 360},
+    "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "pressing": 40,
+                       "sticking": 75, "sliding": 170},
 }

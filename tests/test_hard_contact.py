@@ -1,4 +1,4 @@
-"""Hard contact of bodies with surfaces: bounces, rest, friction, several points at once, curved and moving surfaces, statics, refusals."""
+"""Hard contact: bounces, rest, friction, several points at once, curved and moving surfaces, statics, refusals."""
 
 from math import asin, cos, pi, sin, sqrt, tan
 
@@ -299,7 +299,8 @@ def test_a_load_that_lifts_opens_a_contact_and_closes_it_again():
     scene.surface("ground", fu.Plane())
     scene.rigid_body("block", mass=1.0, inertia=(0.01,) * 3, position=(0, 0, 0))
     scene.contact("block", "ground", name="foot", restitution=0.0)
-    scene.force("block", value=(0, 2 * G, 0), scale=fu.TableSignal(time=(0, 1, 2), value=(0, 1, 0), interpolation="linear"))
+    triangle = fu.TableSignal(time=(0, 1, 2), value=(0, 1, 0), interpolation="linear")
+    scene.force("block", value=(0, 2 * G, 0), scale=triangle)
     for integrator in INTEGRATORS:
         run = scene.run(duration=1.0, output_step=0.1, integrator=integrator, tol=1e-7)
         what, times = happened(run)
@@ -339,3 +340,37 @@ def test_cables_and_what_integrators_do_not_know_are_refused():
         scene.contact("wire", "ground", restitution=0.5)
     with pytest.raises(fu.SceneError, match='integrator "energy" does not know friction of hard contacts'):
         ball(friction=0.2).run(duration=1.0, output_step=0.1, integrator="energy")
+
+
+@pytest.mark.parametrize("integrator", WITH_FRICTION)
+def test_a_box_in_the_plane_goes_as_in_space(integrator):
+    """Bounces, slides and comes to lie; in the plane z = 0 where a planar cable stands beside it."""
+    ends = []
+    for element in ("cable8p", "cable12"):
+        scene = fu.Scene(gravity=(0, -G, 0))
+        scene.surface("ground", fu.Plane())
+        scene.cable("aside", start=(5, 5, 0), end=(6, 5, 0), elements=1, element=element,
+                    section=fu.Circle(radius=0.01),
+                    material=fu.Material(youngs_modulus=1e6, poisson_ratio=0.0, density=1000))
+        for s in (0.0, 1.0):
+            scene.clamp("aside", s=s)
+        scene.rigid_body("box", mass=1.0, inertia=(0.01,) * 3, position=(0, 0.6, 0), velocity=(1, 0, 0),
+                         angular_velocity=(0, 0, 4))
+        scene.contact("box", "ground", restitution=0.5, friction=0.3,
+                      points=[(x, y, 0) for x in (-0.1, 0.1) for y in (-0.05, 0.05)])
+        ends.append(scene.run(duration=2.0, output_step=0.1, integrator=integrator, tol=1e-6)["box.position"][-1])
+    assert ends[0][1] == pytest.approx(0.05, abs=1e-9)
+    assert np.abs(ends[1] - ends[0]).max() < 1e-4
+
+
+def test_a_scene_file_has_it_and_a_run_goes_on_from_its_state(tmp_path):
+    scene = ball(friction=0.1, velocity=(1, 0, 0))
+    path = tmp_path / "ball.toml"
+    path.write_text(scene.to_toml())
+    assert "restitution = 0.8" in path.read_text()
+    again = fu.load_scene(path)
+    whole = again.run(duration=5.0, output_step=0.1, integrator="explicit")
+    first = again.run(duration=4.9, output_step=0.1, integrator="explicit")
+    rest = again.run(duration=0.1, output_step=0.1, integrator="explicit", initial=first.at(4.9))
+    assert rest["ball.position"][-1] == pytest.approx(whole["ball.position"][-1], abs=1e-6)
+    assert rest["foot.force"][-1, 1] == pytest.approx(2 * G)

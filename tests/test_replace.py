@@ -201,7 +201,7 @@ ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_bod
               ("modal_body", "orientation"), ("joint", "second_axis"), ("joint", "up"), ("joint", "distance"),
               ("joint", "velocity"), ("joint", "length"), ("slide", "body_s"), ("spring", "table"),
               ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume"),
-              ("contact", "points"),
+              ("contact", "points"), ("contact", "restitution"), ("contact", "rest_velocity"),
               ("drag", "polar"), ("drag", "span"), ("drag", "chord"), ("drag", "added_mass_tangential"),
               ("fluid", "table")}
 """Fields of parts that are described otherwise, or of other kinds of joints."""

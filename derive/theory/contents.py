@@ -14,7 +14,7 @@ LEAD = ("Formulas are printed from the specs and programs that make the kernels,
         "Development of a Sliding Joint for Very Flexible Multibody Dynamics, 2005 (in Korean).")
 MAIN = {"element": "beam24", "law": "beam24_continuum", "slide": "slide_beam24_rigid", "body": "rigid",
         "modal": "modal", "frame": "frame", "point_law": "spring", "resistance": "resistance", "drag": "drag",
-        "crossing": "crossing"}
+        "surface": "surface", "crossing": "crossing"}
 """What the theory is printed for: the element and the rider of the paper."""
 
 
@@ -41,13 +41,14 @@ def theory() -> Document:
     composer.add("couplings/resistance", MAIN)
     composer.add("couplings/drag", MAIN)
     composer.add("couplings/added_mass", MAIN)
+    composer.add("couplings/surface", MAIN)
     composer.add("couplings/crossing", MAIN)
     return composer.document
 
 
 CHAPTERS = {"element": "elements/elements", "slide": "couplings/slide", "body": "bodies/rigid", "modal": "bodies/modal",
             "joint": "couplings/joint_kind", "frame": "couplings/frame", "point_law": "couplings/point_law",
-            "resistance": "couplings/resistance", "drag": "couplings/drag",
+            "resistance": "couplings/resistance", "drag": "couplings/drag", "surface": "couplings/surface",
             "crossing": "couplings/crossing"}
 
 

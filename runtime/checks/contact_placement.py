@@ -14,6 +14,7 @@ from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
 from ..parts.section import Circle, Tube
 from ..parts.surface import Surface
+from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
 
 SUNK = 0.01
@@ -128,6 +129,9 @@ def _check_hard_start(scene: SceneData, contact: Contact, surface: Surface, draw
     if n > MOST_HARD:
         raise SceneError(contact.where, f"the scene has {n} points in hard contact, and {MOST_HARD} are the most",
                          "give some of the contacts stiffness in place of restitution")
+    if contact.radius and isinstance(surface.shape, HeightField):
+        raise SceneError(contact.where, "a height field tells distances where they are nil: hard contact with it is of "
+                         "points without radius", "leave radius out, or give stiffness in place of restitution")
     depth = (contact.radius or 0.0) - surface.distance(scene.bodies.get(surface.on or ""), drawn)
     k = int(np.argmax(depth))
     if depth[k] > OVERLAP_HARD * (1 + np.abs(drawn).max()):

@@ -12,7 +12,6 @@ from ..parts.scene_data import SceneData
 from .attachments import AttachmentBuilder
 from .contacts import ContactModel, surface_entries
 
-
 GIVES_WAY = 1e-10
 """m: what a hard contact gives way by in statics under the weight of its body."""
 
@@ -43,7 +42,7 @@ def hard_contact_models(part: Contact, scene: SceneData, attachments: Attachment
         models.append(HardContactModel(
             **surface_entries(scene.surfaces[part.b], scene, attachments), type="hard_contact", name=part.name or "",
             stiffness=0.0, damping=0.0, friction=0.0, tangential=0.0, hertz=0, cable=-1, radius=part.radius or 0.0,
-            n_points=1, attachments=[at], scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction, restitution=part.restitution,
-            rest_velocity=part.rest_velocity, weight=weight,
+            n_points=1, attachments=[at], scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction,
+            restitution=part.restitution, rest_velocity=part.rest_velocity, weight=weight,
             static_stiffness=weight / GIVES_WAY))
     return models

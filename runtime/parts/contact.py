@@ -83,7 +83,7 @@ class Contact(Part):
     @model_validator(mode="after")
     def _has_one_law(self) -> Contact:
         given = [name for name in ("stiffness", "exponent", "damping", "tangential_stiffness")
-                 if name in self.model_fields_set and getattr(self, name) is not None]
+                 if getattr(self, name) != type(self).model_fields[name].default]
         if self.is_hard and given:
             raise ValueError(f"is hard by its restitution, and {given[0]} is of a contact by penalty",
                              f"leave restitution out, or {given[0]}")

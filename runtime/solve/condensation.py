@@ -10,7 +10,6 @@ from scipy.sparse import csc_array, csr_array
 
 from ..model.model import Model
 
-
 DEPENDENT = 1e-9
 """Of the largest: what is left of a contact's row that those of others imply."""
 

@@ -171,6 +171,21 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
     if (contact->cable >= 0) take_into_length(&sum, contact->length, sum.depth); /* to its end */
 }
 
+/* Makes the force on each point, N/m or N, in their order: out (points x 3). */
+void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+{
+    const fu_contact *contact = of(coupling);
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e)
+        for (int k = 0; k < contact->n_points; ++k, out += 3) {
+            fu_touch_point point;
+            fu_contact_place(model, contact, state, e, k, &point);
+            const int touches = fu_contact_touches(model, contact, &on, &point);
+            for (int d = 0; d < 3; ++d) out[d] = touches && d < model->dim ? point.f[d] : 0.0;
+        }
+}
+
 /* Returns how deep the deepest point is, m; negative off the surface, where elements that are farther than others do not count. */
 static double deepest(const fu_model *model, const fu_contact *contact, const fu_state *state)
 {
@@ -229,5 +244,55 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
+/* Makes the gap of a point, and its rate. */
+static double gap_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+                     int number, double *rate)
+{
+    fu_touch_point point;
+    double w[3];
+    fu_contact_place(model, contact, state, element, number, &point);
+    fu_surface_distance(model->dim, &contact->surface, on, point.r, &point.distance);
+    fu_surface_velocity(model->dim, on, point.r, w);
+    for (int d = 0; d < model->dim; ++d) w[d] = point.v[d] - w[d];
+    *rate = fu_dot(model->dim, point.distance.n, w);
+    return point.distance.g - contact->radius;
+}
+
+/* Returns how far a point that is near may have moved over a step, m. */
+static double reach_of(const fu_model *model, const fu_contact *contact, const fu_state *state, double h)
+{
+    double fastest = 0.0;
+    if (contact->cable < 0) return 0.0;
+    const fu_cable *cable = &model->cables[contact->cable];
+    const int n = cable->coordinates + (cable->n_elements - 1) * cable->per_node;
+    for (int i = cable->first; i < cable->first + n; i += cable->per_node)
+        fastest = fmax(fastest, sqrt(fu_dot(model->dim, state->v + i, state->v + i)));
+    return h * fastest;
+}
+
+static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+{
+    const fu_model *model = run->model;
+    const fu_contact *contact = of(coupling);
+    double first = 0.0;
+    fu_attachment_state on, on_next;
+    (void)which;
+    if (run->now.flags[coupling->flags]) return 0.0;
+    const double reach = reach_of(model, contact, &run->next, h);
+    fu_surface_at(model, &contact->surface, &run->now, &on);
+    fu_surface_at(model, &contact->surface, &run->next, &on_next);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on_next, &run->next, e, reach)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            double rate, rate_next;
+            const double gap = gap_of(model, contact, &on, &run->now, e, k, &rate);
+            const double gap_next = gap_of(model, contact, &on_next, &run->next, e, k, &rate_next);
+            const double found = fu_dip((fu_course){gap, rate}, (fu_course){gap_next, rate_next}, 1, h, run->round_off);
+            if (found > 0.0 && (first == 0.0 || found < first)) first = found;
+        }
+    }
+    return first;
+}
+
 const fu_coupling_events fu_contact_events = {
-    .watches = watches, .watched = watched, .sign = sign, .act = act, .can_act = can_act, .begin = begin};
+    .watches = watches, .watched = watched, .sign = sign, .act = act, .can_act = can_act, .begin = begin, .dip = dip};

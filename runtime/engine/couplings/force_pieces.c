@@ -214,7 +214,7 @@ typedef struct {
 
 static look look_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
 {
-    look l = {0.0};
+    look l = {.distance = 0.0};
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
         fu_attachment_at(model, &between->attachments[e], state, 0.0, FU_POINT, &at);

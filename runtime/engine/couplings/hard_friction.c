@@ -60,7 +60,7 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
 {
     const int dim = model->dim;
     fu_attachment_state point, on;
-    double r[3], x[3] = {0.0}, x_rate[3] = {0.0}, lever[3] = {0.0}, lever_rate[3] = {0.0}, v[3], w[3], centre[3] = {0.0};
+    double r[3], x[3] = {0.0}, x_rate[3] = {0.0}, lever_rate[3] = {0.0}, v[3], w[3], centre[3] = {0.0};
     double P[3 * FU_ATTACHMENT_COORDINATES], Q[3 * FU_ATTACHMENT_COORDINATES], omega[3], turning[3], own[3], bias[3];
     fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT | FU_AXES, &point);
     fu_surface_at(model, &contact->contact.surface, state, &on);
@@ -71,7 +71,6 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
         x[d] = -contact->contact.radius * row->normal[d];
         x_rate[d] = -contact->contact.radius * fu_dot(dim, row->curvature + d * dim, centre);
         r[d] = point.p[d] + x[d];
-        lever[d] = r[d] - on.p[d];
         lever_rate[d] = point.v[d] + x_rate[d] - on.v[d];
     }
     fu_surface_motion(dim, &point, r, P);
