@@ -8,8 +8,7 @@ does not converge to zero is the line's bending, which the catenary leaves out.
 
 Then the rope over a drum: parts of the capstan's limit that it holds and at which it slides.
 
-Then a cable of 1,000 elements, of which none, ten or all touch the ground: what the contact takes of a step, beside all
-of it.
+Then a cable of 1,000 elements, of which none, ten or all touch the ground: what an evaluation of all forces takes.
 """
 
 from __future__ import annotations
@@ -25,9 +24,6 @@ from pathlib import Path
 
 import numpy as np
 from funicular import Circle, Material, Plane, Scene
-from funicular.engine import Engine
-from funicular.integrators import GeneralisedAlpha
-from funicular.model.build import build
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
@@ -58,26 +54,22 @@ def drum(mu: float) -> dict[str, object]:
     raise AssertionError("the rope holds beyond the limit")
 
 
-PARTS = "residual", "factorisation", "solve", "step", "error"
-
-
 def cost() -> list[dict[str, object]]:
-    """Return what a contact of 1,000 elements costs a step of which none, ten, or all touch; and the cable itself."""
+    """Return what an evaluation of all forces takes, of 1,000 elements of which none, ten, or all touch."""
     found = []
-    for name, height in (("none touch", -2.0), ("ten touch", 0.0), ("all touch", 2e-5)):
+    for name, height in (("no contact", None), ("none touch", -2.0), ("ten touch", 4.9e-3), ("all touch", 2e-5)):
         scene = Scene()
         end = 0.01 if name == "all touch" else 0.5
         scene.cable("line", start=(0, 0.01, 0), end=(100, end, 0), elements=1000, element="cable12",
                     section=Circle(radius=0.01), material=Material(youngs_modulus=1e9, poisson_ratio=0, density=5000))
         scene.pin("line", s=0)
-        scene.surface("bed", Plane(point=(0, height + (0.0049 if name == "ten touch" else 0.0), 0)))
-        scene.contact("line", "bed", stiffness=1e5, name="bed_contact")
-        run = scene.run(0.02, output_step=0.02, step=1e-3, integrator="genalpha")
-        engine = Engine(build(scene))
-        engine.start(duration=1.0, output_step=1.0, tol=1e-4, step=1e-3, first_step=1e-3, method=GeneralisedAlpha(0.8))
-        found.append({"case": f"1,000 elements, {name}", "touching, m": f"{run['bed_contact.touching'][0]:.2f}",
-                      "contact, us a step": 1e6 * float(engine.costs()[0]),
-                      "all, us a step": 1e6 * sum(run.report["time_s"][part] for part in PARTS) / run.report["steps"]})
+        if height is not None:
+            scene.surface("bed", Plane(point=(0, height, 0)))
+            scene.contact("line", "bed", stiffness=1e5, name="bed_contact")
+        runs = [scene.run(0.05, output_step=0.05, step=1e-3, integrator="genalpha") for _ in range(3)]
+        best = min(run.report["time_s"]["residual"] / run.report["newton_iterations"] for run in runs)
+        touching = runs[0]["bed_contact.touching"][0] if height is not None else 0.0
+        found.append({"1,000 elements": name, "touching, m": f"{touching:.2f}", "forces, us": f"{1e6 * best:.0f}"})
     return found
 
 
