@@ -49,8 +49,7 @@ int fu_begin_couplings(fu_run *run)
     return FU_RUNNING;
 }
 
-/* Returns how long after `now` the first watched number may have been beyond zero within a step, and back before its end, s; 0 where none
- * was. */
+/* Returns after which time a step should rather end for the first of the couplings (include/coupling_events.h), s; 0 for none. */
 double fu_time_of_dip(const fu_run *run, double h)
 {
     double first = 0.0;
