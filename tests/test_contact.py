@@ -416,3 +416,15 @@ def test_all_shapes_are_drawn():
         scene.surface("there", shape, on="B")
         bodies = scene.run(0.01, output_step=0.01).animation("it").clips[0].bodies
         assert [body.name for body in bodies] == ["B", "here", "there"], name
+
+
+def test_a_deep_penetration_and_a_surface_that_nothing_touches_are_noted():
+    with pytest.warns(fu.FunicularWarning, match=r'"contact_1" is up to .* m below its surface, .* % of the radius'):
+        ball(stiffness=1e3).run(0.3, output_step=0.01)
+    scene = ball()
+    scene.surface("wall", fu.Plane(point=(5, 0, 0), normal=(-1, 0, 0)))
+    run = scene.run(0.01, output_step=0.01)
+    assert any('surface "wall" has no contact: nothing can touch it' in message for message in run.report["messages"])
+    soft = mooring(15, stiffness=5e3)
+    with pytest.warns(fu.FunicularWarning, match="below its surface"):
+        assert any("below its surface" in message for message in soft.equilibrium().messages)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from copy import copy
+from functools import cache
 from typing import Any, Self
 
 from ..errors import SceneError, check_renamed
@@ -134,7 +135,7 @@ class SceneData:
 
         Results are addressed by name, so that all but events share one space of names.
         """
-        groups = ["events"] if group == "events" else [each for each in _groups() if each != "events"]
+        groups = ("events",) if group == "events" else [each for each in _groups() if each != "events"]
         named = (getattr(self, each) for each in groups)
         return next((parts[name] for parts in named if isinstance(parts, dict) and name in parts), None)
 
@@ -219,6 +220,7 @@ class SceneData:
         return f"{part.kind}_{free}"
 
 
-def _groups() -> list[str]:
+@cache
+def _groups() -> tuple[str, ...]:
     """Return the groups, each once, in an order in which their parts can be added."""
-    return list(dict.fromkeys(kind.group for kind in KINDS))
+    return tuple(dict.fromkeys(kind.group for kind in KINDS))

@@ -270,6 +270,33 @@ static double reach_of(const fu_model *model, const fu_contact *contact, const f
     return h * fastest;
 }
 
+#define RESOLVED 0.25 /* of an impact's time over pi: what steps in it stay below */
+
+/* Returns the step that resolves the impact of a body that begins at `now`, s, 0 where that is not needed: where its speed, which the
+ * impact turns round, would not move it by more than tol allows in the time that is left. */
+static double step_of_impact(const fu_run *run, const fu_contact *contact, double h)
+{
+    const fu_model *model = run->model;
+    double fastest = 0.0, deepest_now = 0.0;
+    fu_attachment_state on;
+    if (contact->cable >= 0 || run->fixed_step > 0.0) return 0.0;
+    fu_surface_at(model, &contact->surface, &run->now, &on);
+    for (int k = 0; k < contact->n_points; ++k) {
+        double rate;
+        const double depth = -gap_of(model, contact, &on, &run->now, 0, k, &rate);
+        if (depth < -h * fabs(rate)) continue;
+        fastest = fmax(fastest, fabs(rate));
+        deepest_now = fmax(deepest_now, depth);
+    }
+    if (!(fastest * (run->duration - run->now.t) > fmax(run->absolute_tol, run->tol * run->controlled_motion))) return 0.0;
+    const double mass = model->bodies[contact->attachments[0].body].mass;
+    double stiffness = contact->n_points * contact->law.stiffness;
+    if (contact->law.hertz) /* at the depth that the speed leads to: 2/5 k d^(5/2) = m v^2/2 */
+        stiffness *= 1.5 * sqrt(fmax(deepest_now, pow(1.25 * mass * fastest * fastest / stiffness, 0.4)));
+    const double longest = RESOLVED * sqrt(mass / stiffness);
+    return h > 1.5 * longest ? longest : 0.0;
+}
+
 static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_model *model = run->model;
@@ -277,7 +304,7 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     double first = 0.0;
     fu_attachment_state on, on_next;
     (void)which;
-    if (run->now.flags[coupling->flags]) return 0.0;
+    if (run->now.flags[coupling->flags]) return step_of_impact(run, contact, h);
     const double reach = reach_of(model, contact, &run->next, h);
     fu_surface_at(model, &contact->surface, &run->now, &on);
     fu_surface_at(model, &contact->surface, &run->next, &on_next);

@@ -34,7 +34,7 @@ struct fu_coupling_events {
     int (*watches)(const fu_coupling *coupling, fu_watch *out);
     double (*watched)(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which);
     /* When a watched number is farthest beyond zero in the step just made, of h, at both ends of which it is on one side, as fu_dip
-     * (include/events.h) predicts it. Null: such steps are not known of this coupling. */
+     * (include/events.h) predicts it; or where the step should end as an impact needs shorter ones; else 0. Null: it is not known. */
     double (*dip)(const fu_run *run, const fu_coupling *coupling, int which, double h);
     /* The sign that a watched number has from here on, after it has been zero and the coupling has changed: 1 or -1. */
     int (*sign)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which);
