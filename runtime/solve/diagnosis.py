@@ -6,7 +6,6 @@ import numpy as np
 
 from ..engine import Engine
 from ..integrators import INTEGRATORS, stable_at
-from ..model.crossings import CrossingModel
 from ..model.model import CableModel, Model, SlideModel
 from ..model.redundant_constraints import redundant
 from ..parts.scene_data import SceneData
@@ -66,12 +65,12 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
             "not_finite": f"{where} diverges",
             "self_locking": f"friction is self-locking at {where}: the larger it is, the harder it presses the rider "
                             "on the cable",
-            "parallel": f"{where} finds no closest points: the lines are parallel where they are near each other, or "
-                        "one of them winds around the other"}[cause]
+            "not_known": f"{where} does not know any more whether it acts"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
-    if cause == "parallel":
-        return f"no contact force is known at {when}: {what}; {KEPT}. Keep them at an angle: a crossing has one point"
+    if cause == "not_known":
+        return (f"no force is known at {when}: {what}; {KEPT}. A crossing has no closest points where its lines are "
+                "parallel near each other, or wind around each other: keep them at an angle")
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif cause == "self_locking":
@@ -103,9 +102,8 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
     """Return what a dof is of, or what a coupling of this number is."""
     if coupling is not None:
         failed = model.couplings[coupling]
-        if isinstance(failed, CrossingModel):
-            return f'crossing "{failed.name}"'
-        assert isinstance(failed, SlideModel), "slides alone have coordinates of their own"
+        if not isinstance(failed, SlideModel):
+            return f'{failed.type.replace("_", " ")} "{failed.name}"'
         return f'slide "{failed.name}" on cable "{model.cables[failed.cable].name}"'
     if (found := _node(model, dof)) is not None:
         cable, node = found

@@ -29,7 +29,8 @@ double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, co
     return margin;
 }
 
-/* The penetration, of lines that are closest within their ends. */
+/* Makes a number that is below zero while contact stays as it is, the penetration or its opposite, m, and its rate; returns whether
+ * the lines are closest within their ends. */
 static int approach(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double value[2])
 {
     const fu_crossing *crossing = crossing_of(coupling);
@@ -41,6 +42,25 @@ static int approach(const fu_model *model, const fu_coupling *coupling, const fu
     for (int line = 0; line < FU_LINES; ++line)
         if (!(points.s[line] >= crossing->low[line] && points.s[line] <= crossing->high[line])) return 0;
     return points.found;
+}
+
+/* Returns after which part of a step the cubic with these values and slopes at its ends, below zero there, is largest and above
+ * zero; 0 where it is not. */
+static double part_to_top(double low, double high, double rise, double fall)
+{
+    if (!(rise > 0.0 && fall < 0.0 && low <= 0.0 && high < 0.0)) return 0.0;
+    const double a = 3.0 * (2.0 * (low - high) + rise + fall), b = 2.0 * (3.0 * (high - low) - 2.0 * rise - fall);
+    const double x = 2.0 * rise / (-b + sqrt(b * b - 4.0 * a * rise));
+    const double top = low + x * (rise + x * (0.5 * b + x * a / 3.0));
+    return top > 0.0 && x > 0.0 && x < 1.0 ? x : 0.0;
+}
+
+static double time_of_dip(const fu_run *run, const fu_coupling *coupling, double h)
+{
+    double before[2], after[2];
+    if (!approach(run->model, coupling, &run->now, before) || !(before[1] > 0.0)) return 0.0;
+    if (!approach(run->model, coupling, &run->next, after)) return 0.0;
+    return h * part_to_top(before[0], after[0], h * before[1], h * after[1]);
 }
 
 static int watches(const fu_coupling *coupling, fu_watch *out)
@@ -71,6 +91,8 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     const double stored = coupling->type->energy(run->model, coupling, &run->now);
     run->now.numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND] = *touches ? stored : 0.0;
     *touches = !*touches;
+    /* a bar that comes in from beyond an end may overlap already: what that stores comes from outside */
+    if (*touches) run->external += coupling->type->energy(run->model, coupling, &run->now);
     *what = *touches ? "came into contact" : "lost contact";
     return FU_RUNNING;
 }
@@ -92,7 +114,7 @@ const fu_coupling_events fu_crossing_events = {
     .watched = watched,
     .sign = sign,
     .act = act,
-    .approach = approach,
+    .time_of_dip = time_of_dip,
     .can_act = can_act,
     .begin = begin,
 };

@@ -10,7 +10,6 @@ double fu_piece_length(fu_path path, int k);
 double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side);
 int fu_stop_at_boundaries(const fu_model *model);
 double fu_time_to_boundary(const fu_run *run);
-double fu_time_of_dip(const fu_run *run, double h);
 double fu_time_of_turn(const fu_run *run, double h);
 void fu_choose_pieces(fu_run *run);
 int fu_count_changes(const fu_run *run);

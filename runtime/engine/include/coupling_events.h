@@ -39,9 +39,9 @@ struct fu_coupling_events {
      * what has happened, and is null where nothing has. */
     int (*act)(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what);
 
-    /* Makes a number that is below zero while contact stays as it is, and its rate, 1/s of it: where it may pass zero and come back
-     * within a step, the step is shortened. Returns whether there is one. Null: there is none. */
-    int (*approach)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double value[2]);
+    /* Returns how long after `now` a watched number may have been beyond zero within a step of h that it ends before zero, as it began,
+     * by what is known at both ends; 0 where it was not. Null: it never is. */
+    double (*time_of_dip)(const fu_run *run, const fu_coupling *coupling, double h);
 
     /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);

@@ -157,35 +157,6 @@ double fu_time_of_turn(const fu_run *run, double h)
     return 0.0;
 }
 
-/* Returns after which part of a step the cubic with these values and slopes at its ends, below zero there, is largest and above
- * zero; 0 where it is not. */
-static double part_to_top(double low, double high, double rise, double fall)
-{
-    if (!(rise > 0.0 && fall < 0.0 && low <= 0.0 && high < 0.0)) return 0.0;
-    const double a = 3.0 * (2.0 * (low - high) + rise + fall), b = 2.0 * (3.0 * (high - low) - 2.0 * rise - fall);
-    const double x = 2.0 * rise / (-b + sqrt(b * b - 4.0 * a * rise));
-    const double top = low + x * (rise + x * (0.5 * b + x * a / 3.0));
-    return top > 0.0 && x > 0.0 && x < 1.0 ? x : 0.0;
-}
-
-/* Returns how long after `now` the first coupling whose approach is below zero at both ends of a step may be above it within, s;
- * 0 where none is. */
-double fu_time_of_dip(const fu_run *run, double h)
-{
-    const fu_model *model = run->model;
-    double first = 1.0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
-        double before[2], after[2];
-        if (!c->type->events || !c->type->events->approach) continue;
-        if (!c->type->events->approach(model, c, &run->now, before) || !(before[1] > 0.0)) continue;
-        if (!c->type->events->approach(model, c, &run->next, after)) continue;
-        const double part = part_to_top(before[0], after[0], h * before[1], h * after[1]);
-        if (part > 0.0) first = fmin(first, part);
-    }
-    return first < 1.0 ? first * h : 0.0;
-}
-
 /* Returns whether a coupling stands on the boundary already: then its piece changes and not the time. */
 int fu_stands_on_boundary(const fu_run *run, fu_event event)
 {

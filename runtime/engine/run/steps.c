@@ -7,7 +7,7 @@
 #define ACCEPTED 2.0          /* of what is allowed: a step with a larger error is rejected */
 #define DIVISIONS 8           /* rejections of a fixed step that each step taken makes up for: so often it may be divided */
 #define MOST_TURNS 2          /* of a coupling on one boundary before a step is taken all the same: it rests there */
-#define MOST_DIPS 4           /* times that a step is shortened, to end where a contact may be in between */
+#define MOST_DIPS 4           /* shorter steps after a contact that may be within one, before that is taken all the same */
 #define PASSED_BY 0.5         /* of the step that was wanted: what is wanted after one whose event was not found */
 
 /* Takes the step just made: `next` becomes `now`. */
@@ -160,6 +160,7 @@ static int is_accurate_without_jump(fu_run *run, trial *t)
 static int take_step(fu_run *run, const trial *t)
 {
     accept(run, t->h, t->event);
+    if (fu_has_lost_a_watch(run)) return FU_NO_CONVERGENCE;
     run->turned = 0;
     run->statistics.error_sum += t->error;
     run->last_error = t->error;
@@ -173,7 +174,6 @@ int fu_step_towards(fu_run *run, double target)
     const fu_event late = fu_late_event(run);
     trial t = {.want = is_adaptive(run) ? run->h : run->fixed_step};
     int dips = 0;
-    if (fu_has_lost_a_watch(run)) return FU_NO_CONVERGENCE;
     if (late.kind) return fu_let_happen(run, late);
     run->keep_pieces = must_keep_pieces(run);
     for (;;) {
