@@ -148,8 +148,8 @@ def test_contact_ends_where_the_wire_or_the_bar_ends():
 
 def test_a_bar_that_comes_in_over_its_end_brings_energy_from_outside():
     scene = wire(10, dim=3)
-    scene.rigid_body("head", mass=1.0, inertia=(1, 1, 1), position=(5.0, 1e-3 - RADIUS, -0.2), velocity=(0, 0, 5))
-    scene.crossing("wire", "head", axis=(0, 0, 1), length=0.1, stiffness=STIFFNESS, name="contact", side=(0, 1, 0))
+    scene.rigid_body("head", mass=1.0, inertia=(1, 1, 1), position=(5.0, -1e-3, -0.2), velocity=(0, 0, 5))
+    scene.crossing("wire", "head", axis=(0, 0, 1), length=0.1, radius=2e-3, stiffness=STIFFNESS, name="contact")
     run = scene.run(duration=0.04, output_step=0.002, tol=1e-6, integrator="explicit")
     event = run.report["events"][0]
     assert event["what"] == "came into contact" and abs(event["time"] - 0.02) < 1e-9
