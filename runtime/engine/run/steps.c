@@ -179,12 +179,6 @@ int fu_step_towards(fu_run *run, double target)
     for (;;) {
         if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
         if (!attempt(run, &t)) continue;
-        const double dip = dips < MOST_DIPS ? fu_time_of_dip(run, t.h) : 0.0;
-        if (dip > shortest(run)) {
-            t.want = dip;
-            ++dips;
-            continue;
-        }
         find_event(run, &t);
         const double turn = run->keep_pieces ? fu_time_of_turn(run, t.h) : 0.0;
         if (turn > shortest(run) && run->turned < MOST_TURNS) {
@@ -196,12 +190,24 @@ int fu_step_towards(fu_run *run, double target)
             ++run->turned;
             return fu_let_happen(run, t.event);
         }
-        if (!t.event.kind) return take_step(run, &t);
+        if (!t.event.kind) {
+            const double dip = dips < MOST_DIPS ? fu_time_of_dip(run, t.h) : 0.0;
+            if (!(dip > shortest(run))) return take_step(run, &t);
+            ++dips;
+            t.want = dip;
+            continue;
+        }
         if (!end_on_event(run, &t)) {
             if (t.want < shortest(run)) return FU_NO_CONVERGENCE;
             continue;
         }
         if (t.changes && !is_accurate_without_jump(run, &t)) continue;
+        const double dip = dips < MOST_DIPS ? fu_time_of_dip(run, t.h) : 0.0; /* of others than the one that has the event */
+        if (dip > shortest(run)) {
+            ++dips;
+            t.want = dip;
+            continue;
+        }
         accept(run, t.h, t.event);
         const int status = t.event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, t.h);
         return status ? status : fu_let_happen(run, t.event);
