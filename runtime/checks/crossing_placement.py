@@ -84,7 +84,7 @@ def _check_start(scene: SceneData, part: Crossing, start: Start, radius: float) 
     if overlap > 2 * radius + EXACT * size:
         raise SceneError(part.where, f"the lines are on the other side of each other as drawn, {abs(gap):.6g} m apart",
                          "draw them on their side, or give the opposite side")
-    if overlap > EXACT * size:
+    if overlap > EXACT * size and np.linalg.norm(start.d) < radius:  # else one is beyond an end of the other
         message = (f"{part.where}: the lines overlap by {overlap:.6g} m as drawn, where the contact force is "
                    f"{part.stiffness * overlap**part.exponent:.4g} N; draw them apart, or start with "
                    'initial="equilibrium"')

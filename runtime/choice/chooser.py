@@ -237,7 +237,8 @@ class Chooser(Generic[S]):
 
     def _is_stiff(self, cable: Cable, probe: Probe[S]) -> bool:
         """Return whether a cable moves as a rigid body does, but for a part of the tolerance."""
-        if probe.run is None or any(slide.along == cable.name for slide in self.scene.slides.values()):
+        touched = {name for crossing in self.scene.crossings.values() for name in (crossing.a, crossing.b)}
+        if probe.run is None or cable.name in touched.union(slide.along for slide in self.scene.slides.values()):
             return False
         return deformation(probe.scene.cables[cable.name], probe.run) < self.wanted * largest_change(
             motion(probe.scene, probe.run))

@@ -65,12 +65,12 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
             "lost_rider": f"{where} does not find its point on the cable any more",
             "not_finite": f"{where} diverges",
             "self_locking": _self_locking(model, coupling, where),
-            "parallel": f"{where} finds no closest points: the lines are parallel where they are near each other, or "
-                        "one of them winds around the other"}[cause]
+            "not_known": f"{where} does not know any more whether it acts"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
-    if cause == "parallel":
-        return f"no contact force is known at {when}: {what}; {KEPT}. Keep them at an angle: a crossing has one point"
+    if cause == "not_known":
+        return (f"no force is known at {when}: {what}; {KEPT}. A crossing has no closest points where its lines are "
+                "parallel near each other, or wind around each other: keep them at an angle")
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif cause == "self_locking" and _is_force(model, coupling):

@@ -79,6 +79,8 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     const double stored = coupling->type->energy(run->model, coupling, &run->now);
     run->now.numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND] = *touches ? stored : 0.0;
     *touches = !*touches;
+    /* a bar that comes in from beyond an end may overlap already: what that stores comes from outside */
+    if (*touches) run->external += coupling->type->energy(run->model, coupling, &run->now);
     *what = *touches ? "came into contact" : "lost contact";
     return FU_RUNNING;
 }

@@ -244,7 +244,7 @@ int fu_has_lost_a_watch(fu_run *run)
 {
     for (int k = 0; k < run->n_watches; ++k) {
         if (run->watches[k].kind != FU_WATCH_COUPLING || !isnan(run->watched[k])) continue;
-        return fu_fail(run, FU_PARALLEL, run->now.v, run->watches[k].index);
+        return fu_fail(run, FU_NOT_KNOWN, run->now.v, run->watches[k].index);
     }
     return 0;
 }

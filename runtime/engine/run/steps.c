@@ -186,6 +186,7 @@ static int is_cut_at_dip(fu_run *run, trial *t)
 static int take_step(fu_run *run, const trial *t)
 {
     accept(run, t->h, t->event);
+    if (fu_has_lost_a_watch(run)) return FU_NO_CONVERGENCE;
     run->turned = 0;
     run->statistics.error_sum += t->error;
     run->last_error = t->error;
@@ -205,12 +206,6 @@ int fu_step_towards(fu_run *run, double target)
     for (;;) {
         if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
         if (!attempt(run, &t)) continue;
-        const double dip = dips < MOST_DIPS ? fu_time_of_dip(run, t.h) : 0.0;
-        if (dip > shortest(run)) {
-            ++dips;
-            t.want = dip;
-            continue;
-        }
         find_event(run, &t);
         const double turn = run->keep_pieces ? fu_time_of_turn(run, t.h) : 0.0;
         if (turn > shortest(run) && run->turned < MOST_TURNS) {
