@@ -306,6 +306,14 @@ cdef class Engine(Report):
             return None
         return self._own("joint", left, 6)
 
+    def contact_densities(self, int contact, int points, q, v):
+        """(points, 3): what a surface presses on the points of a contact with, N/m or N, at a state; friction as in statics."""
+        cdef double[:, ::1] out = np.zeros((points, 3))
+        self.set_state(0.0, q=q)
+        self._view(&self.run.next, "v")[:] = v
+        fu_contact_densities(&self.model, self.couplings[<int>self._of("contact")[contact]], &self.run.next, &out[0, 0])
+        return np.asarray(out)
+
     def static_outputs(self, str kind):
         """(couplings of a kind, numbers of one): what couplings tell of themselves in the static state, of kinds that need no
         accelerations for that.

@@ -238,4 +238,8 @@ CEILINGS = {
     "planar_resistance": {"force": 207},
     "drag": {"along_cable": 370, "on_point": 31},
     "planar_drag": {"along_cable": 201, "on_point": 20},
+    "surface": {"flat": 5, "rounded": 61, "terrain": 116, "push": 12, "push_hertz": 29, "pressing": 90, "sticking": 155,
+                "sliding": 360},
+    "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "pressing": 40,
+                       "sticking": 75, "sliding": 170},
 }

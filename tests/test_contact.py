@@ -1,6 +1,6 @@
 """Surfaces and contact with them by penalty: closed forms, derivatives, energy balance, refusals."""
 
-from math import asinh, atan, cos, exp, log, pi, sin, sqrt
+from math import asinh, atan, cos, exp, hypot, log, pi, sin, sqrt
 
 import funicular as fu
 import numpy as np
@@ -117,7 +117,7 @@ def capstan(heavy, mu, elements=40):
     points += [(to, -y, 0) for y in np.linspace(0, heavy, 12)[1:]]
     scene.cable("rope", points=points, elements=elements, element="cable8p", law="engineering_exact", rest="straight",
                 section=fu.Circle(radius=ROPE_RADIUS),
-                material=fu.Material(youngs_modulus=3e5, poisson_ratio=0, density=1000, damping_time=0.02))
+                material=fu.Material(youngs_modulus=3e5, poisson_ratio=0, density=1000, damping_time=0.1))
     scene.surface("drum", fu.Cylinder(radius=DRUM, length=0.1))
     scene.contact("rope", "drum", stiffness=3e4, friction=mu, damping=10)
     return scene
@@ -125,16 +125,15 @@ def capstan(heavy, mu, elements=40):
 
 @pytest.mark.parametrize(("mu", "limit"), [(0.1, 0.22929), (0.3, 0.48507)])
 def test_a_rope_holds_on_a_drum_up_to_the_capstans_limit(mu, limit):
-    """It holds 5 % below the limit, and slides 2 % above it; what stretches slides, so that it is not exact."""
+    """It holds 4 % below the limit, and slides 2 % above it; the rope's stretch slides, so that it is not exact."""
     assert abs(heaviest(mu) - limit) < 1e-5
-    slips = []
-    for part in (0.95, 1.02):
-        stuck = capstan(part * heaviest(mu), 100.0).equilibrium()
-        run = capstan(part * heaviest(mu), mu).run(0.4, output_step=0.1, tol=1e-4, integrator="genalpha", initial=stuck)
-        slips.append(run["rope.position"][-2:, 0, 1] - stuck["rope.position"][0, 1])
-    (before, after), (sliding, slid) = slips
-    assert abs(after - before) < 2e-5 and abs(after) < 1.5e-3
-    assert slid - sliding > 1e-3
+    ends = []
+    for part in (0.96, 1.02):
+        run = capstan(part * heaviest(mu), mu).run(0.5, output_step=0.05, tol=1e-4, integrator="genalpha")
+        ends.append(run["rope.position"][:, 0, 1] + LIGHT)
+    held, slid = ends
+    assert held.max() <= 0 and abs(held[-1] - held[-3]) < 3e-5
+    assert slid[-1] > 0.01 and slid[-1] - slid[-2] > 1e-3
 
 
 def ball(damping=0.0, exponent=1.0, stiffness=1e4, gravity=(0, 0, 0), height=0.2, speed=1.0, friction=0.0):
@@ -287,7 +286,8 @@ def test_a_cable_thrown_on_hills_keeps_the_energy_balance(integrator):
 def test_a_scene_in_another_plane_touches_alike():
     here = cloth("cable8p").run(0.15, output_step=0.05, tol=1e-6, integrator="radau")
     there = fu.Scene()
-    there.cable("wire", start=(3, 0.1, 0), end=(3, 0.15, 1), elements=8, element="cable8p", velocity=(0, 0, 1.0), **ROPE)
+    there.cable("wire", start=(3, 0.1, 0), end=(3, 0.15, 1), elements=8, element="cable8p", velocity=(0, 0, 1.0),
+                **ROPE)
     table = SHAPES["terrain"]
     there.surface("hills", fu.HeightField(x=table.x, heights=table.heights, along=(0, 0, 1)))
     there.contact("wire", "hills", stiffness=2e4, damping=0.5, friction=0.3)
@@ -316,7 +316,7 @@ def wire(scene):
 
 REFUSED = {
     "too deep": (lambda s: (wire(s), s.surface("bed", fu.Plane()), s.contact("wire", "bed")),
-                 r'contact "contact_1": "wire" starts 0.01 m below the surface "bed", at \(0, 0, 0\) m; draw it higher'),
+                 r'"contact_1": "wire" starts 0.01 m below the surface "bed", at \(0, 0, 0\) m; draw it higher'),
     "no surface": (lambda s: (wire(s), s.contact("wire", "bed")), 'there is no surface "bed"; add one before'),
     "nothing": (lambda s: (s.surface("bed", fu.Plane()), s.contact("rope", "bed")),
                 'there is no cable or body "rope"'),
@@ -331,7 +331,8 @@ REFUSED = {
                          s.contact("bed", "wire")), '"wire" and "bed" have the contact "contact_1" already'),
     "exponent": (lambda s: s.contact("wire", "bed", exponent=2), "exponent must be 1 or 1.5, got 2"),
     "tangential": (lambda s: (wire(s), s.surface("bed", fu.Plane((0, -1, 0))),
-                              s.contact("wire", "bed", exponent=1.5, friction=0.1)), "tangential_stiffness is missing"),
+                              s.contact("wire", "bed", exponent=1.5, friction=0.1)),
+                   "tangential_stiffness is missing"),
     "points": (lambda s: (wire(s), s.surface("bed", fu.Plane((0, -1, 0))),
                           s.contact("wire", "bed", points=[(0, 0, 0)])), "takes no points"),
     "table": (lambda s: s.surface("bed", fu.HeightField(x=(0, 1), heights=(0, 1, 2))), "must be of equal length"),
@@ -360,3 +361,70 @@ def test_scene_files_say_the_same(tmp_path):
     (tmp_path / "hills.toml").write_text(scene.to_toml(), encoding="utf-8")
     again = fu.load_scene(tmp_path / "hills.toml")
     assert again.surfaces == scene.surfaces and again.contacts == scene.contacts
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("with_cable", [False, True])
+def test_no_contact_within_a_step_is_missed(integrator, with_cable):
+    """Something flies past a drum, which it grazes for a hundredth of its way: steps of free flight are longer."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    if with_cable:
+        scene.cable("A", start=(-1, 0.1099, -0.1), end=(-1, 0.1099, 0.1), elements=2, velocity=(1, 0, 0), **ROPE)
+    else:
+        scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(-1, 0.1099, 0), velocity=(1, 0, 0))
+    scene.surface("s", fu.Cylinder(radius=0.1, length=1.0))
+    scene.contact("A", "s", stiffness=1e3, radius=0.01)
+    run = scene.run(2.0, output_step=1.0, tol=1e-3, integrator=integrator)
+    assert [event["what"] for event in run.report["events"]] == ["came into contact", "lost contact"]
+    assert abs(run.report["events"][0]["time"] - (1 - sqrt(0.11**2 - 0.1099**2))) < 1e-6
+
+
+def test_section_forces_hold_what_the_bed_presses():
+    state = mooring(60).equilibrium()
+    found = state.section_forces("line", [4.0, 10.0, 29.0])
+    exact = [H, H, hypot(H, 13 * W)]
+    assert np.abs(np.array(found["tension"]) - exact).max() < 2e-2
+    rubbing = mooring(60, friction=0.3).equilibrium()
+    along = np.array([2.5, 6.5, 10.5])
+    found = rubbing.section_forces("line", along)
+    assert np.abs(np.array(found["tension"]) - (H - 0.3 * W * (L - LIFTED - along))).max() < 0.3 * W * 0.2
+
+
+def test_section_forces_of_a_run_with_friction_are_refused():
+    run = cloth().run(0.02, output_step=0.01, tol=1e-3)
+    with pytest.raises(fu.SceneError, match='"contact_1": has friction, which results do not tell along "wire"'):
+        run.section_forces("wire", 0.5)
+
+
+@pytest.mark.parametrize("name", ["mooring", "rope_over_drum"])
+def test_installed_scenes(name):
+    scene = fu.load_scene(name)
+    run = scene.run(0.1, progress=False, **{
+        key: value for key, value in scene.run_settings.items() if key != "duration"})
+    contact = next(iter(scene.contacts))
+    assert run[f"{contact}.touching"][-1] > 0.1 and run[f"{contact}.force"][-1, 1] > 0
+    shapes = {body.name for body in run.animation("it").clips[0].bodies}
+    assert shapes == set(scene.surfaces)
+
+
+def test_all_shapes_are_drawn():
+    for name, shape in SHAPES.items():
+        scene = fu.Scene()
+        scene.cable("wire", start=(0, 0.5, 0), end=(1, 0.5, 0), elements=2, **ROPE)
+        scene.rigid_body("B", mass=1, inertia=(1, 2, 3), position=(0, 0, 0))
+        scene.surface("here", shape)
+        scene.surface("there", shape, on="B")
+        bodies = scene.run(0.01, output_step=0.01).animation("it").clips[0].bodies
+        assert [body.name for body in bodies] == ["B", "here", "there"], name
+
+
+def test_a_deep_penetration_and_a_surface_that_nothing_touches_are_noted():
+    with pytest.warns(fu.FunicularWarning, match=r'"contact_1" is up to .* m below its surface, .* % of the radius'):
+        ball(stiffness=1e3).run(0.3, output_step=0.01)
+    scene = ball()
+    scene.surface("wall", fu.Plane(point=(5, 0, 0), normal=(-1, 0, 0)))
+    run = scene.run(0.01, output_step=0.01)
+    assert any('surface "wall" has no contact: nothing can touch it' in message for message in run.report["messages"])
+    soft = mooring(15, stiffness=5e3)
+    with pytest.warns(fu.FunicularWarning, match="below its surface"):
+        assert any("below its surface" in message for message in soft.equilibrium().messages)

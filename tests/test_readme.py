@@ -81,6 +81,10 @@ def towed_line(space):
     assert forces == pytest.approx([0, weight, 0], rel=1e-6, abs=1e-6 * weight)
 
 
+def moored_line(space):
+    assert 10 < space["moored"]["lying.last"] < 40 and space["moored"].stable
+
+
 def middle_of_an_element(space):
     assert space["r"] == pytest.approx([0.25, 0, 0])
 
@@ -139,6 +143,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "Scenes"): first_scene,
               ("runtime/README.md", "Cables and beams"): unequal_elements,
               ("runtime/README.md", "Wind and water"): towed_line,
+              ("runtime/README.md", "Surfaces and contact"): moored_line,
               ("runtime/README.md", "Joints and springs"): trolley,
               ("runtime/README.md", "Running a scene"): named_quantities,
               ("runtime/README.md", "Events"): events,

@@ -13,7 +13,8 @@ LEAD = ("Formulas are printed from the specs and programs that make the kernels,
         "Equation numbers are those of the paper: J.-H. Seo, I.-H. Jung, T.-W. Park, H. Sugiyama, A. A. Shabana, The "
         "Development of a Sliding Joint for Very Flexible Multibody Dynamics, 2005 (in Korean).")
 MAIN = {"element": "beam24", "law": "beam24_continuum", "slide": "slide_beam24_rigid", "body": "rigid",
-        "modal": "modal", "frame": "frame", "point_law": "spring", "resistance": "resistance", "drag": "drag"}
+        "modal": "modal", "frame": "frame", "point_law": "spring", "resistance": "resistance", "drag": "drag",
+        "surface": "surface"}
 """What the theory is printed for: the element and the rider of the paper."""
 
 
@@ -39,12 +40,13 @@ def theory() -> Document:
     composer.add("couplings/slide", MAIN)
     composer.add("couplings/resistance", MAIN)
     composer.add("couplings/drag", MAIN)
+    composer.add("couplings/surface", MAIN)
     return composer.document
 
 
 CHAPTERS = {"element": "elements/elements", "slide": "couplings/slide", "body": "bodies/rigid", "modal": "bodies/modal",
             "joint": "couplings/joint_kind", "frame": "couplings/frame", "point_law": "couplings/point_law",
-            "resistance": "couplings/resistance", "drag": "couplings/drag"}
+            "resistance": "couplings/resistance", "drag": "couplings/drag", "surface": "couplings/surface"}
 
 
 def chapter_of(family: Family) -> str:

@@ -350,8 +350,18 @@ def drag_scope(name: str) -> Scope:
                                     *(Symbol(s, "c_point", entry(k)) for k, s in enumerate(("c_{p}", "w_{p}")))))
 
 
+def surface_scope(name: str) -> Scope:
+    """Return the scope of surfaces and contact with them."""
+    vectors = [Symbol(rf"\mathbf{{{letter}}}", argument, column)
+               for letter, argument in (("y", "y"), ("m", "normal"), ("a", "axis"), ("n", "n"), ("x", "x"))]
+    numbers = [Symbol(letter, argument, number) for letter, argument in (
+        ("R", "radius"), ("d", "depth"), ("v", "depth_rate"), ("k_{t}", "k_t"), (r"\mu", "mu"))]
+    return Scope(families()[name], (*vectors, *numbers, Symbol("k", "law", entry(0)), Symbol("c", "law", entry(1)),
+                                    Symbol("p", "press", entry(0))))
+
+
 def scope(role: str, name: str) -> Scope:
     """Return the scope of a family, by its role."""
     return {"element": element_scope, "law": law_scope, "slide": slide_scope, "body": body_scope,
             "modal": modal_scope, "frame": frame_scope, "joint": joint_scope, "point_law": point_law_scope,
-            "resistance": resistance_scope, "drag": drag_scope}[role](name)
+            "resistance": resistance_scope, "drag": drag_scope, "surface": surface_scope}[role](name)

@@ -1,4 +1,4 @@
-"""Numbers that are allowed but look like another unit, in words: notes of a run, never a refusal."""
+"""Numbers that look like another unit, and surfaces without contact, in words: notes of a run, never a refusal."""
 
 from __future__ import annotations
 
@@ -21,8 +21,14 @@ GRAVITY = 300.0
 
 
 def implausible(scene: SceneData) -> list[str]:
-    """Return a note for each number of a scene that looks like one in other units than SI."""
-    return [*_gravity(scene), *_materials(scene)]
+    """Return a note for each number of a scene that looks like one in other units than SI, and for idle surfaces."""
+    return [*_gravity(scene), *_materials(scene), *_surfaces(scene)]
+
+
+def _surfaces(scene: SceneData) -> Iterator[str]:
+    touched = {contact.b for contact in scene.contacts.values()}
+    yield from (f"{surface.where} has no contact: nothing can touch it; add scene.contact(..., \"{name}\")"
+                for name, surface in scene.surfaces.items() if name not in touched)
 
 
 def _gravity(scene: SceneData) -> Iterator[str]:

@@ -55,6 +55,8 @@ class _Border:
         self.slides: list[int] = []
         for coupling in model.couplings:
             self._coupling(coupling)
+        for contact in model.contacts if system == NEWTON else []:
+            self._contact(contact)
 
     def _nodes(self) -> None:
         """Add what cables have in the border: a group of the unknowns that the same elements share."""
@@ -108,8 +110,6 @@ class _Border:
         newton = self.system == NEWTON
         first, count = ((coupling.unknown, coupling.n_coordinates + coupling.n_forces) if newton
                         else (coupling.multiplier, coupling.n_multipliers))
-        if isinstance(coupling, ContactModel) and newton:
-            self._contact(coupling)
         if not count:
             return
         ends = [coupling.rider] if isinstance(coupling, SlideModel) else getattr(coupling, "attachments", [])

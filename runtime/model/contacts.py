@@ -134,7 +134,7 @@ def _arc_lengths(mesh: Mesh, x: np.ndarray) -> np.ndarray:
 
 
 def _hull(on_axis: Any, length: float) -> np.ndarray:
-    """Return (points, vectors): factors of an element's vectors that give Bézier points, between which its axis lies."""
+    """Return (points, vectors): what makes Bézier points of an element's vectors, between which its axis lies."""
     for degree in DEGREES:
         at = np.linspace(0, 1, 2 * degree)
         order = np.arange(degree + 1)

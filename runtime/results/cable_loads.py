@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..engine import Engine
+from ..errors import SceneError
 from ..kernels.libraries import kernels_of
 from ..kernels.mesh import Mesh
 from ..model.attachments import CARRIED, UP, AttachmentModel
@@ -26,7 +28,8 @@ if TYPE_CHECKING:
 class Instants:
     """A scene at T instants: q (T, n_q), v (T, n_dof) of the cables, nil of bodies, and quantities of its parts.
 
-    value(name): a result by name, (T, ...); load, weight: how much of the loads and of gravity is on.
+    value(name): a result by name, (T, ...); load, weight: how much of the loads and of gravity is on; is_rest: whether
+    it is a state of rest.
     """
 
     time: np.ndarray
@@ -35,6 +38,7 @@ class Instants:
     value: Callable[[str], np.ndarray]
     load: float = 1.0
     weight: float = 1.0
+    is_rest: bool = False
 
 
 @dataclass
@@ -106,6 +110,7 @@ class CableLoads:
         self.number = {name: k for k, name in enumerate(names)}
         self._loads()
         self._drags()
+        self._contacts()
         self._slides()
         self._joints()
         self._point_forces()
@@ -182,6 +187,29 @@ class CableLoads:
                 places = length / 2 * (1 + np.array(GAUSS[0]))
                 self.spreads.setdefault(drag.cable, []).append(
                     Spread(element, 0.0, length, places, density[:, element], f))
+
+    def _contacts(self) -> None:
+        """Add what surfaces press on cables with. Raises SceneError where results do not tell it."""
+        on_cables = [k for k, contact in enumerate(self.model.contacts) if contact.cable >= 0]
+        engine = Engine(self.model) if on_cables else None
+        for number in on_cables:
+            contact = self.model.contacts[number]
+            assert engine is not None
+            if contact.on[0].body >= 0 or (contact.friction and not self.at.is_rest):
+                why = "has friction, which results do not tell along" if contact.friction else "moves with a body along"
+                raise SceneError(f'contact "{contact.name}"', f'{why} "{self.model.cables[contact.cable].name}"',
+                                 'take method="constitutive", which follows from the strains')
+            cable = self.model.cables[contact.cable]
+            shape = (self.times, cable.n_elements, contact.n_points, 3)
+            density = np.array([engine.contact_densities(number, shape[1] * shape[2], q, v)
+                                for q, v in zip(self.at.q, self.at.v, strict=True)]).reshape(shape)
+            for element in range(cable.n_elements):
+                k, length = 0 if cable.mesh.is_even else element, cable.mesh.length(element)
+                first = element * contact.n_points
+                x = contact.arc[first : first + contact.n_points] - cable.mesh.start(element)
+                f = np.einsum("g,gk,tgd->tkd", contact.weights[k], contact.N[k], density[:, element, :, : self.dim])
+                self.spreads.setdefault(contact.cable, []).append(
+                    Spread(element, 0.0, length, x, density[:, element], f))
 
     def _slides(self) -> None:
         """Add riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""

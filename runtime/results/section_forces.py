@@ -147,7 +147,7 @@ def rest_instants(state: RestState) -> Instants:
     """Return a state of rest as one instant, with as much of the loads as it has."""
     return Instants(np.zeros(1), state.static_state["q"][None], np.zeros((1, state.model.n_dof)),
                     lambda quantity: state.model.as_in_model(quantity, state[quantity][None]), state.load_fraction,
-                    state.gravity_fraction)
+                    state.gravity_fraction, is_rest=True)
 
 
 def jumps(scene: SceneData, name: str) -> np.ndarray:

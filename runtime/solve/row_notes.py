@@ -10,6 +10,7 @@ from ..model.model import Model
 from ..parts.scene_data import SceneData
 from .fast_turns import FastTurns
 from .meeting_points import MeetingPoints
+from .penetrations import Penetrations
 from .reduced_strain import ReducedStrain
 from .sensitivity import Sensitivity
 from .straight_struts import StraightStruts
@@ -35,7 +36,7 @@ class RowNotes:
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
             "sensitivity": self.sensitivity, "meeting points": MeetingPoints(scene, model),
-            "fast turns": FastTurns(model, step)}
+            "fast turns": FastTurns(model, step), "penetrations": Penetrations(scene, model)}
 
     def see(self, rows: dict[str, np.ndarray]) -> None:
         """Take further rows of the engine, by name, time first."""

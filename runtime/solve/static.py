@@ -16,6 +16,7 @@ from ..errors import EquilibriumError, FunicularWarning
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from .path_following import Critical, Point, follow
+from .penetrations import penetrations
 from .rest_state import CriticalPoint, RestState
 from .stability import stability
 from .stable_search import find_rest
@@ -69,6 +70,7 @@ def note(problem: StaticProblem, state: RestState) -> None:
         problem.messages.append(f"the state is {state.stability}{leaves}")
     LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
              state.iterations, state.residual)
+    problem.messages += penetrations(problem.scene, problem.model, state.contact_outputs)
     state.messages = problem.messages + implausible(problem.scene)
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=4)

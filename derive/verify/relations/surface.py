@@ -1,4 +1,4 @@
-"""What the kernels of surfaces and contact are derivatives of: distances, a stored energy, forces along a curved normal."""
+"""What the kernels of surfaces and contact are derivatives of: distances, stored energy, forces along a normal."""
 
 from __future__ import annotations
 

@@ -171,6 +171,21 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
     if (contact->cable >= 0) take_into_length(&sum, contact->length, sum.depth); /* to its end */
 }
 
+/* Makes the force on each point, N/m or N, in their order: out (points x 3). */
+void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+{
+    const fu_contact *contact = of(coupling);
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e)
+        for (int k = 0; k < contact->n_points; ++k, out += 3) {
+            fu_touch_point point;
+            fu_contact_place(model, contact, state, e, k, &point);
+            const int touches = fu_contact_touches(model, contact, &on, &point);
+            for (int d = 0; d < 3; ++d) out[d] = touches && d < model->dim ? point.f[d] : 0.0;
+        }
+}
+
 /* Returns how deep the deepest point is, m; negative off the surface, where elements that are farther than others do not count. */
 static double deepest(const fu_model *model, const fu_contact *contact, const fu_state *state)
 {
@@ -229,5 +244,67 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
+/* Returns after which part of a step the gap is least by the cubic that has the gaps and their rates at both ends, if that is below the
+ * surface; else 0. */
+static double part_to_dip(double gap, double rate, double gap_next, double rate_next, double h)
+{
+    const double a = h * rate, b = h * rate_next;
+    const double cubic = 2.0 * (gap - gap_next) + a + b, square = 3.0 * (gap_next - gap) - 2.0 * a - b;
+    const double root = square * square - 3.0 * cubic * a;
+    if (!(a < 0.0 && b > 0.0) || !(root >= 0.0)) return 0.0;
+    const double part = -a / (square + sqrt(root)); /* where the slope a + 2 square x + 3 cubic x^2 rises through zero */
+    if (!(part > 0.0 && part < 1.0)) return 0.0;
+    return gap + part * (a + part * (square + part * cubic)) < 0.0 ? part : 0.0;
+}
+
+/* Makes the gap of a point, and its rate. */
+static double gap_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+                     int number, double *rate)
+{
+    fu_touch_point point;
+    double w[3];
+    fu_contact_place(model, contact, state, element, number, &point);
+    fu_surface_distance(model->dim, &contact->surface, on, point.r, &point.distance);
+    fu_surface_velocity(model->dim, on, point.r, w);
+    for (int d = 0; d < model->dim; ++d) w[d] = point.v[d] - w[d];
+    *rate = fu_dot(model->dim, point.distance.n, w);
+    return point.distance.g - contact->radius;
+}
+
+/* Returns how far a point that is near may have moved over a step, m. */
+static double reach_of(const fu_model *model, const fu_contact *contact, const fu_state *state, double h)
+{
+    double fastest = 0.0;
+    if (contact->cable < 0) return 0.0;
+    const fu_cable *cable = &model->cables[contact->cable];
+    const int n = cable->coordinates + (cable->n_elements - 1) * cable->per_node;
+    for (int i = cable->first; i < cable->first + n; i += cable->per_node)
+        fastest = fmax(fastest, sqrt(fu_dot(model->dim, state->v + i, state->v + i)));
+    return h * fastest;
+}
+
+static double time_of_dip(const fu_run *run, const fu_coupling *coupling, double h)
+{
+    const fu_model *model = run->model;
+    const fu_contact *contact = of(coupling);
+    double first = 0.0;
+    fu_attachment_state on, on_next;
+    if (run->now.flags[coupling->flags]) return 0.0;
+    const double reach = reach_of(model, contact, &run->next, h);
+    fu_surface_at(model, &contact->surface, &run->now, &on);
+    fu_surface_at(model, &contact->surface, &run->next, &on_next);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on_next, &run->next, e, reach)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            double rate, rate_next;
+            const double gap = gap_of(model, contact, &on, &run->now, e, k, &rate);
+            const double gap_next = gap_of(model, contact, &on_next, &run->next, e, k, &rate_next);
+            const double part = gap > 0.0 && gap_next > 0.0 ? part_to_dip(gap, rate, gap_next, rate_next, h) : 0.0;
+            if (part > 0.0 && (first == 0.0 || part < first)) first = part;
+        }
+    }
+    return first * h;
+}
+
 const fu_coupling_events fu_contact_events = {
-    .watches = watches, .watched = watched, .sign = sign, .act = act, .can_act = can_act, .begin = begin};
+    .watches = watches, .watched = watched, .sign = sign, .act = act, .can_act = can_act, .begin = begin, .time_of_dip = time_of_dip};

@@ -76,6 +76,7 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
 double fu_contact_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work);
 double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
+void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state);
 void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 

@@ -39,6 +39,10 @@ struct fu_coupling_events {
      * what has happened, and is null where nothing has. */
     int (*act)(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what);
 
+    /* Returns how long after `now` a watched number may have been beyond zero within a step of h that it ends before zero, as it began,
+     * by what is known at both ends; 0 where it was not. Null: it never is. */
+    double (*time_of_dip)(const fu_run *run, const fu_coupling *coupling, double h);
+
     /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);
     int (*begin)(fu_run *run, const fu_coupling *coupling);

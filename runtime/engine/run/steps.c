@@ -7,6 +7,7 @@
 #define ACCEPTED 2.0          /* of what is allowed: a step with a larger error is rejected */
 #define DIVISIONS 8           /* rejections of a fixed step that each step taken makes up for: so often it may be divided */
 #define MOST_TURNS 2          /* of a coupling on one boundary before a step is taken all the same: it rests there */
+#define MOST_DIPS 4           /* shorter steps after a contact that may be within one, before that is taken all the same */
 #define PASSED_BY 0.5         /* of the step that was wanted: what is wanted after one whose event was not found */
 
 /* Takes the step just made: `next` becomes `now`. */
@@ -171,6 +172,7 @@ int fu_step_towards(fu_run *run, double target)
 {
     const fu_event late = fu_late_event(run);
     trial t = {.want = is_adaptive(run) ? run->h : run->fixed_step};
+    int dips = 0;
     if (late.kind) return fu_let_happen(run, late);
     run->keep_pieces = must_keep_pieces(run);
     for (;;) {
@@ -187,7 +189,13 @@ int fu_step_towards(fu_run *run, double target)
             ++run->turned;
             return fu_let_happen(run, t.event);
         }
-        if (!t.event.kind) return take_step(run, &t);
+        if (!t.event.kind) {
+            const double dip = dips < MOST_DIPS ? fu_time_of_dip(run, t.h) : 0.0;
+            if (!(dip > shortest(run))) return take_step(run, &t);
+            ++dips;
+            t.want = dip;
+            continue;
+        }
         if (!end_on_event(run, &t)) {
             if (t.want < shortest(run)) return FU_NO_CONVERGENCE;
             continue;

@@ -21,6 +21,7 @@ from .frames import Frames, no_forces
 from .marks import marks, segments
 from .recorded import Recorded
 from .references import references
+from .surfaces import surface_shape
 
 FRAMES = 600
 """Of a run, at most."""
@@ -175,6 +176,14 @@ def scene_size(frames: Frames) -> float:
     return float(np.linalg.norm(np.ptp(np.concatenate(points), axis=0))) or 1.0 if points else 1.0
 
 
+def _centre(frames: Frames) -> np.ndarray:
+    """Return (3,): the mean place in m of cables and bodies in the first frame."""
+    points = [frames.value(f"{name}.nodal_vectors")[0, :, cable.kind_of_element.nodal_vectors.index("r")]
+              for name, cable in frames.scene.cables.items()]
+    points += [frames.value(f"{name}.position")[:1] for name in frames.scene.bodies]
+    return np.concatenate(points).mean(axis=0) if points else np.zeros(3)
+
+
 def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
     """Return what the frames show; what could not be had is said in notes."""
     size, refs = scene_size(frames), references(frames)
@@ -188,6 +197,7 @@ def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
             cables.append(line)
         else:
             points += _cloud(frames, name)
+    bodies += [surface_shape(frames, name, _centre(frames), size) for name in frames.scene.surfaces]
     return Clip(label, frames.time, tuple(cables), tuple(bodies), (*marks(frames, refs, size), *points),
                 tuple(segments(frames, refs, size)))
 

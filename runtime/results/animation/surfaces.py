@@ -1,0 +1,72 @@
+"""Surfaces that cables and bodies touch, in a picture: a piece of a plane or of hills, and what is round."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...parts.solids import Sphere
+from ...parts.surface import Surface
+from ...parts.surface_shapes import Geometry
+from ...view.animation import BodyShape
+from .frames import Frames, one_or_all
+
+PIECES = 12
+"""Of a plane to each side, and points of a half circle."""
+
+
+def surface_shape(frames: Frames, name: str, centre: np.ndarray, size: float) -> BodyShape:
+    """Return a surface of the scene as a body that stands still, or moves with the one that it is on.
+
+    centre (3,), size: of the scene, in m; what has no end is drawn that far about it.
+    """
+    surface = frames.scene.surfaces[name]
+    shape, times = surface.geometry, len(frames.time)
+    if surface.on is None:
+        origin = centre - shape.distance(centre) * shape.direction if shape.word == "flat" else shape.origin
+        position = np.broadcast_to(origin, (times, 3))
+        orientation = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (times, 4))
+        drawn = _drawn(surface, shape, size, np.zeros(3))
+    else:
+        position, orientation = (frames.value(f"{surface.on}.{what}") for what in ("position", "orientation"))
+        drawn = _drawn(surface, shape, size, shape.origin)
+    return BodyShape(name, position, orientation, drawn, one_or_all(position))
+
+
+def _drawn(surface: Surface, shape: Geometry, size: float, offset: np.ndarray) -> dict[str, object]:
+    """Return the shape as pictures take it."""
+    if isinstance(surface.shape, Sphere):
+        return {"kind": "sphere", "radius": shape.radius, "offset": offset.tolist()}
+    if shape.word in ("round", "capsule"):
+        length = getattr(surface.shape, "length", 0.0) + (2 * shape.radius if shape.word == "capsule" else 0.0)
+        return {"kind": "cylinder", "radius": shape.radius, "length": length, "axis": shape.direction.tolist(),
+                "offset": offset.tolist()}
+    vertices, triangles = _plane(shape, size) if shape.word == "flat" else _hills(shape, size)
+    return {"kind": "mesh", "vertices": vertices, "triangles": triangles, "offset": offset.tolist()}
+
+
+def _plane(shape: Geometry, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a square piece of a plane about its origin."""
+    normal = shape.direction
+    along = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+    along /= np.linalg.norm(along)
+    u = np.linspace(-size, size, 2 * PIECES + 1)
+    return _mesh(u[:, None, None] * along + u[None, :, None] * np.cross(along, normal))
+
+
+def _hills(shape: Geometry, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a height field between the ends of its table, from side to side as wide as the scene without a table."""
+    assert shape.first is not None
+    x = np.linspace(shape.first[0], shape.first[-1], 4 * PIECES + 1)
+    across = (np.linspace(-size / 4, size / 4, 3) if shape.second is None else
+              np.linspace(shape.second[0], shape.second[-1], 4 * PIECES + 1))
+    heights = shape.heights(x[:, None], across[None, :])[0]
+    points = np.stack(np.broadcast_arrays(x[:, None], heights, across[None, :]), axis=-1)
+    return _mesh(points @ shape.axes.T)
+
+
+def _mesh(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the vertices and triangles of a grid of points (n, m, 3), to be seen from both sides."""
+    n, m = points.shape[:2]
+    k = (np.arange(n - 1)[:, None] * m + np.arange(m - 1)).ravel()
+    one = np.concatenate([np.stack([k, k + 1, k + m], axis=1), np.stack([k + 1, k + m + 1, k + m], axis=1)])
+    return points.reshape(-1, 3), np.concatenate([one, one[:, ::-1]])
