@@ -64,6 +64,7 @@ def test_a_rod_that_falls_on_another_rests_on_it(height):
     assert of_lower.shape == of_upper.shape == (9, 4, 3)
 
 
+@pytest.mark.filterwarnings("ignore:motion on")  # whose rate jumps
 def test_rods_side_by_side_are_refused_where_they_touch():
     fixed, falling = held(ALONG_X, youngs_modulus=1e8), held(ALONG_X, height=0.02)
     assert side_by_side(fixed, falling)
@@ -74,6 +75,7 @@ def test_rods_side_by_side_are_refused_where_they_touch():
         moved(Scenario(fixed, driven, duration=0.2, frequency=10.0), 3, 9, Choices())
 
 
+@pytest.mark.filterwarnings("ignore:motion on")  # whose rate jumps
 def test_rods_that_start_apart_and_side_by_side_are_warned_of():
     lowered = motion((0.0, 0.2), displacement=((0.0, 0.0, 0.0), (0.0, 0.0, -0.2)))
     driven = Rod(raised(ALONG_X, 0.1), start="clamped", start_motion=lowered, radius=0.005)
