@@ -30,7 +30,7 @@ static void velocity_past(int dim, const fu_attachment_state *on, const fu_touch
 /* Makes the place of a point from its anchor, along the ground's axes. */
 static void from_anchor(int dim, const fu_attachment_state *on, const fu_touch_point *point, double *x)
 {
-    double own[3];
+    double own[3] = {0.0};
     for (int d = 0; d < dim; ++d) own[d] = point->distance.y[d] - point->anchor[d];
     fu_surface_out(dim, on, own, x);
 }
@@ -125,7 +125,7 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
 {
     const int dim = model->dim;
     const double from = fmax(now->depth, 0.0), to = fmax(next->depth, 0.0), sunk = next->depth - now->depth;
-    double middle[3], change[3], n[3], square = 0.0, rest;
+    double middle[3] = {0.0}, change[3], n[3], square = 0.0, rest;
     fu_distance at;
     memset(f, 0, sizeof(double[3]));
     memset(by_next, 0, sizeof(double[9]));

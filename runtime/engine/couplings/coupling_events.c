@@ -48,16 +48,3 @@ int fu_begin_couplings(fu_run *run)
     }
     return FU_RUNNING;
 }
-
-/* Returns how long after `now` the first watched number may have been beyond zero within a step, and back before its end, s; 0 where none
- * was. */
-double fu_time_of_dip(const fu_run *run, double h)
-{
-    double first = 0.0;
-    for (int k = 0; k < run->model->n_couplings; ++k) {
-        const fu_coupling *c = run->model->couplings[k];
-        const double time = c->type->events && c->type->events->time_of_dip ? c->type->events->time_of_dip(run, c, h) : 0.0;
-        if (time > 0.0 && (first == 0.0 || time < first)) first = time;
-    }
-    return first;
-}

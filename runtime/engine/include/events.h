@@ -42,7 +42,6 @@ double fu_time_of_dip(const fu_run *run, double h);
 int fu_coupling_watches(const fu_model *model, fu_watch *out);
 /* Whether couplings can change by themselves; how they do at the start, a status; what follows from velocities that have
  * jumped; what follows where `now` stands at an end of a path, and where a coupling's watch has passed zero. */
-double fu_time_of_dip(const fu_run *run, double h);
 int fu_couplings_can_act(const fu_model *model);
 int fu_begin_couplings(fu_run *run);
 void fu_couplings_take_velocities(fu_run *run);
