@@ -396,7 +396,7 @@ def test_section_forces_of_a_run_with_friction_are_refused():
         run.section_forces("wire", 0.5)
 
 
-@pytest.mark.parametrize("name", ["mooring", "rope_over_drum"])
+@pytest.mark.parametrize("name", ["mooring_on_bed", "rope_over_drum"])
 def test_installed_scenes(name):
     scene = fu.load_scene(name)
     run = scene.run(0.1, progress=False, **{
