@@ -13,6 +13,7 @@ from .bodies import body_gravity, body_models, body_weights, configuration_of, d
 from .border import ACCELERATIONS, NEWTON, elimination
 from .cables import cable_gravity, cable_model, cable_rates, cable_weights
 from .coupling import number
+from .cutting import attached
 from .drags import drag_model
 from .joints import JointModel, frame_joint_model, joint_model
 from .loads import LoadBuilder
@@ -40,7 +41,7 @@ def build(scene: SceneData) -> Model:
              for model, vectors in zip(cables, nodal, strict=True)}
     attachments = AttachmentBuilder(scene, cables, bodies)
     loads = LoadBuilder(scene, attachments)
-    reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, _elements(nodes))
+    reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, _elements(nodes), attached(scene))
     for load in scene.loads.values():
         loads.load(load)
     slides = [slide_model(slide, scene, attachments, loads.signal) for slide in scene.slides.values()]

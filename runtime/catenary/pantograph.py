@@ -1,0 +1,89 @@
+"""A pantograph as a chain of masses over a base that the train moves."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import model_validator
+
+from ..parts.part import Part
+from ..parts.schemas import checked
+from ..parts.validation import not_negative, positive, shown, vector
+from ..scene import Scene
+
+APART = 0.5
+"""m: of the masses, one below the other, as they are drawn; their springs are free of force so."""
+
+TURNING = 1.0
+"""kg m²: moments of inertia of the masses, which do not turn."""
+
+
+def _each(unit: str, above: bool) -> Any:
+    """Return the check of a list of numbers, one at least, which are not negative, or above nil."""
+    def check(value: Any) -> tuple[float, ...]:
+        value = value.tolist() if isinstance(value, np.ndarray) else value
+        if not isinstance(value, list | tuple) or not value:
+            raise ValueError(f"must be a list of numbers, one at least, got {shown(value)}")
+        numbers = vector(value, unit, len(value))
+        for number in numbers:
+            if number < 0 or (above and number == 0):
+                raise ValueError(f"must {'be above nil' if above else 'not be negative'}, got {number:.9g} {unit}")
+        return numbers
+
+    return checked(check, {"type": "array", "items": {"type": "number"}})
+
+
+class Pantograph(Part):
+    """A chain of masses, from the collector down to the base, which the train moves.
+
+    masses in kg; stiffness in N/m and damping in N s/m: of the spring and the damper below each mass, the last of them
+    on the base. They are free of force where the collector meets the contact wire's height at its outer droppers; each
+    mass bears its weight. uplift in N: the static force on the lowest mass; aerodynamic in N s²/m²: times the square
+    of the speed, added to it. contact_stiffness in N/m, between wire and collector.
+    """
+
+    masses: Annotated[tuple[float, ...], _each("kg", above=True)]
+    stiffness: Annotated[tuple[float, ...], _each("N/m", above=False)]
+    damping: Annotated[tuple[float, ...], _each("N s/m", above=False)]
+    uplift: Annotated[float, not_negative("N")]
+    aerodynamic: Annotated[float, not_negative("N s²/m²")] = 0.0
+    contact_stiffness: Annotated[float, positive("N/m")] = 50e3
+
+    @model_validator(mode="after")
+    def _is_a_chain(self) -> Pantograph:
+        for name in ("stiffness", "damping"):
+            if len(getattr(self, name)) != len(self.masses):
+                raise ValueError(f"has {len(self.masses)} masses, but {len(getattr(self, name))} values of {name}",
+                                 "give one for each mass, of what is below it")
+        for k, (stiffness, damping) in enumerate(zip(self.stiffness, self.damping, strict=True)):
+            if not stiffness and not damping:
+                raise ValueError(f"has nothing below mass {k + 1}", "give it stiffness or damping")
+        return self
+
+    def lift(self, speed: float) -> float:
+        """Return the uplift force (N) at a speed (m/s), static and aerodynamic."""
+        return self.uplift + self.aerodynamic * speed**2
+
+
+def add_pantograph(scene: Scene, name: str, pantograph: Pantograph, at: float, speed: float, height: float = 0.0) -> str:
+    """Add a pantograph at x = `at` (m), moved along x at a speed (m/s), and return the name of its collector's body.
+
+    height: of the collector over y = 0, in m. Its bodies are name_1, the collector, to name_n, and name_base.
+    """
+    turning = (TURNING, TURNING, TURNING)
+    lowest = len(pantograph.masses) + 1
+    bodies = [f"{name}_{k}" for k in range(1, lowest)] + [f"{name}_base"]
+    for k, body in enumerate(bodies):
+        mass = 1.0 if k == lowest - 1 else pantograph.masses[k]
+        scene.rigid_body(body, mass=mass, inertia=turning, position=(at, height - k * APART, 0), velocity=(speed, 0, 0))
+    y = height - (lowest - 1) * APART
+    scene.joint("prismatic", (at, y, 0), bodies[-1], axis=(1, 0, 0), velocity=speed, name=f"{name}_drive")
+    gravity = -scene.gravity[1]
+    for k, body in enumerate(bodies[:-1]):
+        scene.joint("prismatic", bodies[-1], body, axis=(0, 1, 0), name=f"{name}_guide_{k + 1}")
+        lift = pantograph.lift(speed) if k == lowest - 2 else 0.0
+        scene.force(body, value=(0, pantograph.masses[k] * gravity + lift, 0), name=f"{name}_lift_{k + 1}")
+        scene.spring(body, bodies[k + 1], stiffness=pantograph.stiffness[k], damping=pantograph.damping[k],
+                     length=APART, name=f"{name}_spring_{k + 1}")
+    return bodies[0]
