@@ -228,6 +228,7 @@ class SceneMethods(SceneData):
         tension_only: bool = False,
         free_play: float = 0.0,
         table: ForceTable | dict[str, Numbers] | None = None,
+        ends_steps: bool = True,
         name: str | None = None,
     ) -> Spring:
         """Add a Spring, which see."""

@@ -34,6 +34,7 @@ def test_signatures():
     assert str(inspect.signature(fu.Scene.tie)) == "(self, cable, *, s, to, at, rotation='rigid', name=None)"
     assert str(inspect.signature(fu.Scene.spring)) == (
         "(self, a, b, *, stiffness=None, damping=0.0, length=None, tension_only=False, free_play=0.0, table=None, "
+        "ends_steps=True, "
         "name=None)")
 
 

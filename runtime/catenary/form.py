@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,8 +11,8 @@ import numpy as np
 from ..parts.material import Material
 from ..parts.section import GeneralSection
 from ..scene import Scene
-from .line import MODULUS, Line, Wire
-from .strings import at_rest
+from .line import Line
+from .wires import MODULUS, Wire
 
 if TYPE_CHECKING:
     from ..results.equilibrium import Equilibrium
@@ -45,7 +46,7 @@ def mesh(line: Line, longest: float) -> np.ndarray:
     """Return the places of the nodes of a span, from 0 to 1 of it: masts, droppers, and equal elements between."""
     ends = np.array([0.0, *line.droppers.at, line.span])
     pieces = [np.linspace(a, b, max(int(np.ceil((b - a) / longest - 1e-9)), 1) + 1)[:-1]
-              for a, b in zip(ends[:-1], ends[1:], strict=True)]
+              for a, b in pairwise(ends.tolist())]
     return np.append(np.concatenate(pieces), line.span) / line.span
 
 
@@ -67,7 +68,7 @@ def form(line: Line, longest: float = LONGEST) -> Form:
     tension, as the messenger does, which turns freely on its supports. longest: of an element, in m. Raises SceneError;
     EquilibriumError, where that is not to be had.
     """
-    droppers, strings = line.droppers, at_rest(line)
+    droppers, strings = line.droppers, line.strings
     scene = Scene(gravity=(0, -line.gravity, 0))
     place = mesh(line, longest)
     for name, wire, length, height in (("contact", line.contact, strings.contact_length, 0.0),

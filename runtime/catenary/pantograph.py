@@ -66,7 +66,8 @@ class Pantograph(Part):
         return self.uplift + self.aerodynamic * speed**2
 
 
-def add_pantograph(scene: Scene, name: str, pantograph: Pantograph, at: float, speed: float, height: float = 0.0) -> str:
+def add_pantograph(scene: Scene, name: str, pantograph: Pantograph, at: float, speed: float,
+                   height: float = 0.0) -> str:
     """Add a pantograph at x = `at` (m), moved along x at a speed (m/s), and return the name of its collector's body.
 
     height: of the collector over y = 0, in m. Its bodies are name_1, the collector, to name_n, and name_base.

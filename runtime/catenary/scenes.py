@@ -48,7 +48,8 @@ def _droppers(made: Scene, formed: Form) -> None:
             upper = place_on(place, x / line.span, formed.messenger_length)
             lower = place_on(place, x / line.span, formed.contact_length) + span * formed.contact_length
             made.spring((messenger, upper), ("contact", lower), name=f"dropper_{span + 1}_{k + 1}",
-                        stiffness=float(formed.stiffnesses[k]), length=float(formed.lengths[k]), tension_only=True)
+                        stiffness=float(formed.stiffnesses[k]), length=float(formed.lengths[k]), tension_only=True,
+                        ends_steps=False)
             hanging = droppers.messenger_clamp + droppers.mass * float(formed.lengths[k])
             for wire, s, mass in ((messenger, upper, hanging), ("contact", lower, droppers.contact_clamp)):
                 if mass:

@@ -31,7 +31,7 @@ def cut(numbering: Numbering, touches: Touches, at: np.ndarray) -> Numbering:
     """Return a numbering with the chains cut that have more than `MOST` attachments; at: elements, `attached`."""
     if len(at) <= MOST:
         return numbering
-    low, high = extents(touches, numbering.number, numbering.n_band)
+    low, _ = extents(touches, numbering.number, numbering.n_band)
     order = at[np.argsort(low[at], kind="stable")]
     chain = np.searchsorted(numbering.chains, low[order], "right") - 1
     border = np.zeros(len(numbering.number), dtype=bool)

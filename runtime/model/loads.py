@@ -77,7 +77,8 @@ class PointForceModel(CouplingModel):
 
     law: the name of its kernels; parameters: of the law, in the order in which the kernels take them, for one piece of
     it after the other. bounds (n_pieces - 1), in m: distances of the points at which a piece ends and the next begins.
-    senses (n_pieces): what each piece may do. compliance: in m/N, that of the stiffest piece.
+    senses (n_pieces): what each piece may do. compliance: in m/N, that of the stiffest piece. is_gone_over: whether no
+    step has to end where the force passes from piece to piece.
     """
 
     law: str
@@ -89,6 +90,7 @@ class PointForceModel(CouplingModel):
     bounds: tuple[float, ...] = ()
     senses: tuple[int, ...] = (PULLS_AND_PUSHES,)
     compliance: float = 0.0
+    is_gone_over: bool = False
 
 
 class LoadBuilder:
@@ -191,5 +193,5 @@ def _pieces(part: Spring, names: list[str]) -> dict[str, Any]:
               for piece in pieces]
     return {"parameters": tuple(float(of[name]) for of in values for name in names), "n_pieces": len(pieces),
             "bounds": tuple(part.length + piece.end for piece in pieces[:-1]),
-            "senses": tuple(piece.sense for piece in pieces),
+            "senses": tuple(piece.sense for piece in pieces), "is_gone_over": not part.ends_steps,
             "compliance": 1 / max((abs(piece.stiffness) for piece in pieces), default=1.0)}

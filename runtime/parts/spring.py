@@ -18,7 +18,8 @@ class Spring(PointForce):
     ground, in m; stiffness in N/m; damping in N s/m; length: where it is free of force, in m, that at the start if
     not given. tension_only: it has no force while it is shorter than its length, and its damper never pushes.
     free_play: in m, the range of distances about its length in which neither spring nor damper acts. table: tension
-    by extension beyond the length, in place of a stiffness.
+    by extension beyond the length, in place of a stiffness. ends_steps: steps end where it becomes slack or taut;
+    False, without damping alone: they go over these instants, which are noted at the ends of the steps.
     """
 
     kind: ClassVar[str] = "spring"
@@ -28,6 +29,7 @@ class Spring(PointForce):
     tension_only: Flag = False
     free_play: Annotated[float, not_negative("m")] = 0.0
     table: ForceTable | None = None
+    ends_steps: Flag = True
 
     @property
     def law(self) -> str:
@@ -72,6 +74,11 @@ class Spring(PointForce):
             needs = " with tension_only or free_play" * bool(self.tension_only or self.free_play)
             raise ValueError("has neither stiffness nor damping" if not needs else f"needs a stiffness{needs}",
                              "give one of them, or both" if not needs else "give a stiffness above nil")
+        if not self.ends_steps and not self.has_pieces:
+            raise ValueError("has ends_steps=False, but one law for all distances", "leave it out")
+        if not self.ends_steps and self.damping:
+            raise ValueError("has ends_steps=False and damping, whose force jumps where it becomes slack or taut",
+                             "leave one of them out")
         if self.table is not None:
             self.pieces()
         return self

@@ -3,6 +3,9 @@
  * Within a step the force follows the law of one piece, the flag of the state, so that each step is smooth. A piece that
  * pulls alone, or pushes alone, is left where its force, the damper's part of it included, turns round; it is entered where
  * the points are on it and its force has its sense. Steps end where the force passes from piece to piece.
+ *
+ * A force that is gone over follows the law of the piece that its points' distance is on, within a step too: no step has to
+ * end there. Over steps that conserve energy all forces keep to their pieces.
  */
 #include "engine.h"
 
@@ -45,10 +48,21 @@ int fu_piece_at(const fu_model *model, const fu_point_force *between, const fu_s
     return piece_at_distance(between, norm(between->dim, gap));
 }
 
+/* Returns the piece whose law the force follows at an instant. */
+int fu_piece_now(const fu_model *model, const fu_point_force *between, const fu_state *state)
+{
+    return between->is_gone_over ? fu_piece_at(model, between, state) : fu_force_piece(between, state);
+}
+
 /* In statics the force follows from the positions. */
 void fu_touch_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     state->flags[coupling->flags] = fu_piece_at(model, force_of(coupling), state);
+}
+
+void fu_carry_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    if (force_of(coupling)->is_gone_over) fu_touch_piece(model, coupling, state);
 }
 
 /* Returns how far the force of a piece is on the right side of nil, m; infinity where it may pull and push. */
@@ -122,6 +136,7 @@ static int watches(const fu_coupling *coupling, fu_watch *out)
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     (void)which;
+    if (force_of(coupling)->is_gone_over && !run->integrator->keeps_energy) return -1.0;
     return next_passage(run->model, force_of(coupling), state).margin;
 }
 
@@ -131,15 +146,37 @@ static int sign(const fu_model *model, const fu_coupling *coupling, const fu_sta
     return -1;
 }
 
+/* Puts the force on a piece, of which the run is told. */
+static void pass(const fu_coupling *coupling, fu_state *state, int piece)
+{
+    state->flags[coupling->flags] = state->flags[coupling->flags + 1] = piece;
+}
+
+/* Returns what a passage from one piece to another is called. */
+static const char *words(const fu_point_force *between, int before, int after)
+{
+    const int was_free = between->senses[before] == FU_HAS_NO_FORCE, is_free = between->senses[after] == FU_HAS_NO_FORCE;
+    return is_free ? "became slack" : !was_free ? "" : after > before ? "became taut" : "came into contact";
+}
+
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     const fu_point_force *between = force_of(coupling);
     const int before = fu_force_piece(between, &run->now), after = next_passage(run->model, between, &run->now).piece;
-    const int was_free = between->senses[before] == FU_HAS_NO_FORCE, is_free = between->senses[after] == FU_HAS_NO_FORCE;
     (void)which, (void)side;
-    run->now.flags[coupling->flags] = after;
-    *what = is_free ? "became slack" : !was_free ? "" : after > before ? "became taut" : "came into contact";
+    pass(coupling, &run->now, after);
+    *what = words(between, before, after);
     return FU_RUNNING;
+}
+
+static int announce(fu_run *run, const fu_coupling *coupling, const char **what)
+{
+    const fu_point_force *between = force_of(coupling);
+    const int *flags = run->now.flags + coupling->flags, before = flags[1], after = flags[0];
+    if (before == after) return 0;
+    pass(coupling, &run->now, after);
+    *what = words(between, before, after);
+    return 1;
 }
 
 static int can_act(const fu_coupling *coupling)
@@ -155,7 +192,7 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     if (between->n_pieces == 1) return FU_RUNNING;
     fu_touch_piece(run->model, coupling, now);
     const passage next = next_passage(run->model, between, now);
-    if (next.margin > 0.0) now->flags[coupling->flags] = next.piece;
+    pass(coupling, now, next.margin > 0.0 && !between->is_gone_over ? next.piece : fu_force_piece(between, now));
     return FU_RUNNING;
 }
 
@@ -164,6 +201,7 @@ const fu_coupling_events fu_point_force_events = {
     .watched = watched,
     .sign = sign,
     .act = act,
+    .announce = announce,
     .can_act = can_act,
     .begin = begin,
 };

@@ -39,7 +39,7 @@ static void force_at(const fu_model *model, const fu_coupling *coupling, const f
     const fu_point_force *between = (const fu_point_force *)coupling;
     double gap[3], rate[3];
     fu_gap(model, between, state->q, state->v, gap, rate);
-    force_of_piece(between, fu_force_piece(between, state), gap, rate, force);
+    force_of_piece(between, fu_piece_now(model, between, state), gap, rate, force);
 }
 
 /* Makes the force over a step; returns the power that it dissipates, W. */
@@ -178,7 +178,7 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    const int piece = fu_force_piece((const fu_point_force *)coupling, at->next);
+    const int piece = fu_piece_now(model, (const fu_point_force *)coupling, at->next);
     matrix(model, coupling, at->next, piece, at->next->forces + coupling->force, at->psi, at->weights, system);
 }
 
@@ -231,7 +231,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
                           const fu_accelerator *work)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    const int piece = fu_force_piece(between, state);
+    const int piece = fu_piece_now(model, between, state);
     double gap[3], rate[3], power;
     (void)work;
     if (!coupling->is_damped || between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
@@ -265,12 +265,13 @@ static const fu_field fields[] = {
     FU_FIELD(fu_point_force, bounds, FU_REALS, 0),
     FU_FIELD(fu_point_force, senses, FU_INTEGERS, 0),
     FU_FIELD(fu_point_force, compliance, FU_REAL, 0),
+    FU_FIELD(fu_point_force, is_gone_over, FU_INTEGER, 0),
     {0},
 };
 
 const fu_coupling_type fu_point_force_type = {
-    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .n_outputs = 3, .n_flags = 1,
-    .events = &fu_point_force_events, .touch = fu_touch_piece, .residual = residual, .tangent = tangent, .step_residual = step_residual,
+    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .n_outputs = 3, .n_flags = 2,
+    .events = &fu_point_force_events, .touch = fu_touch_piece, .carry = fu_carry_piece, .residual = residual, .tangent = tangent, .step_residual = step_residual,
     .step_tangent = step_tangent, .step_dissipation = step_dissipation, .force = own_force, .take_forces = take_forces,
     .outputs = outputs, .energy = energy, .dissipation = dissipation,
     .lost_in_step = lost_in_step};

@@ -12,6 +12,7 @@ int fu_stop_at_boundaries(const fu_model *model);
 double fu_time_to_boundary(const fu_run *run);
 double fu_time_of_turn(const fu_run *run, double h);
 void fu_choose_pieces(fu_run *run);
+int fu_follow_pieces(fu_run *run);
 int fu_count_changes(const fu_run *run);
 void fu_keep_pieces(fu_run *run);
 void fu_find_pieces(const fu_model *model, fu_state *state);

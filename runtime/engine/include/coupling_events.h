@@ -39,6 +39,10 @@ struct fu_coupling_events {
      * what has happened, and is null where nothing has. */
     int (*act)(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what);
 
+    /* Returns not zero where the coupling has changed within the steps up to here, in which no watch passed zero, and was not
+     * asked since; *what says in words what has happened. Null: it never changes so. */
+    int (*announce)(fu_run *run, const fu_coupling *coupling, const char **what);
+
     /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);
     int (*begin)(fu_run *run, const fu_coupling *coupling);

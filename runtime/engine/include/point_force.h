@@ -11,8 +11,8 @@ enum { FU_PUSHES_ALONE = -1, FU_PULLS_AND_PUSHES = 0, FU_PULLS_ALONE = 1, FU_HAS
 /* A force between the points of two attachments, by a law and its parameters.
  *
  * The parameters may differ by the distance of the points: n_pieces sets of them, one after the other, and the distances
- * `bounds` at which one piece ends and the next begins (couplings/force_pieces.c). The flag of a state is the piece whose
- * law the force follows. */
+ * `bounds` at which one piece ends and the next begins (couplings/force_pieces.c). The first flag of a state is the piece
+ * whose law the force follows, the second one the piece that the run has been told of. */
 typedef struct {
     fu_coupling base;
     const fu_point_law_kernels *law;
@@ -23,6 +23,7 @@ typedef struct {
     const double *bounds; /* (n_pieces - 1), m */
     const int *senses;    /* (n_pieces): what each piece may do */
     double compliance;    /* m/N: makes lengths of forces, to compare them */
+    int is_gone_over;     /* not zero where no step has to end as the force passes from piece to piece: it does not jump there */
 } fu_point_force;
 
 extern const fu_coupling_type fu_point_force_type;
@@ -38,8 +39,10 @@ void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_stat
 
 /* couplings/force_pieces.c */
 int fu_force_piece(const fu_point_force *between, const fu_state *state);
+int fu_piece_now(const fu_model *model, const fu_point_force *between, const fu_state *state);
 int fu_piece_at(const fu_model *model, const fu_point_force *between, const fu_state *state);
 const double *fu_piece_parameters(const fu_point_force *between, int piece);
 void fu_touch_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+void fu_carry_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
 #endif

@@ -108,6 +108,7 @@ int fu_start_scheme(fu_run *run, int project);
 
 /* run/happenings.c */
 int fu_let_happen(fu_run *run, fu_event event);
+int fu_announce(fu_run *run);
 
 /* run/knots.c */
 #define FU_AT_ONCE 1e-12 /* of the duration: instants that are no farther apart are one (model/knots.py) */

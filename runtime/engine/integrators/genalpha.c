@@ -152,6 +152,8 @@ static void predict(fu_run *run, double h)
 static void residual(fu_run *run, double h)
 {
     const fu_equations at = equations(run, h);
+    /* to rounding it takes many iterations with the stiffness of another piece */
+    if (!fu_carries_rest(run) && fu_follow_pieces(run)) run->factored = 0;
     fu_residual(run, &at);
     const workspace w = space(run);
     fu_carried_residual_add(&w.carried, run, at.weights.stiffness);

@@ -85,6 +85,20 @@ void fu_choose_pieces(fu_run *run)
     }
 }
 
+/* Takes into the flags of `next` which pieces the forces are on that are gone over; returns whether one has changed. */
+int fu_follow_pieces(fu_run *run)
+{
+    int changed = 0;
+    for (int k = 0; k < run->model->n_couplings; ++k) {
+        const fu_coupling *c = run->model->couplings[k];
+        if (!c->type->events || !c->type->events->announce) continue;
+        const int before = run->next.flags[c->flags];
+        c->type->carry(run->model, c, &run->next);
+        changed |= run->next.flags[c->flags] != before;
+    }
+    return changed;
+}
+
 /* Puts the couplings of a state on the pieces that hold their coordinates, but those that are on one of these, at its ends too. */
 void fu_find_pieces(const fu_model *model, fu_state *state)
 {

@@ -20,6 +20,21 @@ static int acted(fu_run *run, const fu_coupling *coupling, const char *what)
     return status ? status : FU_EVENT;
 }
 
+/* Tells of a coupling that has changed within the last steps, which went over it; returns FU_EVENT, FU_RUNNING where there is
+ * none. The scheme goes on as it is. */
+int fu_announce(fu_run *run)
+{
+    for (int k = 0; k < run->model->n_couplings; ++k) {
+        const fu_coupling *coupling = run->model->couplings[k];
+        const fu_coupling_events *events = coupling->type->events;
+        const char *what = 0;
+        if (!events || !events->announce || !events->announce(run, coupling, &what)) continue;
+        run->event = (fu_event){FU_ACTED, coupling->number, 0, what};
+        return FU_EVENT;
+    }
+    return FU_RUNNING;
+}
+
 /* Puts a coupling that stands on a boundary on the next piece, or lets it reach the end of its path; returns a status.
  * Accelerations and force jump with r_xx there: the scheme starts anew. Were they carried over, the short steps around a boundary would raise what the
  * constraints left in them by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. */

@@ -172,6 +172,7 @@ int fu_step_towards(fu_run *run, double target)
     const fu_event late = fu_late_event(run);
     trial t = {.want = is_adaptive(run) ? run->h : run->fixed_step};
     if (late.kind) return fu_let_happen(run, late);
+    if (fu_announce(run)) return FU_EVENT;
     run->keep_pieces = must_keep_pieces(run);
     for (;;) {
         if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
