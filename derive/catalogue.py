@@ -18,7 +18,7 @@ from .codegen.family import (
     PointLawFamily,
     SlideFamily,
 )
-from .couplings import drag, frame, joint, point_law, resistance, slide
+from .couplings import crossing, drag, frame, joint, point_law, resistance, slide
 from .couplings.point_laws import LAWS as POINT_LAWS
 from .elements import ELEMENTS
 from .elements import kernels as element_kernels
@@ -95,6 +95,11 @@ def _drag(dim: int) -> CouplingFamily:
                           ("couplings.drag",), role="drag", facts={"dim": dim}, dim=dim)
 
 
+def _crossing(dim: int) -> CouplingFamily:
+    return CouplingFamily(crossing.CROSSINGS[dim], f"lines that touch at their closest points in {_SPACE[dim]}",
+                          partial(crossing.build, dim), ("couplings.crossing",), role="crossing", facts={"dim": dim}, dim=dim)
+
+
 def _joint(dim: int, name: str) -> CouplingFamily:
     return CouplingFamily(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames",
                           partial(joint.build, dim, name), ("couplings.joint",), role="joint",
@@ -118,7 +123,7 @@ def of_element(element: Element) -> list[Family]:
 
 def families() -> dict[str, Family]:
     """Return every family by name: elements, laws, bodies, the slide of each element and rider, joints, resistances,
-    drag, forces between two points.
+    drag, crossings, forces between two points.
     """
     of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
     for element in ELEMENTS.values():
@@ -129,6 +134,7 @@ def families() -> dict[str, Family]:
              *(_modal(name, body) for name, body in modal.FRAMES.items()),
              *of_role["slide"],
              *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES), *map(_drag, drag.DRAGS),
+             *map(_crossing, crossing.CROSSINGS),
              *(family for name, law in POINT_LAWS.items() for family in of_point_law(name, law))]
     return {f.name: f for f in every}
 

@@ -85,6 +85,8 @@ SOURCES = (
     "planar_resistance.c",
     "drag.c",
     "planar_drag.c",
+    "crossing.c",
+    "planar_crossing.c",
     "spring.c",
     "planar_spring.c",
     "spring_piece.c",

@@ -1380,6 +1380,28 @@ void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *
 /* drag on a point, and its derivatives: w 2[m/s]; c_point 2[N s^2/m^2, m/s] -> f 2[N]; f_w 2x2[N s/m] */
 void planar_drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
 
+/* crossing: lines that touch at their closest points in space */
+/* a step of Newton's method to the closest points: d 3[m]; t 2x3[1]; k 2x3[1/m] -> step 2[m] */
+void crossing_closest(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
+/* penetration and contact force at closest points: d 3[m]; t 2x3[1]; u 3[m/s]; c 6[m, 1, N/m, N/m^1.5, s/m, m] -> n
+ * 3[1]; p 2[m, m/s]; N 1[N]; U 1[J]; P 1[W] */
+void crossing_contact(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *U, fu_real *P);
+/* contact force, and its derivatives with the closest points moving: d 3[m]; t 2x3[1]; k 2x3[1/m]; w 2x3[1/s]; u
+ * 3[m/s]; c 6[m, 1, N/m, N/m^1.5, s/m, m] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N]; F_u 3x3[N s/m]; s_d 2x3[1]; s_t
+ * 2x6[m] */
+void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
+
+/* planar_crossing: lines that touch at their closest points in the plane */
+/* a step of Newton's method to the closest points: d 2[m]; t 1x2[1]; k 1x2[1/m] -> step 1[m] */
+void planar_crossing_closest(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
+/* penetration and contact force at closest points: d 2[m]; t 1x2[1]; u 2[m/s]; c 6[m, 1, N/m, N/m^1.5, s/m, m] -> n
+ * 2[1]; p 2[m, m/s]; N 1[N]; U 1[J]; P 1[W] */
+void planar_crossing_contact(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *U, fu_real *P);
+/* contact force, and its derivatives with the closest points moving: d 2[m]; t 1x2[1]; k 1x2[1/m]; w 1x2[1/s]; u
+ * 2[m/s]; c 6[m, 1, N/m, N/m^1.5, s/m, m] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N]; F_u 2x2[N s/m]; s_d 1x2[1]; s_t
+ * 1x2[m] */
+void planar_crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
+
 /* spring: spring and damper between two points in space */
 /* stored energy: parameters 3[N/m, N s/m, m]; gap 3[m] -> U 1[J] */
 void spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
@@ -1589,6 +1611,15 @@ typedef struct {
     void (*on_point)(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
 } fu_drag_kernels;
 
+/* What the engine needs of a crossing. */
+typedef struct {
+    const char *name;
+    int dim;
+    void (*closest)(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
+    void (*contact)(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *U, fu_real *P);
+    void (*force)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
+} fu_crossing_kernels;
+
 /* What the engine needs of a point_law. */
 typedef struct {
     const char *name;
@@ -1621,6 +1652,8 @@ typedef struct {
     const fu_resistance_kernels *resistances;
     int n_drags;
     const fu_drag_kernels *drags;
+    int n_crossings;
+    const fu_crossing_kernels *crossings;
     int n_point_laws;
     const fu_point_law_kernels *point_laws;
 } fu_tables;
@@ -1647,6 +1680,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
     for (int i = 0; i < tables->n_drags && !strcmp(role, "drag"); ++i)
         if (!strcmp(tables->drags[i].name, name)) return &tables->drags[i];
+    for (int i = 0; i < tables->n_crossings && !strcmp(role, "crossing"); ++i)
+        if (!strcmp(tables->crossings[i].name, name)) return &tables->crossings[i];
     for (int i = 0; i < tables->n_point_laws && !strcmp(role, "point_law"); ++i)
         if (!strcmp(tables->point_laws[i].name, name)) return &tables->point_laws[i];
     return 0;

@@ -240,6 +240,11 @@ static const fu_drag_kernels drags[] = {
     {"planar_drag", 2, planar_drag_along_cable, planar_drag_on_point},
 };
 
+static const fu_crossing_kernels crossings[] = {
+    {"crossing", 3, crossing_closest, crossing_contact, crossing_force},
+    {"planar_crossing", 2, planar_crossing_closest, planar_crossing_contact, planar_crossing_force},
+};
+
 static const fu_point_law_kernels point_laws[] = {
     {"spring", 3, 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
     {"planar_spring", 2, 3, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
@@ -694,6 +699,12 @@ static const fu_point_law_kernels point_laws[] = {
     X(drag_on_point, a[0], a[1], out[0], out[1]) \
     X(planar_drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(planar_drag_on_point, a[0], a[1], out[0], out[1]) \
+    X(crossing_closest, a[0], a[1], a[2], out[0]) \
+    X(crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4]) \
+    X(crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(planar_crossing_closest, a[0], a[1], a[2], out[0]) \
+    X(planar_crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4]) \
+    X(planar_crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(spring_energy, a[0], a[1], out[0]) \
     X(spring_dissipation, a[0], a[1], a[2], out[0]) \
     X(spring_force, a[0], a[1], a[2], out[0]) \
@@ -744,5 +755,6 @@ const fu_tables fu_all = {
     20, joints,
     2, resistances,
     2, drags,
+    2, crossings,
     6, point_laws
 };

@@ -15,6 +15,7 @@ from .errors import (
 )
 from .many_scenes import run_many
 from .parts.cable import Cable
+from .parts.crossing import Crossing
 from .parts.drag import Drag
 from .parts.end_stops import Buffer, HardStop
 from .parts.event import Event
@@ -46,6 +47,7 @@ __all__ = [
     "Circle",
     "Clamp",
     "ConvergenceError",
+    "Crossing",
     "Cylinder",
     "DistributedForce",
     "Drag",

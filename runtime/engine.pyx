@@ -194,7 +194,7 @@ cdef class Engine(Report):
             shape = (rows, array.items) if array.axes == 2 else (rows,)
             fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
         output = self.arrays.pop("output")
-        for kind in ("slide", "joint", "point_force", "drag"):
+        for kind in ("slide", "joint", "point_force", "drag", "crossing"):
             self.arrays[kind] = self._outputs(kind, output)
         cdef int status = fu_start(run)
         if status:
@@ -305,6 +305,19 @@ cdef class Engine(Report):
         if fu_probe_mechanism(&self.run, &path[0], &left[0]):
             return None
         return self._own("joint", left, 6)
+
+    def static_outputs(self, str kind):
+        """(couplings of a kind, numbers of one): what couplings tell of themselves in the static state, of kinds that need no
+        accelerations for that.
+        """
+        numbers = self._of(kind)
+        out = np.zeros((len(numbers), fu_coupling_type_of(kind.encode()).n_outputs))
+        cdef double[:, ::1] view = out
+        cdef int k, number
+        for k, number in enumerate(numbers):
+            c = self.couplings[number]
+            fu_outputs_at_rest(&self.model, c, &self.run.next, &view[k, 0])
+        return out
 
     def joint_forces(self):
         """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import SceneError
 from ..parts.cable import Cable
+from ..parts.crossing import Crossing
 from ..parts.drag import Drag
 from ..parts.event import Event
 from ..parts.joint import Joint
@@ -20,6 +21,7 @@ from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.support import Support, Tie
 from ..parts.validation import show
+from .crossing_placement import placed_crossing
 from .drag_placement import placed_drag
 from .event_placement import placed_event
 from .joint_placement import placed_joint
@@ -60,7 +62,8 @@ def _lie_in_one_plane(cable: Cable, other: Cable) -> bool:
 
 _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
     Cable: placed_cable, Support: placed_support, Tie: placed_tie, Joint: placed_joint, Slide: placed_slide,
-    Load: placed_load, PointForce: placed_point_force, Event: placed_event, Drag: placed_drag}
+    Load: placed_load, PointForce: placed_point_force, Event: placed_event, Drag: placed_drag,
+    Crossing: placed_crossing}
 
 
 def check_of(part: Part) -> Callable[[SceneData, Any], Any]:

@@ -11,6 +11,7 @@ import numpy as np
 from ..kernels.libraries import kernels_of
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
+from .crossings import CrossingModel
 from .elimination import DENSE, BorderGraph, Elimination, dense
 from .joints import JointModel
 from .model import Model, SlideModel
@@ -116,6 +117,8 @@ class _Border:
         if isinstance(coupling, SlideModel):
             self.slides.append(own)
             places.append(self.cables[coupling.cable])
+        if isinstance(coupling, CrossingModel):
+            places += [self.cables[k] for k in coupling.cables if k >= 0]
         for place in places:
             self._touch({own}, place)
         if newton and isinstance(coupling, JointModel) and _ties_turns(coupling, self.model.dim):

@@ -13,6 +13,7 @@ from .bodies import body_gravity, body_models, body_weights, configuration_of, d
 from .border import ACCELERATIONS, NEWTON, elimination
 from .cables import cable_gravity, cable_model, cable_rates, cable_weights
 from .coupling import number
+from .crossings import crossing_model
 from .cutting import attached
 from .drags import drag_model
 from .joints import JointModel, frame_joint_model, joint_model
@@ -48,13 +49,14 @@ def build(scene: SceneData) -> Model:
     joints = _joints(scene, attachments, loads)
     point_forces = [loads.point_force(force) for force in scene.point_forces.values()]
     drags = [drag_model(drag, scene, attachments, loads) for drag in scene.drags.values()]
-    n_extra, n_multipliers = number([*loads.dead, *loads.turning, *slides, *joints, *point_forces, *drags])
+    crossings = [crossing_model(crossing, scene, attachments) for crossing in scene.crossings.values()]
+    n_extra, n_multipliers = number([*loads.dead, *loads.turning, *slides, *joints, *point_forces, *drags, *crossings])
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     model = Model(
         dim, cables, bodies, slides, joints, point_forces, loads.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
-        [*loads.dead, *loads.turning], drags,
+        [*loads.dead, *loads.turning], drags, crossings,
         q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
         v=_joined(cable_rates(scene, reduction), *(velocity_of(body, dim) for body in described)),
         weight=_joined(*map(cable_weights, drawn), *(body_weights(body, dim) for body in described)),

@@ -17,6 +17,7 @@ from ..parts.body_shape import Shape
 from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
+from .crossings import CrossingModel
 from .drags import DragModel
 from .elimination import Elimination
 from .joints import JointModel
@@ -181,6 +182,7 @@ class Model:
     motions: list[MotionModel]
     loads: list[DeadLoadModel | LoadModel]
     drags: list[DragModel]
+    crossings: list[CrossingModel]
     q: np.ndarray
     v: np.ndarray
     weight: np.ndarray
@@ -202,7 +204,7 @@ class Model:
     @property
     def couplings(self) -> list[CouplingModel]:
         """Return all couplings in the engine's order, which adds up what they give in it."""
-        return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags]
+        return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags, *self.crossings]
 
     def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return results of a part by quantity, in three dimensions, along the ground's axes."""
@@ -239,4 +241,5 @@ class Model:
                       | {joint.kernel for joint in self.joints}
                       | {slide.resistance for slide in self.slides if slide.resistance}
                       | {force.law for force in self.point_forces} | {drag.kernel for drag in self.drags}
+                      | {crossing.kernel for crossing in self.crossings}
                       | {body.modal_kernel for body in self.bodies if body.modes})

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ..parts.crossing import Crossing
 from ..parts.drag import Drag
 from ..parts.locations import ends_of, joined, node_of
 from ..parts.point_force import PointForce
@@ -151,13 +152,20 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))
 
 
+def crossing_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what results tell of a crossing, from the engine's numbers (time, 10) of it."""
+    return {"force": numbers[:, :3], "normal_force": numbers[:, 3], "penetration": numbers[:, 4], "s": numbers[:, 5],
+            "s_b": numbers[:, 6], "position": numbers[:, 7:]}
+
+
 def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: np.ndarray, joints: np.ndarray,
-                      point_forces: np.ndarray, drags: np.ndarray) -> dict[str, dict[str, dict[str, np.ndarray]]]:
+                      point_forces: np.ndarray, drags: np.ndarray,
+                      crossings: np.ndarray) -> dict[str, dict[str, dict[str, np.ndarray]]]:
     """Return forces and moments of supports, ties, joints and forces between points, by group, label and quantity.
 
     Of a slide it is the moment that keeps its rider's axes. All arguments have the time first: q (time, n_q), reaction
     (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3),
-    drags (time, drags, 3). They are along the ground's axes.
+    drags (time, drags, 3), crossings (time, crossings, 10). They are along the ground's axes.
     """
     def reactions(supports: Iterable[Support]) -> dict[str, dict[str, np.ndarray]]:
         return {support.label: support_reaction(model, scene, support, reaction, q) for support in supports}
@@ -173,6 +181,7 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
         PointForce.group: {force.name: point_force_state(model, force, point_forces[:, k], q)
                            for k, force in enumerate(model.point_forces)},
         Drag.group: {drag.name: {"force": drags[:, k]} for k, drag in enumerate(model.drags)},
+        Crossing.group: {crossing.name: crossing_state(crossings[:, k]) for k, crossing in enumerate(model.crossings)},
     }
     return found if model.plane_axes is None else {
         group: {label: model.results(label, values) for label, values in of.items()} for group, of in found.items()}

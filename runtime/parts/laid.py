@@ -14,6 +14,7 @@ from .attachment import Attachment
 from .cable import Cable
 from .combined_signal import combined
 from .curves import shape_through
+from .crossing import Crossing
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid
@@ -214,6 +215,15 @@ def _fluid(part: Fluid, axes: PlaneAxes, scene: SceneData) -> Fluid:
 @turned.register
 def _drag(part: Drag, axes: PlaneAxes, scene: SceneData) -> Drag:
     return part if part.at is None else part.model_copy(update={"at": _place(axes, part.on, part.at)})
+
+
+@turned.register
+def _crossing(part: Crossing, axes: PlaneAxes, scene: SceneData) -> Crossing:
+    changes: dict[str, Any] = {} if part.at is None else {"at": _place(axes, part.b, part.at)}
+    changes |= {} if part.side is None else {"side": _direction(axes, part.side)}
+    if part.axis is not None:
+        changes["axis"] = _direction(axes, part.axis) if part.b is None else _of_body(axes, part.b, part.axis)
+    return part.model_copy(update=changes)
 
 
 @turned.register

@@ -9,6 +9,7 @@ from typing import Any, Self
 from ..errors import SceneError, check_renamed
 from .attachment import Attachment
 from .cable import Cable
+from .crossing import Crossing
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid
@@ -50,6 +51,7 @@ class SceneData:
     point_forces: dict[str, PointForce]
     fluids: dict[str, Fluid]
     drags: dict[str, Drag]
+    crossings: dict[str, Crossing]
     events: dict[str, Event]
     plane_axes: PlaneAxes | None = None
     """Of a scene that `laid.laid` made in the axes of a plane: what turns its results into the ground's axes."""

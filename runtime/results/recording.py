@@ -69,7 +69,7 @@ def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
         if body.modes:
             modal[body.name] = model.results(body.name, modal_state(model, body, state, q, v))
     forces = connection_states(model, scene, q, rows["reaction"], rows["joint"], rows["point_force"],
-                               rows["drag"])
+                               rows["drag"], rows["crossing"])
     slides = {}
     for k, slide in enumerate(model.slides):
         own = {"s": rows["s"][:, k], **engine.slide_row(rows["slide"][:, k])}

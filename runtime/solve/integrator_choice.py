@@ -207,6 +207,9 @@ def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine
         if slide.friction is not None or (slide.at_start, slide.at_end) != ("error", "error"):
             raise SceneError(slide.where, f"{who} knows neither friction nor ends of cables",
                              _take_another("takes_friction_and_stops"))
+    for crossing in scene.crossings.values():
+        if integrator.needs_discrete_gradient:
+            raise SceneError(crossing.where, f"{who} has no discrete gradient of it", "take another integrator")
     if integrator.needs_discrete_gradient:
         _check_gradients(integrator, scene, model, engine)
 

@@ -36,7 +36,8 @@ def layout(scene: SceneData) -> dict[str, list]:
     """Return what must be the same in two scenes for a state of one to be a state of the other."""
     return {"cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes) for c in scene.cables.values()],
             "plane": [called(scene.plane)], "bodies": list(scene.bodies), "slides": list(scene.slides),
-            "joints": [(j.name, j.joint_kind) for j in scene.joints.values()], "point_forces": list(scene.point_forces)}
+            "joints": [(j.name, j.joint_kind) for j in scene.joints.values()], "point_forces": list(scene.point_forces),
+            "crossings": list(scene.crossings)}
 
 
 @dataclass
@@ -116,6 +117,7 @@ class RestState(NamedArrays):
     static_state: dict
     reaction: np.ndarray
     joint_forces: np.ndarray
+    crossings: np.ndarray
     load_fraction: float
     iterations: int
     residual: float
@@ -137,7 +139,7 @@ class RestState(NamedArrays):
         units = np.where(problem.weight > 0, problem.weight, np.inf)
         engine = problem.engine
         scene = problem.scene.as_drawn
-        state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
+        state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(), engine.static_outputs("crossing"),
                     problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
                     problem.fraction if problem.settings.scale_gravity else 1.0, heading)
         state.quantities = state._quantities()
@@ -240,6 +242,6 @@ class RestState(NamedArrays):
                       model.results(slide.name, {"force": self.static_state["force"][k]}).items()}
         forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
                                    self.static_state["point_force"][None],
-                                   self.load_fraction * drag_forces(self.model, q)[None])
+                                   self.load_fraction * drag_forces(self.model, q)[None], self.crossings[None])
         return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()
                         for name, value in values.items() if name != "residual"}

@@ -10,12 +10,13 @@ from typing import Any
 
 from ...codegen.family import Family
 from ..numbers import Numbers, State
-from . import body, drag, element, frame, joint, law, modal, point_law, resistance, slide
+from . import body, crossing, drag, element, frame, joint, law, modal, point_law, resistance, slide
 from .measures import Invariance
 
 OF_ROLE: dict[str, Callable[[Any, Numbers, State], Iterator[Invariance]]] = {
     "element": element.element, "law": law.law, "slide": slide.slide, "body": body.body, "modal": modal.modal,
     "frame": frame.frame, "joint": joint.joint, "resistance": resistance.resistance, "drag": drag.drag,
+    "crossing": crossing.crossing,
     "point_law": point_law.point_law}
 
 

@@ -7,11 +7,12 @@ from typing import Any
 
 from ...codegen.family import Family
 from ..methods import Relation
-from . import body, drag, element, frame, joint, law, modal, point_law, resistance, slide
+from . import body, crossing, drag, element, frame, joint, law, modal, point_law, resistance, slide
 
 OF_ROLE: dict[str, Callable[[Any], list[Relation]]] = {
     "element": element.element, "law": law.law, "slide": slide.slide, "body": body.body, "modal": modal.modal,
     "frame": frame.frame, "joint": joint.joint, "resistance": resistance.resistance, "drag": drag.drag,
+    "crossing": crossing.crossing,
     "point_law": point_law.point_law}
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...codegen.family import Family
 from ..numbers import Numbers, State
-from . import body, drag, element, frame, joint, law, modal, point_law, resistance, slide
+from . import body, crossing, drag, element, frame, joint, law, modal, point_law, resistance, slide
 
 SEEDS = (20050401, 20050705)  # days on which the paper was received and accepted
 
@@ -31,6 +31,7 @@ OF_ROLE = {
     "slide": Sampler(slide.sample, slide.at_rest), "body": Sampler(body.sample, body.at_rest),
     "modal": Sampler(modal.sample, modal.at_rest), "frame": Sampler(frame.sample), "joint": Sampler(joint.sample),
     "resistance": Sampler(resistance.sample), "drag": Sampler(drag.sample),
+    "crossing": Sampler(crossing.sample),
     "point_law": Sampler(point_law.sample)}
 
 

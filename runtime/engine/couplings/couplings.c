@@ -151,6 +151,12 @@ void fu_coupling_outputs(const fu_model *model, const fu_state *state, const dou
     }
 }
 
+/* Makes the row of output of a coupling that needs no accelerations for it. */
+void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+{
+    coupling->type->outputs(model, coupling, state, 0, 0, out);
+}
+
 void fu_gaps(const fu_model *model, const fu_state *state, double *gaps)
 {
     for (int k = 0; k < model->n_couplings; ++k) {

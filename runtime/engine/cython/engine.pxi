@@ -330,6 +330,7 @@ cdef extern from "engine.h" nogil:
     double fu_elastic_energy(const fu_model *model, const fu_state *state)
     void fu_reset(const fu_model *model, fu_state *state)
     void fu_find_pieces(const fu_model *model, fu_state *state)
+    void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
     void fu_touch(const fu_model *model, fu_state *state)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)

@@ -31,6 +31,7 @@ int fu_may_start_open(const fu_model *model, const fu_state *state);
 const fu_coupling *fu_follow(const fu_model *model, fu_state *state);
 void fu_reset(const fu_model *model, fu_state *state);
 void fu_carry(const fu_model *model, fu_state *state);
+void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 void fu_touch(const fu_model *model, fu_state *state);
 int fu_is_possible(const fu_model *model, const fu_state *state);
 

@@ -26,6 +26,7 @@
 #include "coupling.h"
 #include "coupling_events.h"
 #include "couplings.h"
+#include "crossings.h"
 #include "drags.h"
 #include "end_stops.h"
 #include "energy_balance.h"

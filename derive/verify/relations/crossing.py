@@ -1,0 +1,75 @@
+"""What the kernels of lines that touch are derivatives of: the force at closest points that are found anew."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...codegen.family import CouplingFamily
+from ..methods import Relation
+from ..numbers import Numbers, State
+from .paths import entry
+
+TRIALS = 12
+"""Steps of Newton's method to the closest points: the conditions hold nearly, and digits double."""
+
+
+def crossing(family: CouplingFamily) -> list[Relation]:
+    """Return the relations of force, energy and closest points.
+
+    The lines are parabolas with the given slopes and curvatures. Along a path they are moved, their closest points
+    are found anew by a matrix that is solved by numbers, and the force is that of the kernel there.
+    """
+    dim, lines = family.dim, family.dim - 1
+    signs = (1, -1)[:lines]
+
+    def along(s: State, x: list[Any]) -> State:
+        """Return the state at other points of the lines."""
+        t, k, w = s["t"], s["k"], s["w"]
+        d, u, slopes = s["d"], s["u"], []
+        for i, sign in enumerate(signs):
+            d = d + sign * (x[i] * t[i] + x[i] * x[i] / 2 * k[i])
+            u = u + sign * x[i] * w[i]
+            slopes.append(t[i] + x[i] * k[i])
+        return {**s, "d": d, "u": u, "t": np.array(slopes)}
+
+    def points(s: State) -> list[Any]:
+        """Return the closest points, by their arc-lengths from those of the state."""
+        x: list[Any] = [0 * s["d"][0]] * lines
+        for _ in range(TRIALS):
+            at = along(s, x)
+            d, t, k = at["d"], at["t"], at["k"]
+            h, a = t @ d, t[0].dot(t[0]) + k[0].dot(d)
+            if lines == 1:
+                x = [x[0] - h[0] / a]
+                continue
+            b, c, e = -t[0].dot(t[1]), t[1].dot(t[0]), -t[1].dot(t[1]) + k[1].dot(d)
+            determinant = a * e - b * c
+            x = [x[0] - (e * h[0] - b * h[1]) / determinant, x[1] - (a * h[1] - c * h[0]) / determinant]
+        return x
+
+    def moved(s: State, name: str, t: Any, j: int) -> State:
+        return {**s, name: s[name] + t * entry(name)(s, j)}
+
+    def force_by(name: str) -> Callable:
+        def path(k: Numbers, s: State, t: Any, j: int) -> Any:
+            at = moved(s, name, t, j)
+            return k("force", along(at, points(at)))["F"]
+        return path
+
+    def points_by(name: str) -> Callable:
+        return lambda k, s, t, j: np.array(points(moved(s, name, t, j)))
+
+    def energy(k: Numbers, s: State, t: Any, j: int) -> Any:
+        at = moved(s, "d", t, j)
+        return -k("contact", along(at, points(at)))["U"]
+
+    numbers = {"d": dim, "t": lines * dim}
+    return [*(Relation("force", f"F_{name}", f"dF by {name}, closest points found anew", 1, force_by(name), n)
+              for name, n in (*numbers.items(), ("u", dim))),
+            *(Relation("force", f"s_{name}", f"closest points by {name}, found anew", 1, points_by(name), n)
+              for name, n in numbers.items()),
+            Relation("force", "F", "-dU by d without damping", 1, energy, dim,
+                     of=lambda k, s: k("force", {**s, "u": 0 * s["u"]})["F"])]

@@ -1,0 +1,81 @@
+/* Lines of a crossing come into contact, and lose it: where the penetration passes zero, where damping would turn the force
+ * round, and where a closest point passes the end of its line.
+ */
+#include "engine.h"
+
+#include <math.h>
+
+static const fu_crossing *crossing_of(const fu_coupling *coupling)
+{
+    return (const fu_crossing *)coupling;
+}
+
+double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state)
+{
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    fu_find_closest(model, crossing, state, &points);
+    fu_crossing_contact_at(crossing, &points, &contact);
+    const double damping = crossing->law[FU_LAW_DAMPING];
+    double margin = points.found ? contact.depth[0] : NAN;
+    /* a length, that of a millisecond's motion */
+    if (damping > 0.0) margin = fmin(margin, (1.0 / damping + contact.depth[1]) * FU_INSTANT);
+    for (int line = 0; line < FU_LINES; ++line) {
+        margin = fmin(margin, points.s[line] - crossing->low[line]);
+        margin = fmin(margin, crossing->high[line] - points.s[line]);
+    }
+    return points.found ? margin : NAN;
+}
+
+static int watches(const fu_coupling *coupling, fu_watch *out)
+{
+    (void)coupling;
+    if (out) *out = (fu_watch){.which = 0, .direction = 1};
+    return 1;
+}
+
+/* The value is negative while contact stays as it is. */
+static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    const double margin = fu_crossing_margin(run->model, crossing_of(coupling), state);
+    (void)which;
+    return run->now.flags[coupling->flags] ? -margin : margin;
+}
+
+static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)model, (void)coupling, (void)state, (void)which;
+    return -1;
+}
+
+static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    int *touches = &run->now.flags[coupling->flags];
+    (void)which, (void)side;
+    const double stored = coupling->type->energy(run->model, coupling, &run->now);
+    run->now.numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND] = *touches ? stored : 0.0;
+    *touches = !*touches;
+    *what = *touches ? "came into contact" : "lost contact";
+    return FU_RUNNING;
+}
+
+static int can_act(const fu_coupling *coupling)
+{
+    (void)coupling;
+    return 1;
+}
+
+static int begin(fu_run *run, const fu_coupling *coupling)
+{
+    coupling->type->touch(run->model, coupling, &run->now);
+    return FU_RUNNING;
+}
+
+const fu_coupling_events fu_crossing_events = {
+    .watches = watches,
+    .watched = watched,
+    .sign = sign,
+    .act = act,
+    .can_act = can_act,
+    .begin = begin,
+};

@@ -1,0 +1,226 @@
+/* The closest points of the two lines of a crossing: found by Newton's method from where they were, over all elements of a cable.
+ *
+ * Beyond its ends a cable goes on straight, so that points have arc-lengths there, too, from which the way to the end is known.
+ */
+#include "engine.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MOST_ITERATIONS 40
+#define ROUNDING 1e-15 /* of the line's size and s: a correction that is rounding ends the iteration */
+#define CLOSE 1e-11    /* of the size: a correction as good as rounding where rounding keeps it from shrinking */
+#define FARTHEST 2.0   /* elements that a correction goes at most */
+#define SAMPLES 4      /* of an element, where the search begins anew */
+
+static double total_length(const fu_cable *cable)
+{
+    return cable->nodes ? cable->nodes[cable->n_elements] : cable->n_elements * cable->length;
+}
+
+/* Returns the element of a cable that holds s, and where that begins. */
+static int element_at(const fu_cable *cable, double s, double *start)
+{
+    int low = 0, high = cable->n_elements;
+    if (!cable->nodes) {
+        low = (int)fmin(fmax(s / cable->length, 0.0), cable->n_elements - 1.0);
+        *start = low * cable->length;
+        return low;
+    }
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (cable->nodes[middle] <= s) low = middle;
+        else high = middle;
+    }
+    *start = cable->nodes[low];
+    return low;
+}
+
+static void point_of_cable(const fu_cable *cable, const double *q, const double *v, double s, fu_line_point *out)
+{
+    const int dim = cable->kernel->dim, n = cable->coordinates / dim;
+    const double within = fmin(fmax(s, 0.0), total_length(cable)), beyond = s - within;
+    double start, every[9 * FU_MAX_COORDINATES];
+    out->element = element_at(cable, within, &start);
+    const double length = fu_element_length(cable, out->element);
+    const int first = cable->first + out->element * cable->per_node;
+    cable->kernel->on_axis(length, within - start, out->N, out->N_x);
+    cable->kernel->slopes(length, within - start, every);
+    for (int i = 0; i < n && beyond != 0.0; ++i) out->N[i] += beyond * out->N_x[i];
+    memset(out->r, 0, sizeof(double[15]));
+    for (int i = 0; i < n; ++i)
+        for (int d = 0; d < dim; ++d) {
+            const double at = q[first + i * dim + d], rate = v[first + i * dim + d];
+            /* from the first node: slopes do not see where that is, and no digits are lost far from the origin */
+            const double local = at - (i % cable->kernel->vectors == 0 ? q[first + d] : 0.0);
+            out->r[d] += out->N[i] * at;
+            out->t[d] += out->N_x[i] * local;
+            out->k[d] += beyond != 0.0 ? 0.0 : every[n + i] * local;
+            out->v[d] += out->N[i] * rate;
+            out->w[d] += out->N_x[i] * rate;
+        }
+}
+
+/* Makes the attachment of a bar at a point of it. */
+static fu_attachment on_bar(const fu_crossing *crossing, double s)
+{
+    fu_attachment on = crossing->attachments[0];
+    for (int d = 0; d < 3; ++d) on.u[d] += s * crossing->axis[d];
+    return on;
+}
+
+/* A bar is straight: its slope is the way to the point one metre on. */
+static void point_of_bar(const fu_model *model, const fu_crossing *crossing, const fu_state *state, double s, fu_line_point *out)
+{
+    fu_attachment_state at, next;
+    out->on = on_bar(crossing, s);
+    fu_attachment_at(model, &out->on, state, 0.0, FU_POINT, &at);
+    memset(out->r, 0, sizeof(double[15]));
+    for (int d = 0; d < model->dim; ++d) {
+        out->r[d] = at.p[d];
+        out->v[d] = at.v[d];
+    }
+    if (model->dim == 2) return;
+    const fu_attachment on = on_bar(crossing, s + 1.0);
+    fu_attachment_at(model, &on, state, 0.0, FU_POINT, &next);
+    for (int d = 0; d < model->dim; ++d) {
+        out->t[d] = next.p[d] - at.p[d];
+        out->w[d] = next.v[d] - at.v[d];
+    }
+}
+
+static void point_of_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state, double s,
+                          fu_line_point *out)
+{
+    if (crossing->cables[line] >= 0) point_of_cable(&model->cables[crossing->cables[line]], state->q, state->v, s, out);
+    else point_of_bar(model, crossing, state, s, out);
+}
+
+/* Makes both points at out->s as the kernels take them. */
+static void put_together(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
+{
+    const int dim = model->dim;
+    for (int line = 0; line < FU_LINES; ++line) {
+        fu_line_point *point = &out->line[line];
+        point_of_line(model, crossing, line, state, out->s[line], point);
+        if (line >= dim - 1) continue;
+        memcpy(out->t + line * dim, point->t, sizeof(double) * (size_t)dim);
+        memcpy(out->k + line * dim, point->k, sizeof(double) * (size_t)dim);
+        memcpy(out->w + line * dim, point->w, sizeof(double) * (size_t)dim);
+    }
+    for (int d = 0; d < dim; ++d) {
+        out->d[d] = out->line[0].r[d] - out->line[1].r[d];
+        out->u[d] = out->line[0].v[d] - out->line[1].v[d];
+    }
+}
+
+/* Returns the size of a line's pieces, m. */
+static double size_of(const fu_model *model, const fu_crossing *crossing, int line)
+{
+    const int cable = crossing->cables[line];
+    return cable >= 0 ? model->cables[cable].length : 0.5 * (crossing->high[line] - crossing->low[line]);
+}
+
+/* Finds the closest points by Newton's method from out->s; returns whether it has. `out` is there then. */
+static int converge(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
+{
+    const int lines = model->dim - 1;
+    double step[FU_LINES] = {0.0, 0.0}, size[FU_LINES] = {1.0, 1.0};
+    for (int line = 0; line < lines; ++line) size[line] = size_of(model, crossing, line);
+    for (int i = 0; i < MOST_ITERATIONS; ++i) {
+        double part = 1.0, left = 0.0;
+        put_together(model, crossing, state, out);
+        crossing->kernel->closest(out->d, out->t, out->k, step);
+        for (int line = 0; line < lines; ++line) part = fmin(part, FARTHEST * size[line] / fabs(step[line]));
+        for (int line = 0; line < lines; ++line) {
+            if (!(fabs(step[line]) < INFINITY)) return 0;
+            left = fmax(left, fabs(step[line]) / (size[line] + fabs(out->s[line])));
+        }
+        if (left <= ROUNDING || (i == MOST_ITERATIONS - 1 && left <= CLOSE)) return 1;
+        for (int line = 0; line < lines; ++line) out->s[line] += part * step[line];
+    }
+    return 0;
+}
+
+/* Returns the square of the distance of a point from the second line, and the arc-length there; a cable's by its samples. */
+static double distance_from_second(const fu_model *model, const fu_crossing *crossing, const fu_state *state, const double *r,
+                                   double *s)
+{
+    const int dim = model->dim, cable = crossing->cables[1], n = cable >= 0 ? SAMPLES * model->cables[cable].n_elements : 0;
+    double least = INFINITY;
+    fu_line_point point;
+    for (int i = 0; i <= n; ++i) {
+        double square = 0.0, along = 0.0, slope = 0.0, at = cable >= 0 ? i * total_length(&model->cables[cable]) / n : 0.0;
+        point_of_line(model, crossing, 1, state, at, &point);
+        for (int d = 0; d < dim; ++d) {
+            square += (r[d] - point.r[d]) * (r[d] - point.r[d]);
+            along += (r[d] - point.r[d]) * point.t[d];
+            slope += point.t[d] * point.t[d];
+        }
+        if (cable < 0 && dim == 3) {
+            at = fmin(fmax(along / slope, crossing->low[1]), crossing->high[1]);
+            square += at * (at * slope - 2.0 * along);
+        }
+        if (square >= least) continue;
+        least = square;
+        *s = at;
+    }
+    return least;
+}
+
+/* Begins the search anew: where samples of both lines are closest. */
+static void search(const fu_model *model, const fu_crossing *crossing, const fu_state *state, double s[FU_LINES])
+{
+    const fu_cable *cable = &model->cables[crossing->cables[0]];
+    const int n = SAMPLES * cable->n_elements;
+    double least = INFINITY, other = 0.0;
+    fu_line_point point;
+    for (int i = 0; i <= n; ++i) {
+        const double at = i * total_length(cable) / n;
+        point_of_cable(cable, state->q, state->v, at, &point);
+        const double square = distance_from_second(model, crossing, state, point.r, &other);
+        if (square >= least) continue;
+        least = square;
+        s[0] = at;
+        s[1] = other;
+    }
+}
+
+void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
+{
+    out->touches = state->flags[crossing->base.flags];
+    for (int line = 0; line < FU_LINES; ++line) out->s[line] = state->numbers[crossing->base.numbers + FU_CROSSING_S + line];
+    out->found = converge(model, crossing, state, out);
+    if (out->found) return;
+    search(model, crossing, state, out->s);
+    out->found = converge(model, crossing, state, out);
+}
+
+void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state,
+                      const fu_line_point *point, fu_line_moves *out)
+{
+    const int dim = model->dim;
+    if (crossing->cables[line] >= 0) {
+        const fu_cable *cable = &model->cables[crossing->cables[line]];
+        const int n = out->n = cable->coordinates;
+        memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
+        memset(out->T, 0, sizeof(double) * (size_t)(dim * n));
+        for (int i = 0; i < n; ++i) {
+            out->at[i] = cable->first + point->element * cable->per_node + i;
+            out->P[i % dim * n + i] = point->N[i / dim];
+            out->T[i % dim * n + i] = point->N_x[i / dim];
+        }
+        return;
+    }
+    fu_attachment_state at;
+    fu_attachment_at(model, &point->on, state, 0.0, FU_POINT, &at);
+    out->n = at.n;
+    memcpy(out->at, at.at, sizeof(int) * (size_t)at.n);
+    memcpy(out->P, at.P, sizeof(double) * (size_t)(dim * at.n));
+    memset(out->T, 0, sizeof(double) * (size_t)(dim * at.n));
+    if (dim == 2) return;
+    fu_attachment on = point->on;
+    for (int d = 0; d < 3; ++d) on.u[d] += crossing->axis[d];
+    fu_attachment_at(model, &on, state, 0.0, FU_POINT, &at);
+    for (int i = 0; i < dim * at.n; ++i) out->T[i] = at.P[i] - out->P[i];
+}

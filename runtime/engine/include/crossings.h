@@ -1,0 +1,69 @@
+/* Two lines that touch at their closest points, a cable and another one or a bar: couplings/crossings.c, crossing_points.c,
+ * crossing_events.c. */
+#ifndef FUNICULAR_CROSSINGS_H
+#define FUNICULAR_CROSSINGS_H
+
+#include "attachments.h"
+#include "coupling.h"
+
+enum { FU_LINES = 2, FU_CROSSING_LAW = 6, FU_LAW_DAMPING = 4 };
+#define FU_INSTANT 1e-3 /* s: makes lengths of velocities, to compare them */
+
+/* The first line is a cable, the second another one, or a bar through the attachment's point; in the plane the bar is square to
+ * it and has no axis. Numbers of a state: the arc-lengths of the closest points; the flag: whether the lines touch. */
+typedef struct {
+    fu_coupling base;
+    const fu_crossing_kernels *kernel;
+    int cables[FU_LINES];        /* the second -1 for a bar */
+    fu_attachment attachments[1];
+    double axis[3];              /* of the bar, in the axes of what carries it, of unit length */
+    double low[FU_LINES], high[FU_LINES]; /* where the lines end, m; infinite in the plane, for a bar */
+    double law[FU_CROSSING_LAW]; /* as the kernels take them */
+    double start[FU_LINES];      /* the arc-lengths as drawn, m */
+    double stiffness;            /* N/m: makes forces of lengths, to scale equations */
+} fu_crossing;
+extern const fu_coupling_type fu_crossing_type;
+extern const fu_coupling_events fu_crossing_events;
+
+/* Of the numbers of a state. */
+enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NUMBERS };
+
+/* A point of a line, and its derivatives by arc-length and in time. */
+typedef struct {
+    double r[3], t[3], k[3], v[3], w[3];
+    int element;                           /* of a cable */
+    double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES];
+    fu_attachment on;                      /* of a bar: its point */
+} fu_line_point;
+
+/* Both closest points, as the kernels take them; found: not zero where they are the closest. */
+typedef struct {
+    int found, touches;
+    double s[FU_LINES];
+    fu_line_point line[FU_LINES];
+    double d[3], u[3], t[6], k[6], w[6];
+} fu_closest_points;
+
+/* What kernel->contact tells. */
+typedef struct {
+    double normal[3], depth[2], force, energy, dissipated; /* depth: penetration and its rate */
+} fu_crossing_contact;
+
+/* Makes how a point moves with its n coordinates: dr = P dq, dt = T dq; the numbers of these for fu_add in `at`. */
+typedef struct {
+    int n, at[FU_ATTACHMENT_COORDINATES];
+    double P[3 * FU_ATTACHMENT_COORDINATES], T[3 * FU_ATTACHMENT_COORDINATES];
+} fu_line_moves;
+
+/* crossing_points.c */
+void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
+void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state,
+                      const fu_line_point *point, fu_line_moves *out);
+
+/* crossing_events.c: how far the lines are in contact, m, negative where they are not; not a number where none are the closest. */
+double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state);
+
+/* crossings.c */
+void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out);
+
+#endif

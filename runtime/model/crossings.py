@@ -1,0 +1,81 @@
+"""Lines that touch at their closest points, as the engine takes them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..parts.attachment import Attachment
+from ..parts.crossing import Crossing, radius_of
+from ..parts.crossing_start import start_of
+from ..parts.scene_data import SceneData
+from .attachments import AttachmentBuilder, AttachmentModel
+from .coupling import CouplingModel
+
+LEAST_PENETRATION = 1e-30
+"""m: what the size of a penetration is not below under a root."""
+
+KERNELS = {2: "planar_crossing", 3: "crossing"}
+
+
+@dataclass
+class CrossingModel(CouplingModel):
+    """Contact of a cable with another one, or with a bar at the one attachment.
+
+    cables: their numbers, -1 for a bar; axis: of the bar, in the axes of what carries it; low, high: where the lines
+    end, m; law: as the kernels take it; start: arc-lengths of the closest points as drawn, m; stiffness in N/m: makes
+    forces of lengths.
+    """
+
+    kernel: str
+    cables: tuple[int, int]
+    attachments: list[AttachmentModel]
+    axis: tuple[float, ...]
+    low: tuple[float, float]
+    high: tuple[float, float]
+    law: tuple[float, ...]
+    start: tuple[float, ...]
+    stiffness: float
+
+
+def crossing_model(part: Crossing, scene: SceneData, attachments: AttachmentBuilder) -> CrossingModel:
+    """Return the model of a crossing of the scene."""
+    dim, start = scene.dim, start_of(scene, part)
+    numbers = (attachments.cable_index[part.a], attachments.cable_index.get(part.b or "", -1))
+    of_lines = [attachments.cables[k] for k in numbers if k >= 0]
+    ends: list[AttachmentModel] = []
+    low, high = 0.0, 0.0
+    axis = (0.0, 0.0, 0.0)
+    if numbers[1] < 0:
+        ends = [attachments.model(Attachment(on=part.b, at=part.at))]
+        low, high = (-math.inf, math.inf) if part.length is None else (-part.length, part.length)
+        if part.axis is not None:
+            axis = tuple(np.array(part.axis) / np.linalg.norm(part.axis))
+    else:
+        high = of_lines[1].mesh.total
+    masses = [scene.cables[name].material.density * scene.cables[name].section.area * model.mesh.mean
+              for name, model in zip((part.a, part.b), of_lines, strict=False)]
+    radius = radii(scene, part)
+    linear = part.exponent == 1
+    law = (radius, sign_of(part, start.normal, start.d), part.stiffness * linear, part.stiffness * (not linear),
+           part.damping, LEAST_PENETRATION)
+    return CrossingModel(
+        kernel=KERNELS[dim], cables=numbers, attachments=ends, axis=axis, low=(0.0, low),
+        high=(of_lines[0].mesh.total, high), law=law, start=tuple(start.s),
+        stiffness=part.stiffness * (1.0 if linear else math.sqrt(max(radius, 1e-3))), type="crossing",
+        name=part.name or "", scale=[max(*masses, *(end.mass for end in ends), 0.0)] * (2 * dim - 1),
+        is_damped=part.damping > 0, follows_law=True)
+
+
+def radii(scene: SceneData, part: Crossing) -> float:
+    """Return the distance of the axes of both lines at which they touch, m. Raises ValueError."""
+    if part.radius is not None:
+        return part.radius
+    return sum(radius_of(scene.cables[name]) for name in (part.a, part.b) if name in scene.cables)
+
+
+def sign_of(part: Crossing, normal: np.ndarray, d: np.ndarray) -> float:
+    """Return the sign with which a normal leads from b to a: by the side that is given, or by the way d as drawn."""
+    return math.copysign(1.0, float(np.dot(d if part.side is None else part.side, normal)))

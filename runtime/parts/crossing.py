@@ -1,0 +1,80 @@
+"""Two lines that touch at their closest points: a cable and a bar, a cable and another cable."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar
+
+from pydantic import model_validator
+
+from .cable import Cable
+from .part import Part
+from .plane import across
+from .quantity import Quantity, of_time, vector_of_time
+from .section import Circle, Tube
+from .validation import Name, Reference, Vector, direction, not_negative, positive, xyz
+
+EXPONENTS = (1.0, 1.5)
+"""Of the penetration in the law of contact: a linear spring, and Hertz's law of round bodies."""
+
+
+class Crossing(Part):
+    """Contact of the cable a with a line b that crosses it, at the points where both are closest.
+
+    a: the cable; b: another cable, or the body or (None) the ground that carries a bar. at: of a bar its middle, in m,
+    in the body's axes; axis: its direction in these axes, length: how far it reaches to each side, in m. In a planar
+    scene the bar is square to the plane and has neither. Bar and cables are round: radius: in m, the distance of both
+    axes at which they touch, the sum of the radii of the cables' sections if not given, where a bar has none.
+    stiffness k (N/m, or N/m^1.5) and exponent e of the contact force ``k p^e`` at the penetration p: 1, or 1.5 after
+    Hertz; damping in s/m: the force is ``k p^e (1 + damping p')``. side: the direction in which a is of b, along the
+    ground's axes, as at the start if not given: the lines cannot pass through each other. Beyond the ends of cables and
+    bars there is no contact. A crossing has one point of contact; of several possible ones the one that is closest at
+    the start.
+    """
+
+    kind: ClassVar[str] = "crossing"
+    group: ClassVar[str] = "crossings"
+    positional: ClassVar[tuple[str, ...]] = ("a", "b")
+    results: ClassVar[dict[str, Quantity]] = {
+        "force": vector_of_time("N", "contact force on the cable a"),
+        "normal_force": of_time("N", "size of the contact force"),
+        "penetration": of_time("m", "penetration of both lines, negative where they are apart"),
+        "s": of_time("m", "arc-length of the closest point on the cable a"),
+        "s_b": of_time("m", "arc-length of the closest point on b, of a bar from its middle"),
+        "position": vector_of_time("m", "closest point on the axis of the cable a"),
+    }
+    name: Name | None = None
+    a: Reference
+    b: Reference | None = None
+    at: Annotated[Vector | None, xyz("m")] = None
+    axis: Annotated[Vector | None, direction()] = None
+    length: Annotated[float, positive("m")] | None = None
+    radius: Annotated[float, not_negative("m")] | None = None
+    stiffness: Annotated[float, positive("N/m")]
+    exponent: Annotated[float, positive()] = 1.0
+    damping: Annotated[float, not_negative("s/m")] = 0.0
+    side: Annotated[Vector | None, direction()] = None
+
+    @model_validator(mode="after")
+    def _is_of_two_lines(self) -> Crossing:
+        if self.a == self.b:
+            raise ValueError(f'is of the cable "{self.a}" with itself', "name two cables, or a cable and a body")
+        if self.exponent not in EXPONENTS:
+            raise ValueError(f"exponent must be 1 or 1.5, got {self.exponent:.9g}")
+        return self
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
+        yield from across("at", self.at, "m")
+        yield from across("side", self.side)
+        if self.axis is not None:
+            yield "a bar of some length"
+
+
+def radius_of(cable: Cable) -> float:
+    """Return the radius of a cable's section, m. Raises ValueError where it is not round."""
+    if isinstance(cable.section, Circle):
+        return cable.section.radius
+    if isinstance(cable.section, Tube):
+        return cable.section.outer_radius
+    raise ValueError(f'radius is missing, which the section of cable "{cable.name}" does not tell')

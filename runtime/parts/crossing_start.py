@@ -1,0 +1,101 @@
+"""Where the lines of a crossing are closest as drawn, and which side of the other each is on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .cable import Cable
+from .crossing import Crossing
+from .locations import point_of
+from .attachment import Attachment
+from .scene_data import SceneData
+from ..rotations import rotate
+
+SAMPLES = 4
+"""Of an element, between which the closest points are looked for."""
+
+ITERATIONS = 50
+"""Of Gauss and Newton's method to the closest points."""
+
+
+@dataclass
+class Start:
+    """Closest points as drawn: arc-lengths s (2,) in m, the way d (3,) from b to a in m, the unit normal (3,) across
+    both lines, of no particular sign, and the sine of the angle between the lines, 1 in the plane.
+    """
+
+    s: np.ndarray
+    d: np.ndarray
+    normal: np.ndarray
+    sine: float
+
+
+class _Bar:
+    """A bar through a point of a body or the ground; square to the plane where it has no axis."""
+
+    def __init__(self, scene: SceneData, part: Crossing):
+        self.middle = point_of(scene, Attachment(on=part.b, at=part.at))
+        axis = np.zeros(3)
+        if part.axis is not None:
+            axis = np.array(part.axis) / np.linalg.norm(part.axis)
+            axis = axis if part.b is None else rotate(scene.bodies[part.b].orientation, axis)
+        self.axis, self.length = axis, 2 * (part.length or 0.0)
+
+    def samples(self) -> np.ndarray:
+        return np.linspace(-self.length / 2, self.length / 2, 9 if self.length else 1)
+
+    def point(self, s: float) -> np.ndarray:
+        return self.middle + s * self.axis
+
+    def slope(self, s: float) -> np.ndarray:
+        return self.axis
+
+
+class _Line:
+    """A cable as drawn."""
+
+    def __init__(self, cable: Cable):
+        self.cable, self.length = cable, cable.length
+        self.point, self.slope = cable.point, cable.slope
+
+    def samples(self) -> np.ndarray:
+        return self.cable.divided(SAMPLES)
+
+
+def start_of(scene: SceneData, part: Crossing) -> Start:
+    """Return the closest points of a crossing that is complete. Both may be beyond ends, on straight continuations."""
+    cable = scene.cables[part.a]
+    a = _Line(cable)
+    b = _Line(scene.cables[part.b]) if part.b in scene.cables else _Bar(scene, part)
+    s = _nearest_samples(a, b)
+    for _ in range(ITERATIONS):
+        d = a.point(s[0]) - b.point(s[1])
+        slopes = np.array([a.slope(s[0]), -b.slope(s[1])])
+        step = np.linalg.lstsq(slopes.T, -d, rcond=1e-12)[0]
+        limit = np.array([a.length, b.length or 1.0]) / 8
+        step *= min(1.0, float(np.min(limit / np.maximum(np.abs(step), 1e-300))))
+        s = np.clip(s + step, *_ends(a, b))
+        if np.all(np.abs(step) <= 1e-12 * limit):
+            break
+    d, t = a.point(s[0]) - b.point(s[1]), a.slope(s[0])
+    other = cable.normal if cable.dim == 2 else b.slope(s[1])
+    normal = np.cross(t, other)
+    sizes = float(np.linalg.norm(t) * np.linalg.norm(other))
+    sine = float(np.linalg.norm(normal)) / sizes
+    return Start(s, d, normal / sizes / sine if sine else normal, sine)
+
+
+def _ends(a: _Line, b: _Line | _Bar) -> tuple[np.ndarray, np.ndarray]:
+    low, high = (np.array([line.samples()[end] for line in (a, b)]) for end in (0, -1))
+    return low, high
+
+
+def _nearest_samples(a: _Line, b: _Line | _Bar) -> np.ndarray:
+    """Return (2,): arc-lengths of the two closest samples."""
+    of_a, of_b = a.samples(), b.samples()
+    first, second = (np.array([line.point(s) for s in of]) for line, of in ((a, of_a), (b, of_b)))
+    apart = [float(np.min(np.sum((second - point) ** 2, axis=1))) for point in first]
+    k = int(np.argmin(apart))
+    return np.array([of_a[k], of_b[int(np.argmin(np.sum((second - first[k]) ** 2, axis=1)))]])
