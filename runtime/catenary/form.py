@@ -56,7 +56,8 @@ def add_wire(scene: Scene, name: str, wire: Wire, start: float, end: float, heig
                              second_moment_about_z=wire.bending_stiffness / MODULUS)
     density = wire.mass * (1 + wire.tension / wire.axial_stiffness) * MODULUS / wire.axial_stiffness
     scene.cable(name, start=(start, height, 0), end=(end, height, 0), nodes=nodes, rest_length=float(nodes[-1]),
-                element="cable8p", strain="engineering", curvature="linear", section=section,
+                element="cable8p", strain="engineering", curvature="linear", membrane="reduced",
+                section=section,
                 material=Material(youngs_modulus=MODULUS, poisson_ratio=0.3, density=density,
                                   mass_damping=wire.mass_damping))
 

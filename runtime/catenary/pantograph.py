@@ -15,6 +15,12 @@ from ..scene import Scene
 APART = 0.5
 """m: of the masses, one below the other, as they are drawn; their springs are free of force so."""
 
+BASE_MASS = 1.0
+"""kg: of the base, which moves as it is told."""
+
+RADIUS = 0.05
+"""m: from the wire's axis to the middle of the collector where they touch; more than any penetration."""
+
 TURNING = 1.0
 """kg m²: moments of inertia of the masses, which do not turn."""
 
@@ -66,25 +72,25 @@ class Pantograph(Part):
         return self.uplift + self.aerodynamic * speed**2
 
 
-def add_pantograph(scene: Scene, name: str, pantograph: Pantograph, at: float, speed: float,
-                   height: float = 0.0) -> str:
-    """Add a pantograph at x = `at` (m), moved along x at a speed (m/s), and return the name of its collector's body.
+def add_pantograph(scene: Scene, pantograph: Pantograph, at: float, speed: float, name: str = "pantograph") -> None:
+    """Add a pantograph below the contact wire at x = `at` (m), which moves along x at a speed (m/s) from the start on.
 
-    height: of the collector over y = 0, in m. Its bodies are name_1, the collector, to name_n, and name_base.
+    Its bodies are name_1, the collector, to the lowest one, and name_base; its contact is name_contact.
     """
-    turning = (TURNING, TURNING, TURNING)
+    height = float(scene.cables["contact"].drawn_through[0][1]) - RADIUS
     lowest = len(pantograph.masses) + 1
     bodies = [f"{name}_{k}" for k in range(1, lowest)] + [f"{name}_base"]
     for k, body in enumerate(bodies):
-        mass = 1.0 if k == lowest - 1 else pantograph.masses[k]
-        scene.rigid_body(body, mass=mass, inertia=turning, position=(at, height - k * APART, 0), velocity=(speed, 0, 0))
-    y = height - (lowest - 1) * APART
-    scene.joint("prismatic", (at, y, 0), bodies[-1], axis=(1, 0, 0), velocity=speed, name=f"{name}_drive")
-    gravity = -scene.gravity[1]
+        mass = BASE_MASS if k == lowest - 1 else pantograph.masses[k]
+        scene.rigid_body(body, mass=mass, inertia=(TURNING,) * 3, position=(at, height - k * APART, 0),
+                         velocity=(speed, 0, 0))
+    base, y = bodies[-1], height - (lowest - 1) * APART
+    scene.joint("prismatic", (at, y, 0), base, axis=(1, 0, 0), velocity=speed, name=f"{name}_drive")
     for k, body in enumerate(bodies[:-1]):
-        scene.joint("prismatic", bodies[-1], body, axis=(0, 1, 0), name=f"{name}_guide_{k + 1}")
+        scene.joint("prismatic", base, body, axis=(0, 1, 0), name=f"{name}_guide_{k + 1}")
         lift = pantograph.lift(speed) if k == lowest - 2 else 0.0
-        scene.force(body, value=(0, pantograph.masses[k] * gravity + lift, 0), name=f"{name}_lift_{k + 1}")
+        scene.force(body, value=(0, lift - pantograph.masses[k] * scene.gravity[1], 0), name=f"{name}_lift_{k + 1}")
         scene.spring(body, bodies[k + 1], stiffness=pantograph.stiffness[k], damping=pantograph.damping[k],
                      length=APART, name=f"{name}_spring_{k + 1}")
-    return bodies[0]
+    scene.crossing("contact", bodies[0], radius=RADIUS, side=(0, 1, 0), stiffness=pantograph.contact_stiffness,
+                   name=f"{name}_contact")
