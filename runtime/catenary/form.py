@@ -17,13 +17,13 @@ from .wires import MODULUS, Wire
 if TYPE_CHECKING:
     from ..results.equilibrium import Equilibrium
 
-LONGEST = 1.0
-"""Of an element, in m, where nothing else is said."""
+LONGEST = 1.0, 3.5
+"""Of an element of the contact wire and of the messenger, in m, where nothing else is said."""
 
 
 @dataclass(frozen=True)
 class Form:
-    """A span at rest, on a mesh with elements of `longest` or shorter (m).
+    """A span at rest, on meshes with elements of `longest` or shorter: of the contact wire, of the messenger, in m.
 
     lengths: of the droppers, free of force, in m; tensions: their forces in N; stiffnesses in N/m; contact_length,
     messenger_length: of the wires, undeformed, in m; height: of the contact wire at the masts over that at the outer
@@ -31,7 +31,7 @@ class Form:
     """
 
     line: Line
-    longest: float
+    longest: tuple[float, float]
     lengths: np.ndarray
     tensions: np.ndarray
     stiffnesses: np.ndarray
@@ -59,22 +59,22 @@ def add_wire(scene: Scene, name: str, wire: Wire, start: float, end: float, heig
                 element="cable8p", strain="engineering", curvature="linear", membrane="reduced",
                 section=section,
                 material=Material(youngs_modulus=MODULUS, poisson_ratio=0.3, density=density,
-                                  mass_damping=wire.mass_damping))
+                                  mass_damping=wire.mass_damping, damping_time=wire.damping_time))
 
 
-def form(line: Line, longest: float = LONGEST) -> Form:
+def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
     """Return the form of a line's spans, found for one of them: the others repeat it.
 
     The contact wire lies at the droppers as the line's sags say, is level at the masts and pulls there with its
-    tension, as the messenger does, which turns freely on its supports. longest: of an element, in m. Raises SceneError;
-    EquilibriumError, where that is not to be had.
+    tension, as the messenger does, which turns freely on its supports. longest: of an element of the contact wire, and
+    of the messenger, in m. Raises SceneError; EquilibriumError, where that is not to be had.
     """
     droppers, strings = line.droppers, line.strings
     scene = Scene(gravity=(0, -line.gravity, 0))
-    place = mesh(line, longest)
-    for name, wire, length, height in (("contact", line.contact, strings.contact_length, 0.0),
-                                       ("messenger", line.messenger, strings.messenger_length, line.height)):
-        nodes = place * length / (1 + wire.tension / wire.axial_stiffness)
+    for name, wire, length, height, each in (
+            ("contact", line.contact, strings.contact_length, 0.0, longest[0]),
+            ("messenger", line.messenger, strings.messenger_length, line.height, longest[1])):
+        nodes = mesh(line, each) * length / (1 + wire.tension / wire.axial_stiffness)
         add_wire(scene, name, wire, 0.0, line.span, height, nodes)
     lengths = {name: cable.length for name, cable in scene.cables.items()}
     for s in (0.0, lengths["messenger"]):
@@ -83,7 +83,7 @@ def form(line: Line, longest: float = LONGEST) -> Form:
         scene.motion("contact", s=s, displacement=(0, "free", 0), rotation=((0, 0, 1), 0))
     adjust, to = {"contact.rest_length": "free", "messenger.rest_length": "free"}, {}
     for k, x in enumerate(droppers.at):
-        upper, lower = (place_on(place, x / line.span, lengths[name]) for name in ("messenger", "contact"))
+        upper, lower = (x / line.span * lengths[name] for name in ("messenger", "contact"))
         distance, force = float(strings.distances[k]), float(strings.forces[k])
         stiffness = droppers.stiffness or droppers.axial_stiffness / distance
         scene.spring(("messenger", upper), ("contact", lower), name=f"dropper_{k + 1}", stiffness=stiffness,
@@ -98,12 +98,7 @@ def form(line: Line, longest: float = LONGEST) -> Form:
     return _read(line, longest, scene.equilibrium(adjust=adjust, to=to))
 
 
-def place_on(place: np.ndarray, x: float, length: float) -> float:
-    """Return the arc-length of the node at the part x of a span."""
-    return float(place[np.argmin(np.abs(place - x))] * length)
-
-
-def _read(line: Line, longest: float, rest: Equilibrium) -> Form:
+def _read(line: Line, longest: tuple[float, float], rest: Equilibrium) -> Form:
     names = [f"dropper_{k + 1}" for k in range(len(line.droppers.at))]
     forces = np.array([float(rest[f"{name}.tension"]) for name in names])
     distances = np.array([float(rest[f"{name}.length"]) for name in names])

@@ -5,18 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from ..scene import Scene
-from .form import LONGEST, Form, add_wire, form, mesh, place_on
+from .form import LONGEST, Form, add_wire, form, mesh
 from .line import Line
 
 LEVER = 1.0
 """m: from where supports and steady arms are fixed to what they hold."""
 
 
-def scene(line: Line | Form, longest: float = LONGEST) -> Scene:
+def scene(line: Line | Form, longest: tuple[float, float] = LONGEST) -> Scene:
     """Return the scene of a catenary, formed, with x along the track and y up from the contact wire's height at the
     outer droppers.
 
-    line: or its form, where that is known; longest: of an element, in m. The contact wire is "contact", the messenger
+    line: or its form, where that is known; longest: as in `form`. The contact wire is "contact", the messenger
     "messenger_1" from the first mast to the second, the droppers "dropper_1_1" and so on, supports and steady arms
     "support_1" and "arm_0" by their masts. Raises SceneError, EquilibriumError.
     """
@@ -29,24 +29,24 @@ def scene(line: Line | Form, longest: float = LONGEST) -> Scene:
 
 
 def _wires(made: Scene, formed: Form) -> None:
-    line, place = formed.line, mesh(formed.line, formed.longest)
+    line = formed.line
+    place, of_messenger = (mesh(line, each) for each in formed.longest)
     nodes = np.concatenate([place[:-1] + k for k in range(line.spans)] + [[line.spans]]) * formed.contact_length
     add_wire(made, "contact", line.contact, 0.0, line.length, formed.height, nodes)
     for s in (0.0, made.cables["contact"].length):
         made.motion("contact", s=s, displacement=(0, "free", 0), rotation=((0, 0, 1), 0))
     for k in range(line.spans):
-        nodes = place * formed.messenger_length
-        add_wire(made, f"messenger_{k + 1}", line.messenger, k * line.span, (k + 1) * line.span, line.height, nodes)
+        add_wire(made, f"messenger_{k + 1}", line.messenger, k * line.span, (k + 1) * line.span, line.height,
+                 of_messenger * formed.messenger_length)
 
 
 def _droppers(made: Scene, formed: Form) -> None:
     line, droppers = formed.line, formed.line.droppers
-    place = mesh(line, formed.longest)
     for span in range(line.spans):
         messenger = f"messenger_{span + 1}"
         for k, x in enumerate(droppers.at):
-            upper = place_on(place, x / line.span, formed.messenger_length)
-            lower = place_on(place, x / line.span, formed.contact_length) + span * formed.contact_length
+            upper = x / line.span * formed.messenger_length
+            lower = (span + x / line.span) * formed.contact_length
             made.spring((messenger, upper), ("contact", lower), name=f"dropper_{span + 1}_{k + 1}",
                         stiffness=float(formed.stiffnesses[k]), length=float(formed.lengths[k]), tension_only=True,
                         ends_steps=False)

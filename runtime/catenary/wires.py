@@ -21,8 +21,7 @@ class Wire(Part):
     """A wire under tension.
 
     mass in kg/m, of the wire under its tension; tension in N, horizontal, at rest; axial_stiffness EA in N;
-    bending_stiffness EI in N m²; mass_damping in 1/s: a mode of frequency f has the damping ratio
-    mass_damping / (4 π f), see `mass_damping`.
+    bending_stiffness EI in N m²; mass_damping in 1/s and damping_time in s, see `damping_ratio`.
     """
 
     mass: Annotated[float, positive("kg/m")]
@@ -30,11 +29,26 @@ class Wire(Part):
     axial_stiffness: Annotated[float, positive("N")]
     bending_stiffness: Annotated[float, positive("N m²")]
     mass_damping: Annotated[float, not_negative("1/s")] = 0.0
+    damping_time: Annotated[float, not_negative("s")] = 0.0
 
     @property
     def wave_speed(self) -> float:
         """Return the speed of transverse waves, those of a string, in m/s."""
         return float(np.sqrt(self.tension / self.mass))
+
+    def damping_ratio(self, frequency: float | np.ndarray) -> float | np.ndarray:
+        """Return the damping ratio of transverse waves of a frequency f, in Hz.
+
+        mass_damping α gives α / (4 π f). damping_time τ damps what strains the material: of waves of the wavenumber k
+        that is bending, EI k² beside the tension N, and the ratio is π f τ EI k² / (N + EI k²), little where EI k² is.
+        """
+        omega = 2 * np.pi * np.asarray(frequency, dtype=float)
+        # m ω² = N k² + EI k⁴
+        half = self.tension / (2 * self.bending_stiffness)
+        square = np.sqrt(half**2 + self.mass * omega**2 / self.bending_stiffness) - half
+        bending = self.bending_stiffness * square
+        return (self.mass_damping / (2 * omega)
+                + omega * self.damping_time * bending / (2 * (self.tension + bending)))
 
 
 def _numbers(unit: str) -> Any:
