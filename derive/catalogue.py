@@ -97,7 +97,8 @@ def _drag(dim: int) -> CouplingFamily:
 
 def _crossing(dim: int) -> CouplingFamily:
     return CouplingFamily(crossing.CROSSINGS[dim], f"lines that touch at their closest points in {_SPACE[dim]}",
-                          partial(crossing.build, dim), ("couplings.crossing",), role="crossing", facts={"dim": dim}, dim=dim)
+                          partial(crossing.build, dim), ("couplings.crossing",), role="crossing",
+                          facts={"dim": dim}, dim=dim)
 
 
 def _joint(dim: int, name: str) -> CouplingFamily:

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from .parts.cable import Cable
+from .parts.crossing import Crossing
 from .parts.drag import Drag
 from .parts.end_stops import Stop
 from .parts.event import Event
@@ -260,6 +261,23 @@ class SceneMethods(SceneData):
         name: str | None = None,
     ) -> Drag:
         """Add a Drag, which see."""
+
+    def crossing(
+        self,
+        a: Named,
+        b: Named | None = None,
+        *,
+        stiffness: float,
+        at: Numbers | None = None,
+        axis: Numbers | None = None,
+        length: float | None = None,
+        radius: float | None = None,
+        exponent: float = 1.0,
+        damping: float = 0.0,
+        side: Numbers | None = None,
+        name: str | None = None,
+    ) -> Crossing:
+        """Add a Crossing, which see."""
 
     def event(
         self,

@@ -1,13 +1,14 @@
 """Two lines that touch at their closest points: a cable under the bar of a body, a cable that crosses another.
 
-Each line is known at its point by position, slope, curvature r_xx, and the rates of the first two. In the plane the second line
-is a bar square to it, which is seen as a point. The points are closest where the way d between them, from the second to the
-first, is square to both lines; these conditions say how they move along their lines with all the rest. The normal n is square
-to both slopes, of a sign that is given (``side``), so that the gap keeps its sign where the lines pass through each other.
+Each line is known at its point by position, slope, curvature r_xx, and the rates of the first two. In the plane the
+second line is a bar square to it, which is seen as a point. The points are closest where the way d between them, from
+the second to the first, is square to both lines. These conditions say how the points move along their lines with all
+the rest. The normal n is square to both slopes, of a sign that is given (``side``), so that the gap keeps its sign
+where the lines pass through each other.
 
-The force on the first line is N n, with N = k p^e (1 + damping p') of the penetration p = radii - n.d: the law of Hunt &
-Crossley, J. Appl. Mech. 42 (1975) 440-445. k p^e is c_1 p + c_2 p sqrt(|p|), of which one coefficient is zero. It is odd in p,
-so that it is smooth across p = 0, where a run ends contact.
+The force on the first line is N n, with N = k p^e (1 + damping p') of the penetration p = radii - n.d: the law of Hunt
+& Crossley, J. Appl. Mech. 42 (1975) 440-445. k p^e is c_1 p + c_2 p sqrt(|p|), of which one coefficient is zero. It is
+odd in p, so that it is smooth across p = 0, where a run ends contact.
 """
 
 from __future__ import annotations
@@ -88,7 +89,7 @@ def _normal(p: Program, lines: _Lines, side: sp.Expr) -> np.ndarray:
     return p.vector("n", p.define("side_m", side * inverse) * square)
 
 
-def _law(p: Program, n: np.ndarray, d: np.ndarray, u: np.ndarray, c: Sequence[sp.Expr]) -> dict[str, sp.Expr]:
+def _law(p: Program, n: np.ndarray, d: np.ndarray, u: np.ndarray, c: np.ndarray) -> dict[str, sp.Expr]:
     """Return penetration, its rate, the force k p^e without damping, and with it."""
     radii, _, linear, root, damping, least = c
     depth = p.define("depth", radii - n.dot(d))
@@ -99,7 +100,7 @@ def _law(p: Program, n: np.ndarray, d: np.ndarray, u: np.ndarray, c: Sequence[sp
             "force": p.define("N_law", elastic * (1 + damping * rate))}
 
 
-def _penalty(p: Program) -> Sequence[sp.Expr]:
+def _penalty(p: Program) -> np.ndarray:
     return p.input("c", len(PENALTY), "m, 1, N/m, N/m^1.5, s/m, m",
                    "sum of the radii, sign of the normal, coefficients of p and p^1.5, damping, what |p| is not below")
 

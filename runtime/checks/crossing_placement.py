@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import SceneError, near
-from ..model.crossings import radii
 from ..parts.attachment import Attachment
 from ..parts.crossing import Crossing
-from ..parts.crossing_start import Start, start_of
+from ..parts.crossing_start import Start, radii, start_of
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.validation import EXACT, show

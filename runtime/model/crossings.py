@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..parts.attachment import Attachment
-from ..parts.crossing import Crossing, radius_of
-from ..parts.crossing_start import start_of
+from ..parts.crossing import Crossing
+from ..parts.crossing_start import radii, sign_of, start_of
 from ..parts.scene_data import SceneData
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
@@ -55,8 +55,8 @@ def crossing_model(part: Crossing, scene: SceneData, attachments: AttachmentBuil
             axis = tuple(np.array(part.axis) / np.linalg.norm(part.axis))
     else:
         high = of_lines[1].mesh.total
-    masses = [scene.cables[name].material.density * scene.cables[name].section.area * model.mesh.mean
-              for name, model in zip((part.a, part.b), of_lines, strict=False)]
+    masses = [scene.cables[line.name].material.density * scene.cables[line.name].section.area * line.mesh.mean
+              for line in of_lines]
     radius = radii(scene, part)
     linear = part.exponent == 1
     law = (radius, sign_of(part, start.normal, start.d), part.stiffness * linear, part.stiffness * (not linear),
@@ -67,15 +67,3 @@ def crossing_model(part: Crossing, scene: SceneData, attachments: AttachmentBuil
         stiffness=part.stiffness * (1.0 if linear else math.sqrt(max(radius, 1e-3))), type="crossing",
         name=part.name or "", scale=[max(*masses, *(end.mass for end in ends), 0.0)] * (2 * dim - 1),
         is_damped=part.damping > 0, follows_law=True)
-
-
-def radii(scene: SceneData, part: Crossing) -> float:
-    """Return the distance of the axes of both lines at which they touch, m. Raises ValueError."""
-    if part.radius is not None:
-        return part.radius
-    return sum(radius_of(scene.cables[name]) for name in (part.a, part.b) if name in scene.cables)
-
-
-def sign_of(part: Crossing, normal: np.ndarray, d: np.ndarray) -> float:
-    """Return the sign with which a normal leads from b to a: by the side that is given, or by the way d as drawn."""
-    return math.copysign(1.0, float(np.dot(d if part.side is None else part.side, normal)))

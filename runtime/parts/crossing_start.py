@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from .cable import Cable
-from .crossing import Crossing
-from .locations import point_of
-from .attachment import Attachment
-from .scene_data import SceneData
 from ..rotations import rotate
+from .attachment import Attachment
+from .cable import Cable
+from .crossing import Crossing, radius_of
+from .locations import point_of
+from .scene_data import SceneData
 
 SAMPLES = 4
 """Of an element, between which the closest points are looked for."""
@@ -44,12 +45,15 @@ class _Bar:
         self.axis, self.length = axis, 2 * (part.length or 0.0)
 
     def samples(self) -> np.ndarray:
+        """Return arc-lengths from the middle, m."""
         return np.linspace(-self.length / 2, self.length / 2, 9 if self.length else 1)
 
     def point(self, s: float) -> np.ndarray:
+        """Return (3,): a point, m."""
         return self.middle + s * self.axis
 
     def slope(self, s: float) -> np.ndarray:
+        """Return (3,): the direction, zero in the plane."""
         return self.axis
 
 
@@ -61,6 +65,7 @@ class _Line:
         self.point, self.slope = cable.point, cable.slope
 
     def samples(self) -> np.ndarray:
+        """Return arc-lengths of nodes and points between them, m."""
         return self.cable.divided(SAMPLES)
 
 
@@ -99,3 +104,15 @@ def _nearest_samples(a: _Line, b: _Line | _Bar) -> np.ndarray:
     apart = [float(np.min(np.sum((second - point) ** 2, axis=1))) for point in first]
     k = int(np.argmin(apart))
     return np.array([of_a[k], of_b[int(np.argmin(np.sum((second - first[k]) ** 2, axis=1)))]])
+
+
+def radii(scene: SceneData, part: Crossing) -> float:
+    """Return the distance of the axes of both lines at which they touch, m. Raises ValueError."""
+    if part.radius is not None:
+        return part.radius
+    return sum(radius_of(scene.cables[name]) for name in (part.a, part.b) if name in scene.cables)
+
+
+def sign_of(part: Crossing, normal: np.ndarray, d: np.ndarray) -> float:
+    """Return the sign with which a normal leads from b to a: by the side that is given, or by the way d as drawn."""
+    return math.copysign(1.0, float(np.dot(d if part.side is None else part.side, normal)))

@@ -13,8 +13,8 @@ from ..rotations import conjugate, product, quaternion, rotate
 from .attachment import Attachment
 from .cable import Cable
 from .combined_signal import combined
-from .curves import shape_through
 from .crossing import Crossing
+from .curves import shape_through
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid

@@ -139,8 +139,9 @@ class RestState(NamedArrays):
         units = np.where(problem.weight > 0, problem.weight, np.inf)
         engine = problem.engine
         scene = problem.scene.as_drawn
-        state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(), engine.static_outputs("crossing"),
-                    problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
+        state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
+                    engine.static_outputs("crossing"), problem.fraction, problem.iterations,
+                    float(np.max(np.abs(left) / units, initial=0.0)), stability,
                     problem.fraction if problem.settings.scale_gravity else 1.0, heading)
         state.quantities = state._quantities()
         state.path, state.layout = [state], layout(scene)

@@ -10,7 +10,7 @@ import numpy as np
 from ...codegen.family import CouplingFamily
 from ..methods import Relation
 from ..numbers import Numbers, State
-from .paths import entry
+from .paths import entry, root
 
 TRIALS = 12
 """Steps of Newton's method to the closest points: the conditions hold nearly, and digits double."""
@@ -53,6 +53,13 @@ def crossing(family: CouplingFamily) -> list[Relation]:
     def moved(s: State, name: str, t: Any, j: int) -> State:
         return {**s, name: s[name] + t * entry(name)(s, j)}
 
+    def off(s: State) -> State:
+        """Return a state of straight lines off their closest points."""
+        return {**s, "d": s["d"] + s["t"][0] / 3, "k": 0 * s["k"]}
+
+    def straight(s: State) -> Any:
+        return np.array(points(off(s)))
+
     def force_by(name: str) -> Callable:
         def path(k: Numbers, s: State, t: Any, j: int) -> Any:
             at = moved(s, name, t, j)
@@ -66,10 +73,37 @@ def crossing(family: CouplingFamily) -> list[Relation]:
         at = moved(s, "d", t, j)
         return -k("contact", along(at, points(at)))["U"]
 
+    def across(s: State) -> Any:
+        t = s["t"]
+        square = np.array([t[0][1], -t[0][0]]) if lines == 1 else np.cross(t[0], t[1])
+        return s["c"][1] / square.dot(square) ** 0.5 * square
+
+    def depth(s: State) -> Any:
+        n = across(s)
+        return np.array([s["c"][0] - n.dot(s["d"]), -n.dot(s["u"])])
+
+    def size(s: State) -> Any:
+        p, rate = depth(s)
+        return np.array([(s["c"][2] * p + s["c"][3] * p * p**0.5) * (1 + s["c"][4] * rate)])
+
+    def stored(s: State) -> Any:
+        p = depth(s)[0]
+        return np.array([s["c"][2] * p * p / 2 + s["c"][3] * p * p * p**0.5 * 2 / 5])
+
+    def dissipated(s: State) -> Any:
+        p, rate = depth(s)
+        return np.array([(s["c"][2] * p + s["c"][3] * p * p**0.5) * s["c"][4] * rate * rate])
+
+    told = {"n": ("side * t_a x t_b/|t_a x t_b|", across), "p": ("radii - n.d, and -n.u", depth),
+            "N": ("k p^e (1 + damping p')", size), "U": ("k p^(e+1)/(e+1)", stored),
+            "P": ("k p^e damping p'^2", dissipated)}
     numbers = {"d": dim, "t": lines * dim}
     return [*(Relation("force", f"F_{name}", f"dF by {name}, closest points found anew", 1, force_by(name), n)
               for name, n in (*numbers.items(), ("u", dim))),
             *(Relation("force", f"s_{name}", f"closest points by {name}, found anew", 1, points_by(name), n)
               for name, n in numbers.items()),
             Relation("force", "F", "-dU by d without damping", 1, energy, dim,
-                     of=lambda k, s: k("force", {**s, "u": 0 * s["u"]})["F"])]
+                     of=lambda k, s: k("force", {**s, "u": 0 * s["u"]})["F"]),
+            *(Relation("contact", name, text, 0, root(function)) for name, (text, function) in told.items()),
+            Relation("closest", "step", "closest points of lines without curvature", 0, root(straight),
+                     of=lambda k, s: k("closest", off(s))["step"])]
