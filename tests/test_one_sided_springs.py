@@ -198,3 +198,40 @@ def test_ends_that_meet_are_refused_where_the_spring_then_has_a_force(law, loses
     scene.spring("m", (0, 0, 0), length=0.5, **law)
     run = scene.run(duration=0.1, tol=1e-6)
     assert run["m.position"][-1, 1] == pytest.approx(-GRAVITY * 0.1**2 / 2, rel=1e-9)
+
+
+def test_steps_that_go_over_the_instants_keep_their_order():
+    """Without the end of a step where the spring becomes slack: of the second order still, and noted at steps' ends."""
+    exact, errors = Thrown(0.5, 2.0), []
+    for step in (4e-3, 2e-3, 1e-3):
+        run = hanging(0.5, stiffness=STIFFNESS, tension_only=True, ends_steps=False).run(
+            duration=2.0, output_step=0.1, integrator="genalpha", step=step, spectral_radius=0.8)
+        errors.append(np.abs(extension(run) - exact(run.time)).max())
+        assert run.report["steps"] == round(2.0 / step)
+        events = [event for event in run.report["events"] if event["time"] > 5e-3]
+        assert [event["what"] for event in events] == (["became slack", "became taut"] * 9)[:len(events)]
+        late = np.array([event["time"] for event in events]) - exact.instants[1:len(events) + 1]
+        assert np.all((late > -2e-3) & (late < step + 2e-3))
+    assert errors[-1] < 1e-3
+    assert errors[0] / errors[2] > 10
+
+
+@pytest.mark.parametrize("integrator", ["explicit", "radau", "genalpha", "energy"])
+def test_all_integrators_take_springs_that_end_no_steps(integrator):
+    exact = Thrown(0.5, 1.0)
+    run = hanging(0.5, stiffness=STIFFNESS, tension_only=True, ends_steps=False).run(
+        duration=1.0, output_step=0.01, integrator=integrator,
+        **({"tol": 1e-6} if integrator in BY_TOL else {"step": 1e-4}))
+    assert np.abs(extension(run) - exact(run.time)).max() < 1e-5
+    events = [event for event in run.report["events"] if event["time"] > 5e-3]
+    assert len(events) == len([t for t in exact.instants if 0 < t < 1.0])
+    assert np.ptp(total_energy(run)) < 1e-4
+
+
+@pytest.mark.parametrize(("law", "cause"), [
+    ({"stiffness": 1.0}, "one law for all distances"),
+    ({"stiffness": 1.0, "tension_only": True, "damping": 1.0}, "whose force jumps"),
+])
+def test_springs_that_cannot_be_gone_over_are_refused(law, cause):
+    with pytest.raises(fu.SceneError, match=cause):
+        hanging(0.0, ends_steps=False, **law)

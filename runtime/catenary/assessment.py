@@ -51,9 +51,9 @@ def masts(run: Run) -> np.ndarray:
 
 def uplift(run: Run) -> np.ndarray:
     """Return (time, mast): how far the contact wire is above its height at rest at each mast, in m."""
-    wire = run.scene.cables["contact"]
-    positions = run["contact.position"]
-    at = [int(np.argmin(np.abs(positions[0, :, 0] - x))) for x in masts(run)]
+    places = masts(run)
+    wire, positions = run.scene.cables["contact"], run["contact.position"]
+    at = [int(np.argmin(np.abs(positions[0, :, 0] - x))) for x in places]
     return positions[:, at, 1] - wire.drawn_through[0][1]
 
 

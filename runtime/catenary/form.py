@@ -88,8 +88,8 @@ def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
         stiffness = droppers.stiffness or droppers.axial_stiffness / distance
         scene.spring(("messenger", upper), ("contact", lower), name=f"dropper_{k + 1}", stiffness=stiffness,
                      length=distance - force / stiffness, tension_only=True)
-        if hanging := droppers.messenger_clamp + droppers.mass * distance:
-            scene.force("messenger", s=upper, value=(0, -line.gravity * hanging, 0))
+        if line.hanging[k]:
+            scene.force("messenger", s=upper, value=(0, -line.gravity * line.hanging[k], 0))
         if droppers.contact_clamp:
             scene.force("contact", s=lower, value=(0, -line.gravity * droppers.contact_clamp, 0))
         adjust[f"dropper_{k + 1}.length"] = "free"

@@ -71,6 +71,11 @@ class Line(Part):
         return at_rest(self.span, self.height, self.contact, self.messenger, self.droppers, self.gravity)
 
     @property
+    def hanging(self) -> list[float]:
+        """Return what hangs from the messenger at each dropper, in kg: the dropper and its clamp."""
+        return (self.droppers.messenger_clamp + self.droppers.mass * self.strings.distances).tolist()
+
+    @property
     def length(self) -> float:
         """Return the length of all spans, in m."""
         return self.spans * self.span

@@ -7,10 +7,19 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import model_validator
 
+from ..errors import SceneError
 from ..parts.part import Part
 from ..parts.schemas import checked
 from ..parts.validation import not_negative, positive, shown, vector
 from ..scene import Scene
+
+RUN = {"initial": "equilibrium", "integrator": "genalpha", "spectral_radius": 0.5, "tol": 1e-6, "absolute_tol": 1e-2,
+       "quantities": ["contact.position.y"], "output_step": 0.004}
+"""Settings of a run where no others are given. The droppers' stiffness makes vibrations that a larger radius would let
+grow from step to step."""
+
+LEFT = 20.0
+"""m: what a run leaves of the line before its end, at the most."""
 
 APART = 0.5
 """m: of the masses, one below the other, as they are drawn; their springs are free of force so."""
@@ -75,9 +84,21 @@ class Pantograph(Part):
 def add_pantograph(scene: Scene, pantograph: Pantograph, at: float, speed: float, name: str = "pantograph") -> None:
     """Add a pantograph below the contact wire at x = `at` (m), which moves along x at a speed (m/s) from the start on.
 
-    Its bodies are name_1, the collector, to the lowest one, and name_base; its contact is name_contact.
+    Its bodies are name_1, the collector, to the lowest one, and name_base; its contact is name_contact. The scene's
+    runs have the settings `RUN`, and end before the first pantograph is at the end of the line, where no others are
+    given. Raises SceneError.
     """
-    height = float(scene.cables["contact"].drawn_through[0][1]) - RADIUS
+    wire = scene.cables.get("contact")
+    if wire is None:
+        raise SceneError("pantograph", 'there is no cable "contact"', "make the scene with funicular.catenary.scene")
+    (begin, level, _), (end, *_) = wire.drawn_through[0], wire.drawn_through[-1]
+    if not begin < at < end - LEFT or not 0 <= speed < np.inf:
+        raise SceneError("pantograph", f"at {at:.6g} m with {speed:.6g} m/s is not on its way along the line",
+                         f"begin between {begin:.6g} and {end - LEFT:.6g} m, with a speed that is not negative")
+    duration = (end - LEFT - at) / speed if speed else 1.0
+    scene.run_settings = {**RUN, **scene.run_settings}
+    scene.run_settings["duration"] = min(duration, scene.run_settings.get("duration", duration))
+    height = float(level) - RADIUS
     lowest = len(pantograph.masses) + 1
     bodies = [f"{name}_{k}" for k in range(1, lowest)] + [f"{name}_base"]
     for k, body in enumerate(bodies):

@@ -11,7 +11,6 @@ from .line import Line
 LEVER = 1.0
 """m: from where supports and steady arms are fixed to what they hold."""
 
-
 def scene(line: Line | Form, longest: tuple[float, float] = LONGEST) -> Scene:
     """Return the scene of a catenary, formed, with x along the track and y up from the contact wire's height at the
     outer droppers.
@@ -50,7 +49,7 @@ def _droppers(made: Scene, formed: Form) -> None:
             made.spring((messenger, upper), ("contact", lower), name=f"dropper_{span + 1}_{k + 1}",
                         stiffness=float(formed.stiffnesses[k]), length=float(formed.lengths[k]), tension_only=True,
                         ends_steps=False)
-            hanging = droppers.messenger_clamp + droppers.mass * float(formed.lengths[k])
+            hanging = line.hanging[k]
             for wire, s, mass in ((messenger, upper, hanging), ("contact", lower, droppers.contact_clamp)):
                 if mass:
                     made.force(wire, s=s, value=(0, -line.gravity * mass, 0))

@@ -60,11 +60,6 @@ void fu_touch_piece(const fu_model *model, const fu_coupling *coupling, fu_state
     state->flags[coupling->flags] = fu_piece_at(model, force_of(coupling), state);
 }
 
-void fu_carry_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state)
-{
-    if (force_of(coupling)->is_gone_over) fu_touch_piece(model, coupling, state);
-}
-
 /* Returns how far the force of a piece is on the right side of nil, m; infinity where it may pull and push. */
 static double margin_of_sense(const fu_point_force *between, int piece, const double *gap, const double *rate, double distance)
 {
@@ -126,6 +121,12 @@ static passage next_passage(const fu_model *model, const fu_point_force *between
     return found;
 }
 
+/* Returns whether steps go over the passages of a force. */
+static int goes_over(const fu_run *run, const fu_coupling *coupling)
+{
+    return force_of(coupling)->is_gone_over && !run->integrator->keeps_energy;
+}
+
 static int watches(const fu_coupling *coupling, fu_watch *out)
 {
     if (force_of(coupling)->n_pieces == 1) return 0;
@@ -136,7 +137,7 @@ static int watches(const fu_coupling *coupling, fu_watch *out)
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     (void)which;
-    if (force_of(coupling)->is_gone_over && !run->integrator->keeps_energy) return -1.0;
+    if (goes_over(run, coupling)) return -1.0;
     return next_passage(run->model, force_of(coupling), state).margin;
 }
 
@@ -169,9 +170,16 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return FU_RUNNING;
 }
 
+static int is_gone_over(const fu_coupling *coupling)
+{
+    return force_of(coupling)->is_gone_over;
+}
+
 static int announce(fu_run *run, const fu_coupling *coupling, const char **what)
 {
     const fu_point_force *between = force_of(coupling);
+    if (!goes_over(run, coupling)) return 0;
+    fu_touch_piece(run->model, coupling, &run->now);
     const int *flags = run->now.flags + coupling->flags, before = flags[1], after = flags[0];
     if (before == after) return 0;
     pass(coupling, &run->now, after);
@@ -202,6 +210,7 @@ const fu_coupling_events fu_point_force_events = {
     .sign = sign,
     .act = act,
     .announce = announce,
+    .is_gone_over = is_gone_over,
     .can_act = can_act,
     .begin = begin,
 };

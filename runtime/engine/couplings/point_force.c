@@ -271,7 +271,7 @@ static const fu_field fields[] = {
 
 const fu_coupling_type fu_point_force_type = {
     .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .n_outputs = 3, .n_flags = 2,
-    .events = &fu_point_force_events, .touch = fu_touch_piece, .carry = fu_carry_piece, .residual = residual, .tangent = tangent, .step_residual = step_residual,
+    .events = &fu_point_force_events, .touch = fu_touch_piece, .residual = residual, .tangent = tangent, .step_residual = step_residual,
     .step_tangent = step_tangent, .step_dissipation = step_dissipation, .force = own_force, .take_forces = take_forces,
     .outputs = outputs, .energy = energy, .dissipation = dissipation,
     .lost_in_step = lost_in_step};

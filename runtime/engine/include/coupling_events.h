@@ -42,6 +42,8 @@ struct fu_coupling_events {
     /* Returns not zero where the coupling has changed within the steps up to here, in which no watch passed zero, and was not
      * asked since; *what says in words what has happened. Null: it never changes so. */
     int (*announce)(fu_run *run, const fu_coupling *coupling, const char **what);
+    /* Whether it changes so. With `announce`. */
+    int (*is_gone_over)(const fu_coupling *coupling);
 
     /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);

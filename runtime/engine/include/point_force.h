@@ -43,6 +43,5 @@ int fu_piece_now(const fu_model *model, const fu_point_force *between, const fu_
 int fu_piece_at(const fu_model *model, const fu_point_force *between, const fu_state *state);
 const double *fu_piece_parameters(const fu_point_force *between, int piece);
 void fu_touch_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state);
-void fu_carry_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
 #endif

@@ -91,9 +91,9 @@ int fu_follow_pieces(fu_run *run)
     int changed = 0;
     for (int k = 0; k < run->model->n_couplings; ++k) {
         const fu_coupling *c = run->model->couplings[k];
-        if (!c->type->events || !c->type->events->announce) continue;
+        if (!c->type->events || !c->type->events->announce || !c->type->events->is_gone_over(c)) continue;
         const int before = run->next.flags[c->flags];
-        c->type->carry(run->model, c, &run->next);
+        c->type->touch(run->model, c, &run->next);
         changed |= run->next.flags[c->flags] != before;
     }
     return changed;
