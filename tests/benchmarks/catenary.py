@@ -7,8 +7,9 @@ of two masses, of which spans 5 and 6 are judged by the contact force below 20 H
 the standard accepted and the figures of a published code; those that follow are computed. It gives neither the lengths
 of the droppers nor the uplift force: the contact wire is level at the droppers, and 120 N act on the frame, so that the
 mean is set and not validated. Axial stiffnesses are assumed (150 mm² and 120 mm² of copper alloys); they hardly count.
-The damping ratio of 0.005 is that of waves of 1 Hz; `damped` rows have it at 5 Hz and at 10 Hz. No conformity to any
-standard is claimed, and the edition of 2018 has another model.
+The damping ratio of 0.005 is that of waves of 10 Hz, as those that the droppers make in passing; `damped` rows have it
+at 1 Hz and at 5 Hz. `sag 20 mm`: the wire is not level, but on a parabola. No conformity to any standard is claimed,
+and the edition of 2018 has another model.
 
 line55: the 55 m line with a pantograph of three masses at 275 and 320 km/h, one, and two at 200 m from each other.
 
@@ -39,23 +40,24 @@ COLUMNS = ("mean", "sigma", "mean+3s", "mean-3s", "max", "min", "uplift", "loss 
 FINE, USUAL, COARSE = (0.5, 1.0), (1.0, 2.0), (2.0, 4.0)
 """Longest elements of contact wire and messenger, m."""
 MATERIAL = 1e-4
-"""s: damping time of the wires' material, as that of waves of 1 Hz leaves those above 50 Hz without damping."""
+"""s: damping time of the wires' material, without which waves above 50 Hz have hardly any damping."""
 
 
-def reference(spans: int = 10, frequency: float = 1.0) -> catenary.Line:
+def reference(spans: int = 10, frequency: float = 10.0, sag: float = 0.0) -> catenary.Line:
     """Return the line of EN 50318:2002, with the damping ratio 0.005 at a frequency, in Hz."""
     damping = {"mass_damping": catenary.mass_damping(0.005, frequency), "damping_time": MATERIAL}
     return catenary.Line(
         spans=spans, span=60.0, height=1.2, support=50e3, steady_arm=catenary.SteadyArm(stiffness=300),
         contact=catenary.Wire(mass=1.35, tension=20e3, axial_stiffness=15e6, bending_stiffness=195, **damping),
         messenger=catenary.Wire(mass=1.07, tension=16e3, axial_stiffness=12e6, bending_stiffness=131.7, **damping),
-        droppers=catenary.Droppers(at=[5, 10.5, 17, 23.5, 30, 36.5, 43, 49.5, 55], stiffness=100e3))
+        droppers=catenary.Droppers(at=[5, 10.5, 17, 23.5, 30, 36.5, 43, 49.5, 55], stiffness=100e3,
+                                   sag=sag))
 
 
 TWO_MASSES = catenary.Pantograph(masses=[7.2, 15], stiffness=[4200, 50], damping=[10, 90], uplift=120)
 
 
-def line55(spans: int = 10, frequency: float = 1.0) -> catenary.Line:
+def line55(spans: int = 10, frequency: float = 10.0) -> catenary.Line:
     """Return the 55 m line, as tests/test_catenary.py has it."""
     damping = {"mass_damping": catenary.mass_damping(0.005, frequency), "damping_time": MATERIAL}
     return catenary.Line(
@@ -99,9 +101,9 @@ def row(kmh: float, what: str, values, run=None) -> dict:
             **dict(zip(("unknowns", "steps", "cpu s/s"), cost, strict=True))}
 
 
-def judge(kmh: float, longest=USUAL, tol=1e-2, spans=10, frequency=1.0):
+def judge(kmh: float, longest=USUAL, tol=2e-2, **line):
     """Return the run of the reference model, and its figures in spans 5 and 6."""
-    run = passage(reference(spans, frequency), {"pantograph": (TWO_MASSES, 20.0)}, kmh, longest, absolute_tol=tol)
+    run = passage(reference(**line), {"pantograph": (TWO_MASSES, 20.0)}, kmh, longest, absolute_tol=tol)
     return run, figures(run, [(240.0, 360.0)])
 
 
@@ -110,10 +112,9 @@ def reference_rows() -> list[dict]:
     rows = []
     for kmh in (250, 300):
         rows += [row(kmh, "EN 50318:2002", ACCEPTED[kmh]), row(kmh, "a published code", PUBLISHED[kmh])]
-        variants = {"1 m, 2 m": {}, "tol/3": {"tol": 3e-3}, "0.5 m, 1 m": {"longest": FINE},
-                    "0.5 m, 1 m, tol/3": {"longest": FINE, "tol": 3e-3}, "2 m, 4 m": {"longest": COARSE},
+        variants = {"1 m, 2 m": {}, "tol/4": {"tol": 5e-3}, "0.5 m, 1 m": {"longest": FINE}, "2 m, 4 m": {"longest": COARSE},
                     "13 spans": {"spans": 13}, "damped at 5 Hz": {"frequency": 5.0},
-                    "damped at 10 Hz": {"frequency": 10.0}}
+                    "damped at 1 Hz": {"frequency": 1.0}, "sag 20 mm": {"sag": 0.02}}
         for what, variant in variants.items():
             run, values = judge(kmh, **variant)
             rows.append(row(kmh, what, values, run))
@@ -141,10 +142,10 @@ def line55_rows() -> list[dict]:
 
 def cost_rows() -> list[dict]:
     """Return errors and costs at 300 km/h, and the growth with the spans."""
-    finest = judge(300, FINE, 3e-3)[1]
+    finest = judge(300, FINE, 5e-3)[1]
     rows = []
     for longest in (COARSE, (1.5, 3.0), USUAL):
-        for tol in (1e-1, 3e-2, 1e-2):
+        for tol in (2e-1, 5e-2, 2e-2):
             run, values = judge(300, longest, tol)
             rows.append({**row(300, f"{longest} m, tol {tol:g} m", values, run),
                          "error of sigma %": 100 * (values[1] / finest[1] - 1)})
