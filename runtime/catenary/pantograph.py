@@ -10,6 +10,7 @@ from pydantic import model_validator
 from ..errors import SceneError
 from ..parts.part import Part
 from ..parts.schemas import checked
+from ..parts.solids import Box
 from ..parts.validation import not_negative, positive, shown, vector
 from ..scene import Scene
 
@@ -103,8 +104,9 @@ def add_pantograph(scene: Scene, pantograph: Pantograph, at: float, speed: float
     bodies = [f"{name}_{k}" for k in range(1, lowest)] + [f"{name}_base"]
     for k, body in enumerate(bodies):
         mass = BASE_MASS if k == lowest - 1 else pantograph.masses[k]
+        size = (0.3, 2 * RADIUS, 1.6) if k == 0 else (0.8, 2 * RADIUS, 0.8)
         scene.rigid_body(body, mass=mass, inertia=(TURNING,) * 3, position=(at, height - k * APART, 0),
-                         velocity=(speed, 0, 0))
+                         velocity=(speed, 0, 0), shape=Box(size=size))
     base, y = bodies[-1], height - (lowest - 1) * APART
     scene.joint("prismatic", (at, y, 0), base, axis=(1, 0, 0), velocity=speed, name=f"{name}_drive")
     for k, body in enumerate(bodies[:-1]):

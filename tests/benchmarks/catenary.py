@@ -112,7 +112,8 @@ def reference_rows() -> list[dict]:
     rows = []
     for kmh in (250, 300):
         rows += [row(kmh, "EN 50318:2002", ACCEPTED[kmh]), row(kmh, "a published code", PUBLISHED[kmh])]
-        variants = {"1 m, 2 m": {}, "tol/4": {"tol": 5e-3}, "0.5 m, 1 m": {"longest": FINE}, "2 m, 4 m": {"longest": COARSE},
+        variants = {"1 m, 2 m": {}, "tol/4": {"tol": 5e-3}, "0.5 m, 1 m": {"longest": FINE},
+                    "2 m, 4 m": {"longest": COARSE},
                     "13 spans": {"spans": 13}, "damped at 5 Hz": {"frequency": 5.0},
                     "damped at 1 Hz": {"frequency": 1.0}, "sag 20 mm": {"sag": 0.02}}
         for what, variant in variants.items():
