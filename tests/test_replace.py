@@ -188,6 +188,7 @@ REFUSED = {
 ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_body", "data"), ("modal_body", "position"),
               ("modal_body", "orientation"), ("joint", "second_axis"), ("joint", "up"), ("joint", "distance"),
               ("joint", "velocity"), ("joint", "length"), ("slide", "body_s"), ("spring", "table"),
+              ("spring", "ends_steps"),
               ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume")}
 """Fields of parts that are described otherwise, or of other kinds of joints."""
 

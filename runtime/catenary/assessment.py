@@ -11,7 +11,7 @@ from scipy.signal import butter, sosfiltfilt
 from ..errors import SceneError, near
 
 if TYPE_CHECKING:
-    import xarray as xr
+    import xarray as xr  # brings pandas
 
     from ..results.run import Run
 
@@ -83,7 +83,7 @@ def assess(run: Run, sections: Sequence[tuple[float, float]] | None = None, pant
     itself the loss_time in s, loss_share of the time in the section, and losses, how many. By mast the largest uplift
     in m; over time the force, filtered and not, and the place of the collector. Raises SceneError.
     """
-    import xarray as xr
+    import xarray as xr  # brings pandas
 
     name, time = f"{pantograph}_contact.normal_force", run.time
     if name not in run:

@@ -17,7 +17,7 @@ from .wires import MODULUS, Wire
 if TYPE_CHECKING:
     from ..results.equilibrium import Equilibrium
 
-LONGEST = 1.0, 3.5
+LONGEST = 1.0, 2.0
 """Of an element of the contact wire and of the messenger, in m, where nothing else is said."""
 
 
