@@ -85,7 +85,7 @@ def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
     for k, x in enumerate(droppers.at):
         upper, lower = (x / line.span * lengths[name] for name in ("messenger", "contact"))
         distance, force = float(strings.distances[k]), float(strings.forces[k])
-        stiffness = droppers.stiffness or droppers.axial_stiffness / distance
+        stiffness = droppers.stiffness_of(distance)
         scene.spring(("messenger", upper), ("contact", lower), name=f"dropper_{k + 1}", stiffness=stiffness,
                      length=distance - force / stiffness, tension_only=True)
         if line.hanging[k]:

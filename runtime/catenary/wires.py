@@ -101,6 +101,13 @@ class Droppers(Part):
             raise ValueError(f"are {len(self.at)}: no parabola has its depth between them", "give a sag for each")
         return self
 
+    def stiffness_of(self, length: float) -> float:
+        """Return the stiffness of a dropper of some length (m), in N/m."""
+        if self.stiffness is not None:
+            return self.stiffness
+        assert self.axial_stiffness is not None, "droppers have one of the stiffnesses"
+        return self.axial_stiffness / length
+
     @property
     def depths(self) -> np.ndarray:
         """Return the sag at each dropper, in m."""

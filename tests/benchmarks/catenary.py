@@ -13,7 +13,7 @@ and the edition of 2018 has another model.
 
 line55: the 55 m line with a pantograph of three masses at 275 and 320 km/h, one, and two at 200 m from each other.
 
-cost: CPU seconds a simulated second, and the error of the standard deviation against the finest mesh and steps; spans.
+cost: CPU seconds a simulated second, and the error of the standard deviation against the finest mesh; numbers of spans.
 
 Columns: mean, sigma, mean ± 3 sigma, largest and least force in N, the largest uplift at the masts of the section in
 mm, the time without contact in %, steps and CPU seconds a simulated second.
@@ -127,32 +127,32 @@ def reference_rows() -> list[dict]:
 
 
 def line55_rows() -> list[dict]:
-    """Return the table of the 55 m line, spans 6 and 7 of 12."""
+    """Return the table of the 55 m line, spans 7 and 8 of 12."""
     rows = []
     for kmh in (275, 320):
         for longest in (USUAL, FINE):
             for starts in ((220.0,), (220.0, 20.0)):
                 pantographs = {f"p{k + 1}": (THREE_MASSES, start) for k, start in enumerate(starts)}
-                run = passage(line55(14), pantographs, kmh, longest)
+                run = passage(line55(12), pantographs, kmh, longest, absolute_tol=5e-2)
                 for name in pantographs:
                     what = f"{name} of {len(starts)}, {longest[0]} m"
-                    rows.append(row(kmh, what, figures(run, [(440.0, 550.0)], name), run))
+                    rows.append(row(kmh, what, figures(run, [(330.0, 440.0)], name), run))
                     print(rows[-1], flush=True)
     return rows
 
 
 def cost_rows() -> list[dict]:
     """Return errors and costs at 300 km/h, and the growth with the spans."""
-    finest = judge(300, FINE, 5e-3)[1]
+    finest = judge(300, FINE)[1]
     rows = []
     for longest in (COARSE, (1.5, 3.0), USUAL):
-        for tol in (2e-1, 5e-2, 2e-2):
+        for tol in (2e-1, 2e-2):
             run, values = judge(300, longest, tol)
             rows.append({**row(300, f"{longest} m, tol {tol:g} m", values, run),
                          "error of sigma %": 100 * (values[1] / finest[1] - 1)})
             print(rows[-1], flush=True)
     for spans in (5, 10, 20, 40):
-        run = passage(reference(spans), {"pantograph": (TWO_MASSES, 20.0)}, 300, USUAL)
+        run = passage(reference(spans), {"pantograph": (TWO_MASSES, 20.0)}, 300, USUAL, absolute_tol=2e-1, duration=0.5)
         rows.append({**row(300, f"{spans} spans", ("",) * len(COLUMNS), run), "error of sigma %": ""})
         print(rows[-1], flush=True)
     return rows
