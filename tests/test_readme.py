@@ -123,6 +123,12 @@ def given_values(space):
     assert rest["dropper.tension"] > 0
 
 
+def passage(space):
+    assert space["form"].lengths[:3] == pytest.approx([1.017, 0.896, 0.810], abs=2e-3)
+    assert 100 < float(space["found"]["mean"][0]) < 125
+    assert 0.01 < float(space["found"].uplift[1]) < 0.1
+
+
 def held_by_friction(space):
     state, run = space["rest"], space["run"]
     assert 0.315 < float(state["trolley.s"]) < 0.9
@@ -152,6 +158,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "Surfaces and contact"): moored_line,
               ("runtime/README.md", "Joints and springs"): trolley,
               ("runtime/README.md", "Cables that touch bars and cables"): collector,
+              ("runtime/README.md", "Catenaries"): passage,
               ("runtime/README.md", "Running a scene"): named_quantities,
               ("runtime/README.md", "Events"): events,
               ("runtime/README.md", "Sweeps"): sweeps,

@@ -13,6 +13,7 @@ from .cables import cable_gravity, cable_model, cable_rates, cable_weights
 from .contacts import contact_model
 from .coupling import number
 from .crossings import crossing_model
+from .cutting import attached
 from .drags import drag_model
 from .hard_contacts import hard_contact_models
 from .joints import JointModel, frame_joint_model, joint_model
@@ -41,7 +42,7 @@ def build(scene: SceneData) -> Model:
              for model, vectors in zip(cables, nodal, strict=True)}
     attachments = AttachmentBuilder(scene, cables, bodies)
     loads = LoadBuilder(scene, attachments)
-    reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, _elements(nodes))
+    reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, _elements(nodes), attached(scene))
     for load in scene.loads.values():
         loads.load(load)
     slides = [slide_model(slide, scene, attachments, loads.signal) for slide in scene.slides.values()]

@@ -66,7 +66,7 @@ def ordered(of_elements: bytes, of_dofs: bytes, shape: tuple[int, int]) -> Numbe
     entry = touches.tocoo()
     entries = Touches(entry.row, entry.col, len(elements))
     orders = ((np.arange(shape[1]), shape[1]), _near(touches), _strung(touches))
-    return min((_numbering(*_extents(entries, *order), *order) for order in orders),
+    return min((numbered(entries, *order) for order in orders),
                key=lambda one: _operations(one, entries))
 
 
@@ -133,7 +133,18 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
     return np.argsort(np.lexsort((np.arange(n), first, last, border))), n - int(border.sum())
 
 
-def _extents(touches: Touches, number: np.ndarray, n_band: int) -> tuple[np.ndarray, np.ndarray]:
+def touched(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> Touches:
+    """Return which elements have a share of which unknowns; the arguments are those of `cheapest`."""
+    entry = _touches(elements, made_of, shape).tocoo()
+    return Touches(entry.row, entry.col, len(elements))
+
+
+def numbered(touches: Touches, number: np.ndarray, n_band: int) -> Numbering:
+    """Return the numbering with these numbers of the unknowns, of which the first n_band are the band."""
+    return _numbering(*extents(touches, number, n_band), number, n_band)
+
+
+def extents(touches: Touches, number: np.ndarray, n_band: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the first and the last row of the band that each element touches; n_band and -1 of none."""
     at = number[touches.unknown]
     inside = at < n_band
@@ -155,7 +166,7 @@ def _numbering(low: np.ndarray, high: np.ndarray, number: np.ndarray, n_band: in
 def _operations(numbering: Numbering, touches: Touches) -> float:
     """Return the operations of a factorisation and of its solves (engine/linear/bordered.c)."""
     n_band, width, chains = numbering.n_band, numbering.width, numbering.chains
-    low, high = _extents(touches, numbering.number, n_band)
+    low, high = extents(touches, numbering.number, n_band)
     at = numbering.number[touches.unknown]
     outside = (at >= n_band) & (high >= 0)[touches.element]
     of = np.searchsorted(chains, low, "right") - 1

@@ -19,7 +19,8 @@ from scipy.sparse import csr_array
 from ..errors import SceneError
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal
-from .numbering import Numbering, as_drawn, cheapest
+from .cutting import MOST, cut
+from .numbering import Numbering, as_drawn, cheapest, touched
 
 PARALLEL = 1e-9
 """Tangents whose cross product is smaller than this are parallel."""
@@ -188,8 +189,9 @@ class Supports:
             row.prescribed.extend(part.times(factor) for part in of.prescribed)
         return row
 
-    def reduce(self, n_dof: int, elements: np.ndarray) -> Reduction:
-        """Number the unknowns; return how dofs are made of them. elements (n, 2): first dof and number of dofs of each.
+    def reduce(self, n_dof: int, elements: np.ndarray, attached: np.ndarray) -> Reduction:
+        """Number the unknowns; return how dofs are made of them. elements (n, 2): first dof and number of dofs of each;
+        attached: elements that springs and joints are attached to, once for each.
 
         Where joins tie distant nodes, in the order that takes the fewest operations.
         """
@@ -201,7 +203,7 @@ class Supports:
         if any(row.prescribed for row in combined.values()):
             raise SceneError("scene", "a tie joins a node that moves as prescribed to one that is partly free",
                              "prescribe displacement and rotation there, or tie with rotation = \"free\"")
-        numbering = self._numbering(drawn, combined, elements)
+        numbering = self._numbering(drawn, combined, elements, attached)
         number = numbering.number
         unknown_of_dof = np.where(unknown, number[drawn], -1) if n else drawn
         rows, columns, values, count = [], [], [], 0
@@ -219,14 +221,17 @@ class Supports:
         prescribed = [(dof, part) for dof, row in self.rows.items() for part in row.prescribed]
         return Reduction(unknown_of_dof.astype(int), combinations, n, numbering, prescribed)
 
-    def _numbering(self, drawn: np.ndarray, combined: dict[int, Row], elements: np.ndarray) -> Numbering:
+    def _numbering(self, drawn: np.ndarray, combined: dict[int, Row], elements: np.ndarray,
+                   attached: np.ndarray) -> Numbering:
         """Return the numbering of unknowns that are numbered `drawn`, which combined dofs are made of besides."""
-        if not combined:
-            return as_drawn(elements, drawn)
         free = np.flatnonzero(drawn >= 0)
-        made_of = [(dof, drawn[of]) for dof, row in combined.items() for of in row.free]
-        return cheapest(elements, np.concatenate([np.stack([free, drawn[free]], axis=1), made_of]),
-                        (len(drawn), len(free)))
+        shape = len(drawn), len(free)
+        made_of = np.stack([free, drawn[free]], axis=1)
+        if combined:
+            of_rows = [(dof, drawn[of]) for dof, row in combined.items() for of in row.free]
+            made_of = np.concatenate([made_of, of_rows])
+        numbering = cheapest(elements, made_of, shape) if combined else as_drawn(elements, drawn)
+        return numbering if len(attached) <= MOST else cut(numbering, touched(elements, made_of, shape), attached)
 
 
 @lru_cache(maxsize=64)

@@ -1,0 +1,12 @@
+"""The catenary over a railway and the pantographs below it: built, formed, run, and judged by the contact force."""
+
+from .assessment import assess, losses, low_pass, uplift
+from .form import Form, form
+from .line import Line
+from .pantograph import Pantograph, add_pantograph
+from .pictures import plot_droppers, plot_force, plot_uplift
+from .scenes import scene
+from .wires import Droppers, SteadyArm, Wire, mass_damping
+
+__all__ = ["Droppers", "Form", "Line", "Pantograph", "SteadyArm", "Wire", "add_pantograph", "assess", "form", "losses",
+           "low_pass", "mass_damping", "plot_droppers", "plot_force", "plot_uplift", "scene", "uplift"]

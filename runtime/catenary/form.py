@@ -1,0 +1,114 @@
+"""The form of a catenary: the lengths of its droppers and wires, by the heights and tensions that are asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..parts.material import Material
+from ..parts.section import GeneralSection
+from ..scene import Scene
+from .line import Line
+from .wires import MODULUS, Wire
+
+if TYPE_CHECKING:
+    from ..results.equilibrium import Equilibrium
+
+LONGEST = 1.0, 2.0
+"""Of an element of the contact wire and of the messenger, in m, where nothing else is said."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """A span at rest, on meshes with elements of `longest` or shorter: of the contact wire, of the messenger, in m.
+
+    lengths: of the droppers, free of force, in m; tensions: their forces in N; stiffnesses in N/m; contact_length,
+    messenger_length: of the wires, undeformed, in m; height: of the contact wire at the masts over that at the outer
+    droppers, in m; mast_force: the weight that an inner mast bears, in N; rest: the state of rest of the span.
+    """
+
+    line: Line
+    longest: tuple[float, float]
+    lengths: np.ndarray
+    tensions: np.ndarray
+    stiffnesses: np.ndarray
+    contact_length: float
+    messenger_length: float
+    height: float
+    mast_force: float
+    rest: Equilibrium
+
+
+def mesh(line: Line, longest: float) -> np.ndarray:
+    """Return the places of the nodes of a span, from 0 to 1 of it: masts, droppers, and equal elements between."""
+    ends = np.array([0.0, *line.droppers.at, line.span])
+    pieces = [np.linspace(a, b, max(int(np.ceil((b - a) / longest - 1e-9)), 1) + 1)[:-1]
+              for a, b in pairwise(ends.tolist())]
+    return np.append(np.concatenate(pieces), line.span) / line.span
+
+
+def add_wire(scene: Scene, name: str, wire: Wire, start: float, end: float, height: float, nodes: np.ndarray) -> None:
+    """Add a wire along x at a height (m), whose nodes have these arc-lengths, undeformed."""
+    section = GeneralSection(area=wire.axial_stiffness / MODULUS,
+                             second_moment_about_z=wire.bending_stiffness / MODULUS)
+    density = wire.mass * (1 + wire.tension / wire.axial_stiffness) * MODULUS / wire.axial_stiffness
+    scene.cable(name, start=(start, height, 0), end=(end, height, 0), nodes=nodes, rest_length=float(nodes[-1]),
+                element="cable8p", strain="engineering", curvature="linear", membrane="reduced",
+                section=section,
+                material=Material(youngs_modulus=MODULUS, poisson_ratio=0.3, density=density,
+                                  mass_damping=wire.mass_damping, damping_time=wire.damping_time))
+
+
+def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
+    """Return the form of a line's spans, found for one of them: the others repeat it.
+
+    The contact wire lies at the droppers as the line's sags say, is level at the masts and pulls there with its
+    tension, as the messenger does, which turns freely on its supports. longest: of an element of the contact wire, and
+    of the messenger, in m. Raises SceneError; EquilibriumError, where that is not to be had.
+    """
+    droppers, strings = line.droppers, line.strings
+    scene = Scene(gravity=(0, -line.gravity, 0))
+    for name, wire, length, height, each in (
+            ("contact", line.contact, strings.contact_length, 0.0, longest[0]),
+            ("messenger", line.messenger, strings.messenger_length, line.height, longest[1])):
+        nodes = mesh(line, each) * length / (1 + wire.tension / wire.axial_stiffness)
+        add_wire(scene, name, wire, 0.0, line.span, height, nodes)
+    lengths = {name: cable.length for name, cable in scene.cables.items()}
+    for s in (0.0, lengths["messenger"]):
+        scene.pin("messenger", s=s)
+    for s in (0.0, lengths["contact"]):
+        scene.motion("contact", s=s, displacement=(0, "free", 0), rotation=((0, 0, 1), 0))
+    adjust, to = {"contact.rest_length": "free", "messenger.rest_length": "free"}, {}
+    for k, x in enumerate(droppers.at):
+        upper, lower = (x / line.span * lengths[name] for name in ("messenger", "contact"))
+        distance, force = float(strings.distances[k]), float(strings.forces[k])
+        stiffness = droppers.stiffness_of(distance)
+        scene.spring(("messenger", upper), ("contact", lower), name=f"dropper_{k + 1}", stiffness=stiffness,
+                     length=distance - force / stiffness, tension_only=True)
+        if line.hanging[k]:
+            scene.force("messenger", s=upper, value=(0, -line.gravity * line.hanging[k], 0))
+        if droppers.contact_clamp:
+            scene.force("contact", s=lower, value=(0, -line.gravity * droppers.contact_clamp, 0))
+        adjust[f"dropper_{k + 1}.length"] = "free"
+        to[f"contact@{lower:.15g}.position.y"] = -float(droppers.depths[k])
+    to |= {"contact@0.force.x": -line.contact.tension, "messenger@0.force.x": -line.messenger.tension}
+    return _read(line, longest, scene.equilibrium(adjust=adjust, to=to))
+
+
+def _read(line: Line, longest: tuple[float, float], rest: Equilibrium) -> Form:
+    names = [f"dropper_{k + 1}" for k in range(len(line.droppers.at))]
+    forces = np.array([float(rest[f"{name}.tension"]) for name in names])
+    distances = np.array([float(rest[f"{name}.length"]) for name in names])
+    lengths = np.array([rest.adjusted[f"{name}.length"] for name in names])
+    if line.droppers.stiffness is not None:
+        stiffnesses = np.full(len(names), line.droppers.stiffness)
+    else:
+        assert line.droppers.axial_stiffness is not None, "a dropper has one of the stiffnesses"
+        lengths = distances / (1 + forces / line.droppers.axial_stiffness)
+        stiffnesses = line.droppers.axial_stiffness / lengths
+    mast = 2 * float(rest["messenger@0.force"][1])
+    return Form(line, longest, lengths, forces, stiffnesses, rest.adjusted["contact.rest_length"],
+                rest.adjusted["messenger.rest_length"], float(rest["contact.position"][0, 1]), mast, rest)

@@ -1,0 +1,71 @@
+"""Scenes of whole catenaries, formed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..scene import Scene
+from .form import LONGEST, Form, add_wire, form, mesh
+from .line import Line
+
+LEVER = 1.0
+"""m: from where supports and steady arms are fixed to what they hold."""
+
+def scene(line: Line | Form, longest: tuple[float, float] = LONGEST) -> Scene:
+    """Return the scene of a catenary, formed, with x along the track and y up from the contact wire's height at the
+    outer droppers.
+
+    line: or its form, where that is known; longest: as in `form`. The contact wire is "contact", the messenger
+    "messenger_1" from the first mast to the second, the droppers "dropper_1_1" and so on, supports and steady arms
+    "support_1" and "arm_0" by their masts. Raises SceneError, EquilibriumError.
+    """
+    formed = form(line, longest) if isinstance(line, Line) else line
+    made = Scene(gravity=(0, -formed.line.gravity, 0))
+    _wires(made, formed)
+    _droppers(made, formed)
+    _masts(made, formed)
+    return made
+
+
+def _wires(made: Scene, formed: Form) -> None:
+    line = formed.line
+    place, of_messenger = (mesh(line, each) for each in formed.longest)
+    nodes = np.concatenate([place[:-1] + k for k in range(line.spans)] + [[line.spans]]) * formed.contact_length
+    add_wire(made, "contact", line.contact, 0.0, line.length, formed.height, nodes)
+    for s in (0.0, made.cables["contact"].length):
+        made.motion("contact", s=s, displacement=(0, "free", 0), rotation=((0, 0, 1), 0))
+    for k in range(line.spans):
+        add_wire(made, f"messenger_{k + 1}", line.messenger, k * line.span, (k + 1) * line.span, line.height,
+                 of_messenger * formed.messenger_length)
+
+
+def _droppers(made: Scene, formed: Form) -> None:
+    line, droppers = formed.line, formed.line.droppers
+    for span in range(line.spans):
+        messenger = f"messenger_{span + 1}"
+        for k, x in enumerate(droppers.at):
+            upper = x / line.span * formed.messenger_length
+            lower = (span + x / line.span) * formed.contact_length
+            made.spring((messenger, upper), ("contact", lower), name=f"dropper_{span + 1}_{k + 1}",
+                        stiffness=float(formed.stiffnesses[k]), length=float(formed.lengths[k]), tension_only=True)
+            hanging = line.hanging[k]
+            for wire, s, mass in ((messenger, upper, hanging), ("contact", lower, droppers.contact_clamp)):
+                if mass:
+                    made.force(wire, s=s, value=(0, -line.gravity * mass, 0))
+
+
+def _masts(made: Scene, formed: Form) -> None:
+    line, arm = formed.line, formed.line.steady_arm
+    made.pin("messenger_1", s=0.0)
+    made.pin(f"messenger_{line.spans}", s=made.cables[f"messenger_{line.spans}"].length)
+    for mast in range(1, line.spans):
+        x = mast * line.span
+        before = made.cables[f"messenger_{mast}"]
+        made.tie(before, s=before.length, to=f"messenger_{mast + 1}", at=0.0, rotation="free")
+        made.spring((x, line.height + LEVER, 0), (before, before.length), name=f"support_{mast}",
+                    stiffness=line.support, length=LEVER - formed.mast_force / line.support)
+    for mast in range(line.spans + 1):
+        if arm.stiffness:
+            s = mast * formed.contact_length
+            made.spring((mast * line.span, formed.height + LEVER, 0), ("contact", s), name=f"arm_{mast}",
+                        stiffness=arm.stiffness, length=LEVER)

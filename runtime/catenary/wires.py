@@ -1,0 +1,139 @@
+"""What a catenary is made of: wires, droppers, steady arms."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import model_validator
+
+from ..errors import SceneError
+from ..parts.part import Part
+from ..parts.schemas import checked
+from ..parts.validation import not_negative, positive, shown, vector
+
+MODULUS = 1e11
+"""Pa, of the materials that wires are written with: their area follows from it, so that
+EA, EI and mass are as given."""
+
+
+class Wire(Part):
+    """A wire under tension.
+
+    mass in kg/m, of the wire under its tension; tension in N, horizontal, at rest; axial_stiffness EA in N;
+    bending_stiffness EI in N m²; mass_damping in 1/s and damping_time in s, see `damping_ratio`.
+    """
+
+    mass: Annotated[float, positive("kg/m")]
+    tension: Annotated[float, positive("N")]
+    axial_stiffness: Annotated[float, positive("N")]
+    bending_stiffness: Annotated[float, positive("N m²")]
+    mass_damping: Annotated[float, not_negative("1/s")] = 0.0
+    damping_time: Annotated[float, not_negative("s")] = 0.0
+
+    @property
+    def wave_speed(self) -> float:
+        """Return the speed of transverse waves, those of a string, in m/s."""
+        return float(np.sqrt(self.tension / self.mass))
+
+    def damping_ratio(self, frequency: float | np.ndarray) -> float | np.ndarray:
+        """Return the damping ratio of transverse waves of a frequency f, in Hz.
+
+        mass_damping α gives α / (4 π f). damping_time τ damps what strains the material: of waves of the wavenumber k
+        that is bending, EI k² beside the tension N, and the ratio is π f τ EI k² / (N + EI k²), little where EI k² is.
+        """
+        omega = 2 * np.pi * np.asarray(frequency, dtype=float)
+        # m ω² = N k² + EI k⁴
+        half = self.tension / (2 * self.bending_stiffness)
+        square = np.sqrt(half**2 + self.mass * omega**2 / self.bending_stiffness) - half
+        bending = self.bending_stiffness * square
+        return (self.mass_damping / (2 * omega)
+                + omega * self.damping_time * bending / (2 * (self.tension + bending)))
+
+
+def _numbers(unit: str) -> Any:
+    """Return the check of a list of one number or more, finite."""
+    def check(value: Any) -> tuple[float, ...]:
+        value = value.tolist() if isinstance(value, np.ndarray) else value
+        if not isinstance(value, list | tuple) or not value:
+            raise ValueError(f"must be a list of numbers, one at least, got {shown(value)}")
+        return vector(value, unit, len(value))
+
+    return checked(check, {"type": "array", "items": {"type": "number"}})
+
+
+def _sag(value: Any) -> float | tuple[float, ...]:
+    """Return a depth in m, or one for each dropper."""
+    if isinstance(value, list | tuple | np.ndarray):
+        return vector(value, "m", len(value))
+    return vector([value], "m", 1)[0]
+
+
+class Droppers(Part):
+    """The droppers of a span: springs that pull alone.
+
+    at: m from the mast, increasing. stiffness in N/m, of each; or axial_stiffness EA in N, so that it is EA over the
+    length. sag: how far below its height at the outer droppers the contact wire lies at the droppers, in m each; one
+    number: the depth of a parabola between the outer ones. mass in kg/m; messenger_clamp and contact_clamp in kg. A
+    dropper's own mass is on the messenger, on which a slack one hangs.
+    """
+
+    at: Annotated[tuple[float, ...], _numbers("m")]
+    stiffness: Annotated[float, positive("N/m")] | None = None
+    axial_stiffness: Annotated[float, positive("N")] | None = None
+    sag: Annotated[float | tuple[float, ...], checked(_sag, {"type": ["number", "array"]})] = 0.0
+    mass: Annotated[float, not_negative("kg/m")] = 0.0
+    messenger_clamp: Annotated[float, not_negative("kg")] = 0.0
+    contact_clamp: Annotated[float, not_negative("kg")] = 0.0
+
+    @model_validator(mode="after")
+    def _fits(self) -> Droppers:
+        if (self.stiffness is None) == (self.axial_stiffness is None):
+            raise ValueError("have no stiffness" if self.stiffness is None else "have two stiffnesses",
+                             "give stiffness (N/m, of each) or axial_stiffness (N, times one over the length)")
+        for k in range(1, len(self.at)):
+            if not self.at[k] > self.at[k - 1]:
+                raise ValueError(f"must stand in order along the span: dropper {k + 1} is at {self.at[k]:.9g} m, "
+                                 f"dropper {k} at {self.at[k - 1]:.9g} m", "sort them, and give each place once")
+        if isinstance(self.sag, tuple) and len(self.sag) != len(self.at):
+            raise ValueError(f"have {len(self.at)} places and {len(self.sag)} sags", "give one for each, or one number")
+        if not isinstance(self.sag, tuple) and self.sag and len(self.at) < 3:
+            raise ValueError(f"are {len(self.at)}: no parabola has its depth between them", "give a sag for each")
+        return self
+
+    def stiffness_of(self, length: float) -> float:
+        """Return the stiffness of a dropper of some length (m), in N/m."""
+        if self.stiffness is not None:
+            return self.stiffness
+        assert self.axial_stiffness is not None, "droppers have one of the stiffnesses"
+        return self.axial_stiffness / length
+
+    @property
+    def depths(self) -> np.ndarray:
+        """Return the sag at each dropper, in m."""
+        if isinstance(self.sag, tuple):
+            return np.array(self.sag)
+        x = np.array(self.at)
+        middle, half = (x[0] + x[-1]) / 2, (x[-1] - x[0]) / 2
+        return self.sag * (1 - ((x - middle) / half) ** 2) if self.sag else np.zeros(len(x))
+
+
+class SteadyArm(Part):
+    """What keeps the contact wire in its place at a mast: in the plane a vertical spring without force at rest.
+
+    stiffness in N/m, vertical; mass in kg, moving with the wire.
+    """
+
+    stiffness: Annotated[float, not_negative("N/m")] = 0.0
+    mass: Annotated[float, not_negative("kg")] = 0.0
+
+
+def mass_damping(ratio: float, frequency: float) -> float:
+    """Return the mass damping in 1/s with which a mode of that frequency (Hz) has that damping ratio.
+
+    Other modes have ratios in inverse proportion to their frequencies. Raises SceneError.
+    """
+    if not (0 <= ratio < 1 and 0 < frequency < np.inf):
+        raise SceneError("mass_damping", f"needs a ratio from 0 to 1 and a frequency above nil, got {shown(ratio)} and "
+                         f"{shown(frequency)} Hz")
+    return float(4 * np.pi * frequency * ratio)
