@@ -38,15 +38,18 @@ class Snapshots:
         reactions: False where no force is asked for that residuals are needed to know, which saves them.
         """
         rows: list[tuple[np.ndarray, ...]] = []
+        couplings: dict[str, list[np.ndarray]] = {kind: [] for kind in AT_REST}
         for state in states:
             if reactions:
                 state.residual()
             kept = state.keep()
             rows.append((kept["q"], kept["s"], kept["force"], kept["point_force"], state.engine.reaction(),
-                         state.engine.joint_forces(), *(state.engine.static_outputs(kind) for kind in AT_REST)))
-        arrays = [np.array(each) for each in zip(*rows, strict=True)]
-        first = len(arrays) - len(AT_REST)
-        return cls(*arrays[:first], dict(zip(AT_REST, arrays[first:], strict=True)))
+                         state.engine.joint_forces()))
+            for kind, numbers in couplings.items():
+                numbers.append(state.engine.static_outputs(kind))
+        q, s, slide_force, point_force, reaction, joint_forces = (np.array(each) for each in zip(*rows, strict=True))
+        return cls(q, s, slide_force, point_force, reaction, joint_forces,
+                   {kind: np.array(numbers) for kind, numbers in couplings.items()})
 
 
 @dataclass(frozen=True)
