@@ -28,7 +28,7 @@ void fu_surface_into(int dim, const fu_attachment_state *at, const double *given
 /* Makes a point from the origin along the shape's axes. */
 static void local(int dim, const fu_attachment_state *at, const double *r, double *y)
 {
-    double from[3];
+    double from[3] = {0.0};
     for (int d = 0; d < dim; ++d) from[d] = r[d] - at->p[d];
     fu_surface_into(dim, at, from, y);
 }

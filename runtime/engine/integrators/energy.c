@@ -154,7 +154,7 @@ static double apply(fu_run *run, double h)
     return size;
 }
 
-static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 24, 1, NULL};
+static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 24, 1, NULL, NULL};
 
 static int start(fu_run *run)
 {
