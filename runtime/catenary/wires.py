@@ -121,11 +121,10 @@ class Droppers(Part):
 class SteadyArm(Part):
     """What keeps the contact wire in its place at a mast: in the plane a vertical spring without force at rest.
 
-    stiffness in N/m, vertical; mass in kg, moving with the wire.
+    stiffness in N/m, vertical. Its mass is left out.
     """
 
     stiffness: Annotated[float, not_negative("N/m")] = 0.0
-    mass: Annotated[float, not_negative("kg")] = 0.0
 
 
 def mass_damping(ratio: float, frequency: float) -> float:
