@@ -24,7 +24,7 @@ def model(*signals, driving=()):
     """As much of a model as knots are found from; driving: numbers of the signals that prescribe a motion."""
     return SimpleNamespace(
         signals=[SignalModel(*each.pieces(), each.amplitude, each.angular_frequency, each.phase) for each in signals],
-        motions=[SimpleNamespace(signal=k) for k in driving], couplings=[])
+        motions=[SimpleNamespace(signal=k) for k in driving], couplings=[], drags=[])
 
 
 def straight(*values, times=TIMES) -> TableSignal:

@@ -19,8 +19,12 @@ PIECE = 4
 
 
 def attached(scene: SceneData) -> np.ndarray:
-    """Return the elements that springs and joints are attached to, of all cables in their order, once for each."""
+    """Return the elements that springs and joints are attached to, of all cables in their order, once for each; none
+    where they are too few for a cut.
+    """
     cables = scene.cables
+    if 2 * (len(scene.point_forces) + len(scene.joints)) <= MOST:
+        return np.zeros(0, dtype=int)
     before = dict(zip(cables, np.cumsum([0, *(cable.elements for cable in cables.values())]).tolist(), strict=False))
     ends = [end for part in (*scene.point_forces.values(), *scene.joints.values()) for end in (part.a, part.b)
             if end.on in cables]

@@ -224,6 +224,8 @@ class Supports:
     def _numbering(self, drawn: np.ndarray, combined: dict[int, Row], elements: np.ndarray,
                    attached: np.ndarray) -> Numbering:
         """Return the numbering of unknowns that are numbered `drawn`, which combined dofs are made of besides."""
+        if not combined and len(attached) <= MOST:
+            return as_drawn(elements, drawn)
         free = np.flatnonzero(drawn >= 0)
         shape = len(drawn), len(free)
         made_of = np.stack([free, drawn[free]], axis=1)

@@ -329,8 +329,11 @@ class Cable(Part):
         """Return the points that it is drawn through, in m."""
         if self.shape == "hanging" and self._hanging is not None:
             return self._hanging
-        ends = tuple(end for end in (self.start, self.end) if end is not None)
-        return ends if self.points is None else self.points
+        if self.points is not None:
+            return self.points
+        if self.start is not None and self.end is not None:
+            return self.start, self.end
+        return tuple(end for end in (self.start, self.end) if end is not None)
 
     @property
     def _shape(self) -> curves.Line | curves.Spline:

@@ -16,39 +16,50 @@ TRIALS = 12
 """Steps of Newton's method to the closest points: the conditions hold nearly, and digits double."""
 
 
-def crossing(family: CouplingFamily) -> list[Relation]:
-    """Return the relations of force, energy and closest points.
+class Lines:
+    """Parabolas with the slopes and curvatures of a state, one or two."""
 
-    The lines are parabolas with the given slopes and curvatures. Along a path they are moved, their closest points
-    are found anew by a matrix that is solved by numbers, and the force is that of the kernel there.
-    """
-    dim, lines = family.dim, family.dim - 1
-    signs = (1, -1)[:lines]
+    def __init__(self, lines: int):
+        self.lines, self.signs = lines, (1, -1)[:lines]
 
-    def along(s: State, x: list[Any]) -> State:
+    def along(self, s: State, x: list[Any]) -> State:
         """Return the state at other points of the lines."""
         t, k, w = s["t"], s["k"], s["w"]
         d, u, slopes = s["d"], s["u"], []
-        for i, sign in enumerate(signs):
+        for i, sign in enumerate(self.signs):
             d = d + sign * (x[i] * t[i] + x[i] * x[i] / 2 * k[i])
             u = u + sign * x[i] * w[i]
             slopes.append(t[i] + x[i] * k[i])
         return {**s, "d": d, "u": u, "t": np.array(slopes)}
 
-    def points(s: State) -> list[Any]:
+    def points(self, s: State) -> list[Any]:
         """Return the closest points, by their arc-lengths from those of the state."""
-        x: list[Any] = [0 * s["d"][0]] * lines
+        x: list[Any] = [0 * s["d"][0]] * self.lines
         for _ in range(TRIALS):
-            at = along(s, x)
+            at = self.along(s, x)
             d, t, k = at["d"], at["t"], at["k"]
             h, a = t @ d, t[0].dot(t[0]) + k[0].dot(d)
-            if lines == 1:
+            if self.lines == 1:
                 x = [x[0] - h[0] / a]
                 continue
             b, c, e = -t[0].dot(t[1]), t[1].dot(t[0]), -t[1].dot(t[1]) + k[1].dot(d)
             determinant = a * e - b * c
             x = [x[0] - (e * h[0] - b * h[1]) / determinant, x[1] - (a * h[1] - c * h[0]) / determinant]
         return x
+
+    def closest(self, s: State) -> State:
+        """Return the state at the closest points."""
+        return self.along(s, self.points(s))
+
+
+def crossing(family: CouplingFamily) -> list[Relation]:
+    """Return the relations of force, energy and closest points.
+
+    Along a path the lines are moved, their closest points are found anew by a matrix that is solved by numbers, and the
+    force is that of the kernel there.
+    """
+    dim, lines = family.dim, Lines(family.dim - 1)
+    numbers = {"d": dim, "t": lines.lines * dim}
 
     def moved(s: State, name: str, t: Any, j: int) -> State:
         return {**s, name: s[name] + t * entry(name)(s, j)}
@@ -57,22 +68,28 @@ def crossing(family: CouplingFamily) -> list[Relation]:
         """Return a state of straight lines off their closest points."""
         return {**s, "d": s["d"] + s["t"][0] / 3, "k": 0 * s["k"]}
 
-    def straight(s: State) -> Any:
-        return np.array(points(off(s)))
-
     def force_by(name: str) -> Callable:
-        def path(k: Numbers, s: State, t: Any, j: int) -> Any:
-            at = moved(s, name, t, j)
-            return k("force", along(at, points(at)))["F"]
-        return path
+        return lambda k, s, t, j: k("force", lines.closest(moved(s, name, t, j)))["F"]
 
     def points_by(name: str) -> Callable:
-        return lambda k, s, t, j: np.array(points(moved(s, name, t, j)))
+        return lambda k, s, t, j: np.array(lines.points(moved(s, name, t, j)))
 
     def energy(k: Numbers, s: State, t: Any, j: int) -> Any:
-        at = moved(s, "d", t, j)
-        return -k("contact", along(at, points(at)))["U"]
+        return -k("contact", lines.closest(moved(s, "d", t, j)))["U"]
 
+    return [*(Relation("force", f"F_{name}", f"dF by {name}, closest points found anew", 1, force_by(name), n)
+              for name, n in (*numbers.items(), ("u", dim))),
+            *(Relation("force", f"s_{name}", f"closest points by {name}, found anew", 1, points_by(name), n)
+              for name, n in numbers.items()),
+            Relation("force", "F", "-dU by d without damping", 1, energy, dim,
+                     of=lambda k, s: k("force", {**s, "u": 0 * s["u"]})["F"]),
+            *_contact(lines.lines),
+            Relation("closest", "step", "closest points of lines without curvature", 0,
+                     root(lambda s: np.array(lines.points(off(s)))), of=lambda k, s: k("closest", off(s))["step"])]
+
+
+def _contact(lines: int) -> list[Relation]:
+    """Return the relations of what contact is at the closest points, in closed form."""
     def across(s: State) -> Any:
         t = s["t"]
         square = np.array([t[0][1], -t[0][0]]) if lines == 1 else np.cross(t[0], t[1])
@@ -108,13 +125,4 @@ def crossing(family: CouplingFamily) -> list[Relation]:
             "N": ("k p^e (1 + damping p')", size), "U": ("k p^(e+1)/(e+1)", stored),
             "f": ("N n - mu N v/sqrt(v.v + v0^2)", whole),
             "P": ("k p^e damping p'^2 + mu N v.v/sqrt(v.v + v0^2)", dissipated)}
-    numbers = {"d": dim, "t": lines * dim}
-    return [*(Relation("force", f"F_{name}", f"dF by {name}, closest points found anew", 1, force_by(name), n)
-              for name, n in (*numbers.items(), ("u", dim))),
-            *(Relation("force", f"s_{name}", f"closest points by {name}, found anew", 1, points_by(name), n)
-              for name, n in numbers.items()),
-            Relation("force", "F", "-dU by d without damping", 1, energy, dim,
-                     of=lambda k, s: k("force", {**s, "u": 0 * s["u"]})["F"]),
-            *(Relation("contact", name, text, 0, root(function)) for name, (text, function) in told.items()),
-            Relation("closest", "step", "closest points of lines without curvature", 0, root(straight),
-                     of=lambda k, s: k("closest", off(s))["step"])]
+    return [Relation("contact", name, text, 0, root(function)) for name, (text, function) in told.items()]

@@ -1,4 +1,4 @@
-/* Hard contact of a point with a surface: while it is closed its distance is a constraint like a joint's (eq 38), whose multiplier
+/* Hard contact of a point with a surface: while it is closed its distance is a constraint like those of a joint, eq 38, whose multiplier
  * may press alone. couplings/hard_contact_events.c has when it closes and opens, couplings/impacts.c what then happens.
  */
 #include "engine.h"
