@@ -38,7 +38,9 @@ def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tupl
              for each in [*_of_signal(signal, number in driving, number in inertial, tol),
                           *(_turns(signal.breaks, signal.coefficients[:, 0], tol) if turns else [])]
              if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
-    found += [each for each in (_of_tables(model) if model.drags else ()) if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
+    if model.drags:
+        found += [each for each in _of_tables(model)
+                  if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
     times: list[float] = []
     jumps: list[float] = []
     for time, jump in sorted(found):
