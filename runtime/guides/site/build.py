@@ -54,8 +54,8 @@ Each is a script that runs; its pictures and numbers are what it printed when th
 
 
 ORDER = ("first_scene", "choose_an_element", "choose_a_model", "cable_car", "crane", "zip_line", "pantograph",
-         "cable_robot", "slackline", "slack_and_taut", "droppers", "wind_and_water", "modes", "results", "sweep",
-         "fit_and_rank", "long_runs",
+         "cable_robot", "slackline", "slack_and_taut", "droppers", "contact", "wind_and_water", "modes", "results",
+         "sweep", "fit_and_rank", "long_runs",
          "your_own_element", "verify_and_benchmark", "c_kernels")
 """Of the guides in the site: from the first steps over examples to what few need."""
 
