@@ -129,8 +129,7 @@ for damping in (0.0, 10.0):
     print(f"in the second half: from {force[50:].min():.2f} to {force[50:].max():.2f} weights")
     assert np.ptp(force[50:]) < 0.1 if damping else np.ptp(force[50:]) > 5
 table.set(xlabel="time in s", ylabel="weights of the rope", title="force of the table")
-for axes in (ball, table):
-    axes.legend(frameon=False)
+_ = ball.legend(frameon=False), table.legend(frameon=False)
 
 # %%
 # Two ropes that cross
@@ -144,8 +143,7 @@ for name, along, z, down in (("lower", (0.4, 0), 0.0, 0.0), ("upper", (0, 0.4), 
     scene.cable(name, start=(-along[0], -along[1], z), end=(*along, z), rest_length=1.0, shape="hanging", elements=16,
                 element="cable12", law="engineering_exact", rest="straight", section=fu.Circle(radius=0.005),
                 material=fu.Material(youngs_modulus=1e6, poisson_ratio=0.5, density=1000))
-    for s in (0.0, 1.0):
-        scene.motion(name, s=s, displacement=(0, 0, -down))
+    _ = [scene.motion(name, s=s, displacement=(0, 0, -down)) for s in (0.0, 1.0)]
 scene.crossing("upper", "lower", stiffness=1e5, name="crossing")
 crossed = scene.equilibrium()
 print(f"{crossed['crossing.normal_force']:.5f} N at {crossed['crossing.s']:.3f} m of the upper rope")
