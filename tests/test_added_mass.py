@@ -326,6 +326,22 @@ def test_a_stop_that_is_struck_in_water_balances(integrator):
     assert balance(run) < 1e-5
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("integrator", OF_BODIES)
+def test_an_impact_in_a_stream_balances(integrator, friction):
+    """A stream does work on what an impact turns round: U . M (v+ - v-), beside what the ground takes."""
+    scene = fu.Scene(gravity=(0, -G, 0))
+    scene.surface("ground", fu.Plane())
+    scene.rigid_body("ball", mass=2.0, inertia=(8e-3,) * 3, position=(0, 1.1, 0), velocity=(0.5, 0, 0))
+    scene.contact("ball", "ground", restitution=0.8, radius=0.1, friction=friction)
+    scene.fluid(density=WATER, velocity=(0.3, -1.0, 0))
+    scene.drag("ball", volume=1e-3, added_mass=0.5)
+    run = scene.run(1.0, tol=1e-6, integrator=integrator, output_step=0.01)
+    assert [event["what"] for event in run.report["events"]] == ["struck"]
+    assert run["energy.dissipated"][-1] > 1.0
+    assert balance(run) < 1e-9
+
+
 def test_a_scene_in_a_plane_is_recognised_unless_lift_leaves_it():
     for lift in (0.0, 0.3):
         scene = fu.Scene()

@@ -106,22 +106,17 @@ static int solve(fu_run *run, fu_touching *t, double least)
  * point may bring energy: then there is none. Returns not zero where no impulses part it. */
 static int strike(fu_run *run, fu_touching *t, double least)
 {
-    const fu_model *model = run->model;
-    fu_state *now = &run->now;
     for (int k = 0; k < t->n; ++k) {
         const fu_hard_contact *contact = contact_of(t->of[k]);
         const double back = -contact->restitution * t->before[k];
         t->target[k] = back > contact->rest_velocity ? back : 0.0;
     }
     if (solve(run, t, least)) return 1;
-    if (t->taken < -GROWTH * fu_kinetic_energy(model, now->t, now->q, run->work)) {
+    if (t->taken < -GROWTH * fu_kinetic_energy_of_change(run->model, run->now.q, run->work)) {
         memset(t->target, 0, sizeof t->target);
         if (solve(run, t, least)) return 1;
     }
-    const double before = fu_kinetic_energy(model, now->t, now->q, now->v), taken = t->taken;
-    for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
-    run->dissipated += taken;
-    if (model->n_driven || model->n_motions) run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before + taken;
+    fu_take_jump(run, run->work, t->taken);
     fu_couplings_take_velocities(run);
     return 0;
 }

@@ -15,6 +15,7 @@ double fu_dissipated_power(const fu_run *run, const fu_state *state);
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);
 void fu_account_trapezoid(fu_run *run, double h);
 void fu_impact(fu_run *run, const double *change, double restitution);
+void fu_take_jump(fu_run *run, const double *change, double lost);
 int fu_moves(const fu_run *run);
 int fu_check_energy_balance(fu_run *run, const double energies[FU_ENERGIES], int first);
 

@@ -75,19 +75,25 @@ void fu_account_trapezoid(fu_run *run, double h)
     run->external_power = external;
 }
 
-/* Changes the velocities of `now` by an impact, so that constraints hold that they broke, M change = H' L. What is lost is
- * (1 - e)/(1 + e) of the kinetic energy of the change (Carnot), with the restitution e of the constraint that was broken;
- * the impulses of what drives the scene, whose constraints were not, have done the rest. */
-void fu_impact(fu_run *run, const double *change, double restitution)
+/* Changes the velocities of `now` by a jump M change = H' L, of which impacts take the energy `lost`, J. The impulses of what drives
+ * the scene, and of a fluid that moves, have done the rest. */
+void fu_take_jump(fu_run *run, const double *change, double lost)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
-    const double lost = (1.0 - restitution) / (1.0 + restitution) * fu_kinetic_energy_of_change(model, now->q, change);
     const double before = fu_kinetic_energy(model, now->t, now->q, now->v);
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += change[i];
     run->dissipated += lost;
     if (model->n_driven || model->n_motions || model->n_inertial)
         run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before + lost;
+}
+
+/* Changes the velocities of `now` by an impact, so that constraints hold that they broke. What is lost is (1 - e)/(1 + e) of the
+ * kinetic energy of the change (Carnot), with the restitution e of the constraint that was broken. */
+void fu_impact(fu_run *run, const double *change, double restitution)
+{
+    const double of_change = fu_kinetic_energy_of_change(run->model, run->now.q, change);
+    fu_take_jump(run, change, (1.0 - restitution) / (1.0 + restitution) * of_change);
 }
 
 /* Returns whether anything moves beyond what step control and rounding leave of a scene at rest. */
