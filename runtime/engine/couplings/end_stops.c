@@ -24,10 +24,10 @@ static int locked_force(const fu_run *run, const fu_state *state, int j, double 
     const fu_model *model = run->model;
     memcpy(f, state->forces + model->slides[j].base.force, sizeof(double) * (size_t)model->dim);
     if (!run->integrator->newton && !fu_ties_a_frame(model, j)) return 0;
-    fu_accelerator work = run->accelerator;
+    const double *acceleration = fu_watch_accelerations(run, state);
     fu_slide_output out;
-    if (fu_accelerations(model, state, &work, run->work, 0)) return 0;
-    fu_slide_outputs(model, state, j, run->work, &work, &out);
+    if (!acceleration) return 0;
+    fu_slide_outputs(model, state, j, acceleration, &run->accelerator, &out);
     memcpy(f, out.force, sizeof(double) * (size_t)model->dim);
     *traction = out.traction;
     return 1;

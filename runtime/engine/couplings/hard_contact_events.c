@@ -25,10 +25,8 @@ static int watches(const fu_coupling *coupling, fu_watch *out)
 static const double *multipliers(const fu_run *run, const fu_coupling *coupling, const fu_state *state)
 {
     static const double none[FU_SPACE] = {NAN, NAN, NAN};
-    fu_accelerator work = run->accelerator;
     if (!run->integrator->newton) return state->forces + coupling->force;
-    if (fu_accelerations(run->model, state, &work, run->work, 0)) return none;
-    return run->accelerator.multipliers + coupling->multiplier;
+    return fu_watch_accelerations(run, state) ? run->accelerator.multipliers + coupling->multiplier : none;
 }
 
 /* Returns by how much what holds the point exceeds what friction can take, N; or how fast it slides backwards, m/s. */

@@ -23,7 +23,13 @@ typedef struct {
 } fu_event;
 extern const fu_event fu_no_event;
 
-fu_event fu_find_event(const fu_run *run, fu_event but);
+/* How eq 38 is solved for what is watched: anew for each number; for all that are read together at one state once, which is still to
+ * be done, has been done, or has found no solution. */
+enum { FU_SOLVE_ANEW = 0, FU_SOLVE_ONCE, FU_IS_SOLVED, FU_HAS_NO_SOLUTION };
+/* The accelerations at a state for a watched number, with run->accelerator as it is after them; null where there is no solution. */
+const double *fu_watch_accelerations(const fu_run *run, const fu_state *state);
+
+fu_event fu_find_event(fu_run *run, fu_event but);
 fu_event fu_late_event(fu_run *run);
 double fu_locate(fu_run *run, fu_event event, double h);
 int fu_has_lost_a_watch(fu_run *run);

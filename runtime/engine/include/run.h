@@ -40,6 +40,7 @@ struct fu_run {
     const char **passed; /* per watch: what has happened then, in words */
     fu_slackness *slackness; /* per cable */
     double *watch_work;  /* n_dof + n_outputs: accelerations and a row of output that a watched number is of */
+    int watch_solution;  /* what is known of these accelerations: FU_SOLVE_ANEW and the like */
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     fu_event event;      /* that the run has stopped at */

@@ -15,13 +15,25 @@
 
 const fu_event fu_no_event = {FU_NO_EVENT, 0, 0, 0};
 
+const double *fu_watch_accelerations(const fu_run *run, const fu_state *state)
+{
+    fu_run *scratch = (fu_run *)run; /* a run is never a constant */
+    int known = run->watch_solution;
+    if (known == FU_SOLVE_ANEW || known == FU_SOLVE_ONCE) {
+        const int failed = fu_accelerations(run->model, state, &scratch->accelerator, run->watch_work, 0);
+        if (known == FU_SOLVE_ONCE) scratch->watch_solution = failed ? FU_HAS_NO_SOLUTION : FU_IS_SOLVED;
+        known = failed ? FU_HAS_NO_SOLUTION : FU_IS_SOLVED;
+    }
+    return known == FU_IS_SOLVED ? run->watch_work : 0;
+}
+
 /* Returns a number of a coupling's row of output; not a number where eq 38 has no solution. */
 static double output_of(const fu_run *run, const fu_state *state, const fu_coupling *c, int which)
 {
-    fu_accelerator *work = (fu_accelerator *)&run->accelerator; /* scratch: a run is never a constant */
-    double *acceleration = run->watch_work, *out = acceleration + run->model->n_dof;
-    if (fu_accelerations(run->model, state, work, acceleration, 0)) return NAN;
-    c->type->outputs(run->model, c, state, acceleration, work, out);
+    const double *acceleration = fu_watch_accelerations(run, state);
+    double *out = run->watch_work + run->model->n_dof;
+    if (!acceleration) return NAN;
+    c->type->outputs(run->model, c, state, acceleration, &run->accelerator, out);
     return out[which];
 }
 
@@ -58,7 +70,7 @@ static fu_event passes(const fu_run *run, int k, double after)
 
 /* Returns the crossing of the coupling of `next` that is farthest outside its piece, else the first of the watches that pass
  * zero between `now` and `next`; but for one event. */
-fu_event fu_find_event(const fu_run *run, fu_event but)
+fu_event fu_find_event(fu_run *run, fu_event but)
 {
     fu_event found = fu_no_event;
     double worst = 0.0;
@@ -73,8 +85,10 @@ fu_event fu_find_event(const fu_run *run, fu_event but)
             found = (fu_event){FU_CROSSING, k, side, 0};
         }
     }
+    run->watch_solution = FU_SOLVE_ONCE;
     for (int k = 0; k < run->n_watches && !found.kind; ++k)
         if (but.kind != FU_WATCHED || but.which != k) found = passes(run, k, watched(run, &run->next, k));
+    run->watch_solution = FU_SOLVE_ANEW;
     return found;
 }
 
@@ -229,6 +243,7 @@ double fu_locate(fu_run *run, fu_event event, double h)
 void fu_watch_now(fu_run *run, fu_event event, double h)
 {
     const int moved = h > AT_ONCE * run->duration;
+    run->watch_solution = FU_SOLVE_ONCE;
     for (int k = 0; k < run->n_watches; ++k) {
         const int expected = event.kind == FU_WATCHED && event.which == k;
         const double value = expected ? 0.0 : watched(run, &run->now, k);
@@ -237,6 +252,7 @@ void fu_watch_now(fu_run *run, fu_event event, double h)
         else if (value != 0.0 && (moved || run->watched[k] != 0.0)) run->watched[k] = value;
         if (!expected && late.kind) run->late[k] = late.side;
     }
+    run->watch_solution = FU_SOLVE_ANEW;
 }
 
 /* Returns whether a coupling's watch is not a number: then it can go on no more, and the cause is noted. */
@@ -253,6 +269,7 @@ int fu_has_lost_a_watch(fu_run *run)
  * value of one of them zero. */
 void fu_watch_anew(fu_run *run, int coupling)
 {
+    run->watch_solution = FU_SOLVE_ONCE;
     for (int k = 0; k < run->n_watches; ++k) {
         const fu_watch *watch = &run->watches[k];
         if (watch->kind != FU_WATCH_COUPLING) continue;
@@ -262,6 +279,7 @@ void fu_watch_anew(fu_run *run, int coupling)
         const int sign = c->type->events->sign(run->model, c, &run->now, watch->which);
         run->watched[k] = sign * fmax(sign * watched(run, &run->now, k), SMALLEST);
     }
+    run->watch_solution = FU_SOLVE_ANEW;
 }
 
 /* Returns an event that passed together with another one, and is still to happen; none where there is none. */
