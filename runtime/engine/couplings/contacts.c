@@ -241,7 +241,7 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
 {
     const fu_contact *contact = of(coupling);
     const int dim = model->dim;
-    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES], force[3];
+    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, at->now, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
@@ -251,11 +251,9 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
         for (int k = 0; k < contact->n_points; ++k) {
             fu_touch_point now, next;
             if (!ends_of_step(model, contact, &on, at, e, k, &now, &next)) continue;
-            const fu_attachment_state still = on;
-            fu_contact_step(model, contact, &still, at->h, &now, &next, force, next.by_place);
+            fu_contact_step(model, contact, &on, at->h, &now, &next, next.f, next.by_place);
             for (int i = 0; i < dim * dim; ++i) next.by_place[i] *= 2.0;
             memset(next.by_rate, 0, sizeof next.by_rate);
-            memcpy(next.f, force, sizeof next.f);
             if (!n) {
                 fu_contact_add_derivatives(model, contact, &on, at->middle, e, k, &next, 0, at->weights, system);
                 continue;
