@@ -206,23 +206,13 @@ static void add_mass(const fu_cable *cable, int k, double mass, double *K)
             for (int d = 0; d < dim; ++d) K[(j * dim + d) * n + i * dim + d] += mass * m[j * vectors + i];
 }
 
-/* Adds K over n dofs from `first` on to a system. */
-static void add_matrix(const fu_model *model, int first, int n, const double *K, fu_system *system)
+void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by, double *K)
 {
-    const int rows = FU_BAND_ROWS(system->width), diagonal = FU_BAND_DIAGONAL(system->width), *unknown = model->unknown_of_dof + first;
-    int outside_band = 0;
-    for (int j = 0; j < n; ++j) outside_band |= unknown[j] <= FU_COMBINED || unknown[j] >= system->n;
-    if (outside_band) {
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, K[i * n + j]);
-        return;
-    }
-    for (int j = 0; j < n; ++j) {
-        if (unknown[j] < 0) continue;
-        double *column = system->K + (long)unknown[j] * rows + diagonal - unknown[j];
-        for (int i = 0; i < n; ++i)
-            if (unknown[i] >= 0) column[unknown[i]] += K[i * n + j];
-    }
+    const int vectors = n / dim;
+    for (int k = 0; k < vectors; ++k)
+        for (int l = 0; l < vectors; ++l)
+            for (int i = 0; i < dim; ++i)
+                for (int j = 0; j < dim; ++j) K[(k * dim + i) * n + l * dim + j] += factor * a[k] * b[l] * by[i * dim + j];
 }
 
 /* A matrix of a cable that threads share. */
@@ -282,7 +272,7 @@ static void add_matrix_part(const void *what, int part, int parts)
         complete(job, k, K);
         if (parts > 1 && (k == range.first || is_shared(model, cable, k)))
             memcpy(model->thread_work + (long)k * size, K, sizeof(double) * (size_t)size);
-        else add_matrix(model, cable->first + k * cable->per_node, cable->coordinates, K, job->system);
+        else fu_add_element_matrix(model, cable->first + k * cable->per_node, cable->coordinates, K, job->system);
     }
 }
 
@@ -296,8 +286,8 @@ static void add_matrix_of(const matrix *job)
         const fu_range range = fu_part_of(cable->n_elements, FU_BLOCK_ELEMENTS, part, parts);
         for (int k = range.first; k < range.end; ++k)
             if (k == range.first || is_shared(model, cable, k))
-                add_matrix(model, cable->first + k * cable->per_node, cable->coordinates, model->thread_work + (long)k * size,
-                           job->system);
+                fu_add_element_matrix(model, cable->first + k * cable->per_node, cable->coordinates,
+                                      model->thread_work + (long)k * size, job->system);
     }
 }
 

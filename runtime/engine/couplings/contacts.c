@@ -137,23 +137,6 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     force(model, coupling, at->next, f);
 }
 
-/* Adds the derivatives at a point on an element to the element's own, K. */
-static void add_to_element(int dim, int n, const double *N, const double *by, double scale, double *K)
-{
-    const int all = n * dim;
-    for (int k = 0; k < n; ++k)
-        for (int l = 0; l < n; ++l)
-            for (int i = 0; i < dim; ++i)
-                for (int j = 0; j < dim; ++j) K[(k * dim + i) * all + l * dim + j] -= scale * N[k] * N[l] * by[i * dim + j];
-}
-
-static void add_element(const fu_model *model, int first, int n, const double *K, fu_system *system)
-{
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j)
-            if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, K[i * n + j]);
-}
-
 static void matrix(const fu_model *model, const fu_contact *contact, const fu_state *state, const double *psi, fu_weights weights,
                    fu_system *system)
 {
@@ -177,9 +160,10 @@ static void matrix(const fu_model *model, const fu_contact *contact, const fu_st
             const double weight = fu_contact_weight(contact, e, k);
             if (!touches++) memset(K, 0, sizeof(double) * (size_t)(n * n));
             for (int i = 0; i < dim * dim; ++i) point.by_place[i] += weights.rate * point.by_rate[i];
-            add_to_element(dim, n / dim, fu_contact_shapes(contact, n / dim, e, k), point.by_place, weights.stiffness * weight, K);
+            const double *N = fu_contact_shapes(contact, n / dim, e, k);
+            fu_add_element_product(dim, n, -weights.stiffness * weight, N, N, point.by_place, K);
         }
-        if (touches) add_element(model, fu_contact_first(model, contact, e), n, K, system);
+        if (touches) fu_add_element_matrix(model, fu_contact_first(model, contact, e), n, K, system);
     }
 }
 
@@ -259,10 +243,10 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
                 continue;
             }
             if (!touches++) memset(K, 0, sizeof(double) * (size_t)(n * n));
-            add_to_element(dim, n / dim, fu_contact_shapes(contact, n / dim, e, k), next.by_place,
-                           at->weights.stiffness * fu_contact_weight(contact, e, k), K);
+            const double *N = fu_contact_shapes(contact, n / dim, e, k);
+            fu_add_element_product(dim, n, -at->weights.stiffness * fu_contact_weight(contact, e, k), N, N, next.by_place, K);
         }
-        if (touches) add_element(model, fu_contact_first(model, contact, e), n, K, system);
+        if (touches) fu_add_element_matrix(model, fu_contact_first(model, contact, e), n, K, system);
     }
 }
 

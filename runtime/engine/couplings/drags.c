@@ -205,9 +205,7 @@ static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu
                                 scale * N[k] * (a.by_slope[i * dim + j] * N_x[l] + by_r * N[l]);
                 }
         }
-        for (int i = 0; i < all; ++i)
-            for (int j = 0; j < all; ++j)
-                if (K[i * all + j] != 0.0) fu_add(model, system, first + i, first + j, K[i * all + j]);
+        fu_add_element_matrix(model, first, all, K, system);
     }
 }
 

@@ -136,22 +136,6 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
     }
 }
 
-/* Adds to K (n x n) factor times a' by b of two rows of n / dim numbers and a matrix (dim x dim). */
-static void add_product(int dim, int n, double factor, const double *a, const double *b, const double *by, double *K)
-{
-    for (int k = 0; k < n / dim; ++k)
-        for (int l = 0; l < n / dim; ++l)
-            for (int i = 0; i < dim; ++i)
-                for (int j = 0; j < dim; ++j) K[(k * dim + i) * n + l * dim + j] += factor * a[k] * b[l] * by[i * dim + j];
-}
-
-static void add_element(const fu_model *model, int first, int n, const double *K, fu_system *system)
-{
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j)
-            if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, K[i * n + j]);
-}
-
 /* Makes the derivatives of a force on particles by the slope and by the place, and those of g (dim x dim each); rate: that of
  * velocities by places. */
 static void derivatives(const fu_drag *drag, int dim, const of_length *of, const passage *past, double rate, double by_slope[9],
@@ -195,12 +179,12 @@ static void tangent_of_cable(const fu_model *model, const fu_drag *drag, const f
             const passage past = pass(model, drag, state->t, at.r, at.v, at.a);
             terms_of_length(drag, &at, &past, &terms);
             derivatives(drag, dim, &terms, &past, weights.rate, by_slope, by_place, g_place);
-            add_product(dim, all, part, point.N, point.N_x, by_slope, K);
-            add_product(dim, all, part, point.N, point.N, by_place, K);
-            add_product(dim, all, -part, point.N_x, point.N_x, terms.g_t, K);
-            add_product(dim, all, -part, point.N_x, point.N, g_place, K);
+            fu_add_element_product(dim, all, part, point.N, point.N_x, by_slope, K);
+            fu_add_element_product(dim, all, part, point.N, point.N, by_place, K);
+            fu_add_element_product(dim, all, -part, point.N_x, point.N_x, terms.g_t, K);
+            fu_add_element_product(dim, all, -part, point.N_x, point.N, g_place, K);
         }
-        add_element(model, first, all, K, system);
+        fu_add_element_matrix(model, first, all, K, system);
     }
 }
 
@@ -385,9 +369,9 @@ void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const dou
         for (int g = 0; g < drag->n_points; ++g) {
             const fu_quadrature_point point = fu_drag_point(drag, all / dim, e, g);
             impulse(model, drag, q + first, model->zero, point, w, p, M);
-            add_product(dim, all, scale * point.weight, point.N, point.N, M, K);
+            fu_add_element_product(dim, all, scale * point.weight, point.N, point.N, M, K);
         }
-        add_element(model, first, all, K, system);
+        fu_add_element_matrix(model, first, all, K, system);
     }
 }
 

@@ -33,6 +33,8 @@ void fu_rate_forces(const fu_model *model, const double *q, const double *v, dou
 void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system);
+/* Adds to the matrix K (n x n) of an element factor times a' by b, of two rows of n / dim numbers and a matrix (dim x dim). */
+void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by, double *K);
 double fu_kinetic_energy(const fu_model *model, double t, const double *q, const double *v);
 double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v);
 double fu_elastic_energy(const fu_model *model, const fu_state *state);

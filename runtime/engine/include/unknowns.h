@@ -19,6 +19,7 @@ typedef struct {
 void fu_gather(const fu_model *model, const double *force, double *x);
 void fu_spread(const fu_model *model, const double *x, double *dofs);
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value);
+void fu_add_element_matrix(const fu_model *model, int first, int n, const double *K, fu_system *system);
 void fu_add_block(const fu_model *model, fu_system *system, fu_side rows, fu_side columns, double factor, const double *values,
                   int by_row, int by_column);
 void fu_add_body(const fu_model *model, fu_system *system, int dof, int n, const double *values);

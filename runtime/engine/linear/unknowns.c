@@ -140,7 +140,27 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
             add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
 }
 
-/* Adds the same of a block over the border's unknowns from these on, which stand together in a front, rows and columns both. */
+/* Adds T' K T of an n x n matrix, row by row, over the dofs from `first` on to a system; to no system (null) nothing. */
+void fu_add_element_matrix(const fu_model *model, int first, int n, const double *K, fu_system *system)
+{
+    if (!system) return;
+    const int rows = FU_BAND_ROWS(system->width), diagonal = FU_BAND_DIAGONAL(system->width), *unknown = model->unknown_of_dof + first;
+    int outside_band = 0;
+    for (int j = 0; j < n; ++j) outside_band |= unknown[j] <= FU_COMBINED || unknown[j] >= system->n;
+    if (outside_band) {
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, K[i * n + j]);
+        return;
+    }
+    for (int j = 0; j < n; ++j) {
+        if (unknown[j] < 0) continue;
+        double *column = system->K + (long)unknown[j] * rows + diagonal - unknown[j];
+        for (int i = 0; i < n; ++i)
+            if (unknown[i] >= 0) column[unknown[i]] += K[i * n + j];
+    }
+}
+
+/* Adds T' values T of a block over the border's unknowns from these on, which stand together in a front, rows and columns both. */
 static void add_together(fu_system *s, int row, int rows, int column, int columns, double factor, const double *restrict values,
                          int by_row, int by_column)
 {
