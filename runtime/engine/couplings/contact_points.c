@@ -125,19 +125,12 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
 {
     const int dim = model->dim;
     const double from = fmax(now->depth, 0.0), to = fmax(next->depth, 0.0), sunk = next->depth - now->depth;
-    double middle[3] = {0.0}, change[3], n[3], square = 0.0, rest;
+    double n[3];
     fu_distance at;
     memset(f, 0, sizeof(double[3]));
     memset(by_next, 0, sizeof(double[9]));
     if (from == 0.0 && to == 0.0) return 0.0;
-    for (int d = 0; d < dim; ++d) {
-        middle[d] = 0.5 * (now->r[d] + next->r[d]);
-        change[d] = next->r[d] - now->r[d];
-        square += change[d] * change[d];
-    }
-    fu_surface_distance(dim, &contact->surface, on, middle, &at);
-    rest = square > 0.0 ? (-sunk - fu_dot(dim, at.n, change)) / square : 0.0;
-    for (int d = 0; d < dim; ++d) n[d] = at.n[d] + rest * change[d];
+    fu_surface_step_normal(dim, &contact->surface, on, now->r, next->r, -sunk, &at, n);
     const double part = from > 0.0 && to > 0.0 ? 1.0 : (to - from) / sunk, rate = sunk / h;
     const pressing of = press_at(contact, from, rate, to), end = press_at(contact, to, 0.0, to);
     const double elastic = part * of.mean, press = fmax(0.0, elastic * (1.0 + contact->law.damping * rate));

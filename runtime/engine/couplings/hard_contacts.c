@@ -236,31 +236,24 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     tangent_at(model, coupling, at->next, at->next->forces[coupling->force], at->psi, at->now, at->weights, &row, system);
 }
 
-/* Makes the row over a step: H psi is what the distance changes by (Gonzalez). */
+/* Makes the row over a step: H psi is what the distance changes by. */
 static void step_row(const fu_model *model, const fu_hard_contact *contact, const fu_equations *at, fu_hard_row *out)
 {
     const int dim = model->dim;
+    const fu_surface *surface = &contact->contact.surface;
     const fu_attachment *to = contact->contact.attachments;
     const fu_body *body = &model->bodies[to->body];
     fu_attachment_state point[2], on;
-    fu_distance distance;
-    fu_hard_row ends[2];
-    double P[3 * FU_ATTACHMENT_COORDINATES], way[3] = {0.0}, middle[3] = {0.0}, square = 0.0, along = 0.0;
+    fu_distance distance, middle;
+    double P[3 * FU_ATTACHMENT_COORDINATES], g[2];
     const fu_state *states[2] = {at->now, at->next};
+    fu_surface_at(model, surface, at->next, &on); /* it does not move */
     for (int e = 0; e < 2; ++e) {
         fu_attachment_at(model, to, states[e], 0.0, FU_POINT, &point[e]);
-        fu_hard_row_at(model, contact, states[e], &ends[e]);
+        fu_surface_distance(dim, surface, &on, point[e].p, &distance);
+        g[e] = distance.g - contact->contact.radius;
     }
-    fu_surface_at(model, &contact->contact.surface, at->next, &on);
-    for (int d = 0; d < dim; ++d) {
-        way[d] = point[1].p[d] - point[0].p[d];
-        middle[d] = 0.5 * (point[1].p[d] + point[0].p[d]);
-        square += way[d] * way[d];
-    }
-    fu_surface_distance(dim, &contact->contact.surface, &on, middle, &distance);
-    for (int d = 0; d < dim; ++d) along += distance.n[d] * way[d];
-    const double beyond = square > 0.0 ? (ends[1].g - ends[0].g - along) / square : 0.0;
-    for (int d = 0; d < dim; ++d) out->normal[d] = distance.n[d] + beyond * way[d];
+    fu_surface_step_normal(dim, surface, &on, point[0].p, point[1].p, g[1] - g[0], &middle, out->normal);
     body->kernel->discrete_point(at->now->q + body->configuration, to->u, at->next->q + body->configuration, P);
     out->n = point[0].n;
     for (int i = 0; i < out->n; ++i) {
@@ -268,8 +261,7 @@ static void step_row(const fu_model *model, const fu_hard_contact *contact, cons
         out->H[i] = 0.0;
         for (int d = 0; d < dim; ++d) out->H[i] += out->normal[d] * P[d * out->n + i];
     }
-    memcpy(out->curvature, distance.H, sizeof out->curvature);
-    out->g = ends[1].g;
+    out->g = g[1];
 }
 
 static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)

@@ -110,6 +110,20 @@ void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment
         for (int j = 0; j < dim; ++j) out->H[i * dim + j] = fu_dot(dim, half + i * dim, at->A + j * dim);
 }
 
+void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *from, const double *to,
+                            double rise, fu_distance *middle, double *n)
+{
+    double way[3] = {0.0}, halfway[3] = {0.0}, square = 0.0;
+    for (int d = 0; d < dim; ++d) {
+        halfway[d] = 0.5 * (from[d] + to[d]);
+        way[d] = to[d] - from[d];
+        square += way[d] * way[d];
+    }
+    fu_surface_distance(dim, surface, at, halfway, middle);
+    const double beyond = square > 0.0 ? (rise - fu_dot(dim, middle->n, way)) / square : 0.0;
+    for (int d = 0; d < dim; ++d) n[d] = middle->n[d] + beyond * way[d];
+}
+
 double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach)
 {
     double y[3] = {0.0, 0.0, 0.0}, along;

@@ -31,6 +31,10 @@ void fu_surface_at(const fu_model *model, const fu_surface *surface, const fu_st
 void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, fu_distance *out);
 /* The least that the distance of any point within `reach` of r can be, m. */
 double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach);
+/* The normal over a step on a surface that does not move: its product with the way between two points is what the distance changes by,
+ * `rise` (Gonzalez 1996). middle: the distance half-way. */
+void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *from, const double *to,
+                            double rise, fu_distance *middle, double *n);
 /* Velocity of the point of the body at r that the surface is on. */
 void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r, double *v);
 /* How that point moves with the n coordinates of the body: P (dim x n). */
