@@ -177,6 +177,12 @@ void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_s
     if (what & FU_AXES) axes_of(model, on, state, s_rate, out);
 }
 
+void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next, double *P)
+{
+    const fu_body *body = &model->bodies[on->body];
+    body->kernel->discrete_point(now->q + body->configuration, on->u, next->q + body->configuration, P);
+}
+
 /* Does what fu_geometric_stiffness does, for an attachment to a body. */
 static void add_stiffness_of_body(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
                                   const double *m, int n, double *K)

@@ -204,10 +204,9 @@ static double over_step(const fu_model *model, const fu_contact *contact, const 
                 continue;
             }
             const fu_attachment *to = &contact->attachments[k];
-            const fu_body *body = &model->bodies[to->body];
             fu_attachment_state end;
             fu_attachment_at(model, to, at->now, 0.0, FU_POINT, &end);
-            body->kernel->discrete_point(at->now->q + body->configuration, to->u, at->next->q + body->configuration, end.P);
+            fu_discrete_point(model, to, at->now, at->next, end.P);
             add_to(dim, end.n, end.at, end.P, force, -weight, f);
         }
     }

@@ -221,14 +221,13 @@ static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_s
     memcpy(at->r, end->p, sizeof at->r);
     memcpy(at->v, end->v, sizeof at->v);
     if (!step) return;
-    const fu_body *body = &model->bodies[on->body];
     fu_attachment_state after;
     fu_attachment_at(model, on, step->next, 0.0, FU_POINT, &after);
     for (int d = 0; d < model->dim; ++d) {
         at->r[d] = 0.5 * (end->p[d] + after.p[d]);
         at->v[d] = (after.p[d] - end->p[d]) / step->h;
     }
-    body->kernel->discrete_point(step->now->q + body->configuration, on->u, step->next->q + body->configuration, end->P);
+    fu_discrete_point(model, on, step->now, step->next, end->P);
 }
 
 /* Does for a body what on_cable does for a cable. */

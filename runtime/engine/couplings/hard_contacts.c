@@ -242,7 +242,6 @@ static void step_row(const fu_model *model, const fu_hard_contact *contact, cons
     const int dim = model->dim;
     const fu_surface *surface = &contact->contact.surface;
     const fu_attachment *to = contact->contact.attachments;
-    const fu_body *body = &model->bodies[to->body];
     fu_attachment_state point[2], on;
     fu_distance distance, middle;
     double P[3 * FU_ATTACHMENT_COORDINATES], g[2];
@@ -254,7 +253,7 @@ static void step_row(const fu_model *model, const fu_hard_contact *contact, cons
         g[e] = distance.g - contact->contact.radius;
     }
     fu_surface_step_normal(dim, surface, &on, point[0].p, point[1].p, g[1] - g[0], &middle, out->normal);
-    body->kernel->discrete_point(at->now->q + body->configuration, to->u, at->next->q + body->configuration, P);
+    fu_discrete_point(model, to, at->now, at->next, P);
     out->n = point[0].n;
     for (int i = 0; i < out->n; ++i) {
         out->at[i] = point[0].at[i];

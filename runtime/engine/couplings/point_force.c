@@ -83,11 +83,7 @@ static void add_step_forces(const fu_model *model, const fu_point_force *between
         const fu_attachment *on = &between->attachments[e];
         fu_attachment_state at;
         const int first = point(model, on, step->now->q, model->zero, &at);
-        if (on->body >= 0) {
-            const fu_body *body = &model->bodies[on->body];
-            body->kernel->discrete_point(step->now->q + body->configuration, on->u, step->next->q + body->configuration,
-                                         at.P);
-        }
+        if (on->body >= 0) fu_discrete_point(model, on, step->now, step->next, at.P);
         add_force(between->dim, first, e, &at, force, f);
     }
 }

@@ -31,6 +31,8 @@ typedef struct {
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at);
 void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
                   fu_attachment_state *out);
+/* Makes how the point of a body moves with its dofs over a step, P: P psi is its whole way. */
+void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next, double *P);
 void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
                             const double *m, int n, double *K);
 /* Derivatives by an attachment's coordinates, the first of them in column `first`, made those by psi that moves the bodies;
