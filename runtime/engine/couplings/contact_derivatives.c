@@ -70,8 +70,7 @@ static void motion_of_surface(const fu_model *model, const fu_contact *contact, 
     const double *f = point->f;
     double x[3], w[3], m[3], T[3 * FU_ATTACHMENT_COORDINATES];
     for (int d = 0; d < dim; ++d) x[d] = point->r[d] - on->p[d];
-    fu_surface_velocity(dim, on, point->r, w);
-    for (int d = 0; d < dim; ++d) w[d] = point->v[d] - w[d];
+    fu_surface_past(dim, on, point->r, point->v, w);
     out->n = n;
     memcpy(out->at, on->at, sizeof out->at);
     fu_surface_motion(dim, on, point->r, out->P);
@@ -80,8 +79,7 @@ static void motion_of_surface(const fu_model *model, const fu_contact *contact, 
     memset(out->by_rate, 0, sizeof out->by_rate);
     memset(out->K, 0, sizeof out->K);
     if (dim == 2) m[0] = x[0] * f[1] - x[1] * f[0];
-    else
-        for (int d = 0; d < 3; ++d) m[d] = x[(d + 1) % 3] * f[(d + 2) % 3] - x[(d + 2) % 3] * f[(d + 1) % 3];
+    else fu_cross(x, f, m);
     fu_geometric_stiffness(model, contact->surface.on, state, f, m, n, out->K);
     fu_turn_attachment(model, contact->surface.on, psi, out->moved, dim, n, 0);
     fu_turn_attachment(model, contact->surface.on, psi, T, dim == 3 ? 3 : 1, n, 0);
@@ -90,17 +88,12 @@ static void motion_of_surface(const fu_model *model, const fu_contact *contact, 
         double of_force[3], of_rate[3], origin[3], moment[3];
         turn_of(dim, T, n, i, f, of_force);
         turn_of(dim, T, n, i, w, of_rate);
-        for (int d = 0; d < dim; ++d) {
-            own[d * n + i] = of_force[d] - fu_dot(dim, point->by_rate + d * dim, of_rate);
-            origin[d] = 0.0;
-        }
+        for (int d = 0; d < dim; ++d) own[d * n + i] = of_force[d] - fu_dot(dim, point->by_rate + d * dim, of_rate);
         /* the lever of f is from the origin, which moves: of m alone, T' of its change */
         turn_of(dim, T, n, i, x, of_rate);
         for (int d = 0; d < dim; ++d) origin[d] = -(out->moved[d * n + i] - of_rate[d]);
         if (dim == 2) moment[0] = origin[0] * f[1] - origin[1] * f[0];
-        else
-            for (int d = 0; d < 3; ++d)
-                moment[d] = origin[(d + 1) % 3] * f[(d + 2) % 3] - origin[(d + 2) % 3] * f[(d + 1) % 3];
+        else fu_cross(origin, f, moment);
         for (int j = 0; j < n; ++j)
             for (int k = 0; k < (dim == 3 ? 3 : 1); ++k) out->K[j * n + i] += on->T[k * n + j] * moment[k];
     }

@@ -20,13 +20,6 @@ static pressing press_at(const fu_contact *contact, double depth, double rate, d
     return of;
 }
 
-/* Makes the velocity of a point past the surface. */
-static void velocity_past(int dim, const fu_attachment_state *on, const fu_touch_point *point, double *w)
-{
-    fu_surface_velocity(dim, on, point->r, w);
-    for (int d = 0; d < dim; ++d) w[d] = point->v[d] - w[d];
-}
-
 /* Makes the place of a point from its anchor, along the ground's axes. */
 static void from_anchor(int dim, const fu_attachment_state *on, const fu_touch_point *point, double *x)
 {
@@ -63,7 +56,7 @@ int fu_contact_touches(const fu_model *model, const fu_contact *contact, const f
     fu_surface_distance(dim, &contact->surface, on, point->r, &point->distance);
     point->depth = contact->radius - point->distance.g;
     if (!(point->depth > 0.0)) return 0;
-    velocity_past(dim, on, point, w);
+    fu_surface_past(dim, on, point->r, point->v, w);
     const double rate = -fu_dot(dim, point->distance.n, w);
     const pressing of = press_at(contact, point->depth, rate, point->depth);
     point->press = of.p;
@@ -83,7 +76,7 @@ void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, co
     const fu_surface_kernels *kernel = contact->surface.kernel;
     const fu_distance *at = &point->distance;
     double w[3], x[3], f[3], t[3], by_place[9], by_rate[9];
-    velocity_past(dim, on, point, w);
+    fu_surface_past(dim, on, point->r, point->v, w);
     const pressing of = press_at(contact, point->depth, -fu_dot(dim, at->n, w), point->depth);
     const double law[3] = {of.p, of.by_depth, of.by_rate};
     kernel->pressing(at->n, at->H, w, law, f, point->by_place, point->by_rate);

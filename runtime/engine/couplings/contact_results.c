@@ -252,8 +252,7 @@ static double gap_of(const fu_model *model, const fu_contact *contact, const fu_
     double w[3];
     fu_contact_place(model, contact, state, element, number, &point);
     fu_surface_distance(model->dim, &contact->surface, on, point.r, &point.distance);
-    fu_surface_velocity(model->dim, on, point.r, w);
-    for (int d = 0; d < model->dim; ++d) w[d] = point.v[d] - w[d];
+    fu_surface_past(model->dim, on, point.r, point.v, w);
     *rate = fu_dot(model->dim, point.distance.n, w);
     return point.distance.g - contact->radius;
 }

@@ -31,9 +31,7 @@ static void cross(int dim, const double *a, const double *b, double out[3])
         out[1] = a[0] * b[0];
         return;
     }
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
+    fu_cross(a, b, out);
 }
 
 /* Makes coefficients of drag and lift, each with its derivative by the angle of attack, of the flow w past axes by rows of A. */

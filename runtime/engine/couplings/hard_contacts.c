@@ -32,27 +32,21 @@ static int has_friction(const fu_coupling *coupling)
     return contact_of(coupling)->friction > 0.0;
 }
 
-static void cross(const double *a, const double *b, double *out)
-{
-    for (int d = 0; d < 3; ++d) out[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-}
-
 /* Returns what of g'' is of the velocities: of the curvature, and of the surface's turning, as the point goes past it. */
 static double bias_of(int dim, const fu_distance *distance, const double *r, const fu_attachment_state *point,
                       const fu_attachment_state *on)
 {
-    const double omega[3] = {dim == 3 ? on->omega[0] : 0.0, dim == 3 ? on->omega[1] : 0.0, on->omega[dim == 3 ? 2 : 0]};
-    const double alpha[3] = {dim == 3 ? on->alpha[0] : 0.0, dim == 3 ? on->alpha[1] : 0.0, on->alpha[dim == 3 ? 2 : 0]};
-    double x[3] = {0.0}, past[3] = {0.0}, w[3], turning[3], half[3], twice[3], coriolis[3], sum = 0.0;
+    double omega[3], alpha[3], x[3] = {0.0}, past[3] = {0.0}, turning[3], half[3], twice[3], coriolis[3], sum = 0.0;
+    fu_turn_in_space(dim, on->omega, omega);
+    fu_turn_in_space(dim, on->alpha, alpha);
     for (int d = 0; d < dim; ++d) x[d] = r[d] - on->p[d];
-    fu_surface_velocity(dim, on, r, w);
-    for (int d = 0; d < dim; ++d) past[d] = point->v[d] - w[d];
-    cross(alpha, x, turning);
-    cross(omega, x, half);
-    cross(omega, half, twice);
-    cross(omega, past, coriolis);
+    fu_surface_past(dim, on, r, point->v, past);
+    fu_cross(alpha, x, turning);
+    fu_cross(omega, x, half);
+    fu_cross(omega, half, twice);
+    fu_cross(omega, past, coriolis);
     for (int d = 0; d < dim; ++d) {
-        const double own = on->n ? on->bias[d] + turning[d] + twice[d] + 2.0 * coriolis[d] : 0.0;
+        const double own = on->bias[d] + turning[d] + twice[d] + 2.0 * coriolis[d];
         sum += distance->n[d] * (point->bias[d] - own);
         sum += past[d] * fu_dot(dim, distance->H + d * dim, past);
     }
@@ -64,7 +58,7 @@ void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const
     const int dim = model->dim;
     fu_attachment_state point, on;
     fu_distance distance;
-    double P[3 * FU_ATTACHMENT_COORDINATES], w[3];
+    double P[3 * FU_ATTACHMENT_COORDINATES], past[3];
     fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT, &point);
     fu_surface_at(model, &contact->contact.surface, state, &on);
     fu_surface_distance(dim, &contact->contact.surface, &on, point.p, &distance);
@@ -77,15 +71,14 @@ void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const
         out->H[i] = 0.0;
         for (int d = 0; d < dim; ++d) out->H[i] += distance.n[d] * point.P[d * point.n + i];
     }
-    if (on.n) fu_surface_motion(dim, &on, point.p, P);
+    fu_surface_motion(dim, &on, point.p, P);
     for (int i = 0; i < on.n; ++i) {
         out->at[point.n + i] = on.at[i];
         out->H[point.n + i] = 0.0;
         for (int d = 0; d < dim; ++d) out->H[point.n + i] -= distance.n[d] * P[d * on.n + i];
     }
-    fu_surface_velocity(dim, &on, point.p, w);
-    out->rate = 0.0;
-    for (int d = 0; d < dim; ++d) out->rate += distance.n[d] * (point.v[d] - (on.n ? w[d] : 0.0));
+    fu_surface_past(dim, &on, point.p, point.v, past);
+    out->rate = fu_dot(dim, distance.n, past);
     out->bias = bias_of(dim, &distance, point.p, &point, &on);
 }
 

@@ -8,18 +8,6 @@
 #define SLACK 1e-9 /* of the weight: so much more is held, as a point may bear nothing, and be held by rounding */
 #define LEAST 1e-10 /* m/s^2: normal force over mass, below which it counts as that */
 
-static void cross(const double *a, const double *b, double *out)
-{
-    for (int d = 0; d < 3; ++d) out[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-}
-
-static void omega_of(int dim, const fu_attachment_state *at, double omega[3])
-{
-    omega[0] = omega[1] = 0.0;
-    if (dim == 3) memcpy(omega, at->omega, sizeof at->omega);
-    else omega[2] = at->omega[0];
-}
-
 /* Makes directions across the normal: one in the plane, two in space. */
 static void across(int dim, const double *n, double t[2][3])
 {
@@ -37,7 +25,7 @@ static void across(int dim, const double *n, double t[2][3])
     for (int d = 0; d < 3; ++d) t[0][d] = axis[d] - n[least] * n[d];
     size = sqrt(fu_dot(3, t[0], t[0]));
     for (int d = 0; d < 3; ++d) t[0][d] /= size;
-    cross(n, t[0], t[1]);
+    fu_cross(n, t[0], t[1]);
 }
 
 /* Makes the direction of sliding: that of the velocity while it goes on forwards, that of the last step where it has turned. */
@@ -60,12 +48,11 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
 {
     const int dim = model->dim;
     fu_attachment_state point, on;
-    double r[3], x[3] = {0.0}, x_rate[3] = {0.0}, lever_rate[3] = {0.0}, v[3], w[3], centre[3] = {0.0};
+    double r[3], x[3] = {0.0}, x_rate[3] = {0.0}, lever_rate[3] = {0.0}, v[3], centre[3] = {0.0};
     double P[3 * FU_ATTACHMENT_COORDINATES], Q[3 * FU_ATTACHMENT_COORDINATES], omega[3], turning[3], own[3], bias[3];
     fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT | FU_AXES, &point);
     fu_surface_at(model, &contact->contact.surface, state, &on);
-    fu_surface_velocity(dim, &on, point.p, w);
-    for (int d = 0; d < dim; ++d) centre[d] = point.v[d] - (on.n ? w[d] : 0.0);
+    fu_surface_past(dim, &on, point.p, point.v, centre);
     memset(r, 0, sizeof r);
     for (int d = 0; d < dim; ++d) {
         x[d] = -contact->contact.radius * row->normal[d];
@@ -75,17 +62,14 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
     }
     fu_surface_motion(dim, &point, r, P);
     fu_surface_velocity(dim, &point, r, v);
-    fu_surface_velocity(dim, &on, r, w);
-    if (on.n) fu_surface_motion(dim, &on, r, Q);
-    omega_of(dim, &point, omega);
-    cross(omega, x_rate, turning);
-    omega_of(dim, &on, omega);
-    cross(omega, lever_rate, own);
+    fu_surface_motion(dim, &on, r, Q);
+    fu_turn_in_space(dim, point.omega, omega);
+    fu_cross(omega, x_rate, turning);
+    fu_turn_in_space(dim, on.omega, omega);
+    fu_cross(omega, lever_rate, own);
     memset(out->past, 0, sizeof out->past);
-    for (int d = 0; d < dim; ++d) {
-        out->past[d] = v[d] - (on.n ? w[d] : 0.0);
-        bias[d] = point.bias[d] + turning[d] - (on.n ? on.bias[d] + own[d] : 0.0);
-    }
+    fu_surface_past(dim, &on, r, v, out->past);
+    for (int d = 0; d < dim; ++d) bias[d] = point.bias[d] + turning[d] - (on.bias[d] + own[d]);
     const double along = fu_dot(dim, out->past, row->normal);
     for (int d = 0; d < dim; ++d) out->past[d] -= along * row->normal[d];
     across(dim, row->normal, out->t);

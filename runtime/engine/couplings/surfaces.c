@@ -150,6 +150,13 @@ void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r
     }
 }
 
+void fu_surface_past(int dim, const fu_attachment_state *at, const double *r, const double *v, double *past)
+{
+    double w[3];
+    fu_surface_velocity(dim, at, r, w);
+    for (int d = 0; d < dim; ++d) past[d] = v[d] - w[d];
+}
+
 void fu_surface_motion(int dim, const fu_attachment_state *at, const double *r, double *P)
 {
     const double x[3] = {r[0] - at->p[0], r[1] - at->p[1], dim == 3 ? r[2] - at->p[2] : 0.0};

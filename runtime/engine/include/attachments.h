@@ -28,6 +28,12 @@ typedef struct {
     double A[9], omega[3], alpha[3], T[3 * FU_ATTACHMENT_COORDINATES];
 } fu_attachment_state;
 
+/* Makes a vector in space of a turn, of which the plane has one component. */
+static inline void fu_turn_in_space(int dim, const double *turn, double out[3])
+{
+    for (int d = 0; d < 3; ++d) out[d] = dim == 3 ? turn[d] : d == 2 ? turn[0] : 0.0;
+}
+
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at);
 void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
                   fu_attachment_state *out);

@@ -46,4 +46,10 @@ static inline double fu_dot(int n, const double *a, const double *b)
     return sum;
 }
 
+/* Makes the vector product of two vectors in space. */
+static inline void fu_cross(const double *a, const double *b, double *out)
+{
+    for (int d = 0; d < 3; ++d) out[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+}
+
 #endif
