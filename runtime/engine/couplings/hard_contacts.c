@@ -166,54 +166,49 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
 }
 
 /* Adds what friction's forces are by its own unknowns, and its rows by velocities; how both turn with the unknowns is left out. */
-static void friction_tangent(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_state *last,
-                             fu_weights weights, const fu_hard_row *row, fu_system *system)
+static void friction_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_hard_row *row,
+                             fu_system *system)
 {
     const fu_hard_contact *contact = contact_of(coupling);
+    const fu_weights weights = at->weights;
     const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), step = weights.rate > 0.0 ? 1.0 / weights.rate : 0.0;
-    const int first = fu_extra(model, coupling->unknown), sticks = fu_hard_flags_of(coupling, state)->sticks;
+    const int first = fu_extra(model, coupling->unknown), sticks = fu_hard_flags_of(coupling, at->next)->sticks;
     fu_hard_along along;
-    fu_hard_along_at(model, contact, state, row, &along);
+    fu_hard_along_at(model, contact, at->next, row, &along);
     for (int k = 1; k < coupling->n_forces; ++k) {
-        const double soft = step * step * fu_hard_softness(contact, last->forces[coupling->force]);
+        const double soft = step * step * fu_hard_softness(contact, at->now->forces[coupling->force]);
         fu_add(model, system, first + k, first + k, sticks ? -unit * soft * unit / weights.stiffness : unit);
-        for (int i = 0; i < row->n && sticks; ++i) {
-            fu_add(model, system, row->at[i], first + k, unit * along.H[k - 1][i]);
-            fu_add(model, system, first + k, row->at[i], unit * along.H[k - 1][i]);
-        }
+        if (sticks) fu_add_row_and_column(model, system, first + k, row->n, row->at, along.H[k - 1], unit);
     }
     for (int i = 0; i < row->n && !sticks; ++i)
         fu_add(model, system, row->at[i], first, -unit * contact->friction * along.slip[i]);
 }
 
-/* Adds what moves the distance by the unknowns, and the multiplier's part; `by_turns`: columns of it are turned by psi. */
-static void tangent_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double multiplier,
-                       const double *psi, const fu_state *last, fu_weights weights, const fu_hard_row *row,
-                       fu_system *system)
+/* Adds, of a contact that is closed, how its distance and the force of its multiplier change with the unknowns. */
+static void tangent_of_closed(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_hard_row *row,
+                              fu_system *system)
 {
     const fu_hard_contact *contact = contact_of(coupling);
     const int dim = model->dim, own = fu_extra(model, coupling->unknown);
-    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]);
+    const double *psi = at->psi, multiplier = at->next->forces[coupling->force];
+    const double unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
     fu_attachment_state on;
     fu_touch_point point = {.depth = 0.0};
     double turned[2 * FU_ATTACHMENT_COORDINATES];
     memcpy(turned, row->H, sizeof turned);
-    fu_surface_at(model, &contact->contact.surface, state, &on);
+    fu_surface_at(model, &contact->contact.surface, at->next, &on);
     fu_turn_attachment(model, contact->contact.attachments, psi, turned, 1, row->n - on.n, 0);
     fu_turn_attachment(model, contact->contact.surface.on, psi, turned + row->n - on.n, 1, on.n, 0);
     for (int i = 0; i < row->n; ++i) {
         fu_add(model, system, row->at[i], own, unit * row->H[i]);
         fu_add(model, system, own, row->at[i], unit * turned[i]);
     }
-    if (has_friction(coupling)) friction_tangent(model, coupling, state, last, weights, row, system);
-    fu_add(model, system, own, own, -unit * compliance(coupling, weights) / weights.stiffness);
-    fu_attachment_state at;
-    fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT, &at);
-    memcpy(point.r, at.p, sizeof point.r);
-    memcpy(point.v, at.v, sizeof point.v);
+    if (has_friction(coupling)) friction_tangent(model, coupling, at, row, system);
+    fu_add(model, system, own, own, -unit * compliance(coupling, at->weights) / at->weights.stiffness);
+    fu_contact_place(model, &contact->contact, at->next, 0, 0, &point);
     for (int d = 0; d < dim; ++d) point.f[d] = -multiplier * row->normal[d];
     for (int i = 0; i < dim * dim; ++i) point.by_place[i] = -multiplier * row->curvature[i];
-    fu_contact_add_derivatives(model, &contact->contact, &on, state, 0, 0, &point, psi, weights, system);
+    fu_contact_add_derivatives(model, &contact->contact, &on, at->next, 0, 0, &point, psi, at->weights, system);
 }
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
@@ -226,7 +221,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         return;
     }
     fu_hard_row_at(model, contact_of(coupling), at->next, &row);
-    tangent_at(model, coupling, at->next, at->next->forces[coupling->force], at->psi, at->now, at->weights, &row, system);
+    tangent_of_closed(model, coupling, at, &row, system);
 }
 
 /* Makes the row over a step: H psi is what the distance changes by. */
@@ -276,10 +271,7 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
         return;
     }
     step_row(model, contact_of(coupling), at, &row);
-    for (int i = 0; i < row.n; ++i) {
-        fu_add(model, system, row.at[i], own, unit * row.H[i]);
-        fu_add(model, system, own, row.at[i], unit * row.H[i]);
-    }
+    fu_add_row_and_column(model, system, own, row.n, row.at, row.H, unit);
 }
 
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)

@@ -202,11 +202,12 @@ void fu_add_body(const fu_model *model, fu_system *s, int dof, int n, const doub
 }
 
 /* Adds a row of the border and the column that is its transpose: a factor times n values over the dofs `at`. row: as fu_extra
- * numbers it. */
+ * numbers it. To no system (null) nothing. */
 void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, int n, const int *at, const double *value,
                            double factor)
 {
     const int own = model->n_band + model->n_border_dof - model->n_dof + row;
+    if (!system) return;
     for (int i = 0; i < n; ++i) {
         const int unknown = model->unknown_of_dof[at[i]];
         const double added = factor * value[i];
