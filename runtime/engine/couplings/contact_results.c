@@ -4,28 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-
 static const fu_contact *of(const fu_coupling *coupling)
 {
     return (const fu_contact *)coupling;
-}
-
-/* Calls `visit` with each point that touches. */
-typedef void visitor(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
-                     const fu_touch_point *point, void *context);
-
-static void visit_touching(const fu_model *model, const fu_contact *contact, const fu_state *state, visitor *visit, void *context)
-{
-    fu_attachment_state on;
-    fu_surface_at(model, &contact->surface, state, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
-        for (int k = 0; k < contact->n_points; ++k) {
-            fu_touch_point point;
-            fu_contact_place(model, contact, state, e, k, &point);
-            if (fu_contact_touches(model, contact, &on, &point)) visit(model, contact, &on, e, k, &point, context);
-        }
-    }
 }
 
 static void add_energy(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
@@ -38,7 +19,7 @@ static void add_energy(const fu_model *model, const fu_contact *contact, const f
 double fu_contact_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     double sum = 0.0;
-    visit_touching(model, of(coupling), state, add_energy, &sum);
+    fu_contact_visit(model, of(coupling), state, add_energy, &sum);
     return sum;
 }
 
@@ -54,7 +35,7 @@ double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling
 {
     double sum = 0.0;
     (void)work;
-    if (coupling->is_damped) visit_touching(model, of(coupling), state, add_power, &sum);
+    if (coupling->is_damped) fu_contact_visit(model, of(coupling), state, add_power, &sum);
     return sum;
 }
 
@@ -151,15 +132,14 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
     (void)acceleration, (void)work;
     memset(out, 0, sizeof(double[FU_CONTACT_OUTPUTS]));
     fu_surface_at(model, &contact->surface, state, &on);
-    for (int e = 0; e < n; ++e) {
-        const int near = fu_contact_may_touch(model, contact, &on, state, e, 0.0);
+    for (int e = 0; e < n; ++e)
         for (int k = 0; k < contact->n_points; ++k) {
             fu_touch_point point;
             const double weight = fu_contact_weight(contact, e, k);
             fu_contact_place(model, contact, state, e, k, &point);
             const int touches = fu_contact_touches(model, contact, &on, &point);
             if (contact->cable >= 0) take_into_length(&sum, contact->arc[(long)e * contact->n_points + k], point.depth);
-            if (!touches || !near) continue;
+            if (!touches) continue;
             for (int d = 0; d < model->dim; ++d) {
                 sum.force[d] += weight * point.f[d];
                 sum.friction[d] += weight * point.friction[d];
@@ -167,7 +147,6 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
             *sum.penetration = fmax(*sum.penetration, point.depth);
             if (contact->cable < 0) *sum.length += 1.0;
         }
-    }
     if (contact->cable >= 0) take_into_length(&sum, contact->length, sum.depth); /* to its end */
 }
 

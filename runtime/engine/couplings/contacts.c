@@ -115,9 +115,8 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
     add_to(dim, end.n, end.at, end.P, force, -weight, f);
 }
 
-static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state, fu_contact_visitor *visit, void *context)
 {
-    const fu_contact *contact = of(coupling);
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
@@ -125,10 +124,28 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
         for (int k = 0; k < contact->n_points; ++k) {
             fu_touch_point point;
             fu_contact_place(model, contact, state, e, k, &point);
-            if (fu_contact_touches(model, contact, &on, &point))
-                fu_contact_add_force(model, contact, state, &on, e, k, point.r, point.f, f);
+            if (fu_contact_touches(model, contact, &on, &point)) visit(model, contact, &on, e, k, &point, context);
         }
     }
+}
+
+/* Forces at a state. */
+typedef struct {
+    const fu_state *state;
+    double *f;
+} forces;
+
+static void add_force(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
+                      const fu_touch_point *point, void *context)
+{
+    const forces *to = context;
+    fu_contact_add_force(model, contact, to->state, on, element, number, point->r, point->f, to->f);
+}
+
+static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+{
+    forces to = {state, f};
+    fu_contact_visit(model, of(coupling), state, add_force, &to);
 }
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)

@@ -64,6 +64,11 @@ int fu_contact_first(const fu_model *model, const fu_contact *contact, int eleme
 void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
                           int point, const double *r, const double *force, double *f);
 
+/* Calls `visit` with each point that touches. */
+typedef void fu_contact_visitor(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
+                                const fu_touch_point *point, void *context);
+void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state, fu_contact_visitor *visit, void *context);
+
 /* couplings/contact_derivatives.c: adds to a system the derivatives of what a point that touches, and its reaction, put on the left
  * of the equations of motion; psi as in fu_equations. */
 void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
