@@ -19,10 +19,22 @@ static const fu_hard_contact *contact_of(const fu_coupling *coupling)
     return (const fu_hard_contact *)coupling;
 }
 
-static double along(const fu_hard_row *row, const double *dofs)
+void fu_hard_push(fu_run *run, const fu_hard_row *row, const double *H, double impulse)
+{
+    for (int i = 0; i < row->n; ++i) run->before[row->at[i]] += impulse * H[i];
+}
+
+void fu_hard_respond(fu_run *run, const fu_hard_row *row, const double *H)
+{
+    memset(run->before, 0, sizeof(double) * (size_t)run->model->n_dof);
+    fu_hard_push(run, row, H, 1.0);
+    fu_response(run->model, &run->accelerator, run->before, run->work);
+}
+
+double fu_hard_rate(const fu_hard_row *row, const double *H, const double *dofs)
 {
     double sum = 0.0;
-    for (int i = 0; i < row->n; ++i) sum += row->H[i] * dofs[row->at[i]];
+    for (int i = 0; i < row->n; ++i) sum += H[i] * dofs[row->at[i]];
     return sum;
 }
 
@@ -50,14 +62,10 @@ static void collect(fu_run *run, const fu_coupling *first, fu_touching *t)
 /* Makes the compliance of what touches; returns not zero where other constraints have no solution. */
 static int comply(fu_run *run, fu_touching *t)
 {
-    const fu_model *model = run->model;
-    if (fu_prepare_response(model, &run->now, &run->accelerator)) return 1;
+    if (fu_prepare_response(run->model, &run->now, &run->accelerator)) return 1;
     for (int k = 0; k < t->n; ++k) {
-        const fu_hard_row *row = &t->row[k];
-        for (int i = 0; i < model->n_dof; ++i) run->before[i] = 0.0;
-        for (int i = 0; i < row->n; ++i) run->before[row->at[i]] += row->H[i];
-        fu_response(model, &run->accelerator, run->before, run->work);
-        for (int j = 0; j < t->n; ++j) t->G[j * t->n + k] = along(&t->row[j], run->work);
+        fu_hard_respond(run, &t->row[k], t->row[k].H);
+        for (int j = 0; j < t->n; ++j) t->G[j * t->n + k] = fu_hard_rate(&t->row[j], t->row[j].H, run->work);
     }
     for (int k = 0; k < t->n; ++k)
         for (int j = 0; j < k; ++j) t->G[j * t->n + k] = t->G[k * t->n + j] = 0.5 * (t->G[j * t->n + k] + t->G[k * t->n + j]);
@@ -67,11 +75,9 @@ static int comply(fu_run *run, fu_touching *t)
 /* Makes the jump of velocities by the impulses, in run->work. */
 static void jump(fu_run *run, const fu_touching *t)
 {
-    const fu_model *model = run->model;
-    for (int i = 0; i < model->n_dof; ++i) run->before[i] = 0.0;
-    for (int k = 0; k < t->n; ++k)
-        for (int i = 0; i < t->row[k].n; ++i) run->before[t->row[k].at[i]] += t->impulse[k] * t->row[k].H[i];
-    fu_response(model, &run->accelerator, run->before, run->work);
+    memset(run->before, 0, sizeof(double) * (size_t)run->model->n_dof);
+    for (int k = 0; k < t->n; ++k) fu_hard_push(run, &t->row[k], t->row[k].H, t->impulse[k]);
+    fu_response(run->model, &run->accelerator, run->before, run->work);
 }
 
 /* Finds the impulses by which nothing leaves more slowly than by its restitution; returns not zero where there are none. */
@@ -136,7 +142,7 @@ static int press(fu_run *run, fu_touching *t, double least)
     for (int i = 0; i < n; ++i) {
         fu_hard_row row;
         fu_hard_row_at(model, contact_of(t->of[at[i]]), &run->now, &row); /* velocities have jumped */
-        b[i] = along(&row, run->work) + row.bias;
+        b[i] = fu_hard_rate(&row, row.H, run->work) + row.bias;
         largest = fmax(largest, fabs(b[i]));
         for (int j = 0; j < n; ++j) G[i * n + j] = t->G[at[i] * t->n + at[j]];
     }

@@ -33,14 +33,6 @@ static const double *row_of(const fu_touching *t, const rubbing *r, int dim, int
     return k % dim ? r->along[k / dim].H[k % dim - 1] : t->row[k / dim].H;
 }
 
-/* Makes the response of the velocities to a force, in run->work, of row k's multiplier times a factor added to run->before. */
-static void add_row(fu_run *run, const fu_touching *t, const rubbing *r, int k, double factor)
-{
-    const fu_hard_row *row = &t->row[k / run->model->dim];
-    const double *H = row_of(t, r, run->model->dim, k);
-    for (int i = 0; i < row->n; ++i) run->before[row->at[i]] += factor * H[i];
-}
-
 /* Makes the rows, their compliance and the velocities before. */
 static void prepare(fu_run *run, const fu_touching *t, rubbing *r)
 {
@@ -49,16 +41,8 @@ static void prepare(fu_run *run, const fu_touching *t, rubbing *r)
     r->n = t->n * dim;
     for (int k = 0; k < t->n; ++k) fu_hard_along_at(model, contact_of(t->of[k]), &run->now, &t->row[k], &r->along[k]);
     for (int k = 0; k < r->n; ++k) {
-        for (int i = 0; i < model->n_dof; ++i) run->before[i] = 0.0;
-        add_row(run, t, r, k, 1.0);
-        fu_response(model, &run->accelerator, run->before, run->work);
-        for (int j = 0; j < r->n; ++j) {
-            const fu_hard_row *row = &t->row[j / dim];
-            const double *H = row_of(t, r, dim, j);
-            double sum = 0.0;
-            for (int i = 0; i < row->n; ++i) sum += H[i] * run->work[row->at[i]];
-            r->A[j * r->n + k] = sum;
-        }
+        fu_hard_respond(run, &t->row[k / dim], row_of(t, r, dim, k));
+        for (int j = 0; j < r->n; ++j) r->A[j * r->n + k] = fu_hard_rate(&t->row[j / dim], row_of(t, r, dim, j), run->work);
         const fu_hard_along *along = &r->along[k / dim];
         r->before[k] = k % dim ? fu_dot(dim, along->t[k % dim - 1], along->past) : t->before[k / dim];
         r->impulse[k] = 0.0;
@@ -106,11 +90,11 @@ int fu_rub(fu_run *run, fu_touching *t)
     }
     if (!(change <= sqrt(CONVERGED) * largest)) return 1;
     t->taken = 0.0;
-    for (int i = 0; i < run->model->n_dof; ++i) run->before[i] = 0.0;
+    memset(run->before, 0, sizeof(double) * (size_t)run->model->n_dof);
     for (int k = 0; k < r.n; ++k) {
         r.after[k] = velocity(&r, k);
         t->taken -= 0.5 * r.impulse[k] * (r.before[k] + r.after[k]);
-        add_row(run, t, &r, k, r.impulse[k]);
+        fu_hard_push(run, &t->row[k / dim], row_of(t, &r, dim, k), r.impulse[k]);
         if (k % dim) continue;
         t->impulse[k / dim] = r.impulse[k];
         t->after[k / dim] = fabs(r.after[k] - t->target[k / dim]) <= sqrt(CONVERGED) * fabs(t->before[k / dim])

@@ -73,6 +73,12 @@ typedef struct {
     double target[FU_MOST_HARD_CONTACTS], impulse[FU_MOST_HARD_CONTACTS], taken;
 } fu_touching;
 
+/* couplings/impacts.c: adds an impulse along H, of a row's dofs, to run->before; makes in run->work what velocities jump by for one of
+ * 1 Ns alone; returns how fast dofs that change at these rates go along H. */
+void fu_hard_push(fu_run *run, const fu_hard_row *row, const double *H, double impulse);
+void fu_hard_respond(fu_run *run, const fu_hard_row *row, const double *H);
+double fu_hard_rate(const fu_hard_row *row, const double *H, const double *dofs);
+
 /* couplings/rubbing.c: the jump of velocities by impulses with friction, in run->work; how friction and pressing go on, where one of
  * them, `loose`, may be known to break loose. They return not zero where there is no solution. */
 int fu_rub(fu_run *run, fu_touching *touching);
