@@ -381,13 +381,11 @@ double fu_dissipation(const fu_model *model, const fu_state *state, const fu_acc
 /* Returns the length of the cable of a slide, m. */
 double fu_length(const fu_model *model, int slide)
 {
-    const fu_cable *cable = &model->cables[model->slides[slide].cable];
-    return cable->nodes ? cable->nodes[cable->n_elements] : cable->n_elements * cable->length;
+    return fu_cable_length(&model->cables[model->slides[slide].cable]);
 }
 
 /* Returns the arc-length at the first node of an element of a slide's cable, m. */
 double fu_element_start(const fu_model *model, int slide, int element)
 {
-    const fu_cable *cable = &model->cables[model->slides[slide].cable];
-    return cable->nodes ? cable->nodes[element] : element * cable->length;
+    return fu_cable_start(&model->cables[model->slides[slide].cable], element);
 }

@@ -7,12 +7,7 @@ double fu_signal_at(const fu_signal *signal, double t, double *rate, double *sec
     double f = 0.0, f1 = 0.0, f2 = 0.0;
     if (signal->n) {
         const double *breaks = signal->breaks;
-        int low = 0, high = signal->n - 1;
-        while (low < high) {
-            const int middle = (low + high + 1) / 2;
-            if (t >= breaks[middle]) low = middle;
-            else high = middle - 1;
-        }
+        const int low = fu_last_reached(breaks, 0, signal->n, t);
         const double d = t - breaks[low];
         for (int k = FU_SIGNAL_TERMS - 1; k >= 0; --k) {
             f2 = f2 * d + 2.0 * f1;

@@ -13,36 +13,20 @@
 #define FARTHEST 2.0   /* elements that a correction goes at most */
 #define SAMPLES 4      /* of an element, where the search begins anew */
 
-static double total_length(const fu_cable *cable)
+/* Returns the element of a cable that holds s. */
+static int element_at(const fu_cable *cable, double s)
 {
-    return cable->nodes ? cable->nodes[cable->n_elements] : cable->n_elements * cable->length;
-}
-
-/* Returns the element of a cable that holds s, and where that begins. */
-static int element_at(const fu_cable *cable, double s, double *start)
-{
-    int low = 0, high = cable->n_elements;
-    if (!cable->nodes) {
-        low = (int)fmin(fmax(s / cable->length, 0.0), cable->n_elements - 1.0);
-        *start = low * cable->length;
-        return low;
-    }
-    while (high - low > 1) {
-        const int middle = (low + high) / 2;
-        if (cable->nodes[middle] <= s) low = middle;
-        else high = middle;
-    }
-    *start = cable->nodes[low];
-    return low;
+    if (cable->nodes) return fu_last_reached(cable->nodes, 0, cable->n_elements, s);
+    return (int)fmin(fmax(s / cable->length, 0.0), cable->n_elements - 1.0);
 }
 
 static void point_of_cable(const fu_cable *cable, const double *q, const double *v, double s, fu_line_point *out)
 {
     const int dim = cable->kernel->dim, n = cable->coordinates / dim;
-    const double within = fmin(fmax(s, 0.0), total_length(cable)), beyond = s - within;
-    double start, every[9 * FU_MAX_COORDINATES];
-    out->element = element_at(cable, within, &start);
-    const double length = fu_element_length(cable, out->element);
+    const double within = fmin(fmax(s, 0.0), fu_cable_length(cable)), beyond = s - within;
+    double every[9 * FU_MAX_COORDINATES];
+    out->element = element_at(cable, within);
+    const double length = fu_element_length(cable, out->element), start = fu_cable_start(cable, out->element);
     const int first = cable->first + out->element * cable->per_node;
     cable->kernel->on_axis(length, within - start, out->N, out->N_x);
     cable->kernel->slopes(length, within - start, every);
@@ -150,7 +134,7 @@ static double distance_from_second(const fu_model *model, const fu_crossing *cro
     double least = INFINITY;
     fu_line_point point;
     for (int i = 0; i <= n; ++i) {
-        double square = 0.0, along = 0.0, slope = 0.0, at = cable >= 0 ? i * total_length(&model->cables[cable]) / n : 0.0;
+        double square = 0.0, along = 0.0, slope = 0.0, at = cable >= 0 ? i * fu_cable_length(&model->cables[cable]) / n : 0.0;
         point_of_line(model, crossing, 1, state, at, &point);
         for (int d = 0; d < dim; ++d) {
             square += (r[d] - point.r[d]) * (r[d] - point.r[d]);
@@ -176,7 +160,7 @@ static double search(const fu_model *model, const fu_crossing *crossing, const f
     double least = INFINITY, other = 0.0;
     fu_line_point point;
     for (int i = 0; i <= n; ++i) {
-        const double at = i * total_length(cable) / n;
+        const double at = i * fu_cable_length(cable) / n;
         point_of_cable(cable, state->q, state->v, at, &point);
         const double square = distance_from_second(model, crossing, state, point.r, &other);
         if (square >= least) continue;

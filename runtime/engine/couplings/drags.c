@@ -42,13 +42,13 @@ static void coefficients_of(int dim, const fu_drag *drag, const double *chord, c
     coefficients[2] = drag->foil_lift;
     coefficients[1] = coefficients[3] = 0.0;
     if (!drag->n_angles) return;
-    double normal[3], second;
+    double normal[3];
     cross(dim, span, chord, normal);
     const double angle = atan2(fu_dot(dim, w, normal), fu_dot(dim, w, chord));
     const fu_signal of_drag = {drag->n_angles, drag->angles, drag->polar_drag, 0.0, 0.0, 0.0};
     const fu_signal of_lift = {drag->n_angles, drag->angles, drag->polar_lift, 0.0, 0.0, 0.0};
-    coefficients[0] = fu_signal_at(&of_drag, angle, &coefficients[1], &second);
-    coefficients[2] = fu_signal_at(&of_lift, angle, &coefficients[3], &second);
+    coefficients[0] = fu_signal_at(&of_drag, angle, &coefficients[1], 0);
+    coefficients[2] = fu_signal_at(&of_lift, angle, &coefficients[3], 0);
 }
 
 /* Adds drag and lift on a body with a span, of axes A. */

@@ -11,8 +11,7 @@ static double profile_at(const fu_flow *flow, double height, double *slope)
     *slope = 0.0;
     if (flow->profile == FU_TABLE) {
         const fu_signal table = {flow->n_pieces, flow->breaks, flow->coefficients, 0.0, 0.0, 0.0};
-        double second;
-        return fu_signal_at(&table, height, slope, &second);
+        return fu_signal_at(&table, height, slope, 0);
     }
     if (flow->profile == FU_UNIFORM) return 1.0;
     const double h = fmax(height, flow->least), factor = pow(h / flow->reference, flow->exponent);
@@ -33,12 +32,7 @@ static splines splines_at(int degree, int n, const double *knots, double x)
     splines out = {0, 1, {1.0}, {0.0}};
     if (n == 1) return out;
     const double low = knots[degree], high = knots[n], at = fmin(fmax(x, low), high);
-    int left = degree, right = n; /* knots[left] <= at < knots[right], at the end of the axis but for the equality */
-    while (right - left > 1) {
-        const int middle = (left + right) / 2;
-        if (at >= knots[middle]) left = middle;
-        else right = middle;
-    }
+    const int left = fu_last_reached(knots, degree, n, at); /* knots[left] <= at < knots[left + 1], at the axis's end but for the equality */
     out.first = left - degree;
     out.n = degree + 1;
     for (int k = 1; k <= degree; ++k) {
@@ -104,8 +98,8 @@ static void table_at(const fu_model *model, const fu_flow *flow, double t, const
 void fu_flow_at(const fu_model *model, const fu_flow *flow, double t, const double *r, fu_flow_state *out)
 {
     const int dim = model->dim;
-    double rate = 0.0, second, slope;
-    const double signal = flow->signal < 0 ? 1.0 : fu_signal_at(&model->signals[flow->signal], t, &rate, &second);
+    double rate = 0.0, slope;
+    const double signal = flow->signal < 0 ? 1.0 : fu_signal_at(&model->signals[flow->signal], t, &rate, 0);
     if (flow->degree) {
         table_at(model, flow, t, r, out);
         for (int i = 0; i < dim; ++i) out->rate[i] = signal * out->rate[i] + rate * out->U[i];

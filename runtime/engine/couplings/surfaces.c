@@ -37,14 +37,9 @@ static void local(int dim, const fu_attachment_state *at, const double *r, doubl
  * *inside is 0. */
 static int cell_of(int n, const double *knots, double *x, int *inside)
 {
-    int low = 0, high = n - 1;
     *inside = *x >= knots[0] && *x <= knots[n - 1];
     *x = fmin(fmax(*x, knots[0]), knots[n - 1]);
-    while (high - low > 1) {
-        const int middle = (low + high) / 2;
-        if (knots[middle] <= *x) low = middle;
-        else high = middle;
-    }
+    const int low = fu_last_reached(knots, 0, n - 1, *x);
     *x -= knots[low];
     return low;
 }

@@ -49,6 +49,18 @@ static inline double fu_element_length(const fu_cable *cable, int element)
     return cable->lengths[(long)element * cable->l_stride];
 }
 
+/* Returns the length of a cable, m. */
+static inline double fu_cable_length(const fu_cable *cable)
+{
+    return cable->nodes ? cable->nodes[cable->n_elements] : cable->n_elements * cable->length;
+}
+
+/* Returns the arc-length at the first node of an element, m. */
+static inline double fu_cable_start(const fu_cable *cable, int element)
+{
+    return cable->nodes ? cable->nodes[element] : element * cable->length;
+}
+
 /* Returns the mass matrix of an element over nodal vectors. */
 static inline const double *fu_element_mass(const fu_cable *cable, int element)
 {

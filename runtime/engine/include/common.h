@@ -46,6 +46,17 @@ static inline double fu_dot(int n, const double *a, const double *b)
     return sum;
 }
 
+/* Returns the last of increasing knots, from `low` on and before `high`, that x has reached; `low` where it has reached none. */
+static inline int fu_last_reached(const double *knots, int low, int high, double x)
+{
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (knots[middle] <= x) low = middle;
+        else high = middle;
+    }
+    return low;
+}
+
 /* Makes the vector product of two vectors in space. */
 static inline void fu_cross(const double *a, const double *b, double *out)
 {

@@ -24,18 +24,6 @@ double fu_piece_length(fu_path path, int k)
     return path.boundaries ? path.boundaries[k + 1] - path.boundaries[k] : path.length;
 }
 
-/* Returns the last of the given boundaries that a coordinate has reached, by bisection: a piece of the path. */
-static double last_reached(fu_path path, double s)
-{
-    int low = 0, high = path.n;
-    while (high - low > 1) {
-        const int middle = (low + high) / 2;
-        if (path.boundaries[middle] <= s) low = middle;
-        else high = middle;
-    }
-    return low;
-}
-
 static double coordinate_of(const fu_coupling *coupling, const fu_state *state)
 {
     return state->s[coupling->coordinate];
@@ -79,7 +67,7 @@ void fu_choose_pieces(fu_run *run)
         int side, *piece = &run->next.piece[c->coordinate];
         if (!path.n || !(fu_outside(model, c, &run->next, &side) > fu_boundary_tolerance(path))) continue;
         const double s = coordinate_of(c, &run->next);
-        const double holds = path.boundaries ? last_reached(path, s) : fmin(fmax(s / path.length, 0.0), path.n - 1.0);
+        const double holds = path.boundaries ? fu_last_reached(path.boundaries, 0, path.n, s) : fmin(fmax(s / path.length, 0.0), path.n - 1.0);
         if ((int)holds != *piece) run->factored = 0;
         *piece = (int)holds;
     }
@@ -94,7 +82,7 @@ void fu_find_pieces(const fu_model *model, fu_state *state)
         const double s = path.n ? coordinate_of(c, state) : 0.0;
         int *piece = &state->piece[c->coordinate];
         if (!path.n || (fu_boundary(path, *piece) <= s && s <= fu_boundary(path, *piece + 1))) continue;
-        const double holds = path.boundaries ? last_reached(path, s)
+        const double holds = path.boundaries ? fu_last_reached(path.boundaries, 0, path.n, s)
                                              : round((s - fmod(s, path.length)) / path.length); /* a quotient may be rounded up */
         *piece = (int)fmin(fmax(holds, 0.0), path.n - 1.0);
     }
