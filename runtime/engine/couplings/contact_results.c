@@ -211,12 +211,6 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return FU_RUNNING;
 }
 
-static int can_act(const fu_coupling *coupling)
-{
-    (void)coupling;
-    return 1;
-}
-
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
     run->now.flags[coupling->flags] = deepest(run->model, of(coupling), &run->now) > 0.0;
@@ -300,4 +294,4 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
 }
 
 const fu_coupling_events fu_contact_events = {
-    .watches = watches, .watched = watched, .sign = sign, .act = act, .can_act = can_act, .begin = begin, .dip = dip};
+    .watches = watches, .watched = watched, .sign = sign, .act = act, .begin = begin, .dip = dip};

@@ -21,10 +21,8 @@ int fu_coupling_watches(const fu_model *model, fu_watch *out)
 /* Returns whether any coupling can change by itself. */
 int fu_couplings_can_act(const fu_model *model)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
-        if (c->type->events && c->type->events->can_act(c)) return 1;
-    }
+    for (int k = 0; k < model->n_couplings; ++k)
+        if (fu_can_act(model->couplings[k])) return 1;
     return 0;
 }
 

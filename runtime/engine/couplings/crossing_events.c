@@ -66,12 +66,6 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
     return run->now.flags[coupling->flags] ? -margin : margin;
 }
 
-static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
-{
-    (void)model, (void)coupling, (void)state, (void)which;
-    return -1;
-}
-
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     int *touches = &run->now.flags[coupling->flags];
@@ -85,12 +79,6 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return FU_RUNNING;
 }
 
-static int can_act(const fu_coupling *coupling)
-{
-    (void)coupling;
-    return 1;
-}
-
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
     coupling->type->touch(run->model, coupling, &run->now);
@@ -100,9 +88,7 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 const fu_coupling_events fu_crossing_events = {
     .watches = watches,
     .watched = watched,
-    .sign = sign,
     .act = act,
     .dip = dip,
-    .can_act = can_act,
     .begin = begin,
 };

@@ -201,12 +201,6 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
     return next_passage(run->model, force_of(coupling), state).margin;
 }
 
-static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
-{
-    (void)model, (void)coupling, (void)state, (void)which;
-    return -1;
-}
-
 /* The distance of the points at a state, and what tells of the force: the gap, its rate, its acceleration. */
 typedef struct {
     double distance, gap[3], rate[3], acceleration[3];
@@ -303,7 +297,6 @@ const fu_coupling_events fu_point_force_events = {
     .watches = watches,
     .watched = watched,
     .dip = dip,
-    .sign = sign,
     .act = act,
     .pass = pass,
     .passed = passed,

@@ -66,12 +66,6 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     return fu_dip((fu_course){from.g, from.rate}, (fu_course){to.g, to.rate}, 1, h, run->round_off);
 }
 
-static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
-{
-    (void)model, (void)coupling, (void)state, (void)which;
-    return -1;
-}
-
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     fu_hard_flags *flags = fu_hard_flags_of(coupling, &run->now);
@@ -93,12 +87,6 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return status;
 }
 
-static int can_act(const fu_coupling *coupling)
-{
-    (void)coupling;
-    return 1;
-}
-
 /* The first of them finds how all are. */
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
@@ -109,4 +97,4 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 }
 
 const fu_coupling_events fu_hard_contact_events = {
-    .watches = watches, .watched = watched, .dip = dip, .sign = sign, .act = act, .can_act = can_act, .begin = begin};
+    .watches = watches, .watched = watched, .dip = dip, .act = act, .begin = begin};

@@ -36,7 +36,7 @@ struct fu_coupling_events {
     /* When a watched number is farthest beyond zero in the step just made, of h, at both ends of which it is on one side, as fu_dip
      * (include/events.h) predicts it; or where the step should end as an impact needs shorter ones; else 0. Null: it is not known. */
     double (*dip)(const fu_run *run, const fu_coupling *coupling, int which, double h);
-    /* The sign that a watched number has from here on, after it has been zero and the coupling has changed: 1 or -1. */
+    /* The sign that a watched number has from here on, after it has been zero and the coupling has changed: 1 or -1. Null: -1. */
     int (*sign)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which);
     /* Lets happen what follows where a watched number has passed zero to this side; returns a status. *what says in words
      * what has happened, and is null where nothing has. */
@@ -56,12 +56,19 @@ struct fu_coupling_events {
     void (*passed_force)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                          double factor, double *f);
 
-    /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
+    /* Whether the coupling can change by itself (null: it can): `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);
     int (*begin)(fu_run *run, const fu_coupling *coupling);
     /* Gives the state what follows from velocities that have jumped. Null: nothing does. */
     void (*take_velocities)(fu_run *run, const fu_coupling *coupling);
 };
+
+/* Whether a coupling can change by itself. */
+static inline int fu_can_act(const fu_coupling *coupling)
+{
+    const fu_coupling_events *events = coupling->type->events;
+    return events && (!events->can_act || events->can_act(coupling));
+}
 
 /* The path of a coupling at a state, with no pieces where it has none. */
 static inline fu_path fu_path_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state)

@@ -276,7 +276,8 @@ void fu_watch_anew(fu_run *run, int coupling)
         if (watch->index == coupling) run->late[k] = 0;
         if (run->late[k]) continue;
         const fu_coupling *c = run->model->couplings[watch->index];
-        const int sign = c->type->events->sign(run->model, c, &run->now, watch->which);
+        const fu_coupling_events *events = c->type->events;
+        const int sign = events->sign ? events->sign(run->model, c, &run->now, watch->which) : -1;
         run->watched[k] = sign * fmax(sign * watched(run, &run->now, k), SMALLEST);
     }
     run->watch_solution = FU_SOLVE_ANEW;

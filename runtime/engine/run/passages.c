@@ -8,8 +8,7 @@
 /* Returns whether steps may go over changes of a coupling. */
 int fu_can_pass(const fu_coupling *coupling)
 {
-    const fu_coupling_events *events = coupling->type->events;
-    return events && events->pass && events->can_act(coupling);
+    return fu_can_act(coupling) && coupling->type->events->pass;
 }
 
 static int has_passed(const fu_run *run, const fu_coupling *c)
