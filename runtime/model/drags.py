@@ -63,7 +63,6 @@ class DragModel(CouplingModel):
     foil: tuple[float, float]
     span: tuple[float, ...]
     chord: tuple[float, ...]
-    foil_drag: float
     foil_lift: float
     n_angles: int
     angles: np.ndarray
@@ -123,8 +122,7 @@ def _foil(part: Drag, fluid: Fluid, dim: int, on_body: bool) -> dict[str, Any]:
     is_foil = on_body and (part.lift != 0 or part.polar is not None)
     return {"lift": (0.0, LEAST_SPEED), "is_foil": is_foil, "foil": (fluid.density / 2 * part.area, LEAST_SPEED),
             "span": tuple(span) if dim == 3 else (float(np.sign(span[2])),), "chord": tuple(chord[:dim]),
-            "foil_drag": 0.0, "foil_lift": part.lift, "n_angles": len(drag), "angles": breaks, "polar_drag": drag,
-            "polar_lift": lift}
+            "foil_lift": part.lift, "n_angles": len(drag), "angles": breaks, "polar_drag": drag, "polar_lift": lift}
 
 
 def up_of(scene: SceneData) -> np.ndarray:

@@ -173,7 +173,6 @@ static double search(const fu_model *model, const fu_crossing *crossing, const f
 
 void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
 {
-    out->touches = state->flags[crossing->base.flags];
     for (int line = 0; line < FU_LINES; ++line) out->s[line] = state->numbers[crossing->base.numbers + FU_CROSSING_S + line];
     out->found = converge(model, crossing, state, out);
     if (out->found) return;

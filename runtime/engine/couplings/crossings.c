@@ -28,10 +28,11 @@ int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const 
 static void contact_force(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *points,
                           fu_crossing_contact *contact, double force[3])
 {
+    const int touches = state->flags[crossing->base.flags];
     fu_find_closest(model, crossing, state, points);
     fu_crossing_contact_at(crossing, points, contact);
     if (!points->found || fu_crossing_swung(crossing, state, contact)) contact->size = NAN;
-    for (int d = 0; d < 3; ++d) force[d] = !points->touches ? 0.0 : isnan(contact->size) ? NAN : contact->force[d];
+    for (int d = 0; d < 3; ++d) force[d] = !touches ? 0.0 : isnan(contact->size) ? NAN : contact->force[d];
 }
 
 /* Adds the contact force to the left of the equations of motion. */
@@ -157,7 +158,7 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     fu_crossing_contact contact;
     (void)acceleration, (void)work;
     contact_force(model, crossing_of(coupling), state, &points, &contact, out);
-    out[3] = points.touches ? contact.size : 0.0;
+    out[3] = state->flags[coupling->flags] ? contact.size : 0.0;
     out[4] = contact.depth[0];
     memcpy(out + 5, points.s, sizeof points.s);
     memcpy(out + 7, points.line[0].r, sizeof points.line[0].r);

@@ -38,9 +38,8 @@ static void cross(int dim, const double *a, const double *b, double out[3])
 static void coefficients_of(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w,
                             double coefficients[4])
 {
-    coefficients[0] = drag->foil_drag;
+    coefficients[0] = coefficients[1] = coefficients[3] = 0.0;
     coefficients[2] = drag->foil_lift;
-    coefficients[1] = coefficients[3] = 0.0;
     if (!drag->n_angles) return;
     double normal[3];
     cross(dim, span, chord, normal);
@@ -481,7 +480,6 @@ static const fu_field fields[] = {
     FU_FIELD_ARRAY(fu_drag, foil, FU_REAL),
     FU_FIELD_ARRAY(fu_drag, span, FU_REAL),
     FU_FIELD_ARRAY(fu_drag, chord, FU_REAL),
-    FU_FIELD(fu_drag, foil_drag, FU_REAL, 0),
     FU_FIELD(fu_drag, foil_lift, FU_REAL, 0),
     FU_FIELD(fu_drag, n_angles, FU_INTEGER, 0),
     FU_FIELD(fu_drag, angles, FU_REALS, 0),

@@ -123,13 +123,14 @@ static int pass(const fu_model *model, const fu_coupling *coupling, const fu_sta
 {
     const fu_point_force *between = force_of(coupling);
     int *piece = &to->flags[coupling->flags];
+    const int before = *piece;
     *piece = from->flags[coupling->flags];
     for (int i = 0; i < between->n_pieces; ++i) {
         const passage next = next_passage(model, between, to);
         if (!(next.margin > 0.0)) break;
         *piece = next.piece;
     }
-    return *piece != from->flags[coupling->flags];
+    return *piece != before;
 }
 
 /* What has happened where the force has passed from piece to piece, in words; nothing at a corner of a table. */

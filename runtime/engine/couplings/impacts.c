@@ -84,8 +84,9 @@ static void jump(fu_run *run, const fu_touching *t)
 static int solve_impulses(fu_touching *t, double least)
 {
     double b[MOST];
+    int unused[MOST];
     for (int k = 0; k < t->n; ++k) b[k] = t->before[k] - t->target[k];
-    if (fu_complement(t->n, t->G, b, least, t->impulse, t->kind)) return 1;
+    if (fu_complement(t->n, t->G, b, least, t->impulse, unused)) return 1;
     for (int k = 0; k < t->n; ++k) t->after[k] = t->before[k] + fu_dot(t->n, t->G + k * t->n, t->impulse);
     return 0;
 }

@@ -44,7 +44,7 @@ struct fu_coupling_events {
 
     /* Passages: changes that steps may go over, as nothing but a slope of the force jumps there. Null: there are none.
      *
-     * Makes the flags of `to` those that follow from the flags of `from` and from where `to` is; returns whether they differ. */
+     * Makes the flags of `to` those that follow from the flags of `from` and from where `to` is; returns whether that changes them. */
     int (*pass)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to);
     /* Returns after which part of a step of h from one state to the other the coupling has passed; *what as above. */
     double (*passed)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,

@@ -40,7 +40,7 @@ typedef struct {
 /* Both closest points, as the kernels take them; found: not zero where they are the closest. Else apart: how far the lines are apart
  * at least, by samples, m; 0 where they may touch. */
 typedef struct {
-    int found, touches;
+    int found;
     double apart;
     double s[FU_LINES];
     fu_line_point line[FU_LINES];

@@ -16,8 +16,8 @@ typedef struct {
     double lift[2];            /* of a cable, as the kernel takes them: none where the first is zero */
     int is_foil;               /* not zero: a body with a span, and a force by its angle of attack, with drag by `coefficients` */
     double foil[2], span[3], chord[3]; /* as the kernel takes them; along axes of the body, span[0] in the plane its sense */
-    double foil_drag, foil_lift;       /* coefficients, without a polar: */
-    int n_angles;                      /* polynomials of the angle, as a signal's of time: of both coefficients */
+    double foil_lift;                  /* coefficient without a polar: drag is by `coefficients` then */
+    int n_angles;                      /* polynomials of the angle, as a signal's of time: of the coefficients of drag and lift */
     const double *angles, *polar_drag, *polar_lift;
     double buoyancy[3];        /* N/m a length of the undeformed cable, N on a body */
     double displaced;          /* mass of the fluid displaced: kg/m, kg */

@@ -66,7 +66,7 @@ double fu_hard_softness(const fu_hard_contact *contact, double multiplier);
 /* The points that touch: how they were; their rows, compliance, normal velocities before and after, what these shall be at least,
  * impulses, the energy that these take, J; whether they stay together; whether any has friction. */
 typedef struct {
-    int n, friction, was[FU_MOST_HARD_CONTACTS], stuck[FU_MOST_HARD_CONTACTS], stays[FU_MOST_HARD_CONTACTS], kind[FU_MOST_HARD_CONTACTS];
+    int n, friction, was[FU_MOST_HARD_CONTACTS], stuck[FU_MOST_HARD_CONTACTS], stays[FU_MOST_HARD_CONTACTS];
     const fu_coupling *of[FU_MOST_HARD_CONTACTS];
     fu_hard_row row[FU_MOST_HARD_CONTACTS];
     double G[FU_MOST_HARD_CONTACTS * FU_MOST_HARD_CONTACTS], before[FU_MOST_HARD_CONTACTS], after[FU_MOST_HARD_CONTACTS];

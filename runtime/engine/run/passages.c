@@ -25,10 +25,7 @@ void fu_choose_passages(fu_run *run)
     if (run->keep_forces) return;
     for (int k = 0; k < model->n_couplings && model->n_passing; ++k) {
         const fu_coupling *c = model->couplings[k];
-        if (!fu_can_pass(c)) continue;
-        const int before = run->next.flags[c->flags];
-        c->type->events->pass(model, c, &run->now, &run->next);
-        if (run->next.flags[c->flags] != before) run->factored = 0;
+        if (fu_can_pass(c) && c->type->events->pass(model, c, &run->now, &run->next)) run->factored = 0;
     }
 }
 
