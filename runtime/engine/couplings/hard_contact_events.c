@@ -2,7 +2,6 @@
 #include "engine.h"
 
 #define LEAST_PULL 3e-10 /* of the weight: what is pulled by less stays closed, as three of four points that bear have none to spare */
-#define AT_ONCE 1e-12 /* of the duration: news that is older is none */
 
 static const char *const words[] = {"", "struck", "came into contact", "lost contact", "stuck", "broke loose"};
 
@@ -73,7 +72,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     (void)side;
     *what = words[FU_NO_NEWS];
     if (which == OF_FRICTION && flags->mode != FU_CLOSED) return FU_RUNNING;
-    if (flags->news && run->now.t - *time <= AT_ONCE * run->duration) { /* of what another one has brought */
+    if (flags->news && run->now.t - *time <= FU_AT_ONCE * run->duration) { /* of what another one has brought; older news is none */
         *what = words[flags->news];
         flags->news = FU_NO_NEWS;
         return FU_RUNNING;

@@ -167,7 +167,7 @@ static int news_of(const fu_touching *t, int k, const fu_hard_flags *flags)
 static void let_happen(fu_run *run, const fu_coupling *coupling)
 {
     for (int k = 0; k < run->n_watches; ++k)
-        if (run->watches[k].kind == FU_WATCH_COUPLING && run->watches[k].index == coupling->number && !run->watches[k].which)
+        if (fu_own_coupling(run, k) == coupling && !run->watches[k].which)
             run->late[k] = 1;
 }
 

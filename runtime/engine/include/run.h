@@ -87,6 +87,12 @@ struct fu_run {
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 };
 
+/* Returns the coupling whose own a watch is; null where it is another one. */
+static inline const fu_coupling *fu_own_coupling(const fu_run *run, int watch)
+{
+    return run->watches[watch].kind == FU_WATCH_COUPLING ? run->model->couplings[run->watches[watch].index] : 0;
+}
+
 /* run/scene_size.c */
 double fu_largest_motion(const fu_model *model, const double *from, const double *to);
 double fu_controlled_motion(const fu_run *run);

@@ -187,11 +187,7 @@ static residual_size size_of_residual(fu_run *run)
     for (int i = 0; i < model->n_band + model->n_border_dof; ++i) size.motion += run->rhs[i] * run->rhs[i];
     size.motion = sqrt(size.motion);
     for (int i = 0; i < model->n_extra; ++i) size.own = fmax(size.own, fabs(own[i]));
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
-        for (int i = 0; i < c->n_forces; ++i)
-            size.gap = fmax(size.gap, fabs(own[c->unknown + c->n_coordinates + i]) / c->scale[i]);
-    }
+    size.gap = largest_gap(run);
     return size;
 }
 

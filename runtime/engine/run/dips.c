@@ -75,10 +75,8 @@ static double return_of(fu_course from, fu_course to, double h, double least)
 static double dip_of(const fu_run *run, int k, double h)
 {
     const fu_watch *watch = &run->watches[k];
-    if (watch->kind == FU_WATCH_COUPLING) {
-        const fu_coupling *c = run->model->couplings[watch->index];
-        return c->type->events->dip ? c->type->events->dip(run, c, watch->which, h) : 0.0;
-    }
+    const fu_coupling *c = fu_own_coupling(run, k);
+    if (c) return c->type->events->dip ? c->type->events->dip(run, c, watch->which, h) : 0.0;
     const fu_course from = course_of(run->model, watch, &run->now), to = course_of(run->model, watch, &run->next);
     if (isnan(from.rate)) return 0.0;
     const double least = NOISE * fmax(fabs(watch->value), fmax(fabs(from.value + watch->value), fabs(to.value + watch->value)));

@@ -10,7 +10,6 @@
 #define LITTLE 1e-2       /* of the allowed error: what a passage beside a boundary may make */
 #define NEAR 1e-6         /* of what a distance changes by in the step: how close to a passage an adaptive step ends */
 #define LARGEST_MISS 1e-6 /* of a piece: how close to a boundary a step ends at least */
-#define AT_ONCE 1e-12     /* of the duration: events of steps no longer than that are at one instant */
 #define SMALLEST 1e-300   /* a value that has a sign and is nearly zero */
 
 const fu_event fu_no_event = {FU_NO_EVENT, 0, 0, 0};
@@ -102,8 +101,7 @@ static double root_of_parabola(double g_low, double g_high, double rate)
 /* Returns the coupling whose passage an event is; null where it is none. */
 static const fu_coupling *passing(const fu_run *run, fu_event event)
 {
-    const fu_watch *watch = &run->watches[event.which];
-    const fu_coupling *c = event.kind == FU_WATCHED && watch->kind == FU_WATCH_COUPLING ? run->model->couplings[watch->index] : 0;
+    const fu_coupling *c = event.kind == FU_WATCHED ? fu_own_coupling(run, event.which) : 0;
     return c && fu_can_pass(c) ? c : 0;
 }
 
@@ -138,7 +136,7 @@ static landing_place landing(const fu_run *run, fu_event event, double range)
 /* Returns whether an event is of a watch of a coupling's own, whose value leaves its zero anew after each event. */
 static int is_of_a_coupling(const fu_run *run, fu_event event)
 {
-    return event.kind == FU_WATCHED && run->watches[event.which].kind == FU_WATCH_COUPLING;
+    return event.kind == FU_WATCHED && fu_own_coupling(run, event.which);
 }
 
 /* An interval of steps in which g, the event's value, passes zero: g_low < 0 <= g_high. */
@@ -242,7 +240,7 @@ double fu_locate(fu_run *run, fu_event event, double h)
  * them pass again. `late` tells which did together with the one that the step was for. */
 void fu_watch_now(fu_run *run, fu_event event, double h)
 {
-    const int moved = h > AT_ONCE * run->duration;
+    const int moved = h > FU_AT_ONCE * run->duration;
     run->watch_solution = FU_SOLVE_ONCE;
     for (int k = 0; k < run->n_watches; ++k) {
         const int expected = event.kind == FU_WATCHED && event.which == k;
@@ -259,8 +257,8 @@ void fu_watch_now(fu_run *run, fu_event event, double h)
 int fu_has_lost_a_watch(fu_run *run)
 {
     for (int k = 0; k < run->n_watches; ++k) {
-        if (run->watches[k].kind != FU_WATCH_COUPLING || !isnan(run->watched[k])) continue;
-        return fu_fail(run, FU_NOT_KNOWN, run->now.v, run->watches[k].index);
+        const fu_coupling *c = fu_own_coupling(run, k);
+        if (c && isnan(run->watched[k])) return fu_fail(run, FU_NOT_KNOWN, run->now.v, c->number);
     }
     return 0;
 }
@@ -271,13 +269,12 @@ void fu_watch_anew(fu_run *run, int coupling)
 {
     run->watch_solution = FU_SOLVE_ONCE;
     for (int k = 0; k < run->n_watches; ++k) {
-        const fu_watch *watch = &run->watches[k];
-        if (watch->kind != FU_WATCH_COUPLING) continue;
-        if (watch->index == coupling) run->late[k] = 0;
+        const fu_coupling *c = fu_own_coupling(run, k);
+        if (!c) continue;
+        if (c->number == coupling) run->late[k] = 0;
         if (run->late[k]) continue;
-        const fu_coupling *c = run->model->couplings[watch->index];
         const fu_coupling_events *events = c->type->events;
-        const int sign = events->sign ? events->sign(run->model, c, &run->now, watch->which) : -1;
+        const int sign = events->sign ? events->sign(run->model, c, &run->now, run->watches[k].which) : -1;
         run->watched[k] = sign * fmax(sign * watched(run, &run->now, k), SMALLEST);
     }
     run->watch_solution = FU_SOLVE_ANEW;

@@ -1,7 +1,6 @@
 /* What follows from events that a run stands on. */
 #include "engine.h"
 
-#define AT_ONE_INSTANT 1e-12 /* of the duration: changes of couplings that follow each other within it are at one instant */
 #define MOST_SINCE 1e-6      /* of the duration: how far from its end a step may have passed what it ends on */
 #define MOST_ACTS 100        /* changes of couplings at one instant: more is no motion */
 
@@ -10,7 +9,7 @@
 static int acted(fu_run *run, const fu_coupling *coupling, const char *what, double since)
 {
     const int status = fu_start_scheme(run, 1);
-    run->acts = run->now.t - run->acted <= AT_ONE_INSTANT * run->duration ? run->acts + 1 : 0;
+    run->acts = run->now.t - run->acted <= FU_AT_ONCE * run->duration ? run->acts + 1 : 0;
     run->acted = run->now.t;
     if (run->acts > MOST_ACTS) {
         fu_fail(run, FU_SELF_LOCKING, run->now.v, coupling->number);
@@ -47,12 +46,11 @@ static int cross(fu_run *run, const fu_coupling *coupling, int side)
 int fu_let_happen(fu_run *run, fu_event event)
 {
     if (event.kind == FU_CROSSING) return cross(run, run->model->couplings[event.which], event.side);
-    const fu_watch *watch = &run->watches[event.which];
-    if (watch->kind == FU_WATCH_COUPLING) {
-        const fu_coupling *coupling = run->model->couplings[watch->index];
+    const fu_coupling *coupling = fu_own_coupling(run, event.which);
+    if (coupling) {
         const char *what = 0;
         const double since = coupling->type->events->since ? coupling->type->events->since(run->model, coupling, &run->now) : 0.0;
-        const int status = coupling->type->events->act(run, coupling, watch->which, event.side, &what);
+        const int status = coupling->type->events->act(run, coupling, run->watches[event.which].which, event.side, &what);
         return status || !what ? status : acted(run, coupling, what, fabs(since) < MOST_SINCE * run->duration ? since : 0.0);
     }
     run->event = event;

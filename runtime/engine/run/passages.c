@@ -53,8 +53,7 @@ void fu_undo_passages(fu_run *run)
 void fu_note_passages(fu_run *run, double h)
 {
     for (int k = 0; k < run->n_watches && run->model->n_passing; ++k) {
-        const fu_watch *watch = &run->watches[k];
-        const fu_coupling *c = watch->kind == FU_WATCH_COUPLING ? run->model->couplings[watch->index] : 0;
+        const fu_coupling *c = fu_own_coupling(run, k);
         if (!c || !has_passed(run, c)) continue;
         const double part = c->type->events->passed(run->model, c, &run->now, &run->next, h, &run->passed[k]);
         run->passed_at[k] = run->now.t + part * h;
