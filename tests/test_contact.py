@@ -356,6 +356,22 @@ def test_heights_between_places_of_a_table_and_beyond_them():
     assert abs(shape.distance(np.array([9.0, 1.0, 5.0])) - (1 - 0.2 - 0.2)) < 1e-12
 
 
+def test_a_table_is_fitted_once_and_no_other_table_or_direction_takes_its_fit():
+    heights = [[0.0, 0.1, 0.3], [0.2, 0.5, 0.1], [0.0, 0.4, 0.2]]
+    field = fu.HeightField(x=(0, 1, 3), heights=heights, across=(0, 1, 2))
+    bed = fu.Scene().surface("bed", field)
+    assert bed.geometry.cells is bed.geometry.cells
+    with pytest.raises(ValueError, match="read-only"):
+        bed.geometry.cells[:] = 0
+    turned = field.model_copy(update={"along": (0, 0, 1), "up": (1, 0, 0)})
+    there = bed.model_copy(update={"shape": turned, "at": (1, 2, 3)}).geometry
+    assert there.cells is bed.geometry.cells and there.origin.tolist() == [1, 2, 3]
+    assert there.axes.T.tolist() == [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
+    assert bed.geometry.axes.tolist() == np.eye(3).tolist()
+    higher = field.model_copy(update={"heights": tuple(tuple(2 * h for h in row) for row in field.heights)})
+    assert bed.model_copy(update={"shape": higher}).geometry.highest > 1.9 * bed.geometry.highest > 0.95
+
+
 def test_scene_files_say_the_same(tmp_path):
     scene = cloth()
     (tmp_path / "hills.toml").write_text(scene.to_toml(), encoding="utf-8")
