@@ -22,7 +22,8 @@ SUNK = 0.01
 OVERLAP = 0.5
 """Of the radius: a start deeper below the surface is refused."""
 
-
+SAMPLES = 8
+"""Of an element, at which it is looked at for that."""
 OVERLAP_HARD = 1e-9
 """Of 1 m and of the largest coordinate: rounding of places, by which a start of hard contact may be below."""
 MOST_HARD = 48
@@ -61,7 +62,7 @@ def placed_contact(scene: SceneData, contact: Contact) -> Contact:
     surface = scene.surfaces[contact.b]
     if contact.a in scene.cables:
         contact = _of_cable(scene, contact, scene.cables[contact.a])
-        drawn = _along(scene.cables[contact.a])
+        drawn = scene.cables[contact.a].points_at(scene.cables[contact.a].samples(SAMPLES))
     elif contact.a in scene.bodies:
         contact = _of_body(scene, contact, scene.bodies[contact.a], surface)
         drawn = np.array([scene.bodies[contact.a].point(point) for point in contact.points or ()])
@@ -116,11 +117,6 @@ def _with_stiffness(scene: SceneData, contact: Contact, radius: float, mass: flo
                              "give stiffness, in N/m (a length of a cable)")
         found["stiffness"] = weight / (SUNK * radius) ** contact.exponent
     return contact.completed(found)
-
-
-def _along(cable: Cable) -> np.ndarray:
-    """Return (n, 3): points of a cable as drawn, in m."""
-    return np.array([cable.point(float(s)) for s in np.linspace(0, cable.length, 4 * len(cable.node_s) + 1)])
 
 
 def _check_hard_start(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray) -> None:

@@ -23,7 +23,7 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     if drag.on in scene.cables:
         _check_cable(scene, drag)
         cable = scene.cables[drag.on]
-        _check_table(scene, drag, lambda: np.stack([cable.point(s) for s in np.linspace(0, cable.length, PLACES)]))
+        _check_table(scene, drag, lambda: cable.points_at(np.linspace(0, cable.length, PLACES)))
         return drag
     placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
     _refuse(drag, OF_CABLE, "body")

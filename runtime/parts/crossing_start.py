@@ -17,9 +17,6 @@ from .scene_data import SceneData
 SAMPLES = 4
 """Of an element, between which the closest points are looked for."""
 
-OPEN = 257
-"""Samples of a cable whose elements are still to be chosen."""
-
 ITERATIONS = 50
 """Of Gauss and Newton's method to the closest points."""
 
@@ -55,6 +52,10 @@ class _Bar:
         """Return (3,): a point, m."""
         return self.middle + s * self.axis
 
+    def points_at(self, s: np.ndarray) -> np.ndarray:
+        """Return (n, 3): points, m."""
+        return self.middle + s[:, None] * self.axis
+
     def slope(self, s: float) -> np.ndarray:
         """Return (3,): the direction, zero in the plane."""
         return self.axis
@@ -65,11 +66,11 @@ class _Line:
 
     def __init__(self, cable: Cable):
         self.cable, self.length = cable, cable.length
-        self.point, self.slope = cable.point, cable.slope
+        self.point, self.points_at, self.slope = cable.point, cable.points_at, cable.slope
 
     def samples(self) -> np.ndarray:
         """Return arc-lengths of nodes and points between them, m; evenly apart where it has no elements yet."""
-        return np.linspace(0.0, self.length, OPEN) if self.cable.is_open else self.cable.divided(SAMPLES)
+        return self.cable.samples(SAMPLES)
 
 
 def start_of(scene: SceneData, part: Crossing) -> Start:
@@ -103,7 +104,7 @@ def _ends(a: _Line, b: _Line | _Bar) -> tuple[np.ndarray, np.ndarray]:
 def _nearest_samples(a: _Line, b: _Line | _Bar) -> np.ndarray:
     """Return (2,): arc-lengths of the two closest samples."""
     of_a, of_b = a.samples(), b.samples()
-    first, second = (np.array([line.point(s) for s in of]) for line, of in ((a, of_a), (b, of_b)))
+    first, second = a.points_at(of_a), b.points_at(of_b)
     apart = [float(np.min(np.sum((second - point) ** 2, axis=1))) for point in first]
     k = int(np.argmin(apart))
     return np.array([of_a[k], of_b[int(np.argmin(np.sum((second - first[k]) ** 2, axis=1)))]])
