@@ -12,7 +12,7 @@ from ..parts.contact import Contact
 from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
-from ..parts.section import Circle, Tube
+from ..parts.section import outer_radius_of
 from ..parts.surface import Surface
 from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
@@ -85,12 +85,10 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
                          "leave restitution out and give stiffness, in N/m a length")
     if contact.points is not None:
         raise SceneError(contact.where, f'acts along cable "{cable.name}" and takes no points', "leave points out")
-    radius = contact.radius
+    radius = outer_radius_of(cable.section) if contact.radius is None else contact.radius
     if radius is None:
-        if not isinstance(cable.section, Circle | Tube):
-            raise SceneError(contact.where, "radius is missing, which the section of the cable does not tell",
-                             "give radius, in m: how far the surface is from the axis where they touch")
-        radius = cable.section.radius if isinstance(cable.section, Circle) else cable.section.outer_radius
+        raise SceneError(contact.where, "radius is missing, which the section of the cable does not tell",
+                         "give radius, in m: how far the surface is from the axis where they touch")
     return _with_stiffness(scene, contact, radius, cable.material.density * cable.section.area)
 
 

@@ -22,7 +22,7 @@ from .material import Material
 from .part import Part
 from .plane import Plane
 from .schemas import ONLY_PYTHON, GivenAs, checked, list_of_lists
-from .section import AnySection, Circle, Tube
+from .section import AnySection, outer_radius_of
 from .validation import EXACT, Count, Name, Vector, one_of, positive, show, shown, xyz
 
 if TYPE_CHECKING:
@@ -211,7 +211,7 @@ class Cable(Part):
     @property
     def _is_round(self) -> bool:
         """Return whether all directions across its axis are alike: a round section, or elements that have none."""
-        return isinstance(self.section, Circle | Tube) or not self.kind_of_element.director
+        return outer_radius_of(self.section) is not None or not self.kind_of_element.director
 
     @property
     def height_direction(self) -> Vector:

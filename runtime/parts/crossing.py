@@ -12,7 +12,7 @@ from .friction import Friction
 from .part import Part
 from .plane import across
 from .quantity import Quantity, of_time, vector_of_time
-from .section import Circle, Tube
+from .section import outer_radius_of
 from .validation import Name, Reference, Vector, direction, not_negative, positive, xyz
 
 EXPONENTS = (1.0, 1.5)
@@ -79,8 +79,7 @@ class Crossing(Part):
 
 def radius_of(cable: Cable) -> float:
     """Return the radius of a cable's section, m. Raises ValueError where it is not round."""
-    if isinstance(cable.section, Circle):
-        return cable.section.radius
-    if isinstance(cable.section, Tube):
-        return cable.section.outer_radius
-    raise ValueError(f'radius is missing, which the section of cable "{cable.name}" does not tell')
+    radius = outer_radius_of(cable.section)
+    if radius is None:
+        raise ValueError(f'radius is missing, which the section of cable "{cable.name}" does not tell')
+    return radius

@@ -15,7 +15,7 @@ from .plane import across
 from .polar import Polar
 from .quantity import Quantity, vector_of_time
 from .schemas import checked, list_of_lists, list_schema, number_schema
-from .section import Circle, Tube
+from .section import Tube, outer_radius_of
 from .validation import (
     Name,
     Reference,
@@ -132,9 +132,10 @@ class Drag(Part):
         """Return the diameter that drag counts with, m. Raises ValueError where the section has none."""
         if self.diameter is not None:
             return self.diameter
-        if not isinstance(cable.section, Circle | Tube):
+        radius = outer_radius_of(cable.section)
+        if radius is None:
             raise ValueError("diameter is missing, which the section of the cable does not tell")
-        return 2 * (cable.section.radius if isinstance(cable.section, Circle) else cable.section.outer_radius)
+        return 2 * radius
 
     def displaced(self, cable: Cable | None) -> float:
         """Return the displaced volume: of a cable that of a length, m²; of a body all of it, m³."""
