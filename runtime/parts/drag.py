@@ -17,6 +17,7 @@ from .quantity import Quantity, vector_of_time
 from .schemas import checked, list_of_lists, list_schema, number_schema
 from .section import Tube, outer_radius_of
 from .validation import (
+    Matrix,
     Name,
     Reference,
     Vector,
@@ -26,15 +27,12 @@ from .validation import (
     number,
     positive,
     show,
-    vector,
-    vector3,
+    symmetric,
     xyz,
 )
 
 OF_CABLE = ("normal", "tangential", "lift", "diameter", "displaced_area", "added_mass", "added_mass_tangential")
 OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "added_mass")
-
-Matrix = tuple[Vector, Vector, Vector]
 
 
 def _added_mass(value: Any) -> float | Matrix:
@@ -44,18 +42,12 @@ def _added_mass(value: Any) -> float | Matrix:
         if found < 0:
             raise ValueError(f"must not be negative, got {show(found)}")
         return found
-    rows = value.tolist() if isinstance(value, np.ndarray) else value
-    if isinstance(rows, list | tuple) and len(rows) == 3 and all(isinstance(row, list | tuple) for row in rows):
-        matrix = np.array([vector(row) for row in rows])
-    else:
-        matrix = np.diag(vector(rows))
-    largest = np.abs(matrix).max()
-    if not np.allclose(matrix, matrix.T, rtol=0, atol=1e-12 * largest):
-        raise ValueError(f"must be symmetric, got {matrix.tolist()}")
-    if np.linalg.eigvalsh(matrix)[0] < -1e-12 * largest:
+    return symmetric(value, "", _check_added_mass)
+
+
+def _check_added_mass(matrix: np.ndarray) -> None:
+    if np.linalg.eigvalsh(matrix)[0] < -1e-12 * np.abs(matrix).max():
         raise ValueError(f"must not be negative in any direction, got {matrix.tolist()}")
-    first, second, third = (vector3(row) for row in matrix)
-    return first, second, third
 
 
 class Drag(Part):
