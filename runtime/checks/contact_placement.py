@@ -89,7 +89,7 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
     if radius is None:
         raise SceneError(contact.where, "radius is missing, which the section of the cable does not tell",
                          "give radius, in m: how far the surface is from the axis where they touch")
-    return _with_stiffness(scene, contact, radius, cable.material.density * cable.section.area)
+    return _with_stiffness(scene, contact, radius)
 
 
 def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, surface: Surface) -> Contact:
@@ -100,15 +100,22 @@ def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, su
     points = contact.points if contact.points is not None else ((0.0, 0.0, 0.0),)
     if contact.is_hard:
         return contact.completed({"points": points, "radius": contact.radius or 0.0})
-    made = _with_stiffness(scene, contact, 0.0 if contact.radius is None else contact.radius, body.mass)
+    made = _with_stiffness(scene, contact, 0.0 if contact.radius is None else contact.radius)
     return made.completed({"points": points})
 
 
-def _with_stiffness(scene: SceneData, contact: Contact, radius: float, mass: float) -> Contact:
+def _weight(scene: SceneData, contact: Contact) -> float:
+    """Return the weight of what has the contact: of a length of a cable, in N/m, or of a body, in N."""
+    cable = scene.cables.get(contact.a)
+    mass = scene.bodies[contact.a].mass if cable is None else cable.material.density * cable.section.area
+    return mass * float(np.linalg.norm(scene.gravity))
+
+
+def _with_stiffness(scene: SceneData, contact: Contact, radius: float) -> Contact:
     """Return the contact with its radius and, where none is given, the stiffness that the weight asks for."""
     found: dict[str, Any] = {"radius": radius}
     if contact.stiffness is None:
-        weight = mass * float(np.linalg.norm(scene.gravity))
+        weight = _weight(scene, contact)
         if not weight > 0 or not radius > 0:
             lacks = "gravity" if not weight > 0 else "a radius"
             raise SceneError(contact.where, f"stiffness is missing, and without {lacks} there is none to begin with",
@@ -126,28 +133,24 @@ def _check_hard_start(scene: SceneData, contact: Contact, surface: Surface, draw
     if contact.radius and isinstance(surface.shape, HeightField):
         raise SceneError(contact.where, "a height field tells distances where they are nil: hard contact with it is of "
                          "points without radius", "leave radius out, or give stiffness in place of restitution")
-    depth = (contact.radius or 0.0) - surface.distance(scene.bodies.get(surface.on or ""), drawn)
-    k = int(np.argmax(depth))
-    if depth[k] > OVERLAP_HARD * (1 + np.abs(drawn).max()):
-        raise SceneError(
-            contact.where, f'"{contact.a}" starts {show(float(depth[k]), "m")} below the surface "{contact.b}", at '
-            f"{show(drawn[k], 'm')}", "draw it higher, or the surface lower: a hard contact has no depth")
+    _check_depth(scene, contact, surface, drawn, OVERLAP_HARD * (1 + np.abs(drawn).max()),
+                 ": a hard contact has no depth")
 
 
 def _check_start(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray) -> None:
     """Raise SceneError where a start is too deep below the surface, by more than a radius allows, or what it sinks."""
     assert contact.radius is not None and contact.stiffness is not None, f"{contact.where} is not complete"
-    on = scene.bodies.get(surface.on or "")
-    depth = contact.radius - surface.distance(on, drawn)
+    sinks = (_weight(scene, contact) / contact.stiffness) ** (1 / contact.exponent)
+    allowed = max(OVERLAP * contact.radius, 10 * sinks)
+    _check_depth(scene, contact, surface, drawn, allowed, f"; {show(float(allowed), 'm')} is allowed")
+
+
+def _check_depth(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray, allowed: float,
+                 why: str) -> None:
+    """Raise SceneError where one of the points drawn (n, 3) is deeper below the surface than is allowed, in m."""
+    depth = (contact.radius or 0.0) - surface.distance(scene.bodies.get(surface.on or ""), drawn)
     k = int(np.argmax(depth))
-    g = float(np.linalg.norm(scene.gravity))
-    if contact.a in scene.cables:
-        cable = scene.cables[contact.a]
-        weight = cable.material.density * cable.section.area * g
-    else:
-        weight = scene.bodies[contact.a].mass * g
-    allowed = max(OVERLAP * contact.radius, 10 * (weight / contact.stiffness) ** (1 / contact.exponent))
     if depth[k] > allowed:
         raise SceneError(
             contact.where, f'"{contact.a}" starts {show(float(depth[k]), "m")} below the surface "{contact.b}", at '
-            f"{show(drawn[k], 'm')}", f"draw it higher, or the surface lower; {show(float(allowed), 'm')} is allowed")
+            f"{show(drawn[k], 'm')}", f"draw it higher, or the surface lower{why}")

@@ -78,14 +78,16 @@ def start_of(scene: SceneData, part: Crossing) -> Start:
     cable = scene.cables[part.a]
     a = _Line(cable)
     b = _Line(scene.cables[part.b]) if part.b in scene.cables else _Bar(scene, part)
-    s = _nearest_samples(a, b)
+    samples = a.samples(), b.samples()
+    ends = [np.array([each[end] for each in samples]) for end in (0, -1)]
+    s = _nearest(a, b, *samples)
     for _ in range(ITERATIONS):
         d = a.point(s[0]) - b.point(s[1])
         slopes = np.array([a.slope(s[0]), -b.slope(s[1])])
         step = np.linalg.lstsq(slopes.T, -d, rcond=1e-12)[0]
         limit = np.array([a.length, b.length or 1.0]) / 8
         step *= min(1.0, float(np.min(limit / np.maximum(np.abs(step), 1e-300))))
-        s = np.clip(s + step, *_ends(a, b))
+        s = np.clip(s + step, *ends)
         if np.all(np.abs(step) <= 1e-12 * limit):
             break
     d, t = a.point(s[0]) - b.point(s[1]), a.slope(s[0])
@@ -96,14 +98,8 @@ def start_of(scene: SceneData, part: Crossing) -> Start:
     return Start(s, d, normal / sizes / sine if sine else normal, sine)
 
 
-def _ends(a: _Line, b: _Line | _Bar) -> tuple[np.ndarray, np.ndarray]:
-    low, high = (np.array([line.samples()[end] for line in (a, b)]) for end in (0, -1))
-    return low, high
-
-
-def _nearest_samples(a: _Line, b: _Line | _Bar) -> np.ndarray:
-    """Return (2,): arc-lengths of the two closest samples."""
-    of_a, of_b = a.samples(), b.samples()
+def _nearest(a: _Line, b: _Line | _Bar, of_a: np.ndarray, of_b: np.ndarray) -> np.ndarray:
+    """Return (2,): those of the arc-lengths of samples, m, whose points are the two closest."""
     first, second = a.points_at(of_a), b.points_at(of_b)
     apart = [float(np.min(np.sum((second - point) ** 2, axis=1))) for point in first]
     k = int(np.argmin(apart))
