@@ -110,13 +110,12 @@ class Drag(Part):
         chord = np.zeros(3) if self.chord is None else np.array(self.chord) / np.linalg.norm(self.chord)
         return span, chord
 
-    def added(self, dim: int) -> np.ndarray:
-        """Return its coefficients of added mass: of a cable across and along it (2,), of a body (dim, dim).
+    def added_of_cable(self) -> np.ndarray:
+        """Return the coefficients of added mass of a cable, across and along it (2,)."""
+        return np.array([self.added_mass, self.added_mass_tangential], dtype=float)
 
-        Those of a cable are told by a drag with ``at`` not set.
-        """
-        if self.at is None:
-            return np.array([self.added_mass, self.added_mass_tangential], dtype=float)
+    def added_of_body(self, dim: int) -> np.ndarray:
+        """Return the coefficients of added mass of a body, (dim, dim)."""
         C = self.added_mass if isinstance(self.added_mass, tuple) else np.eye(3) * (self.added_mass or 0.0)
         return np.array(C)[:dim, :dim]
 

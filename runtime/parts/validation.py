@@ -218,7 +218,8 @@ def list_of(unit: str = "", *, least: int) -> PlainValidator:
     def check(value: Any) -> tuple[float, ...]:
         value = value.tolist() if isinstance(value, np.ndarray) else value
         if not isinstance(value, list | tuple) or len(value) < least:
-            raise ValueError(f"must be a list of {least} numbers or more, got {shown(value)}")
+            how_many = "numbers, one at least" if least == 1 else f"{least} numbers or more"
+            raise ValueError(f"must be a list of {how_many}, got {shown(value)}")
         return vector(value, unit, len(value))
 
     return checked(check, list_schema(unit, least, None))

@@ -87,9 +87,7 @@ class VelocityTable(Part):
     @classmethod
     def of(cls, data: xarray.Dataset, interpolation: str = "cubic") -> VelocityTable:
         """Return the table of an xarray.Dataset with the names that a file has. Raises SceneError."""
-        found = FileArrays({str(name): each.values for name, each in data.variables.items()},
-                           {str(name): tuple(map(str, each.dims)) for name, each in data.variables.items()})
-        grid = _grid(found, "the dataset")
+        grid = _grid(FileArrays.of(data), "the dataset")
         given = {name: values.tolist() for name, values in grid.axes.items()}
         shape = [len(values) for values in given.values()]
         return cls(**given, velocity=grid.velocity.reshape(*shape, 3).tolist(), interpolation=interpolation)
