@@ -60,7 +60,8 @@ TYPES = {
     "added_mass": "float | Numbers | Points",
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
-    "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Material": "Material", "Friction": "Friction",
+    "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Exponent": "float",
+    "Material": "Material", "Friction": "Friction",
     "float": "float", "str": "str", "int": "int", "bool": "bool", "Callable": "Callable[..., Any]",
     "Any": "Callable[..., Any]",
 }

@@ -348,12 +348,62 @@ def test_bad_input_is_refused(case):
         build_scene(fu.Scene())
 
 
+def test_a_start_is_looked_at_on_all_elements_however_short():
+    """A dip of 30 mm, 36 mm wide, of a line of 10 m: its nodes are close there alone."""
+    dip = np.linspace(-0.018, 0.018, 13)
+    along = np.concatenate([np.linspace(0, 3, 5), 3.02 + dip, np.linspace(3.04, 10, 7)])
+    points = [(x, 0.03 - 0.015 * (1 + cos(pi * (x - 3.02) / 0.018)) * (abs(x - 3.02) < 0.018), 0) for x in along]
+    scene = fu.Scene()
+    scene.surface("bed", fu.Plane())
+    length = fu.Cable(name="line", points=points, elements=1000, **ROPE).length
+    nodes = np.concatenate([np.linspace(0, 2.99, 4), np.linspace(3, 3.1, 21), np.linspace(3.2, length, 10)])
+    scene.cable("line", points=points, nodes=nodes, **ROPE)
+    with pytest.raises(fu.SceneError, match=r'"line" starts 0\.0097.* m below the surface "bed", at'):
+        scene.contact("line", "bed", stiffness=1e6)
+
+
+def test_a_cable_whose_elements_are_still_to_be_chosen_may_touch():
+    def rope_over_drum(height):
+        scene = fu.Scene()
+        scene.cable("rope", start=(0, height, 0), end=(1, height, 0), **ROPE)
+        scene.pin("rope", s=0.0)
+        scene.surface("drum", fu.Cylinder(radius=0.1, length=1), at=(0.5, 0.38, 0))
+        scene.contact("rope", "drum", radius=0.01, stiffness=1e5, damping=0.5)
+        return scene
+
+    with pytest.raises(fu.SceneError, match=r'"rope" starts 0\.01.* m below the surface "drum", at'):
+        rope_over_drum(0.48)
+    chosen = rope_over_drum(0.5).choose(1e-2, duration=0.2)
+    assert chosen.models["rope"].elements > 4 and chosen.scene.contacts["contact_1"].stiffness == 1e5
+    with pytest.warns(fu.FunicularWarning, match="chosen for tol = 0.01"):
+        run = rope_over_drum(0.5).run(0.2, tol=1e-2, progress=False)
+    tip = run["rope.position"][:, -1]
+    exact = run.scene.replace("rope", elements=40).run(0.2, tol=1e-4, progress=False)["rope.position"][-1, -1]
+    assert np.linalg.norm(tip[-1] - exact) < 1e-2 * np.linalg.norm(tip[-1] - tip[0])
+
+
 def test_heights_between_places_of_a_table_and_beyond_them():
     field = fu.HeightField.of(lambda x, z: 0.1 * x + 0.2 * z, np.linspace(0, 2, 5), np.linspace(-1, 1, 4))
     shape = fu.Scene().surface("bed", field).geometry
     slant = sqrt(1 + 0.1**2 + 0.2**2)
     assert abs(shape.distance(np.array([0.7, 1.0, 0.3])) - (1 - 0.07 - 0.06) / slant) < 1e-12
     assert abs(shape.distance(np.array([9.0, 1.0, 5.0])) - (1 - 0.2 - 0.2)) < 1e-12
+
+
+def test_a_table_is_fitted_once_and_no_other_table_or_direction_takes_its_fit():
+    heights = [[0.0, 0.1, 0.3], [0.2, 0.5, 0.1], [0.0, 0.4, 0.2]]
+    field = fu.HeightField(x=(0, 1, 3), heights=heights, across=(0, 1, 2))
+    bed = fu.Scene().surface("bed", field)
+    assert bed.geometry.cells is bed.geometry.cells
+    with pytest.raises(ValueError, match="read-only"):
+        bed.geometry.cells[:] = 0
+    turned = field.model_copy(update={"along": (0, 0, 1), "up": (1, 0, 0)})
+    there = bed.model_copy(update={"shape": turned, "at": (1, 2, 3)}).geometry
+    assert there.cells is bed.geometry.cells and there.origin.tolist() == [1, 2, 3]
+    assert there.axes.T.tolist() == [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
+    assert bed.geometry.axes.tolist() == np.eye(3).tolist()
+    higher = field.model_copy(update={"heights": tuple(tuple(2 * h for h in row) for row in field.heights)})
+    assert bed.model_copy(update={"shape": higher}).geometry.highest > 1.9 * bed.geometry.highest > 0.95
 
 
 def test_scene_files_say_the_same(tmp_path):

@@ -16,6 +16,11 @@ def test_no_heavy_module_is_loaded():
     assert not loaded & HEAVY
 
 
+def test_catenaries_load_none_either():
+    loaded = set(python("import sys, funicular.catenary; print(*sys.modules)").split())
+    assert not loaded & HEAVY
+
+
 def test_the_command_line_loads_none_either():
     loaded = set(python("import sys, funicular.cli; print(*sys.modules)").split())
     assert not loaded & (HEAVY - {"rich", "typer"})

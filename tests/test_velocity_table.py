@@ -38,6 +38,14 @@ def test_it_goes_through_its_values_and_has_its_polynomials_between_them(flow, i
     assert made_again.value(np.zeros(1), np.array([[7.0, 1.3, -5.0]]))[0] == pytest.approx([1.3, 1.3**3, 0])
 
 
+def test_a_turned_table_has_splines_of_its_own():
+    made, place, axes = table(), np.array([[0.4, -1.2, 0.7]]), np.eye(3)[:, [1, 2, 0]]
+    before = made.value(np.array([0.3]), place)
+    assert made.turned(axes).value(np.array([0.3]), place)[0] == pytest.approx(before[0] @ axes)
+    assert np.array_equal(made.splines(2)[2], made.splines(3)[2][..., :2])
+    assert np.array_equal(made.value(np.array([0.3]), place), before)
+
+
 def resting(flow):
     """Return a cable in a flow, with its only force that of the flow, by drag."""
     scene = fu.Scene(gravity=(0, 0, 0))

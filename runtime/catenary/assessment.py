@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from ..errors import SceneError, near
 
@@ -31,6 +30,8 @@ def low_pass(force: np.ndarray, step: float, cutoff: float = CUTOFF, order: int 
     A Butterworth filter, run forwards and backwards, so that it shifts no phase, and adjusted so that the amplitude at
     the cut-off is 1/sqrt(2) after both. Raises SceneError.
     """
+    from scipy.signal import butter, sosfiltfilt  # 0.6 s, for that alone
+
     if not step * cutoff * LEAST_SAMPLES <= 1 + 1e-9:
         raise SceneError("contact force", f"is known at steps of {step:.6g} s, too coarse to filter at {cutoff:g} Hz",
                          f"run with output_step={1 / (LEAST_SAMPLES * cutoff):.6g} s or less")

@@ -62,6 +62,26 @@ def add_wire(scene: Scene, name: str, wire: Wire, start: float, end: float, heig
                                   mass_damping=wire.mass_damping, damping_time=wire.damping_time))
 
 
+def hold_ends(scene: Scene) -> None:
+    """Hold the ends of the contact wire, which is free to rise and is level there."""
+    for s in (0.0, scene.cables["contact"].length):
+        scene.motion("contact", s=s, displacement=(0, "free", 0), rotation=((0, 0, 1), 0))
+
+
+def add_dropper(scene: Scene, name: str, messenger: str, places: tuple[float, float], masses: tuple[float, float], *,
+                stiffness: float, length: float) -> None:
+    """Add a dropper, free of force at a length (m), and what hangs at its ends.
+
+    places, masses: of its ends on the messenger and on the contact wire, the arc-lengths in m, and the masses in kg.
+    """
+    upper, lower = places
+    scene.spring((messenger, upper), ("contact", lower), name=name, stiffness=stiffness, length=length,
+                 tension_only=True)
+    for wire, s, mass in zip((messenger, "contact"), places, masses, strict=True):
+        if mass:
+            scene.force(wire, s=s, value=(0, scene.gravity[1] * mass, 0))
+
+
 def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
     """Return the form of a line's spans, found for one of them: the others repeat it.
 
@@ -79,19 +99,14 @@ def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
     lengths = {name: cable.length for name, cable in scene.cables.items()}
     for s in (0.0, lengths["messenger"]):
         scene.pin("messenger", s=s)
-    for s in (0.0, lengths["contact"]):
-        scene.motion("contact", s=s, displacement=(0, "free", 0), rotation=((0, 0, 1), 0))
+    hold_ends(scene)
     adjust, to = {"contact.rest_length": "free", "messenger.rest_length": "free"}, {}
     for k, x in enumerate(droppers.at):
         upper, lower = (x / line.span * lengths[name] for name in ("messenger", "contact"))
         distance, force = float(strings.distances[k]), float(strings.forces[k])
         stiffness = droppers.stiffness_of(distance)
-        scene.spring(("messenger", upper), ("contact", lower), name=f"dropper_{k + 1}", stiffness=stiffness,
-                     length=distance - force / stiffness, tension_only=True)
-        if line.hanging[k]:
-            scene.force("messenger", s=upper, value=(0, -line.gravity * line.hanging[k], 0))
-        if droppers.contact_clamp:
-            scene.force("contact", s=lower, value=(0, -line.gravity * droppers.contact_clamp, 0))
+        add_dropper(scene, f"dropper_{k + 1}", "messenger", (upper, lower), (line.hanging[k], droppers.contact_clamp),
+                    stiffness=stiffness, length=distance - force / stiffness)
         adjust[f"dropper_{k + 1}.length"] = "free"
         to[f"contact@{lower:.15g}.position.y"] = -float(droppers.depths[k])
     to |= {"contact@0.force.x": -line.contact.tension, "messenger@0.force.x": -line.messenger.tension}
@@ -103,12 +118,9 @@ def _read(line: Line, longest: tuple[float, float], rest: Equilibrium) -> Form:
     forces = np.array([float(rest[f"{name}.tension"]) for name in names])
     distances = np.array([float(rest[f"{name}.length"]) for name in names])
     lengths = np.array([rest.adjusted[f"{name}.length"] for name in names])
-    if line.droppers.stiffness is not None:
-        stiffnesses = np.full(len(names), line.droppers.stiffness)
-    else:
-        assert line.droppers.axial_stiffness is not None, "a dropper has one of the stiffnesses"
+    if line.droppers.axial_stiffness is not None:  # which is over this length, not over the distance
         lengths = distances / (1 + forces / line.droppers.axial_stiffness)
-        stiffnesses = line.droppers.axial_stiffness / lengths
+    stiffnesses = np.array([line.droppers.stiffness_of(length) for length in lengths.tolist()])
     mast = 2 * float(rest["messenger@0.force"][1])
     return Form(line, longest, lengths, forces, stiffnesses, rest.adjusted["contact.rest_length"],
                 rest.adjusted["messenger.rest_length"], float(rest["contact.position"][0, 1]), mast, rest)

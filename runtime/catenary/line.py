@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -65,15 +66,15 @@ class Line(Part):
                                  f"{k + 1} is {show(float(values[k]), 'm')}, that of its mirror image "
                                  f"{show(float(mirrored[k]), 'm')}", "one span is formed, and the others by symmetry")
 
-    @property
+    @cached_property
     def strings(self) -> AtRest:
         """Return a span at rest with wires that do not bend."""
         return at_rest(self.span, self.height, self.contact, self.messenger, self.droppers, self.gravity)
 
-    @property
-    def hanging(self) -> list[float]:
+    @cached_property
+    def hanging(self) -> tuple[float, ...]:
         """Return what hangs from the messenger at each dropper, in kg: the dropper and its clamp."""
-        return (self.droppers.messenger_clamp + self.droppers.mass * self.strings.distances).tolist()
+        return tuple((self.droppers.messenger_clamp + self.droppers.mass * self.strings.distances).tolist())
 
     @property
     def length(self) -> float:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..scene import Scene
-from .form import LONGEST, Form, add_wire, form, mesh
+from .form import LONGEST, Form, add_dropper, add_wire, form, hold_ends, mesh
 from .line import Line
 
 LEVER = 1.0
 """m: from where supports and steady arms are fixed to what they hold."""
+
 
 def scene(line: Line | Form, longest: tuple[float, float] = LONGEST) -> Scene:
     """Return the scene of a catenary, formed, with x along the track and y up from the contact wire's height at the
@@ -32,8 +33,7 @@ def _wires(made: Scene, formed: Form) -> None:
     place, of_messenger = (mesh(line, each) for each in formed.longest)
     nodes = np.concatenate([place[:-1] + k for k in range(line.spans)] + [[line.spans]]) * formed.contact_length
     add_wire(made, "contact", line.contact, 0.0, line.length, formed.height, nodes)
-    for s in (0.0, made.cables["contact"].length):
-        made.motion("contact", s=s, displacement=(0, "free", 0), rotation=((0, 0, 1), 0))
+    hold_ends(made)
     for k in range(line.spans):
         add_wire(made, f"messenger_{k + 1}", line.messenger, k * line.span, (k + 1) * line.span, line.height,
                  of_messenger * formed.messenger_length)
@@ -44,14 +44,10 @@ def _droppers(made: Scene, formed: Form) -> None:
     for span in range(line.spans):
         messenger = f"messenger_{span + 1}"
         for k, x in enumerate(droppers.at):
-            upper = x / line.span * formed.messenger_length
-            lower = (span + x / line.span) * formed.contact_length
-            made.spring((messenger, upper), ("contact", lower), name=f"dropper_{span + 1}_{k + 1}",
-                        stiffness=float(formed.stiffnesses[k]), length=float(formed.lengths[k]), tension_only=True)
-            hanging = line.hanging[k]
-            for wire, s, mass in ((messenger, upper, hanging), ("contact", lower, droppers.contact_clamp)):
-                if mass:
-                    made.force(wire, s=s, value=(0, -line.gravity * mass, 0))
+            places = x / line.span * formed.messenger_length, (span + x / line.span) * formed.contact_length
+            add_dropper(made, f"dropper_{span + 1}_{k + 1}", messenger, places,
+                        (line.hanging[k], droppers.contact_clamp), stiffness=float(formed.stiffnesses[k]),
+                        length=float(formed.lengths[k]))
 
 
 def _masts(made: Scene, formed: Form) -> None:

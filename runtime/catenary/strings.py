@@ -12,7 +12,7 @@ from .wires import Droppers, Wire
 @dataclass(frozen=True)
 class AtRest:
     """A span of strings: forces of the droppers (N), distances of their ends (m), the messenger's heights there (m),
-    the lengths of both wires along their shapes (m), and the force of a mast on the messenger (N), from both sides.
+    and the lengths of both wires along their shapes (m).
     """
 
     forces: np.ndarray
@@ -20,7 +20,6 @@ class AtRest:
     heights: np.ndarray
     contact_length: float
     messenger_length: float
-    mast_force: float
 
 
 def at_rest(span: float, height: float, contact: Wire, messenger: Wire, droppers: Droppers, gravity: float) -> AtRest:
@@ -39,7 +38,7 @@ def at_rest(span: float, height: float, contact: Wire, messenger: Wire, droppers
     drawn = np.stack([_contact_shape(span, gravity * contact.mass / contact.tension / 2, x, depths, fine),
                       _deflection(span, messenger.tension, own, x, loads, fine)])
     lengths = np.hypot(fine[1], np.diff(drawn, axis=1)).sum(axis=1)
-    return AtRest(forces, distances, heights, float(lengths[0]), float(lengths[1]), own * span + float(loads.sum()))
+    return AtRest(forces, distances, heights, float(lengths[0]), float(lengths[1]))
 
 
 def _deflection(span: float, tension: float, own: float, x: np.ndarray, loads: np.ndarray,

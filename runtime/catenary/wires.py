@@ -10,7 +10,7 @@ from pydantic import model_validator
 from ..errors import SceneError
 from ..parts.part import Part
 from ..parts.schemas import checked
-from ..parts.validation import not_negative, positive, shown, vector
+from ..parts.validation import list_of, not_negative, positive, shown, vector
 
 MODULUS = 1e11
 """Pa, of the materials that wires are written with: their area follows from it, so that
@@ -51,17 +51,6 @@ class Wire(Part):
                 + omega * self.damping_time * bending / (2 * (self.tension + bending)))
 
 
-def _numbers(unit: str) -> Any:
-    """Return the check of a list of one number or more, finite."""
-    def check(value: Any) -> tuple[float, ...]:
-        value = value.tolist() if isinstance(value, np.ndarray) else value
-        if not isinstance(value, list | tuple) or not value:
-            raise ValueError(f"must be a list of numbers, one at least, got {shown(value)}")
-        return vector(value, unit, len(value))
-
-    return checked(check, {"type": "array", "items": {"type": "number"}})
-
-
 def _sag(value: Any) -> float | tuple[float, ...]:
     """Return a depth in m, or one for each dropper."""
     if isinstance(value, list | tuple | np.ndarray):
@@ -78,7 +67,7 @@ class Droppers(Part):
     dropper's own mass is on the messenger, on which a slack one hangs.
     """
 
-    at: Annotated[tuple[float, ...], _numbers("m")]
+    at: Annotated[tuple[float, ...], list_of("m", least=1)]
     stiffness: Annotated[float, positive("N/m")] | None = None
     axial_stiffness: Annotated[float, positive("N")] | None = None
     sag: Annotated[float | tuple[float, ...], checked(_sag, {"type": ["number", "array"]})] = 0.0

@@ -12,7 +12,7 @@ from ..parts.contact import Contact
 from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
-from ..parts.section import Circle, Tube
+from ..parts.section import outer_radius_of
 from ..parts.surface import Surface
 from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
@@ -22,7 +22,8 @@ SUNK = 0.01
 OVERLAP = 0.5
 """Of the radius: a start deeper below the surface is refused."""
 
-
+SAMPLES = 8
+"""Of an element, at which it is looked at for that."""
 OVERLAP_HARD = 1e-9
 """Of 1 m and of the largest coordinate: rounding of places, by which a start of hard contact may be below."""
 MOST_HARD = 48
@@ -61,7 +62,7 @@ def placed_contact(scene: SceneData, contact: Contact) -> Contact:
     surface = scene.surfaces[contact.b]
     if contact.a in scene.cables:
         contact = _of_cable(scene, contact, scene.cables[contact.a])
-        drawn = _along(scene.cables[contact.a])
+        drawn = scene.cables[contact.a].points_at(scene.cables[contact.a].samples(SAMPLES))
     elif contact.a in scene.bodies:
         contact = _of_body(scene, contact, scene.bodies[contact.a], surface)
         drawn = np.array([scene.bodies[contact.a].point(point) for point in contact.points or ()])
@@ -84,13 +85,11 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
                          "leave restitution out and give stiffness, in N/m a length")
     if contact.points is not None:
         raise SceneError(contact.where, f'acts along cable "{cable.name}" and takes no points', "leave points out")
-    radius = contact.radius
+    radius = outer_radius_of(cable.section) if contact.radius is None else contact.radius
     if radius is None:
-        if not isinstance(cable.section, Circle | Tube):
-            raise SceneError(contact.where, "radius is missing, which the section of the cable does not tell",
-                             "give radius, in m: how far the surface is from the axis where they touch")
-        radius = cable.section.radius if isinstance(cable.section, Circle) else cable.section.outer_radius
-    return _with_stiffness(scene, contact, radius, cable.material.density * cable.section.area)
+        raise SceneError(contact.where, "radius is missing, which the section of the cable does not tell",
+                         "give radius, in m: how far the surface is from the axis where they touch")
+    return _with_stiffness(scene, contact, radius)
 
 
 def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, surface: Surface) -> Contact:
@@ -101,26 +100,28 @@ def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, su
     points = contact.points if contact.points is not None else ((0.0, 0.0, 0.0),)
     if contact.is_hard:
         return contact.completed({"points": points, "radius": contact.radius or 0.0})
-    made = _with_stiffness(scene, contact, 0.0 if contact.radius is None else contact.radius, body.mass)
+    made = _with_stiffness(scene, contact, 0.0 if contact.radius is None else contact.radius)
     return made.completed({"points": points})
 
 
-def _with_stiffness(scene: SceneData, contact: Contact, radius: float, mass: float) -> Contact:
+def _weight(scene: SceneData, contact: Contact) -> float:
+    """Return the weight of what has the contact: of a length of a cable, in N/m, or of a body, in N."""
+    cable = scene.cables.get(contact.a)
+    mass = scene.bodies[contact.a].mass if cable is None else cable.material.density * cable.section.area
+    return mass * float(np.linalg.norm(scene.gravity))
+
+
+def _with_stiffness(scene: SceneData, contact: Contact, radius: float) -> Contact:
     """Return the contact with its radius and, where none is given, the stiffness that the weight asks for."""
     found: dict[str, Any] = {"radius": radius}
     if contact.stiffness is None:
-        weight = mass * float(np.linalg.norm(scene.gravity))
+        weight = _weight(scene, contact)
         if not weight > 0 or not radius > 0:
             lacks = "gravity" if not weight > 0 else "a radius"
             raise SceneError(contact.where, f"stiffness is missing, and without {lacks} there is none to begin with",
                              "give stiffness, in N/m (a length of a cable)")
         found["stiffness"] = weight / (SUNK * radius) ** contact.exponent
     return contact.completed(found)
-
-
-def _along(cable: Cable) -> np.ndarray:
-    """Return (n, 3): points of a cable as drawn, in m."""
-    return np.array([cable.point(float(s)) for s in np.linspace(0, cable.length, 4 * len(cable.node_s) + 1)])
 
 
 def _check_hard_start(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray) -> None:
@@ -132,28 +133,24 @@ def _check_hard_start(scene: SceneData, contact: Contact, surface: Surface, draw
     if contact.radius and isinstance(surface.shape, HeightField):
         raise SceneError(contact.where, "a height field tells distances where they are nil: hard contact with it is of "
                          "points without radius", "leave radius out, or give stiffness in place of restitution")
-    depth = (contact.radius or 0.0) - surface.distance(scene.bodies.get(surface.on or ""), drawn)
-    k = int(np.argmax(depth))
-    if depth[k] > OVERLAP_HARD * (1 + np.abs(drawn).max()):
-        raise SceneError(
-            contact.where, f'"{contact.a}" starts {show(float(depth[k]), "m")} below the surface "{contact.b}", at '
-            f"{show(drawn[k], 'm')}", "draw it higher, or the surface lower: a hard contact has no depth")
+    _check_depth(scene, contact, surface, drawn, OVERLAP_HARD * (1 + np.abs(drawn).max()),
+                 ": a hard contact has no depth")
 
 
 def _check_start(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray) -> None:
     """Raise SceneError where a start is too deep below the surface, by more than a radius allows, or what it sinks."""
     assert contact.radius is not None and contact.stiffness is not None, f"{contact.where} is not complete"
-    on = scene.bodies.get(surface.on or "")
-    depth = contact.radius - surface.distance(on, drawn)
+    sinks = (_weight(scene, contact) / contact.stiffness) ** (1 / contact.exponent)
+    allowed = max(OVERLAP * contact.radius, 10 * sinks)
+    _check_depth(scene, contact, surface, drawn, allowed, f"; {show(float(allowed), 'm')} is allowed")
+
+
+def _check_depth(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray, allowed: float,
+                 why: str) -> None:
+    """Raise SceneError where one of the points drawn (n, 3) is deeper below the surface than is allowed, in m."""
+    depth = (contact.radius or 0.0) - surface.distance(scene.bodies.get(surface.on or ""), drawn)
     k = int(np.argmax(depth))
-    g = float(np.linalg.norm(scene.gravity))
-    if contact.a in scene.cables:
-        cable = scene.cables[contact.a]
-        weight = cable.material.density * cable.section.area * g
-    else:
-        weight = scene.bodies[contact.a].mass * g
-    allowed = max(OVERLAP * contact.radius, 10 * (weight / contact.stiffness) ** (1 / contact.exponent))
     if depth[k] > allowed:
         raise SceneError(
             contact.where, f'"{contact.a}" starts {show(float(depth[k]), "m")} below the surface "{contact.b}", at '
-            f"{show(drawn[k], 'm')}", f"draw it higher, or the surface lower; {show(float(allowed), 'm')} is allowed")
+            f"{show(drawn[k], 'm')}", f"draw it higher, or the surface lower{why}")

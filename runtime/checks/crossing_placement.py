@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import FunicularWarning, SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.crossing import Crossing
-from ..parts.crossing_start import Start, radii, start_of
+from ..parts.crossing_start import Start, radii, sign_of, start_of
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.validation import EXACT, show
@@ -75,12 +75,10 @@ def _check_start(scene: SceneData, part: Crossing, start: Start, radius: float) 
     if part.side is None and abs(gap) <= EXACT * size:
         raise SceneError(part.where, f"the lines meet as drawn, at {show(_place(scene, part, start), 'm')}",
                          "give side, the direction in which a is of b, or draw them apart")
-    side = start.d if part.side is None else np.array(part.side)
-    cosine = float(np.dot(side, start.normal)) / float(np.linalg.norm(side))
-    if part.side is not None and abs(cosine) < LEAST_SINE:
+    if part.side is not None and abs(np.dot(part.side, start.normal)) < LEAST_SINE * np.linalg.norm(part.side):
         raise SceneError(part.where, f"side {show(part.side)} is not across both lines",
                          f"give a direction such as {show(start.normal)} or its opposite")
-    overlap = radius - gap * float(np.sign(cosine))
+    overlap = radius - gap * sign_of(part, start.normal, start.d)
     if overlap > 2 * radius + EXACT * size:
         raise SceneError(part.where, f"the lines are on the other side of each other as drawn, {abs(gap):.6g} m apart",
                          "draw them on their side, or give the opposite side")

@@ -23,10 +23,10 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     if drag.on in scene.cables:
         _check_cable(scene, drag)
         cable = scene.cables[drag.on]
-        _check_table(scene, drag, lambda: np.stack([cable.point(s) for s in np.linspace(0, cable.length, PLACES)]))
+        _check_table(scene, drag, lambda: cable.points_at(np.linspace(0, cable.length, PLACES)))
         return drag
     placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
-    _refuse(drag, OF_CABLE, "body")
+    _refuse(drag, "body")
     _check_foil(scene, drag)
     acts = drag.area * (drag.coefficient or drag.lift) != 0 or (drag.area != 0 and drag.polar is not None)
     if not acts and drag.volume == 0:
@@ -66,7 +66,7 @@ def _fluid(scene: SceneData, drag: Drag) -> str:
 
 def _check_cable(scene: SceneData, drag: Drag) -> None:
     """Raise SceneError where a drag does not suit its cable."""
-    _refuse(drag, OF_BODY, "cable")
+    _refuse(drag, "cable")
     cable = scene.cables[drag.on]
     _check_added_mass(drag, drag.displaced(cable), "displaced_area, in m²")
     if isinstance(drag.added_mass, tuple):
@@ -122,10 +122,10 @@ def _check_added_mass(drag: Drag, displaced: float, name: str) -> None:
                          f"give {name}")
 
 
-def _refuse(drag: Drag, names: tuple[str, ...], kind: str) -> None:
-    """Raise SceneError where values are given that such a part does not take."""
+def _refuse(drag: Drag, kind: str) -> None:
+    """Raise SceneError where values are given that a part of this kind, "cable" or "body", does not take."""
     defaults = {name: field.default for name, field in Drag.model_fields.items()}
-    takes = OF_CABLE if kind == "cable" else OF_BODY
-    for name in (name for name in names if name not in takes):
+    takes, others = (OF_CABLE, OF_BODY) if kind == "cable" else (OF_BODY, OF_CABLE)
+    for name in (name for name in others if name not in takes):
         if getattr(drag, name) != defaults[name]:
             raise SceneError(drag.where, f'acts on {kind} "{drag.on}" and takes no {name}', f"takes {', '.join(takes)}")

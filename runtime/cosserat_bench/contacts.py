@@ -17,6 +17,7 @@ from ..parts.solids import Cylinder
 from ..parts.surface_shapes import Plane
 from ..rotations import cross as cross_product
 from ..scene import Scene
+from .directors import tangents_of
 
 if TYPE_CHECKING:
     from cosseratbench.scenario import Rod, Scenario
@@ -83,9 +84,7 @@ def near(scenario: Scenario) -> set[tuple[int, int]]:
 def side_by_side(first: Rod, second: Rod) -> bool:
     """Return whether two rods start in parallel where they are closest, so that no single point would touch."""
     points = [_points(nodes[0], rod)[0] for nodes, rod in zip(_starts(first, second), (first, second), strict=True)]
-    distance, nearest = cKDTree(points[1]).query(points[0])
-    at = int(np.argmin(distance))
-    tangents = [np.gradient(line, axis=0)[k] for line, k in zip(points, (at, nearest[at]), strict=True)]
+    tangents = [np.gradient(line, axis=0)[k] for line, k in zip(points, _closest(*points), strict=True)]
     sine = np.linalg.norm(cross_product(*tangents)) / np.prod(np.linalg.norm(tangents, axis=1))
     return bool(sine < PARALLEL)
 
@@ -130,8 +129,7 @@ def overlapping(scenario: Scenario, lines: list[np.ndarray]) -> dict[tuple[int, 
 
 def passes_into_itself(rod: Rod, line: np.ndarray) -> int | None:
     """Return the first frame in which a rod along a line (frames, points, 3) passes into itself, or None."""
-    chords = np.diff(line, axis=1)
-    tangents = chords / np.linalg.norm(chords, axis=-1, keepdims=True)
+    tangents = tangents_of(line)
     turns = np.arccos(np.clip(np.sum(tangents[:, :-1] * tangents[:, 1:], axis=-1), -1, 1)).sum(axis=1)
     for frame in np.flatnonzero(turns > TURNED).tolist():
         points, along = _points(line[frame], rod)
@@ -157,14 +155,17 @@ def beyond_a_cylinder(scenario: Scenario, positions: list[np.ndarray]) -> bool:
 
 def _weight(rod: Rod, scenario: Scenario) -> float:
     """Return the weight of a rod in N/m."""
-    gravity = float(np.linalg.norm(scenario.gravity))
-    return rod.material.density * rod.area * (gravity if gravity else EARTH)
+    return rod.material.density * rod.area * _gravity(scenario)
 
 
 def _damping(rod: Rod, scenario: Scenario) -> float:
     """Return the damping of contact in s/m."""
-    gravity = float(np.linalg.norm(scenario.gravity))
-    return SOFT / np.sqrt((gravity if gravity else EARTH) * rod.radius) if scenario.quasi_static else 0.0
+    return SOFT / np.sqrt(_gravity(scenario) * rod.radius) if scenario.quasi_static else 0.0
+
+
+def _gravity(scenario: Scenario) -> float:
+    """Return the size of gravity that contact is made for, in m/s²."""
+    return float(np.linalg.norm(scenario.gravity)) or EARTH
 
 
 def _starts(first: Rod, second: Rod) -> tuple[np.ndarray, np.ndarray]:
@@ -198,9 +199,15 @@ def _within_reach(gaps: np.ndarray, travels: np.ndarray) -> np.ndarray:
 def _between(first: Rod, second: Rod, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return the vector (3,) between the points of two lines (points, 3) that are closest, in m."""
     points, others = _points(one, first)[0], _points(other, second)[0]
+    at, there = _closest(points, others)
+    return points[at] - others[there]
+
+
+def _closest(points: np.ndarray, others: np.ndarray) -> tuple[int, int]:
+    """Return the numbers of the point (n, 3) and of the other one (m, 3) that are closest to each other."""
     distance, nearest = cKDTree(others).query(points)
     at = int(np.argmin(distance))
-    return points[at] - others[nearest[at]]
+    return at, int(nearest[at])
 
 
 def _points(line: np.ndarray, rod: Rod) -> tuple[np.ndarray, np.ndarray]:

@@ -33,11 +33,12 @@ class FunicularSolver:
 
     def settings(self, scenario: Scenario, *, n_elements: int, n_frames: int) -> dict:
         """Return the numerical choices for a scenario, as JSON has them."""
+        alone = not near(scenario)
         return {
             "integrator": INTEGRATOR,
             "tolerance": self.choices.tol_of(scenario),
             "damping_rate": self.choices.rods_of(scenario).damping_rate,
-            "elements": sorted({element_of(scenario, rod, alone=not near(scenario)) for rod in scenario.rods}),
+            "elements": sorted({element_of(scenario, rod, alone=alone) for rod in scenario.rods}),
         }
 
     def run(self, scenario: Scenario, *, n_elements: int, n_frames: int) -> Trajectory:

@@ -95,7 +95,8 @@ def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loa
         has_inertia=part.added_mass is not None, n_points=0, stride=0, weights=none, N=none, N_x=none,
         attachments=[], fluid=fluid, type="drag", name=part.name or "", is_damped=True)
     if model.has_inertia:
-        model.added = tuple((model.displaced * part.added(dim)).ravel().tolist())
+        added = part.added_of_cable() if part.on in attachments.cable_index else part.added_of_body(dim)
+        model.added = tuple((model.displaced * added).ravel().tolist())
     pressure = fluid.density / 2
     if part.on in attachments.cable_index:
         model.cable = attachments.cable_index[part.on]

@@ -37,12 +37,12 @@ def hard_contact_models(part: Contact, scene: SceneData, attachments: Attachment
     assert part.restitution is not None and part.points is not None, f"{part.where} is not complete"
     models, rows = [], scene.dim if part.friction else 1
     weight = scene.bodies[part.a].mass * (float(np.linalg.norm(scene.gravity)) or 1.0)
+    surface = surface_entries(scene.surfaces[part.b], scene, attachments)
     for point in part.points:
         at = attachments.model(Attachment(on=part.a, at=point))
         models.append(HardContactModel(
-            **surface_entries(scene.surfaces[part.b], scene, attachments), type="hard_contact", name=part.name or "",
-            stiffness=0.0, damping=0.0, friction=0.0, tangential=0.0, hertz=0, cable=-1, radius=part.radius or 0.0,
-            n_points=1, attachments=[at], scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction,
-            restitution=part.restitution, rest_velocity=part.rest_velocity, weight=weight,
-            static_stiffness=weight / GIVES_WAY))
+            **surface, type="hard_contact", name=part.name or "", stiffness=0.0, damping=0.0, friction=0.0,
+            tangential=0.0, hertz=0, cable=-1, radius=part.radius or 0.0, n_points=1, attachments=[at],
+            scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction, restitution=part.restitution,
+            rest_velocity=part.rest_velocity, weight=weight, static_stiffness=weight / GIVES_WAY))
     return models

@@ -22,11 +22,14 @@ from .material import Material
 from .part import Part
 from .plane import Plane
 from .schemas import ONLY_PYTHON, GivenAs, checked, list_of_lists
-from .section import AnySection, Circle, Tube
+from .section import AnySection, outer_radius_of
 from .validation import EXACT, Count, Name, Vector, one_of, positive, show, shown, xyz
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+
+OPEN = 257
+"""Places at which a cable is looked at whose elements are still to be chosen."""
 
 
 def _library(value: Any) -> str | None:
@@ -208,7 +211,7 @@ class Cable(Part):
     @property
     def _is_round(self) -> bool:
         """Return whether all directions across its axis are alike: a round section, or elements that have none."""
-        return isinstance(self.section, Circle | Tube) or not self.kind_of_element.director
+        return outer_radius_of(self.section) is not None or not self.kind_of_element.director
 
     @property
     def height_direction(self) -> Vector:
@@ -370,6 +373,12 @@ class Cable(Part):
         mesh = self.mesh
         return np.linspace(0.0, self.length, parts * self.elements + 1) if mesh.is_even else mesh.divided(parts)
 
+    def samples(self, parts: int) -> np.ndarray:
+        """Return (n,): arc-lengths at which its drawn shape is looked at, in m: `divided`, or evenly apart where its
+        elements are still to be chosen.
+        """
+        return np.linspace(0.0, self.length, OPEN) if self.is_open else self.divided(parts)
+
     def point(self, s: float) -> np.ndarray:
         """Return (3,): the point of the centreline at arc-length ``s``, in m, as the elements draw it.
 
@@ -378,6 +387,14 @@ class Cable(Part):
         if self._shape.straight or self.is_open:
             return self._shape.point(s * self.stretch)
         return self._as_drawn_point(s)
+
+    def points_at(self, s: np.ndarray) -> np.ndarray:
+        """Return (n, 3): the points of the centreline at arc-lengths ``s`` (n,), in m, see `point`."""
+        if self._shape.straight or self.is_open:
+            return self._shape.point(s * self.stretch)
+        line, plane = self._as_drawn, self.plane
+        points = np.array([line.point(float(each)) for each in s])
+        return points if plane is None else plane.points_out(points)
 
     def slope(self, s: float) -> np.ndarray:
         """Return (3,): r_x at arc-length ``s``, as the elements draw it."""

@@ -8,12 +8,12 @@ from typing import Annotated, Any, ClassVar
 from pydantic import model_validator
 
 from .part import Part
+from .penalty_law import Exponent
 from .plane import across
 from .quantity import Quantity, vector_of_time
 from .schemas import checked, list_schema
-from .validation import Name, Reference, Vector, not_negative, number, positive, shown, vector3, within
+from .validation import Name, Reference, Vector, not_negative, positive, shown, vector3, within
 
-EXPONENTS = (1.0, 1.5)
 MOST_POINTS = 16
 """Of a body: engine/include/contacts.h."""
 
@@ -24,13 +24,6 @@ def _points(value: Any) -> tuple[Vector, ...]:
     if not isinstance(value, list | tuple) or not 1 <= len(value) <= MOST_POINTS:
         raise ValueError(f"must be a list of 1 to {MOST_POINTS} points, got {shown(value)}")
     return tuple(vector3(point, "m") for point in value)
-
-
-def _exponent(value: Any) -> float:
-    """Return one of the exponents."""
-    if (given := number(value)) not in EXPONENTS:
-        raise ValueError(f"must be 1 or 1.5, got {shown(value)}")
-    return given
 
 
 class Contact(Part):
@@ -65,7 +58,7 @@ class Contact(Part):
     a: Reference
     b: Reference
     stiffness: Annotated[float, positive("N/m")] | None = None
-    exponent: Annotated[float, checked(_exponent, {"enum": [1, 1.0, 1.5]})] = 1.0
+    exponent: Exponent = 1.0
     damping: Annotated[float, not_negative("s/m")] = 0.0
     friction: Annotated[float, not_negative()] = 0.0
     tangential_stiffness: Annotated[float, positive("N/m")] | None = None

@@ -10,13 +10,11 @@ from pydantic import model_validator
 from .cable import Cable
 from .friction import Friction
 from .part import Part
+from .penalty_law import Exponent
 from .plane import across
 from .quantity import Quantity, of_time, vector_of_time
-from .section import Circle, Tube
+from .section import outer_radius_of
 from .validation import Name, Reference, Vector, direction, not_negative, positive, xyz
-
-EXPONENTS = (1.0, 1.5)
-"""Of the penetration in the law of contact: a linear spring, and Hertz's law of round bodies."""
 
 
 class Crossing(Part):
@@ -53,7 +51,7 @@ class Crossing(Part):
     length: Annotated[float, positive("m")] | None = None
     radius: Annotated[float, not_negative("m")] | None = None
     stiffness: Annotated[float, positive("N/m")]
-    exponent: Annotated[float, positive()] = 1.0
+    exponent: Exponent = 1.0
     damping: Annotated[float, not_negative("s/m")] = 0.0
     friction: Friction | None = None
     side: Annotated[Vector | None, direction()] = None
@@ -65,8 +63,6 @@ class Crossing(Part):
         if self.friction is not None and (self.friction.sticks or self.friction.viscous or self.friction.rolling):
             raise ValueError("takes the coefficient of friction and its velocity alone",
                              'leave out viscous, rolling and model="stick"')
-        if self.exponent not in EXPONENTS:
-            raise ValueError(f"exponent must be 1 or 1.5, got {self.exponent:.9g}")
         return self
 
     def off_plane(self) -> Iterator[str]:
@@ -79,8 +75,7 @@ class Crossing(Part):
 
 def radius_of(cable: Cable) -> float:
     """Return the radius of a cable's section, m. Raises ValueError where it is not round."""
-    if isinstance(cable.section, Circle):
-        return cable.section.radius
-    if isinstance(cable.section, Tube):
-        return cable.section.outer_radius
-    raise ValueError(f'radius is missing, which the section of cable "{cable.name}" does not tell')
+    radius = outer_radius_of(cable.section)
+    if radius is None:
+        raise ValueError(f'radius is missing, which the section of cable "{cable.name}" does not tell')
+    return radius

@@ -17,9 +17,6 @@ from .scene_data import SceneData
 SAMPLES = 4
 """Of an element, between which the closest points are looked for."""
 
-OPEN = 257
-"""Samples of a cable whose elements are still to be chosen."""
-
 ITERATIONS = 50
 """Of Gauss and Newton's method to the closest points."""
 
@@ -55,6 +52,10 @@ class _Bar:
         """Return (3,): a point, m."""
         return self.middle + s * self.axis
 
+    def points_at(self, s: np.ndarray) -> np.ndarray:
+        """Return (n, 3): points, m."""
+        return self.middle + s[:, None] * self.axis
+
     def slope(self, s: float) -> np.ndarray:
         """Return (3,): the direction, zero in the plane."""
         return self.axis
@@ -65,11 +66,11 @@ class _Line:
 
     def __init__(self, cable: Cable):
         self.cable, self.length = cable, cable.length
-        self.point, self.slope = cable.point, cable.slope
+        self.point, self.points_at, self.slope = cable.point, cable.points_at, cable.slope
 
     def samples(self) -> np.ndarray:
         """Return arc-lengths of nodes and points between them, m; evenly apart where it has no elements yet."""
-        return np.linspace(0.0, self.length, OPEN) if self.cable.is_open else self.cable.divided(SAMPLES)
+        return self.cable.samples(SAMPLES)
 
 
 def start_of(scene: SceneData, part: Crossing) -> Start:
@@ -77,14 +78,16 @@ def start_of(scene: SceneData, part: Crossing) -> Start:
     cable = scene.cables[part.a]
     a = _Line(cable)
     b = _Line(scene.cables[part.b]) if part.b in scene.cables else _Bar(scene, part)
-    s = _nearest_samples(a, b)
+    samples = a.samples(), b.samples()
+    ends = [np.array([each[end] for each in samples]) for end in (0, -1)]
+    s = _nearest(a, b, *samples)
     for _ in range(ITERATIONS):
         d = a.point(s[0]) - b.point(s[1])
         slopes = np.array([a.slope(s[0]), -b.slope(s[1])])
         step = np.linalg.lstsq(slopes.T, -d, rcond=1e-12)[0]
         limit = np.array([a.length, b.length or 1.0]) / 8
         step *= min(1.0, float(np.min(limit / np.maximum(np.abs(step), 1e-300))))
-        s = np.clip(s + step, *_ends(a, b))
+        s = np.clip(s + step, *ends)
         if np.all(np.abs(step) <= 1e-12 * limit):
             break
     d, t = a.point(s[0]) - b.point(s[1]), a.slope(s[0])
@@ -95,15 +98,9 @@ def start_of(scene: SceneData, part: Crossing) -> Start:
     return Start(s, d, normal / sizes / sine if sine else normal, sine)
 
 
-def _ends(a: _Line, b: _Line | _Bar) -> tuple[np.ndarray, np.ndarray]:
-    low, high = (np.array([line.samples()[end] for line in (a, b)]) for end in (0, -1))
-    return low, high
-
-
-def _nearest_samples(a: _Line, b: _Line | _Bar) -> np.ndarray:
-    """Return (2,): arc-lengths of the two closest samples."""
-    of_a, of_b = a.samples(), b.samples()
-    first, second = (np.array([line.point(s) for s in of]) for line, of in ((a, of_a), (b, of_b)))
+def _nearest(a: _Line, b: _Line | _Bar, of_a: np.ndarray, of_b: np.ndarray) -> np.ndarray:
+    """Return (2,): those of the arc-lengths of samples, m, whose points are the two closest."""
+    first, second = a.points_at(of_a), b.points_at(of_b)
     apart = [float(np.min(np.sum((second - point) ** 2, axis=1))) for point in first]
     k = int(np.argmin(apart))
     return np.array([of_a[k], of_b[int(np.argmin(np.sum((second - first[k]) ** 2, axis=1)))]])

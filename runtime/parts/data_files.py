@@ -5,10 +5,14 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import shown_path
+
+if TYPE_CHECKING:
+    import xarray
 
 NETCDF = {b"CDF\1": "scipy", b"CDF\2": "scipy", b"CDF\5": None, b"\x89HDF": None}
 """How files of data begin, and what reads them: None leaves it to xarray."""
@@ -21,6 +25,12 @@ class FileArrays:
     arrays: dict[str, np.ndarray]
     dims: dict[str, tuple[str, ...]] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, dataset: xarray.Dataset) -> FileArrays:
+        """Return the arrays of a dataset, coordinates included, without their units."""
+        return cls({str(name): each.values for name, each in dataset.variables.items()},
+                   {str(name): tuple(map(str, each.dims)) for name, each in dataset.variables.items()})
 
 
 def arrays_of(path: str) -> FileArrays:
@@ -39,8 +49,8 @@ def arrays_of(path: str) -> FileArrays:
         if head not in NETCDF:
             raise ValueError("it begins like no netCDF file")
         with xarray.open_dataset(file, engine=NETCDF[head], decode_times=False) as found:
-            return FileArrays({str(name): each.values for name, each in found.variables.items()},
-                              {str(name): tuple(map(str, each.dims)) for name, each in found.variables.items()},
-                              {str(name): str(each.attrs.get("units", "")) for name, each in found.variables.items()})
+            made = FileArrays.of(found)
+            made.units = {str(name): str(each.attrs.get("units", "")) for name, each in found.variables.items()}
+            return made
     except Exception as error:
         raise ValueError(f'"{path}" could not be read: {error}', "give an .npz or a netCDF file") from error

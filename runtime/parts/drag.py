@@ -15,8 +15,9 @@ from .plane import across
 from .polar import Polar
 from .quantity import Quantity, vector_of_time
 from .schemas import checked, list_of_lists, list_schema, number_schema
-from .section import Circle, Tube
+from .section import Tube, outer_radius_of
 from .validation import (
+    Matrix,
     Name,
     Reference,
     Vector,
@@ -26,15 +27,12 @@ from .validation import (
     number,
     positive,
     show,
-    vector,
-    vector3,
+    symmetric,
     xyz,
 )
 
 OF_CABLE = ("normal", "tangential", "lift", "diameter", "displaced_area", "added_mass", "added_mass_tangential")
 OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "added_mass")
-
-Matrix = tuple[Vector, Vector, Vector]
 
 
 def _added_mass(value: Any) -> float | Matrix:
@@ -44,18 +42,12 @@ def _added_mass(value: Any) -> float | Matrix:
         if found < 0:
             raise ValueError(f"must not be negative, got {show(found)}")
         return found
-    rows = value.tolist() if isinstance(value, np.ndarray) else value
-    if isinstance(rows, list | tuple) and len(rows) == 3 and all(isinstance(row, list | tuple) for row in rows):
-        matrix = np.array([vector(row) for row in rows])
-    else:
-        matrix = np.diag(vector(rows))
-    largest = np.abs(matrix).max()
-    if not np.allclose(matrix, matrix.T, rtol=0, atol=1e-12 * largest):
-        raise ValueError(f"must be symmetric, got {matrix.tolist()}")
-    if np.linalg.eigvalsh(matrix)[0] < -1e-12 * largest:
+    return symmetric(value, "", _check_added_mass)
+
+
+def _check_added_mass(matrix: np.ndarray) -> None:
+    if np.linalg.eigvalsh(matrix)[0] < -1e-12 * np.abs(matrix).max():
         raise ValueError(f"must not be negative in any direction, got {matrix.tolist()}")
-    first, second, third = (vector3(row) for row in matrix)
-    return first, second, third
 
 
 class Drag(Part):
@@ -118,13 +110,12 @@ class Drag(Part):
         chord = np.zeros(3) if self.chord is None else np.array(self.chord) / np.linalg.norm(self.chord)
         return span, chord
 
-    def added(self, dim: int) -> np.ndarray:
-        """Return its coefficients of added mass: of a cable across and along it (2,), of a body (dim, dim).
+    def added_of_cable(self) -> np.ndarray:
+        """Return the coefficients of added mass of a cable, across and along it (2,)."""
+        return np.array([self.added_mass, self.added_mass_tangential], dtype=float)
 
-        Those of a cable are told by a drag with ``at`` not set.
-        """
-        if self.at is None:
-            return np.array([self.added_mass, self.added_mass_tangential], dtype=float)
+    def added_of_body(self, dim: int) -> np.ndarray:
+        """Return the coefficients of added mass of a body, (dim, dim)."""
         C = self.added_mass if isinstance(self.added_mass, tuple) else np.eye(3) * (self.added_mass or 0.0)
         return np.array(C)[:dim, :dim]
 
@@ -132,9 +123,10 @@ class Drag(Part):
         """Return the diameter that drag counts with, m. Raises ValueError where the section has none."""
         if self.diameter is not None:
             return self.diameter
-        if not isinstance(cable.section, Circle | Tube):
+        radius = outer_radius_of(cable.section)
+        if radius is None:
             raise ValueError("diameter is missing, which the section of the cable does not tell")
-        return 2 * (cable.section.radius if isinstance(cable.section, Circle) else cable.section.outer_radius)
+        return 2 * radius
 
     def displaced(self, cable: Cable | None) -> float:
         """Return the displaced volume: of a cable that of a length, m²; of a body all of it, m³."""

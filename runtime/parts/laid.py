@@ -126,6 +126,11 @@ def _of_body(axes: PlaneAxes, body: str | None, vector: Any) -> tuple[float, ...
     return tuple(aligned(turned).tolist())
 
 
+def _along(axes: PlaneAxes, on: str | None, vector: Any) -> tuple[float, ...]:
+    """Return a vector along the axes of the ground or of a body along those that it has in the plane."""
+    return _direction(axes, vector) if on is None else _of_body(axes, on, vector)
+
+
 def _place(axes: PlaneAxes, on: str | None, at: Any) -> Any:
     """Return a point of the ground or of a body, in its axes in the plane."""
     if at is None:
@@ -235,21 +240,16 @@ def _crossing(part: Crossing, axes: PlaneAxes, scene: SceneData) -> Crossing:
     changes: dict[str, Any] = {} if part.at is None else {"at": _place(axes, part.b, part.at)}
     changes |= {} if part.side is None else {"side": _direction(axes, part.side)}
     if part.axis is not None:
-        changes["axis"] = _direction(axes, part.axis) if part.b is None else _of_body(axes, part.b, part.axis)
+        changes["axis"] = _along(axes, part.b, part.axis)
     return part.model_copy(update=changes)
 
 
 @turned.register
 def _surface(part: Surface, axes: PlaneAxes, scene: SceneData) -> Surface:
-    def vector(v: Any) -> Any:
-        return _direction(axes, v) if part.on is None else _of_body(axes, part.on, v)
-
     shape = part.shape
-    changes: dict[str, Any] = {name: vector(getattr(shape, name)) for name in ("normal", "axis", "along", "up")
-                               if name in type(shape).model_fields}
-    changes |= {name: vector(getattr(shape, name)) for name in ("point", "at") if name in type(shape).model_fields}
-    at = _point(axes, part.at) if part.on is None else _place(axes, part.on, part.at)
-    return part.model_copy(update={"shape": shape.model_copy(update=changes), "at": at})
+    names = [name for name in ("normal", "axis", "along", "up", "point", "at") if name in type(shape).model_fields]
+    changes: dict[str, Any] = {name: _along(axes, part.on, getattr(shape, name)) for name in names}
+    return part.model_copy(update={"shape": shape.model_copy(update=changes), "at": _place(axes, part.on, part.at)})
 
 
 @turned.register

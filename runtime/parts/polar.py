@@ -45,26 +45,19 @@ class Polar(Part):
             raise ValueError(f"angle must go from -π to π, got {show(self.angle[0], 'rad')} to "
                              f"{show(self.angle[-1], 'rad')}",
                              "give the coefficients for flow from all sides: past the stall those of a flat plate")
-        lowest = self.pieces()[1]
-        if min(self.drag) < 0 or self._at(np.linspace(-pi, pi, 721), lowest).min() < -1e-9:
+        if min(self.drag) < 0 or self._table(self.drag).value(np.linspace(-pi, pi, 721)).min() < -1e-9:
             raise ValueError("drag must not be negative at any angle",
                              'look at the values, or take interpolation="linear"')
         return self
 
+    def _table(self, values: tuple[float, ...]) -> TableSignal:
+        return TableSignal(time=self.angle, value=values, interpolation=self.interpolation)
+
     def pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return breaks (n + 1,) in rad, and polynomials (n, 7) of drag and of lift, see `Signal.pieces`."""
-        drag, lift = (TableSignal(time=self.angle, value=values, interpolation=self.interpolation).pieces()
-                      for values in (self.drag, self.lift))
+        drag, lift = (self._table(values).pieces() for values in (self.drag, self.lift))
         return drag[0], drag[1], lift[1]
-
-    def _at(self, angle: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
-        breaks = self.pieces()[0]
-        piece = np.clip(np.searchsorted(breaks, angle, side="right") - 1, 0, len(coefficients) - 1)
-        powers = (angle - breaks[piece])[:, None] ** np.arange(coefficients.shape[1])
-        return np.sum(coefficients[piece] * powers, axis=1)
 
     def at(self, angle: float) -> tuple[float, float]:
         """Return the coefficients of drag and lift at an angle in rad."""
-        _, drag, lift = self.pieces()
-        found = [float(self._at(np.array([angle]), each)[0]) for each in (drag, lift)]
-        return found[0], found[1]
+        return float(self._table(self.drag).value(angle)), float(self._table(self.lift).value(angle))

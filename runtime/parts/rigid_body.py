@@ -14,28 +14,23 @@ from .plane import across, in_plane
 from .quantity import Quantity, vector_of_time
 from .schemas import checked, list_of_lists, list_schema
 from .solids import AnySolid
-from .validation import EXACT, Name, Vector, positive, show, vector, vector3, xyz
+from .validation import EXACT, Matrix, Name, Vector, positive, show, symmetric, vector, xyz
 
 Quaternion = tuple[float, float, float, float]
 
 
-def _inertia(value: Any) -> tuple[Vector, Vector, Vector]:
+def _inertia(value: Any) -> Matrix:
     """Return a symmetric inertia from 3 principal moments or 3 rows, in kg m²."""
-    rows = value.tolist() if isinstance(value, np.ndarray) else value
-    if isinstance(rows, list | tuple) and len(rows) == 3 and all(isinstance(r, list | tuple) for r in rows):
-        matrix = np.array([vector(row, "kg m²") for row in rows])
-    else:
-        matrix = np.diag(vector(rows, "kg m²"))
-    if not np.allclose(matrix, matrix.T, rtol=0, atol=1e-12 * np.abs(matrix).max()):
-        raise ValueError(f"must be symmetric, got {matrix.tolist()}")
+    return symmetric(value, "kg m²", _check_inertia)
+
+
+def _check_inertia(matrix: np.ndarray) -> None:
     small, middle, large = np.linalg.eigvalsh(matrix).tolist()
     shown = show((small, middle, large), "kg m²")
     if not small > 0:
         raise ValueError(f"must be positive, got the principal moments {shown}")
     if large > (small + middle) * (1 + EXACT):
         raise ValueError(f"is not that of a body: no principal moment exceeds the sum of the others, got {shown}")
-    first, second, third = (vector3(row) for row in matrix)
-    return first, second, third
 
 
 def unit_quaternion(value: Any) -> Quaternion:
@@ -52,7 +47,7 @@ def unit_quaternion(value: Any) -> Quaternion:
     return w / norm, x / norm, y / norm, z / norm
 
 
-def largest_moment(inertia: np.ndarray | tuple[Vector, Vector, Vector]) -> float:
+def largest_moment(inertia: np.ndarray | Matrix) -> float:
     """Return the largest principal moment of inertia (3, 3), in kg m²."""
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia
     return float(np.linalg.eigvalsh(inertia)[-1]) if xy or xz or yz else max(xx, yy, zz)
@@ -82,8 +77,7 @@ class RigidBody(Part):
     }
     name: Name
     mass: Annotated[float, positive("kg")]
-    inertia: Annotated[tuple[Vector, Vector, Vector],
-                       checked(_inertia, {"anyOf": [list_schema("kg m²"), list_of_lists("kg m²")]})]
+    inertia: Annotated[Matrix, checked(_inertia, {"anyOf": [list_schema("kg m²"), list_of_lists("kg m²")]})]
     position: Annotated[Vector, xyz("m")]
     orientation: Annotated[Quaternion, checked(unit_quaternion, list_schema("", 4, 4))] = (1.0, 0.0, 0.0, 0.0)
     centre: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)

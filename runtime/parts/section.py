@@ -162,6 +162,13 @@ class Tube(Section):
         return _ring_shear_factors(poisson_ratio, self.inner_radius / self.outer_radius)
 
 
+def outer_radius_of(section: Section) -> float | None:
+    """Return the radius of a round section, in m; None of others."""
+    if isinstance(section, Circle):
+        return section.radius
+    return section.outer_radius if isinstance(section, Tube) else None
+
+
 class GeneralSection(Section):
     """A section known by its constants alone, for cables and for structural beams.
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -22,6 +23,9 @@ from .validation import Vector, check_function, direction, list_of, shown, vecto
 
 WIDE = 1e6
 """m: half the width of a height field that does not change across."""
+
+AT_ONCE = 100_000
+"""Places of a height field that are looked at together: the coefficients about each take 128 bytes."""
 
 
 class SurfaceShape(Part):
@@ -215,20 +219,39 @@ def _unit(v: Vector) -> np.ndarray:
 
 
 def _terrain(shape: HeightField) -> Geometry:
-    """Return the geometry of a height field: the coefficients of cubic splines, by powers from each cell's knots."""
+    """Return the geometry of a height field."""
+    return replace(_fitted(shape.x, shape.heights, shape.across), axes=shape.axes)
+
+
+@lru_cache(maxsize=8)  # it is asked for by each contact, and by checks and pictures
+def _fitted(x: tuple[float, ...], heights: tuple[Any, ...], across: tuple[float, ...] | None) -> Geometry:
+    """Return the geometry of the table of a height field, along the ground's axes: the coefficients of cubic splines,
+    by powers from each cell's knots. Its arrays are shared, and cannot be written to.
+    """
     from scipy.interpolate import CubicSpline  # 30 ms, for those alone
 
-    x, heights = np.array(shape.x), np.array(shape.heights, dtype=float)
-    along = CubicSpline(x, heights, bc_type="natural").c[::-1]  # (4, cells along) or (4, cells along, across)
-    made = Geometry("terrain", np.zeros(3), shape.axes, np.array([0.0, 1.0, 0.0]), first=x)
-    if shape.across is None:
+    first = np.array(x)
+    along = CubicSpline(first, np.array(heights, dtype=float), bc_type="natural").c[::-1]  # (4, cells[, across])
+    made = Geometry("terrain", np.zeros(3), np.eye(3), np.array([0.0, 1.0, 0.0]), first=first)
+    if across is None:
         made.cells = along.T.copy()
     else:
-        made.second = np.array(shape.across)
+        made.second = np.array(across)
         both = CubicSpline(made.second, along, axis=2, bc_type="natural").c[::-1]  # (4, cells across, 4, cells along)
         made.cells = both.transpose(3, 1, 2, 0).copy()
-    fine = [np.concatenate([np.linspace(a, b, 9) for a, b in itertools.pairwise(k)])
-            for k in (x, np.zeros(2) if made.second is None else made.second)]
-    found = made.heights(fine[0][:, None], fine[1][None, :])[0]
-    made.highest = float(found.max() + 0.05 * np.ptp(found))
+        made.second.flags.writeable = False
+    for array in (made.origin, made.axes, made.direction, first, made.cells):
+        array.flags.writeable = False
+    made.highest = _highest(made)
     return made
+
+
+def _highest(field: Geometry) -> float:
+    """Return a height that a height field stays below, in m: the largest of 9 x 9 places of each cell, and more."""
+    assert field.first is not None, "only of height fields"
+    x, across = (np.concatenate([np.linspace(a, b, 9) for a, b in itertools.pairwise(knots)])
+                 for knots in (field.first, np.zeros(2) if field.second is None else field.second))
+    blocks = np.array_split(x, min(1 + x.size * across.size // AT_ONCE, x.size))
+    found = [field.heights(block[:, None], across[None, :])[0] for block in blocks]
+    highest, lowest = (extreme([extreme(each) for each in found]) for extreme in (np.max, np.min))
+    return float(highest + 0.05 * (highest - lowest))

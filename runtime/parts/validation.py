@@ -103,6 +103,23 @@ def vector3(value: Any, unit: str = "") -> Vector:
     return x, y, z
 
 
+def symmetric(value: Any, unit: str, check: Callable[[np.ndarray], None]) -> Matrix:
+    """Return the rows of a symmetric matrix (3, 3) of finite floats, given as that or as the three of its diagonal.
+
+    check raises ValueError where the matrix will not do. Raises ValueError.
+    """
+    rows = value.tolist() if isinstance(value, np.ndarray) else value
+    if isinstance(rows, list | tuple) and len(rows) == 3 and all(isinstance(row, list | tuple) for row in rows):
+        matrix = np.array([vector(row, unit) for row in rows])
+    else:
+        matrix = np.diag(vector(rows, unit))
+    if not np.allclose(matrix, matrix.T, rtol=0, atol=1e-12 * np.abs(matrix).max()):
+        raise ValueError(f"must be symmetric, got {matrix.tolist()}")
+    check(matrix)
+    first, second, third = (vector3(row) for row in matrix)
+    return first, second, third
+
+
 def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
     """Return a number or vector for a message, with its unit."""
     if isinstance(value, float):
@@ -201,7 +218,8 @@ def list_of(unit: str = "", *, least: int) -> PlainValidator:
     def check(value: Any) -> tuple[float, ...]:
         value = value.tolist() if isinstance(value, np.ndarray) else value
         if not isinstance(value, list | tuple) or len(value) < least:
-            raise ValueError(f"must be a list of {least} numbers or more, got {shown(value)}")
+            how_many = "numbers, one at least" if least == 1 else f"{least} numbers or more"
+            raise ValueError(f"must be a list of {how_many}, got {shown(value)}")
         return vector(value, unit, len(value))
 
     return checked(check, list_schema(unit, least, None))
@@ -259,3 +277,4 @@ Name = Annotated[str, checked(_name, {"type": "string", "maxLength": LONGEST_NAM
 Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", value))]
 """The name of a part of the scene, given as that or as the part itself."""
 Vector = tuple[float, float, float]
+Matrix = tuple[Vector, Vector, Vector]

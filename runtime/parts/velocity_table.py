@@ -87,9 +87,7 @@ class VelocityTable(Part):
     @classmethod
     def of(cls, data: xarray.Dataset, interpolation: str = "cubic") -> VelocityTable:
         """Return the table of an xarray.Dataset with the names that a file has. Raises SceneError."""
-        found = FileArrays({str(name): each.values for name, each in data.variables.items()},
-                           {str(name): tuple(map(str, each.dims)) for name, each in data.variables.items()})
-        grid = _grid(found, "the dataset")
+        grid = _grid(FileArrays.of(data), "the dataset")
         given = {name: values.tolist() for name, values in grid.axes.items()}
         shape = [len(values) for values in given.values()]
         return cls(**given, velocity=grid.velocity.reshape(*shape, 3).tolist(), interpolation=interpolation)
@@ -120,6 +118,7 @@ class VelocityTable(Part):
     def turned(self, axes: np.ndarray) -> VelocityTable:
         """Return the table with velocities along other axes, the columns of ``axes`` (3, 3); the grid stays."""
         made = self.model_copy()
+        made.__dict__.pop("_splines", None)  # a copy has what its original keeps
         made.__dict__["grid"] = Grid(self.grid.axes, self.grid.velocity @ axes)
         return made
 
@@ -131,14 +130,21 @@ class VelocityTable(Part):
 
     def splines(self, dim: int) -> tuple[int, dict[str, np.ndarray], np.ndarray]:
         """Return degree, knots by axis, and coefficients (n_time, n_x, n_y, n_z, dim) of its splines."""
+        knots, coefficients = self._splines
+        return DEGREES[self.interpolation], knots, np.ascontiguousarray(coefficients[..., :dim])
+
+    @cached_property
+    def _splines(self) -> tuple[dict[str, np.ndarray], np.ndarray]:
+        """Return knots by axis and the coefficients of all three components, which cannot be written to."""
         from scipy.interpolate import make_interp_spline  # would double the time of `import funicular`
 
-        degree, knots = DEGREES[self.interpolation], {}
-        coefficients = self.grid.velocity[..., :dim]
+        knots, coefficients = {}, self.grid.velocity
         for name, values in self.grid.axes.items():
-            spline = make_interp_spline(values, coefficients, degree, axis=AXES.index(name))
+            spline = make_interp_spline(values, coefficients, DEGREES[self.interpolation], axis=AXES.index(name))
             knots[name], coefficients = spline.t, np.moveaxis(spline.c, 0, AXES.index(name))
-        return degree, knots, np.ascontiguousarray(coefficients)
+        coefficients = np.ascontiguousarray(coefficients)
+        coefficients.flags.writeable = False
+        return knots, coefficients
 
     def value(self, time: np.ndarray, place: np.ndarray) -> np.ndarray:
         """Return the velocity (..., 3) in m/s at times (s) and places (..., 3) in m; beyond the edges that there."""
