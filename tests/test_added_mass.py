@@ -5,6 +5,7 @@ from math import pi, sqrt
 import funicular as fu
 import numpy as np
 import pytest
+from expectations import unaccounted
 from funicular.choice.planar import planar_of
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
@@ -16,13 +17,6 @@ OF_BODIES = ("genalpha", "explicit", "radau")
 ELEMENTS = ("cable12", "cable8p", "cable18", "beam24", "beam12p")
 G, WATER, RADIUS, STEEL = 9.81, 1000.0, 0.01, 7800.0
 AREA = pi * RADIUS**2
-
-
-def balance(run):
-    """Return the energy that is not accounted for, J."""
-    stored = sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "potential", "dissipated"))
-    found = stored - run["energy.external"]
-    return np.abs(found - found[0]).max()
 
 
 def rope(scene, element="cable12", end=(2, 0, 0), elements=4, density=STEEL, youngs_modulus=1e7, **more):
@@ -79,7 +73,7 @@ def test_a_cable_that_falls_across_carries_the_water_along(integrator, element):
     terminal = sqrt(weight / (WATER / 2 * 2 * RADIUS * 1.2))
     exact = -terminal * np.tanh(run.time * weight / mass / terminal)
     assert np.abs(run["wire.nodal_velocity"][:, :, 0, 1] - exact[:, None]).max() < 1e-6
-    assert balance(run) < (1e-12 if integrator == "energy" else 1e-5)
+    assert unaccounted(run) < (1e-12 if integrator == "energy" else 1e-5)
     # of the fluid: buoyancy, drag, and what the added mass takes
     drag = WATER / 2 * 2 * RADIUS * 1.2 * exact**2
     force = 2 * (WATER * AREA * G + drag - WATER * AREA * (drag - weight) / mass)
@@ -94,7 +88,7 @@ def test_a_sphere_begins_to_fall_with_the_mass_of_half_the_water(integrator):
     scene.drag("ball", volume=1e-3, added_mass=0.5)
     run = scene.run(0.4, tol=1e-8, integrator=integrator, output_step=0.1)
     assert run["ball.position"][:, 1] == pytest.approx(-(3 - 1) / (3 + 0.5) * G * run.time**2 / 2, abs=1e-8)
-    assert balance(run) < 1e-8
+    assert unaccounted(run) < 1e-8
     assert run["ball.acceleration"][-1, 1] == pytest.approx(-(3 - 1) / (3 + 0.5) * G, rel=1e-6)
 
 
@@ -115,7 +109,7 @@ def test_a_pendulum_in_water_swings_with_the_weight_and_the_inertia_that_the_wat
     run = scene.run(period, tol=1e-7, integrator=integrator, output_step=period / 4)
     assert np.abs(run["ball.position"][-1] - run["ball.position"][0]).max() < 1e-5
     assert run["ball.position"][2, 0] == pytest.approx(-run["ball.position"][0, 0], abs=1e-5)
-    assert balance(run) < 1e-5
+    assert unaccounted(run) < 1e-5
     rest = scene.equilibrium()
     assert rest["ball.position"] == pytest.approx([0, -1, 0], abs=1e-9)
     assert scene.modes(1, about=rest).angular_frequency[0] == pytest.approx(0.0, abs=1e-3)  # about the rod, first
@@ -189,7 +183,7 @@ def test_the_energy_of_the_water_is_in_the_balance(integrator, dim):
     body = integrator != "energy"
     run = swimming(dim, body).run(0.2, tol=1e-6, integrator=integrator, output_step=0.05)
     assert abs(run["energy.external"][-1] - run["energy.external"][0]) > 0.1
-    assert balance(run) < (1e-11 if integrator == "energy" else 1e-5)
+    assert unaccounted(run) < (1e-11 if integrator == "energy" else 1e-5)
     best = swimming(dim, body).run(0.2, tol=1e-9, integrator="explicit", output_step=0.05)
     assert np.abs(run["wire.nodal_vectors"][:, :, 0] - best["wire.nodal_vectors"][:, :, 0]).max() < 2e-6
 
@@ -252,7 +246,7 @@ def test_a_modal_body_takes_it_at_a_node():
     scene.drag("bar", area=0.02, at=(0.5, 0, 0), volume=1e-4, added_mass=(0.2, 1, 1))
     runs = [scene.run(0.2, tol=1e-7, integrator=integrator, output_step=0.1) for integrator in OF_BODIES]
     for run in runs:
-        assert balance(run) < 1e-6
+        assert unaccounted(run) < 1e-6
         assert np.abs(run["bar.position"] - runs[1]["bar.position"]).max() < 1e-5
 
 
@@ -306,7 +300,7 @@ def test_a_driven_end_gives_what_the_water_takes(integrator):
     scene.drag(wire, normal=1.0, added_mass=1.0)
     run = scene.run(0.3, tol=1e-6, integrator=integrator, output_step=0.05)
     assert run["energy.external"][-1] > 0.1
-    assert balance(run) < (1e-12 if integrator == "energy" else 1e-6)
+    assert unaccounted(run) < (1e-12 if integrator == "energy" else 1e-6)
 
 
 @pytest.mark.parametrize("integrator", OF_BODIES)
@@ -323,7 +317,7 @@ def test_a_stop_that_is_struck_in_water_balances(integrator):
     run = scene.run(0.2, tol=1e-6, integrator=integrator, output_step=0.02)
     assert run.report["events"]
     assert run["energy.dissipated"][-1] > 0.5
-    assert balance(run) < 1e-5
+    assert unaccounted(run) < 1e-5
 
 
 def test_a_scene_in_a_plane_is_recognised_unless_lift_leaves_it():

@@ -5,6 +5,7 @@ from math import asinh, atan, cos, exp, hypot, log, pi, sin, sqrt
 import funicular as fu
 import numpy as np
 import pytest
+from expectations import unaccounted
 from funicular.engine import Engine
 from funicular.model.build import build
 from scipy.optimize import brentq
@@ -12,13 +13,6 @@ from scipy.optimize import brentq
 INTEGRATORS = ("genalpha", "energy", "explicit", "radau")
 G = 9.81
 ROPE = {"section": fu.Circle(radius=0.01), "material": fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=2000)}
-
-
-def balance(run):
-    """Return the energy that is not accounted for, J."""
-    stored = sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "potential", "dissipated"))
-    found = stored - run["energy.external"]
-    return np.abs(found - found[0]).max()
 
 
 # the mooring line: radius, modulus, density; its length; its weight a length; the force on its free end
@@ -157,7 +151,7 @@ def test_a_ball_bounces_with_the_restitution_that_damping_gives(integrator, expo
 
     after = brentq(lambda v: conserved(-v) - conserved(1.0), 0.1, 1.0)
     assert abs(run["ball.velocity"][-1, 1] - after) < 2e-5
-    assert balance(run) < (1e-14 if integrator == "energy" else 1e-6)
+    assert unaccounted(run) < (1e-14 if integrator == "energy" else 1e-6)
     events = [event["what"] for event in run.report["events"]]
     assert events == ["came into contact", "lost contact"]
     assert abs(run.report["events"][0]["time"] - 0.15) < 1e-9
@@ -167,7 +161,7 @@ def test_a_ball_bounces_with_the_restitution_that_damping_gives(integrator, expo
 def test_what_friction_and_damping_take_is_in_the_energy_balance(integrator):
     run = ball(0.3, friction=0.5, gravity=(0, -G, 0)).run(0.5, output_step=0.01, tol=1e-7, integrator=integrator)
     assert run["energy.dissipated"][-1] > 0.02
-    assert balance(run) < (1e-13 if integrator == "energy" else 2e-6)
+    assert unaccounted(run) < (1e-13 if integrator == "energy" else 2e-6)
 
 
 def block(slope, friction, speed=0.0):
@@ -198,7 +192,7 @@ def test_a_block_slides_down_a_slope_and_sticks_on_a_lesser_one():
 def test_a_sliding_block_comes_to_rest_after_its_way():
     run = block(0.0, 0.3, speed=1.0).run(0.6, output_step=0.05, tol=1e-6, integrator="radau")
     assert abs(run["block.position"][-1, 0] - 1 / (2 * 0.3 * G)) < 2e-4
-    assert balance(run) < 3e-4
+    assert unaccounted(run) < 3e-4
 
 
 SHAPES = {"plane": fu.Plane(point=(0, -0.0075, 0), normal=(0.02, 1, 0)),
@@ -264,7 +258,7 @@ def test_the_reaction_acts_on_the_body_that_the_surface_is_on():
         momenta.append(p)
         moments.append(spin + 3e-3 * run["B.angular_velocity"][row, 2])
     assert np.ptp(np.array(momenta), axis=0).max() < 1e-7 and np.ptp(moments) < 1e-6
-    assert balance(run) < 1e-4
+    assert unaccounted(run) < 1e-4
 
 
 def cloth(element="cable12"):
@@ -280,7 +274,7 @@ def cloth(element="cable12"):
 def test_a_cable_thrown_on_hills_keeps_the_energy_balance(integrator):
     run = cloth("cable8p").run(0.25, output_step=0.01, tol=1e-5, integrator=integrator)
     assert run["energy.dissipated"][-1] > 0.3 and run["contact_1.touching"].max() > 0.3
-    assert balance(run) < (1e-11 if integrator == "energy" else 5e-3)
+    assert unaccounted(run) < (1e-11 if integrator == "energy" else 5e-3)
 
 
 def test_a_scene_in_another_plane_touches_alike():

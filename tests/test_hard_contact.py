@@ -5,6 +5,7 @@ from math import asin, cos, pi, sin, sqrt, tan
 import funicular as fu
 import numpy as np
 import pytest
+from expectations import drift
 from scipy.integrate import quad, solve_ivp
 
 G = 9.81
@@ -12,12 +13,6 @@ WITH_FRICTION = ("explicit", "radau", "genalpha")
 INTEGRATORS = (*WITH_FRICTION, "energy")
 STEPS = {"fixed": {"step": 0.005}, "by tol": {"tol": 1e-7}}
 SIZES = pytest.mark.parametrize("size", STEPS.values(), ids=STEPS)
-
-
-def drift(run):
-    """Return how much of the energy is not accounted for, J."""
-    stored = sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "potential", "dissipated"))
-    return float(np.ptp(stored - run["energy.external"]))
 
 
 def happened(run, *names):
