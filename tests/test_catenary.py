@@ -221,7 +221,7 @@ ACCEPTED = {250: {"mean": (110, 120), "maximum": (175, 210)},
 """Ranges of EN 50318:2002 that are met; the mean by the uplift force, which is chosen for it."""
 UPLIFT = {250: (0.048, 0.055), 300: (0.055, 0.065)}
 CONVERGED = {250: {"standard_deviation": 32.8, "minimum": 45.4}, 300: {"standard_deviation": 35.8, "minimum": 45.4}}
-"""Between meshes of 1 m and 0.5 m, and tolerances (tests/benchmarks/catenary.py): to 4 %, and 4 N."""
+"""Between meshes of 1 m and 0.5 m, and tolerances (tests/benchmarks/pantographs.py): to 4 %, and 4 N."""
 
 
 @pytest.mark.slow
