@@ -3,10 +3,8 @@
 import funicular as fu
 import numpy as np
 import pytest
+from derivatives import error_by_drags
 from expectations import unaccounted
-from funicular.engine import Engine
-from funicular.integrators import GeneralisedAlpha
-from funicular.model.build import build
 
 WATER, G = 1000.0, 9.81
 ROPE = {"section": fu.Circle(radius=0.01), "material": fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=2000)}
@@ -79,18 +77,7 @@ def test_all_integrators_run_in_it(integrator):
 
 def test_newtons_matrix_is_the_derivative_of_its_residual():
     """Of drag: second derivatives of the velocity do not come in."""
-    h, scene, errors = 0.02, resting(table()), []
-    scene = scene.replace("drag_1", added_mass=None)
-    for drags in (dict(scene.drags), {}):
-        scene.drags = drags
-        engine = Engine(build(scene))
-        engine.start(duration=1.0, output_step=1.0, tol=1e-6, step=h, first_step=h, method=GeneralisedAlpha(0.8))
-        n = engine.unknowns
-        _, matrix = engine.linearise(h, np.zeros(n))
-        columns = [(engine.linearise(h, d)[0] - engine.linearise(h, -d)[0]) / 2e-6 for d in 1e-6 * np.eye(n)]
-        errors.append((np.array(columns).T - matrix, matrix))
-    (with_drag, both), (without, other) = errors
-    assert np.abs(with_drag - without).max() < 1e-4 * np.abs(both - other).max()
+    assert error_by_drags(resting(table()).replace("drag_1", added_mass=None)) < 1e-4
 
 
 def test_a_uniform_table_is_a_uniform_velocity():
