@@ -10,6 +10,7 @@ from expectations import unaccounted
 from funicular.engine import Engine
 from funicular.model.build import build
 from scipy.optimize import brentq
+from turned_scenes import turned_scene
 
 INTEGRATORS = ("genalpha", "energy", "explicit", "radau")
 G = 9.81
@@ -272,12 +273,8 @@ def test_a_cable_thrown_on_hills_keeps_the_energy_balance(integrator):
 
 def test_a_scene_in_another_plane_touches_alike():
     here = cloth("cable8p").run(0.15, output_step=0.05, tol=1e-6, integrator="radau")
-    there = fu.Scene()
-    there.cable("wire", start=(3, 0.1, 0), end=(3, 0.15, 1), elements=8, element="cable8p", velocity=(0, 0, 1.0),
-                **ROPE)
-    table = SHAPES["terrain"]
-    there.surface("hills", fu.HeightField(x=table.x, heights=table.heights, along=(0, 0, 1)))
-    there.contact("wire", "hills", stiffness=2e4, damping=0.5, friction=0.3)
+    there = turned_scene(cloth("cable8p"), (0, -pi / 2, 0), (3, 0, 0))  # x to z
+    assert there.surfaces["hills"].shape.along == (0, 0, 1) and tuple(there.cables["wire"].end) == (3, 0.15, 1)
     found = there.run(0.15, output_step=0.05, tol=1e-6, integrator="radau")
     assert np.abs(found["wire.position"][..., [2, 1]] - here["wire.position"][..., :2]).max() < 1e-6
     assert np.abs(found["contact_1.force"][-1, [2, 1]] - here["contact_1.force"][-1, :2]).max() < 1e-2

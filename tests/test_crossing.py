@@ -9,6 +9,7 @@ from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
 from scipy.linalg import expm
+from turned_scenes import turned_scene
 
 TENSION, RADIUS, MODULUS, DENSITY = 1000.0, 2.5e-4, 4e12, 5.76e5
 """Of a wire without bending: the bending length sqrt(EI/T) is 3.5 mm."""
@@ -318,16 +319,9 @@ def test_ropes_that_cross(drop, force):
 def test_a_planar_scene_in_another_plane():
     """That of the wire along z, with y up."""
     plain = collector(10, 20.0, damping=0.05)
-    turned = fu.Scene((0, 0, 0))
+    turned = turned_scene(plain, (0, -np.pi / 2, 0), (0, 0, 0))
     along = np.array([[0, 0, -1], [0, 1, 0], [1, 0, 0]])  # x to z, z to -x
-    for part in plain.parts():
-        changes = {name: tuple(map(float, along @ np.array(value))) for name, value in part.entries().items()
-                   if name in ("start", "end", "position", "velocity", "axis", "value", "side") and np.ndim(value) == 1}
-        for name in ("a", "b"):
-            end = getattr(part, name, None)
-            if getattr(end, "at", None) is not None:
-                changes[name] = end.model_copy(update={"at": tuple(map(float, along @ np.array(end.at)))})
-        turned.add(part.remade(changes | ({"up": (0, 1, 0)} if part.kind == "cable" else {})))
+    assert tuple(turned.cables["wire"].end) == (0, 0, 20) and tuple(turned.crossings["contact"].side) == (0, 1, 0)
     runs = [scene.run(duration=0.05, output_step=0.01, tol=1e-6, integrator="explicit") for scene in (plain, turned)]
     for name in ("contact.force", "contact.position", "head.position"):
         assert np.abs(runs[0][name] @ along.T - runs[1][name]).max() < 1e-9 * np.abs(runs[0][name]).max(), name
