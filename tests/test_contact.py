@@ -1,5 +1,6 @@
 """Surfaces and contact with them by penalty: closed forms, derivatives, energy balance, refusals."""
 
+from itertools import product
 from math import asinh, atan, cos, exp, hypot, log, pi, sin, sqrt
 
 import funicular as fu
@@ -204,16 +205,15 @@ SHAPES = {"plane": fu.Plane(point=(0, -0.0075, 0), normal=(0.02, 1, 0)),
           "terrain": fu.HeightField.of(lambda x: -0.009 + 0.003 * sin(3 * x), np.linspace(-0.5, 1.5, 20)),
           "hills": fu.HeightField.of(lambda x, z: -0.009 + 0.003 * sin(3 * x) * cos(2 * z), np.linspace(-0.5, 1.5, 20),
                                      np.linspace(-0.4, 0.4, 9))}
+PLANAR_SHAPES = [shape for shape in SHAPES if shape != "hills"]
+"""Those for planar cables: a plane has no places across."""
 
 
-@pytest.mark.parametrize("element", ["cable12", "cable8p"])
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(("element", "shape"), [*product(["cable12"], SHAPES), *product(["cable8p"], PLANAR_SHAPES)])
 @pytest.mark.parametrize(("friction", "moved"), [(0.0, 1e-3), (0.3, 1e-6), (0.01, 1e-3)])
 @pytest.mark.parametrize("on", [None, "B"])
 def test_the_static_matrix_is_the_derivative_of_the_residual(element, shape, friction, moved, on):
     """At a state near that drawn, where friction sticks, or slides; for surfaces of the ground and of a body."""
-    if element == "cable8p" and shape == "hills":
-        pytest.skip("a plane has no places across")
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1, 0.001, 0), elements=3, element=element, **ROPE)
     if on:
