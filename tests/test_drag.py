@@ -1,5 +1,6 @@
 """Wind and water: closed forms, a boundary value problem, derivatives, energy balance, refusals."""
 
+from functools import cache
 from math import acos, pi, sin, sqrt
 
 import funicular as fu
@@ -173,13 +174,19 @@ def swimming(dim=3):
     return scene
 
 
+@cache
+def accurate(dim):
+    """Return a run to compare with, computed once."""
+    return swimming(dim).run(0.6, tol=1e-9, integrator="explicit", output_step=0.05)
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_what_the_flow_gives_and_drag_takes_is_in_the_energy_balance(integrator, dim):
     run = swimming(dim).run(0.6, tol=1e-6, integrator=integrator, output_step=0.05)
     assert run["energy.dissipated"][-1] > 0.5 and abs(run["energy.external"][-1]) > 0.5
     assert unaccounted(run) < (1e-11 if integrator == "energy" else 1e-5)
-    best = swimming(dim).run(0.6, tol=1e-9, integrator="explicit", output_step=0.05)
+    best = accurate(dim)
     assert np.abs(run["buoy.position"] - best["buoy.position"]).max() < 1e-5
 
 
