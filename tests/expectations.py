@@ -33,6 +33,16 @@ def energy_error(run: Run) -> float:
     return largest(run.energy_balance().relative)
 
 
+def unaccounted(run: Run) -> float:
+    """Return the most energy that is not accounted for since the start, in J."""
+    return largest(run.energy_balance().residual)
+
+
+def drift(run: Run) -> float:
+    """Return by how much the energy that is not accounted for changes, in J."""
+    return float(np.ptp(run.energy_balance().residual))
+
+
 def slide_events(run: Run) -> list[str]:
     """Return the words of the events of a run's slides, in order."""
     return [event["what"] for event in run.report["events"]]

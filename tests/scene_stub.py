@@ -62,7 +62,7 @@ TYPES = {
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Exponent": "float",
     "Material": "Material", "Friction": "Friction",
-    "float": "float", "str": "str", "int": "int", "bool": "bool", "Callable": "Callable[..., Any]",
+    "float": "float", "str": "str", "Callable": "Callable[..., Any]",
     "Any": "Callable[..., Any]",
 }
 """What may be given for fields that are annotated so; ``inertia``, ``points`` and ``nodes`` are fields of their own."""

@@ -1,13 +1,13 @@
 """Wind and water: closed forms, a boundary value problem, derivatives, energy balance, refusals."""
 
+from functools import cache
 from math import acos, pi, sin, sqrt
 
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.engine import Engine
-from funicular.integrators import GeneralisedAlpha
-from funicular.model.build import build
+from derivatives import error_by_drags
+from expectations import unaccounted
 from scipy.integrate import solve_bvp
 
 INTEGRATORS = ("genalpha", "energy", "explicit", "radau")
@@ -19,13 +19,6 @@ AREA = pi * 0.01**2
 
 def rope(scene, element="cable12", end=(2, 0, 0), elements=4, **more):
     return scene.cable("wire", start=(0, 0, 0), end=end, elements=elements, element=element, **ROPE | more)
-
-
-def balance(run):
-    """Return the energy that is not accounted for, J."""
-    stored = sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "potential", "dissipated"))
-    found = stored - run["energy.external"]
-    return np.abs(found - found[0]).max()
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
@@ -43,7 +36,7 @@ def test_a_horizontal_cable_falls_as_the_closed_form(integrator, element):
     assert exact[-1] < -0.999 * terminal
     assert np.abs(run["wire.nodal_velocity"][:, :, 0, 1] - exact[:, None]).max() < 1e-7
     assert np.abs(run["drag_1.force"][-1] - [0, 2 * 2000 * AREA * G, 0]).max() < 1e-2
-    assert balance(run) < (2e-14 if integrator == "energy" else 1e-6)
+    assert unaccounted(run) < (2e-14 if integrator == "energy" else 1e-6)
     assert run["energy.dissipated"][-1] > 1.0
     assert np.abs(np.array(run.section_forces("wire", 0.7)["force"])).max() < 1e-4  # all of it falls alike
 
@@ -181,30 +174,26 @@ def swimming(dim=3):
     return scene
 
 
+@cache
+def accurate(dim):
+    """Return a run to compare with, computed once."""
+    return swimming(dim).run(0.6, tol=1e-9, integrator="explicit", output_step=0.05)
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_what_the_flow_gives_and_drag_takes_is_in_the_energy_balance(integrator, dim):
     run = swimming(dim).run(0.6, tol=1e-6, integrator=integrator, output_step=0.05)
     assert run["energy.dissipated"][-1] > 0.5 and abs(run["energy.external"][-1]) > 0.5
-    assert balance(run) < (1e-11 if integrator == "energy" else 1e-5)
-    best = swimming(dim).run(0.6, tol=1e-9, integrator="explicit", output_step=0.05)
+    assert unaccounted(run) < (1e-11 if integrator == "energy" else 1e-5)
+    best = accurate(dim)
     assert np.abs(run["buoy.position"] - best["buoy.position"]).max() < 1e-5
 
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_newtons_matrix_is_the_derivative_of_its_residual(dim):
     """What drag adds to the matrix of a step is what it adds to the derivative: slopes, heights, rates, turns."""
-    h, scene, errors = 0.02, swimming(dim), []
-    for drags in (dict(scene.drags), {}):
-        scene.drags = drags
-        engine = Engine(build(scene))
-        engine.start(duration=1.0, output_step=1.0, tol=1e-6, step=h, first_step=h, method=GeneralisedAlpha(0.8))
-        n = engine.unknowns
-        _, matrix = engine.linearise(h, np.zeros(n))
-        columns = [(engine.linearise(h, d)[0] - engine.linearise(h, -d)[0]) / 2e-6 for d in 1e-6 * np.eye(n)]
-        errors.append((np.array(columns).T - matrix, matrix))
-    (with_drag, both), (without, other) = errors
-    assert np.abs(with_drag - without).max() < 1e-6 * np.abs(both - other).max()
+    assert error_by_drags(swimming(dim)) < 1e-6
 
 
 def test_a_sphere_falls_at_its_terminal_speed_and_floats_where_it_displaces_its_mass():
@@ -308,7 +297,7 @@ def test_a_modal_body_takes_it_at_a_node(integrator):
     scene.fluid(density=WATER, velocity=(0.3, 1.0, 0.2))
     scene.drag("bar", area=0.02, at=(0.5, 0, 0), volume=1e-4)
     run = scene.run(0.4, tol=1e-7, integrator=integrator, output_step=0.1)
-    assert balance(run) < 1e-6
+    assert unaccounted(run) < 1e-6
     assert run["bar.position"][-1] == pytest.approx([0.85506393, -0.30115553, 0.03580343], abs=1e-6)
     with pytest.raises(fu.SceneError, match="is no node of the body"):
         scene.drag("bar", area=0.02, at=(0.7, 0, 0))

@@ -1,10 +1,12 @@
 """Hard contact: bounces, rest, friction, several points at once, curved and moving surfaces, statics, refusals."""
 
+from itertools import product
 from math import asin, cos, pi, sin, sqrt, tan
 
 import funicular as fu
 import numpy as np
 import pytest
+from expectations import drift
 from scipy.integrate import quad, solve_ivp
 
 G = 9.81
@@ -12,12 +14,6 @@ WITH_FRICTION = ("explicit", "radau", "genalpha")
 INTEGRATORS = (*WITH_FRICTION, "energy")
 STEPS = {"fixed": {"step": 0.005}, "by tol": {"tol": 1e-7}}
 SIZES = pytest.mark.parametrize("size", STEPS.values(), ids=STEPS)
-
-
-def drift(run):
-    """Return how much of the energy is not accounted for, J."""
-    stored = sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "potential", "dissipated"))
-    return float(np.ptp(stored - run["energy.external"]))
 
 
 def happened(run, *names):
@@ -50,7 +46,7 @@ def test_a_ball_bounces_to_the_square_of_its_restitution_and_comes_to_rest(integ
     rows = (run.time > times[0]) & (run.time < times[1])
     t, start = run.time[rows] - times[0], 0.1
     assert run["ball.position"][rows, 1] == pytest.approx(start + speeds[1] * t - G * t**2 / 2, abs=1e-9)
-    assert (speeds[1] / speeds[0]) ** 2 == pytest.approx(0.64)
+    assert run["energy.dissipated"][rows] == pytest.approx(2 * G * (1 - 0.64), abs=1e-6)  # the square of 0.8 is left
     assert run["ball.position"][-1] == pytest.approx([0, 0.1, 0], abs=1e-12)
     assert run["foot.force"][-1] == pytest.approx([0, 2 * G, 0])
     assert run["foot.gap"].min() > -1e-12
@@ -202,11 +198,8 @@ def thrown(restitution, friction, **more):
 
 
 @SIZES
-@pytest.mark.parametrize("friction", [0.0, 0.4])
-@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize(("integrator", "friction"), [*product(INTEGRATORS, [0.0]), *product(WITH_FRICTION, [0.4])])
 def test_a_box_thrown_on_a_corner_never_gains_energy_and_comes_to_lie(integrator, friction, size):
-    if friction and integrator == "energy":
-        pytest.skip("it does not know friction")
     scene = thrown(0.5, friction, position=(0, 1, 0), velocity=(1, 0, 0), angular_velocity=(0, 3, 1),
                    orientation=(cos(0.15), 0, 0, sin(0.15)))
     run = scene.run(duration=4.0, output_step=0.01, integrator=integrator, **size)

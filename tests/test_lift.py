@@ -1,25 +1,18 @@
 """Lift of cables and bodies: deflection, gliding, angles of attack, derivatives, energy balance, refusals."""
 
+from functools import cache
 from math import atan2, cos, pi, radians, sin, sqrt
 
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.engine import Engine
-from funicular.integrators import GeneralisedAlpha
-from funicular.model.build import build
+from derivatives import error_by_drags
+from expectations import unaccounted
 
 INTEGRATORS = ("genalpha", "energy", "explicit", "radau")
 ELEMENTS = ("cable12", "cable18", "beam24")
 G, WATER = 9.81, 1000.0
 ROPE = {"section": fu.Circle(radius=0.01), "material": fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=2000)}
-
-
-def balance(run):
-    """Return the energy that is not accounted for, J."""
-    stored = sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "potential", "dissipated"))
-    found = stored - run["energy.external"]
-    return np.abs(found - found[0]).max()
 
 
 def plate():
@@ -67,7 +60,7 @@ def test_a_glider_comes_down_at_the_angle_of_drag_over_lift(integrator):
     run = scene.run(2.0, tol=1e-8, integrator=integrator, output_step=0.5)
     way = run["wing.position"][-1]
     assert way == pytest.approx([2 * speed * cos(angle), -2 * speed * sin(angle), 0], abs=1e-5)
-    assert balance(run) < (1e-11 if integrator == "energy" else 1e-5)
+    assert unaccounted(run) < (1e-11 if integrator == "energy" else 1e-5)
 
 
 def kite(dim=3):
@@ -88,28 +81,24 @@ def kite(dim=3):
     return scene
 
 
+@cache
+def accurate(dim):
+    """Return a run to compare with, computed once."""
+    return kite(dim).run(0.15, tol=1e-9, integrator="explicit", output_step=0.05)
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_all_integrators_fly_a_kite_alike(integrator, dim):
     run = kite(dim).run(0.15, tol=1e-6, integrator=integrator, output_step=0.05)
-    best = kite(dim).run(0.15, tol=1e-9, integrator="explicit", output_step=0.05)
+    best = accurate(dim)
     assert np.abs(run["kite.position"] - best["kite.position"]).max() < 1e-5
-    assert balance(run) < (1e-11 if integrator == "energy" else 1e-5)
+    assert unaccounted(run) < (1e-11 if integrator == "energy" else 1e-5)
 
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_newtons_matrix_is_the_derivative_of_its_residual(dim):
-    h, scene, errors = 0.02, kite(dim), []
-    for drags in (dict(scene.drags), {}):
-        scene.drags = drags
-        engine = Engine(build(scene))
-        engine.start(duration=1.0, output_step=1.0, tol=1e-6, step=h, first_step=h, method=GeneralisedAlpha(0.8))
-        n = engine.unknowns
-        _, matrix = engine.linearise(h, np.zeros(n))
-        columns = [(engine.linearise(h, d)[0] - engine.linearise(h, -d)[0]) / 2e-6 for d in 1e-6 * np.eye(n)]
-        errors.append((np.array(columns).T - matrix, matrix))
-    (with_drag, both), (without, other) = errors
-    assert np.abs(with_drag - without).max() < 2e-5 * np.abs(both - other).max()
+    assert error_by_drags(kite(dim)) < 2e-5
 
 
 @pytest.mark.parametrize("degrees", [-140, -30, 0, 10, 75, 180])

@@ -63,7 +63,7 @@ run = scene.run(progress=False)
 #
 # Contact forces are judged below 20 Hz, by mean and standard deviation in a section of the track, here the two spans in
 # the middle. Their mean is the uplift force, less what the lowest spring takes. On a mesh as coarse as this one the
-# standard deviation is a tenth too large or so; ``tests/benchmarks/catenary.py`` shows how it converges.
+# standard deviation is a tenth too large or so; ``tests/benchmarks/pantographs.py`` shows how it converges.
 
 found = catenary.assess(run)
 for name in ("mean", "standard_deviation", "statistical_minimum", "maximum", "minimum"):

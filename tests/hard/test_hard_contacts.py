@@ -5,15 +5,11 @@ from math import sqrt
 import funicular as fu
 import numpy as np
 import pytest
+from expectations import drift
 
 G = 9.81
 WITH_FRICTION = ("explicit", "radau", "genalpha")
 INTEGRATORS = (*WITH_FRICTION, "energy")
-
-
-def drift(run):
-    stored = sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "potential", "dissipated"))
-    return float(np.ptp(stored - run["energy.external"]))
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)

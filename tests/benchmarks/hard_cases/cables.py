@@ -1,11 +1,10 @@
 """Cables alone: steel beside rubber, slack that goes taut, compression that buckles, free fall, whips."""
 
-from functools import cache
 
 import numpy as np
 from funicular import Circle, Material, Ramp, Scene
 
-from .case import BALANCE, CONVERGED, HELD, SHAKEN, Subject, figures, positions, simulate
+from .case import BALANCE, HELD, SHAKEN, Subject, compared, positions
 
 HERE = Subject()
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850)
@@ -77,29 +76,15 @@ SCENES = {"steel and rubber": (steel_and_rubber, 0.6), "slack goes taut": (slack
           "free fall": (falling, 0.5), "whip": (whip, 0.5)}
 
 
-@cache
-def reference(name: str):
-    """The converged motion."""
-    scene, duration = SCENES[name]
-    return simulate(scene(), duration, **CONVERGED)
-
-
-def compared(name: str, integrator: str):
-    """A run with the default tolerance and its figures."""
-    scene, duration = SCENES[name]
-    run = simulate(scene(), duration, integrator=integrator)
-    return run, figures(run, reference(name))
-
-
 @HERE.case("a steel wire of 100 m and a rubber cord", error=2e-4, balance=BALANCE, residual=HELD, gap=HELD)
 def metal_and_rubber(integrator):
-    return compared("steel and rubber", integrator)[1]
+    return compared(*SCENES["steel and rubber"], integrator)[1]
 
 
 @HERE.case("a slack cable goes taut", error=2e-3, balance=SHAKEN, pull=(20, 30))
 def going_taut(integrator):
     """`pull`: the largest force at a pin over the weight."""
-    run, found = compared("slack goes taut", integrator)
+    run, found = compared(*SCENES["slack goes taut"], integrator)
     weight = 7850 * np.pi * 2e-3**2 * run.scene.cables["rope"].length * 9.81
     return found | {"pull": float(np.linalg.norm(run["rope@0.force"], axis=1).max()) / weight}
 
@@ -107,14 +92,14 @@ def going_taut(integrator):
 @HERE.case("compression that buckles", error=5e-4, balance=BALANCE, sideways=(0.05, 0.2))
 def pushed(integrator):
     """`sideways`: m."""
-    run, found = compared("buckling", integrator)
+    run, found = compared(*SCENES["buckling"], integrator)
     return found | {"sideways": float(-positions(run)[:, :, 1].min())}
 
 
 @HERE.case("a bent cable falls free", error=1e-4, balance=BALANCE, fall=1e-12)
 def free_fall(integrator):
     """`fall`: of the centre of mass beside g t²/2, m."""
-    run, found = compared("free fall", integrator)
+    run, found = compared(*SCENES["free fall"], integrator)
     cord = run.scene.cables["cord"]
     r, r_x = (run["cord.nodal_vectors"][:, :, k] for k in (0, 1))
     centre = ((r[:, 1:] + r[:, :-1]) / 2 - np.diff(r_x, axis=1) * cord.length / cord.elements / 12).mean(axis=1)
@@ -126,6 +111,6 @@ def free_fall(integrator):
            balance=SHAKEN, outruns=(2, 3), slow=["energy"])
 def cracking(integrator):
     """`outruns`: speed of the tip over that of a free fall as deep."""
-    run, found = compared("whip", integrator)
+    run, found = compared(*SCENES["whip"], integrator)
     tip, speed = run["cord.nodal_vectors"][:, -1, 0], np.linalg.norm(run["cord.nodal_velocity"][:, -1, 0], axis=1)
     return found | {"outruns": float(speed.max() / np.sqrt(2 * 9.81 * np.ptp(tip[:, 1])))}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 from funicular import FunicularWarning, Run, Scene
@@ -72,6 +73,21 @@ def simulate(scene: Scene, duration: float, **settings) -> Run:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)
         return scene.run(duration, progress=False, **settings)
+
+
+@cache
+def reference(make: Callable[[], Scene], duration: float, **settings) -> Run:
+    """Return the converged motion of a scene that a function makes, computed once: by another method, of order 8."""
+    return simulate(make(), duration, **settings, **CONVERGED)
+
+
+def compared(make: Callable[[], Scene], duration: float, integrator: str, **settings) -> tuple[Run, dict[str, float]]:
+    """Return a run with the default tolerance, and its figures beside those of its reference.
+
+    settings: of both runs.
+    """
+    run = simulate(make(), duration, integrator=integrator, **settings)
+    return run, figures(run, reference(make, duration, **settings))
 
 
 def positions(run: Run) -> np.ndarray:

@@ -1,10 +1,9 @@
 """Wind and water: light lines in a storm, a gust that comes at once, a fall stopped at once, mass that is all water."""
 
-from functools import cache
 
 from funicular import Circle, Harmonic, Material, Scene, TableSignal
 
-from .case import CONVERGED, Subject, figures, simulate
+from .case import Subject, compared, figures, simulate
 
 HERE = Subject()
 LINE = {"element": "cable12", "strain": "engineering"}
@@ -56,27 +55,15 @@ def feather() -> Scene:
     return scene
 
 
-@cache
-def reference(make, duration, output_step):
-    """The same with another method, of order 8."""
-    return simulate(make(), duration, output_step=output_step, **CONVERGED)
-
-
-def compared(make, integrator, duration, output_step, **settings):
-    """Figures of a run beside its reference."""
-    run = simulate(make(), duration, integrator=integrator, output_step=output_step, **settings)
-    return figures(run, reference(make, duration, output_step))
-
-
 @HERE.case("light line in a storm", balance=1e-3, slow=("genalpha", "energy"),
            error={"genalpha": 0.03, "energy": 0.02, "explicit": 1e-4, "radau": 1e-3})
 def light_line(integrator):
-    return compared(storm, integrator, 0.5, 0.05)
+    return compared(storm, 0.5, integrator, output_step=0.05)[1]
 
 
 @HERE.case("gust that comes at once", error=1e-3, balance=1e-3)
 def sudden_gust(integrator):
-    return compared(gust, integrator, 0.5, 0.05)
+    return compared(gust, 0.5, integrator, output_step=0.05)[1]
 
 
 @HERE.case("drag that stops a fall at once", speed=(0.00099999, 0.00100001), balance=1e-3)
@@ -87,4 +74,4 @@ def stopped(integrator):
 
 @HERE.case("nearly all inertia is the water's", error=1e-3, balance=1e-3)
 def light_in_water(integrator):
-    return compared(feather, integrator, 0.5, 0.05)
+    return compared(feather, 0.5, integrator, output_step=0.05)[1]

@@ -1,11 +1,10 @@
 """Springs that pull or push alone, and a cable that gives way in compression: slack at once, chatter, free play."""
 
-from functools import cache
 
 import numpy as np
 from funicular import Circle, Material, Scene, TableSignal
 
-from .case import BALANCE, CONVERGED, Subject, figures, simulate
+from .case import BALANCE, Subject, compared
 
 HERE = Subject()
 
@@ -69,24 +68,16 @@ SCENES = {"droppers": (droppers, 0.8), "chatter": (chatter, 0.25), "free play": 
           "thrown": (thrown, 0.4)}
 
 
-@cache
-def reference(name: str):
-    """The converged motion."""
-    scene, duration = SCENES[name]
-    return simulate(scene(), duration, **CONVERGED)
-
-
-def compared(name: str, integrator: str) -> tuple:
+def with_events(name: str, integrator: str) -> tuple:
     """A run with the default tolerance and its figures, with the number of events."""
-    scene, duration = SCENES[name]
-    run = simulate(scene(), duration, integrator=integrator)
-    return run, figures(run, reference(name)) | {"events": len(run.events)}
+    run, found = compared(*SCENES[name], integrator)
+    return run, found | {"events": len(run.events)}
 
 
 @HERE.case("all droppers slack at once, and taut again", error=5e-4, balance=BALANCE, all_slack=(1, 1), taut=(9, 9))
 def slack_at_once(integrator):
     """`all_slack`: whether all are slack at some time; `taut`: the most that pull at one time afterwards."""
-    run, found = compared("droppers", integrator)
+    run, found = with_events("droppers", integrator)
     tension = np.array([run[f"dropper_{k}.tension"] for k in range(1, 10)])
     slack = (tension == 0.0).all(axis=0)
     later = tension[:, int(np.argmax(slack)):] > 0.0
@@ -97,18 +88,18 @@ def slack_at_once(integrator):
            events=(30, 50))
 def chattering(integrator):
     """`pushes`: the largest force with which the spring pushes, N."""
-    run, found = compared("chatter", integrator)
+    run, found = with_events("chatter", integrator)
     return found | {"pushes": float(-run["wire.tension"].min())}
 
 
 @HERE.case("1 g rattles in a free play", error=5e-4, balance=BALANCE, events=(50, 60))
 def rattling(integrator):
-    return compared("free play", integrator)[1]
+    return with_events("free play", integrator)[1]
 
 
 @HERE.case("a rope that bears no compression is thrown slack", error=1e-3, balance=BALANCE, slack=(8, 8),
            events=(2, 20))
 def thrown_slack(integrator):
     """`slack`: the most elements that are, of 8."""
-    run, found = compared("thrown", integrator)
+    run, found = with_events("thrown", integrator)
     return found | {"slack": float(run.slack_elements("rope").sum("element").max())}

@@ -7,18 +7,12 @@ from funicular import ConvergenceError, Material, Rectangle, Scene
 from paper51 import REFERENCE
 from sliding import sliding_mass
 
-from .cables import SCENES, reference
-from .case import BALANCE, CONVERGED, HELD, Subject, balance, error, figures, largest_motion, simulate
+from .cables import SCENES
+from .case import BALANCE, CONVERGED, HELD, Subject, balance, error, figures, largest_motion, reference, simulate
 from .crossings import rider
 
 HERE = Subject()
 COARSE = {"a rider": (lambda: rider(0.25, 1.0, elements=3), 1.0), **SCENES}
-
-
-@cache
-def exact_of(name: str):
-    """The converged motion."""
-    return reference(name) if name in SCENES else simulate(COARSE[name][0](), COARSE[name][1], **CONVERGED)
 
 
 def too_large(name: str):
@@ -27,7 +21,7 @@ def too_large(name: str):
         estimates that the report has; `told`: notes on it; explicit methods must stop instead.
         """
         scene, duration = COARSE[name]
-        exact = exact_of(name)
+        exact = reference(*COARSE[name])
         times = duration / 10 / exact.report["largest_step_s"]
         try:
             run = simulate(scene(), duration, step=duration / 10, output_step=duration / 10, integrator=integrator)

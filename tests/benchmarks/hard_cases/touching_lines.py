@@ -1,11 +1,10 @@
 """Lines that touch: a light collector that chatters under a wire, a rope thrown on a rope."""
 
-from functools import cache
 
 import numpy as np
 from funicular import Circle, Material, Scene
 
-from .case import CONVERGED, Subject, balance, error, simulate
+from .case import Subject, balance, error, reference, simulate
 
 HERE = Subject()
 WIRE = Material(youngs_modulus=1e11, poisson_ratio=0.3, density=9000)
@@ -46,26 +45,19 @@ def thrown() -> Scene:
 SCENES = {"chatter": (chatter, 0.1), "thrown": (thrown, 0.2)}
 
 
-@cache
-def reference(name: str):
-    """The converged motion."""
-    scene, duration = SCENES[name]
-    return simulate(scene(), duration, **CONVERGED)
-
-
-def compared(name: str, integrator: str):
+def touched(name: str, integrator: str):
     """A run with a small tolerance, as contacts are decided by little, and its figures."""
     scene, duration = SCENES[name]
     run = simulate(scene(), duration, integrator=integrator, tol=1e-5)
-    found = {"error": error(run, reference(name)), "balance": balance(run), "steps": run.report["steps"]}
+    found = {"error": error(run, reference(*SCENES[name])), "balance": balance(run), "steps": run.report["steps"]}
     return run, found | {"touches": sum(event["what"] == "came into contact" for event in run.report["events"])}
 
 
 @HERE.case("a light collector chatters on a wire", integrators=INTEGRATORS, error=1e-4, balance=1e-6, touches=(12, 18))
 def chattering(integrator):
-    return compared("chatter", integrator)[1]
+    return touched("chatter", integrator)[1]
 
 
 @HERE.case("a rope is thrown on a rope", integrators=INTEGRATORS, error=1e-4, balance=1e-4, touches=(3, 3))
 def falling_across(integrator):
-    return compared("thrown", integrator)[1]
+    return touched("thrown", integrator)[1]

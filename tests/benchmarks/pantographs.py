@@ -1,6 +1,6 @@
 """Pantographs below catenaries: contact force and uplift, how they converge, and what they cost.
 
-    python tests/benchmarks/catenary.py [--out FILE.csv] [--what reference|line55|cost]
+    python tests/benchmarks/pantographs.py [--out FILE.csv] [--what reference|line55|cost]
 
 reference: the reference model of EN 50318:2002, which is withdrawn, at 250 and 300 km/h: 10 spans of 60 m, a pantograph
 of two masses, of which spans 5 and 6 are judged by the contact force below 20 Hz. The first rows are the ranges that
