@@ -21,7 +21,7 @@ from .parts.laid import laid
 from .parts.modal_body import ModalBody
 from .parts.part import Part
 from .parts.scene_text import dumps, read
-from .parts.settings import EquilibriumSettings, ModeSettings, RelaxationSettings, RunSettings
+from .parts.settings import EquilibriumSettings, ModeSettings, RelaxationSettings, RunSettings, overridden
 from .parts.validation import show, shown
 from .results.run import Run
 from .results.viewable import Viewable
@@ -189,7 +189,7 @@ class Scene(Viewable, SceneMethods):
         state = None if initial is None or isinstance(initial, str) else _state(self, initial)
         if state is not None:
             given["initial"] = "state" if isinstance(initial, Mapping) else "equilibrium"
-        settings = RunSettings(**self.run_settings | given)
+        settings = RunSettings(**overridden(self.run_settings, given))
         if settings.initial == "state" and state is None:
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
         chosen = self._chosen_for(settings)
@@ -228,7 +228,8 @@ class Scene(Viewable, SceneMethods):
         ``reasons`` and ``table``, the alternatives with their estimated errors and costs; print it. Raises SceneError.
         """
         given = {"tol": tol, "duration": duration, "initial": initial, "integrator": integrator}
-        settings = RunSettings(**{"tol": 1e-3} | self.run_settings | {k: v for k, v in given.items() if v is not None})
+        given = {name: value for name, value in given.items() if value is not None}
+        settings = RunSettings(**{"tol": 1e-3} | overridden(self.run_settings, given))
         return self._choose(settings, quantities, free, unequal)
 
     def _chosen_for(self, settings: RunSettings) -> Choice[Self] | None:

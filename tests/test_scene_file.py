@@ -329,3 +329,16 @@ def test_a_file_of_results_and_an_ending_too_many_are_named(tmp_path):
         load_scene(tmp_path / "p.nc")
     with pytest.raises(SceneError, match=r'there is no such scene file.*; the bundled scene is "paper51"'):
         load_scene("paper51.toml")
+
+
+def test_a_tol_that_is_given_takes_the_place_of_steps_in_a_file():
+    """A step, or an absolute_tol, of the scene's file would leave a tol of the call without effect."""
+    scene = load_scene("paper51")
+    scene.run_settings |= {"step": 1e-3, "duration": 0.02}
+    assert scene.run(integrator="radau").report["step"] == 1e-3
+    run = scene.run(tol=1e-4, integrator="radau")
+    assert run.report["step"] is None and run.report["tol"] == 1e-4
+    assert scene.run(tol=1e-4, step=5e-4).report["step"] == 5e-4
+    scene.run_settings = {"absolute_tol": 1e-2, "duration": 0.2}
+    steps = [scene.run(integrator="radau", **given).report["steps"] for given in ({}, {"tol": 1e-6})]
+    assert steps[1] > 3 * steps[0]

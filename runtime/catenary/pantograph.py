@@ -10,6 +10,7 @@ from pydantic import model_validator
 from ..errors import SceneError
 from ..parts.part import Part
 from ..parts.schemas import checked
+from ..parts.settings import overridden
 from ..parts.solids import Box
 from ..parts.validation import not_negative, positive, shown, vector
 from ..scene import Scene
@@ -97,7 +98,7 @@ def add_pantograph(scene: Scene, pantograph: Pantograph, at: float, speed: float
         raise SceneError("pantograph", f"at {at:.6g} m with {speed:.6g} m/s is not on its way along the line",
                          f"begin between {begin:.6g} and {end - LEFT:.6g} m, with a speed that is not negative")
     duration = (end - LEFT - at) / speed if speed else 1.0
-    scene.run_settings = {**RUN, **scene.run_settings}
+    scene.run_settings = overridden(RUN, scene.run_settings)
     scene.run_settings["duration"] = min(duration, scene.run_settings.get("duration", duration))
     height = float(level) - RADIUS
     lowest = len(pantograph.masses) + 1

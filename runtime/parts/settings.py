@@ -35,6 +35,19 @@ def _text_of_path(value: Any) -> Any:
     return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
+STEPS_OF_TOL = {"step", "absolute_tol"}
+"""What decides on steps in place of tol, or beside it."""
+
+
+def overridden(settings: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings of a run: those given take the place of others, as of a scene file.
+
+    A tol that is given takes the place of a step and of an absolute_tol, too, beside which it would have no effect.
+    """
+    replaced = STEPS_OF_TOL if "tol" in given else set()
+    return {name: value for name, value in settings.items() if name not in replaced} | dict(given)
+
+
 class RunSettings(Part):
     """How a scene is run.
 

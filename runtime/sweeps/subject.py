@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 from ..errors import FunicularWarning, SceneError, near
 from ..parts.paths import Path, changed, check_each_once, path_of, unit_of
-from ..parts.settings import RunSettings
+from ..parts.settings import RunSettings, overridden
 from ..parts.validation import shown
 from ..results.run import Run
 from ..scene import Scene
@@ -64,7 +64,7 @@ class SceneSubject:
     def settings_at(self, point: Mapping[str, Any]) -> RunSettings:
         """Return the settings of the run at a point. Raises SceneError."""
         of_run = {path.entries[0]: point[name] for name, path in self.paths.items() if path.head == "run"}
-        return RunSettings(**self.scene.run_settings | of_run)
+        return RunSettings(**overridden(self.scene.run_settings, of_run))
 
     def check(self, point: Mapping[str, Any]) -> Scene:
         """Return the scene at a point, checked as far as that is possible without running it. Raises SceneError."""
@@ -160,17 +160,20 @@ class FunctionSubject:
         if not self.keep.wanted:
             self.keep.check(scene)
         made = copy(scene)
-        made.run_settings = {name: value for name, value in scene.run_settings.items() if name != "save"}
-        made.run_settings |= dict(self.settings)
+        made.run_settings = _unsaved(scene, self.settings)
         return made
+
+
+def _unsaved(scene: Scene, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings of a scene's runs with those of a sweep, without the file that the scene names."""
+    return {name: value for name, value in overridden(scene.run_settings, settings).items() if name != "save"}
 
 
 def subject_of(subject: Any, parameters: Sequence[str], keep: Keep, settings: Mapping[str, Any]) -> Subject:
     """Return the subject of a sweep; settings: of its runs, instead of the scene's own. Raises SceneError."""
     if isinstance(subject, Scene):
         given = copy(subject)
-        given.run_settings = {name: value for name, value in subject.run_settings.items() if name != "save"}
-        given.run_settings |= dict(settings)
+        given.run_settings = _unsaved(subject, settings)
         return SceneSubject.of(given, parameters, keep)
     if callable(subject):
         return FunctionSubject.of(subject, parameters, keep, settings)
