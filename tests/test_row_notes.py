@@ -85,7 +85,7 @@ def test_a_checkpoint_holds_what_was_found(said):
         q[1, model.cables[0].coordinates].reshape(model.cables[0].shape)[2, 0, 0] -= 0.02
     else:
         q[2, model.bodies[0].configuration] = 0.0
-    rows = {"time": np.arange(5.0), "q": q, "s": np.zeros((5, 0))}
+    rows = {"time": np.arange(5.0), "q": q, "v": np.tile(model.v, (5, 1)), "s": np.zeros((5, 0))}
     at_once, found = RowNotes(scene, model), {}
     at_once.see(rows)
     for k in range(5):

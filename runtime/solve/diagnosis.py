@@ -189,17 +189,6 @@ def _coarse_for_little_motion(engine: Engine, settings: RunSettings) -> list[str
             f"{motion:.2g} m: give absolute_tol, in m, if that is too much"]
 
 
-def genalpha_alone(scene: SceneData, engine: Engine, settings: RunSettings) -> list[str]:
-    """Return a note where "genalpha" chose its steps in a scene with friction, of which its estimate sees nothing."""
-    rubbing = [f'"{slide.name}"' for slide in scene.slides.values()
-               if slide.friction is not None and (slide.friction.coefficient or slide.friction.rolling)]
-    if engine.integrator != "genalpha" or settings.step is not None or not rubbing or not engine.moves:
-        return []
-    return [f'integrator "genalpha" chooses its steps by the error of positions alone, which does not see the friction '
-            f"of slide{'s' * (len(rubbing) > 1)} {' and '.join(rubbing)}: errors may be 10 times tol and more. Take "
-            f'integrator="{stable_at(fixed_step=False).name}", or give estimate=True, which measures them']
-
-
 def trapped(scene: SceneData, engine: Engine) -> list[str]:
     """Return a note where slides that tie a frame went to and fro over nodes at which the curvature jumps."""
     counts = engine.statistics

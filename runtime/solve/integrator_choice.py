@@ -20,6 +20,7 @@ from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..parts.slide import Slide
 from .condensation import without_forces
+from .unseen_errors import outrunning
 
 ITERATIONS = 20
 """Of the power iteration."""
@@ -138,22 +139,7 @@ def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
     fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
     return (bool(model.cables) and not model.motions
             and (demands.tol >= LOOSE_FOR_FRICTION or not demands.friction)
-            and fastest <= FAST_TURNS * demands.slow and not _outruns_waves(scene))
-
-
-def _outruns_waves(scene: SceneData) -> bool:
-    """Return whether a rider starts faster than the transverse waves of a cable that is drawn taut: the shock that it
-    runs in damps out in steps of genalpha, whose estimate does not see it.
-    """
-    for slide in scene.slides.values():
-        cable, body = scene.cables[slide.along], scene.bodies.get(slide.body or "")
-        if body is None or cable.stretch <= 1.0:
-            continue
-        per_length = cable.material.density * cable.section.area
-        tension = cable.material.youngs_modulus * cable.section.area * (cable.stretch - 1.0)
-        if np.dot(body.velocity, body.velocity) * per_length > tension:
-            return True
-    return False
+            and fastest <= FAST_TURNS * demands.slow and not outrunning(scene))
 
 
 def begin_with_low_order(demands: Demands, duration: float, method: Integrator, why: str,

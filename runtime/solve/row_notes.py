@@ -32,11 +32,11 @@ class RowNotes:
     """What is noted of output rows, which are seen as they come, a batch after the other."""
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0):
-        self.sensitivity = Sensitivity(scene, model)
+        self.sensitivity, self.turns = Sensitivity(scene, model), FastTurns(model, step)
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
             "sensitivity": self.sensitivity, "meeting points": MeetingPoints(scene, model),
-            "fast turns": FastTurns(model, step), "penetrations": Penetrations(scene, model)}
+            "fast turns": self.turns, "penetrations": Penetrations(scene, model)}
 
     def see(self, rows: dict[str, np.ndarray]) -> None:
         """Take further rows of the engine, by name, time first."""

@@ -22,7 +22,7 @@ from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from .diagnosis import genalpha_alone, notes, trapped
+from .diagnosis import notes, trapped
 from .event_watcher import EventWatcher
 from .integrator_choice import choose, tol_of
 from .long_runs import LongRun
@@ -35,6 +35,7 @@ from .signal_steps import unresolved
 from .sink import Sink
 from .threads import share_elements
 from .trial_run import on_trial
+from .unseen_errors import unseen_errors
 
 LOG = logging.getLogger(__name__)
 
@@ -121,7 +122,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     messages += _controlled_alone(run.engine, settings)
     if status == "completed":
         grows = [] if settings.estimate else [*sensitive(run.engine, settings, run.row_notes.sensitivity),
-                                              *genalpha_alone(scene, run.engine, settings)]
+                                              *unseen_errors(scene, run.engine, settings, run.row_notes.turns)]
         messages += _warned([*notes(run.engine, settings), *trapped(scene, run.engine), *run.row_notes.notes(), *grows])
     noted = time.perf_counter() - ended
     total = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
