@@ -13,6 +13,7 @@ from .model.model import Model
 STATUS: dict[int, str]
 CAUSES: dict[int, str | None]
 SLIDE_OUTPUTS: dict[str, int]
+SLACK_STRAIN: float
 
 class Engine:
     arrays: dict[str, np.ndarray]

@@ -45,6 +45,8 @@ CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", F
           FU_NOT_KNOWN: "not_known"}
 SLIDE_OUTPUTS = {"s_rate": 1, "s_acceleration": 1, "force": 3, "multiplier": 2, "traction": 1, "residual": 3}
 """Numbers of a slide in a row of output, and how many each has; see fu_slide_output."""
+SLACK_STRAIN = FU_SLACK_STRAIN
+"""What an element is compressed by at least in its middle where it is slack."""
 cdef int TRACTION = sum([SLIDE_OUTPUTS[name] for name in ("s_rate", "s_acceleration", "force", "multiplier")])
 
 

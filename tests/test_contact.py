@@ -71,6 +71,16 @@ def test_the_touch_down_converges_with_the_mesh():
     assert errors[1] < 0.6 * errors[0] and errors[1] < 3e-4
 
 
+def test_a_mooring_with_friction_can_be_adjusted_for_a_force_in_a_section():
+    scene = mooring(12, friction=0.3)
+    place = f"line@{L - LIFTED / 2:.6g}.tension"
+    wanted = 1.001 * float(scene.equilibrium().section_forces("line", s=[L - LIFTED / 2])["tension"][0])
+    rest = scene.equilibrium(adjust=["line.rest_length"], to={place: wanted})
+    assert rest.adjustment.found[place] == pytest.approx(wanted, rel=1e-6)
+    there = [(1 - LIFTED / 2 / L) * rest.adjusted["line.rest_length"]]  # at the same part of its length
+    assert float(rest.section_forces("line", s=there)["tension"][0]) == pytest.approx(wanted, rel=1e-6)
+
+
 def test_the_beds_friction_takes_mu_w_a_length_of_the_tension():
     state = mooring(60, friction=0.3).equilibrium()
     end, tension = end_of_mooring(0.3)

@@ -100,6 +100,18 @@ def test_slack_elements_are_noted(element):
     assert slack.values[first, events[0]["element"]]
 
 
+def test_rounding_makes_no_element_slack():
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.cable("wire", start=(0, 0, 0), end=(0.7, 0.1, 0.2), elements=12, element="cable12",
+                section=fu.Circle(radius=1e-3), membrane="tension_only",
+                material=fu.Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1100))
+    scene.pin("wire", s=0)
+    rest = scene.equilibrium()
+    assert not rest.slack_elements("wire").values.any()
+    run = scene.run(duration=0.01, output_step=0.01, integrator="radau", tol=1e-5, progress=False)
+    assert not run.slack_elements("wire").values.any() and not run.report["events"]
+
+
 def test_a_run_ends_where_a_cable_becomes_slack_if_asked():
     whole = let_loose().run(duration=0.1, output_step=1e-3, integrator="radau", tol=1e-6)
     run = let_loose(action="stop").run(duration=0.1, output_step=1e-3, integrator="radau", tol=1e-6)

@@ -84,11 +84,11 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[n
 
 
 def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.ndarray, *, method: str = "balance",
-               side: str = "after", at_rest: bool = False) -> dict[str, np.ndarray]:
+               side: str = "after") -> dict[str, np.ndarray]:
     """Return the forces in sections of the cable ``name`` at instants.
 
     s: (1 or T, n) arc-lengths in m. Returns force and moment (T, n, 3), along the ground's axes, and the components
-    of `section_components.labels` (T, n). at_rest: accelerations are nil.
+    of `section_components.labels` (T, n). At rest accelerations are nil.
     """
     cable, number = scene.cables[name], list(scene.cables).index(name)
     of = model.cables[number]
@@ -97,11 +97,11 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     force, moment, axes, strain = constitutive(cable, nodal, cuts)
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
-    if (drag := unbalanced_drag(scene, model, number, at_rest)) is not None:
+    if (drag := unbalanced_drag(scene, model, number, at.is_rest)) is not None:
         raise FunicularError(f'section forces of "{name}": the balance does not know added mass, which drag '
                              f'"{drag}" has; take method="constitutive"')
     loads = CableLoads(scene, model, at)
-    forces = element_forces(scene, model, at, loads, number, at_rest)
+    forces = element_forces(scene, model, at, loads, number, at.is_rest)
     balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
     taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
         cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
@@ -160,7 +160,7 @@ def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = 
                    side: str = "after") -> dict[str, np.ndarray]:
     """Return `cut_forces` of a state of rest: T = 1; s: (1, n)."""
     return state.model.results(name, cut_forces(laid(state.scene), state.model, rest_instants(state), name, s,
-                                                method=method, side=side, at_rest=True))
+                                                method=method, side=side))
 
 
 def rest_instants(state: RestState) -> Instants:

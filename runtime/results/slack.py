@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from ..engine import SLACK_STRAIN
 from ..errors import UnknownResultError, near
 from ..model.middle_strain import middle_strain
 from ..parts.cable import Cable
@@ -25,11 +24,11 @@ def slack_elements(state: Results | RestState, cable: Cable | str) -> xarray.Dat
         raise UnknownResultError(f'there is no cable "{name}"; {near(name, state.scene.cables)}')
     of = next(each for each in state.model.cables if each.name == name)
     vectors = state[f"{name}.nodal_vectors"]
-    strain = middle_strain(of, vectors if over_time else vectors[None])
+    slack = middle_strain(of, vectors if over_time else vectors[None]) < -SLACK_STRAIN
     s = of.mesh.node_s
     coords: dict = {"s": ("element", (s[:-1] + s[1:]) / 2, {"units": "m", "long_name": "middle of the element"})}
     if not isinstance(state, RestState):
         coords["time"] = ("time", state.time, {"units": "s", "long_name": "time"})
-    return xarray.DataArray(np.asarray(strain < 0.0) if over_time else strain[0] < 0.0,
+    return xarray.DataArray(slack if over_time else slack[0],
                             dims=("time", "element") if over_time else ("element",), coords=coords, name="slack",
                             attrs={"cable": name, "long_name": "shorter in the middle than at rest"})

@@ -106,8 +106,9 @@ class _Values:
         s = np.array(places)[None] * self.scene.cables[name].length
         weight = problem.fraction if problem.settings.scale_gravity else 1.0
         instants = Instants(np.zeros(len(self.at)), self.at.q, np.zeros((len(self.at), model.n_dof)),
-                            lambda each: model.as_in_model(each, self._result(each)), problem.fraction, weight)
-        found = model.results(name, cut_forces(problem.scene, model, instants, name, s, at_rest=True))
+                            lambda each: model.as_in_model(each, self._result(each)), problem.fraction, weight,
+                            is_rest=True)
+        found = model.results(name, cut_forces(problem.scene, model, instants, name, s))
         self.cuts[name] = {place: {quantity: values[:, k] for quantity, values in found.items()}
                            for k, place in enumerate(places)}
 

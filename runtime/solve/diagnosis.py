@@ -11,11 +11,12 @@ from ..model.model import CableModel, Model, SlideModel
 from ..model.redundant_constraints import redundant
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
+from .folds import FOLDED
 
 KEPT = "what was computed up to there is kept"
 
-FOLDED, STRETCHED = 0.8, 3.0
-"""Elements shorter or longer than this part of their undeformed length are named."""
+STRETCHED = 3.0
+"""Times their undeformed length: elements that are longer are named."""
 
 ROUNDED = 4e-16
 """Of the farthest coordinate: below this the error control does not go (engine/run/step_control.c)."""

@@ -26,6 +26,7 @@ from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings, RelaxationSettings
 from .diagnosis import describe_dof
+from .folds import folds
 from .rest_state import Relaxation, RestState
 from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem
@@ -337,6 +338,7 @@ def _told(problem: StaticProblem, motion: _Motion, found: Stability, made: type[
     """Return the problem's state with what is to be said of it; what a user must know is a warning, too."""
     state = made.of(problem, found)
     state.relaxation = motion.report
+    problem.messages += folds(problem.scene, problem.model, state.static_state["q"])
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=5)
     LOG.info("relaxation: %d steps, %d resets, %.3g N left over", motion.report.steps, motion.report.resets,

@@ -9,6 +9,7 @@ import numpy as np
 from ..model.model import Model
 from ..parts.scene_data import SceneData
 from .fast_turns import FastTurns
+from .folds import Folds
 from .meeting_points import MeetingPoints
 from .penetrations import Penetrations
 from .reduced_strain import ReducedStrain
@@ -36,7 +37,8 @@ class RowNotes:
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
             "sensitivity": self.sensitivity, "meeting points": MeetingPoints(scene, model),
-            "fast turns": self.turns, "penetrations": Penetrations(scene, model)}
+            "fast turns": self.turns, "penetrations": Penetrations(scene, model),
+            "folds": Folds(scene, model)}
 
     def see(self, rows: dict[str, np.ndarray]) -> None:
         """Take further rows of the engine, by name, time first."""

@@ -16,6 +16,7 @@ from ..errors import EquilibriumError, FunicularWarning
 from ..model.drag_forces import outside_tables
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
+from .folds import folds
 from .path_following import Critical, Point, follow
 from .penetrations import penetrations
 from .rest_state import CriticalPoint, RestState
@@ -66,6 +67,7 @@ def note(problem: StaticProblem, state: RestState) -> None:
     if rubbing := [name for name, slide in problem.scene.slides.items() if slide.friction is not None]:
         names = " and ".join(f'"{name}"' for name in rubbing)
         problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
+    problem.messages += folds(problem.scene, problem.model, state.static_state["q"])
     problem.messages += outside_tables(problem.model, state.static_state["q"])
     if rough := [contact.where for contact in problem.scene.contacts.values() if contact.is_hard and contact.friction]:
         problem.messages.append(f"friction of {' and '.join(rough)} is left out: at rest what touches moves freely")

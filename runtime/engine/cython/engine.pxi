@@ -33,6 +33,7 @@ cdef extern from "blocks.h" nogil:
     const fu_law_blocks *fu_blocks_of(const char *law)
 
 cdef extern from "engine.h" nogil:
+    double FU_SLACK_STRAIN
     int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING, FU_NOT_KNOWN

@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-#define SLACK 1e-9 /* strain: what is compressed by less is not slack, lest rounding say so */
-
 /* Returns the axial strain in the middle of an element: how much longer than 1 the slope is. */
 static double strain(const fu_cable *cable, const double *q, int element)
 {
@@ -41,7 +39,7 @@ void fu_begin_slackness(fu_run *run)
         *of = (fu_slackness){0};
         if (!run->model->cables[c].gives_way) continue;
         of->least = least_strain(&run->model->cables[c], run->now.q, &of->element);
-        of->is_slack = of->least < -SLACK;
+        of->is_slack = of->least < -FU_SLACK_STRAIN;
     }
 }
 
@@ -52,7 +50,7 @@ void fu_note_slackness(fu_run *run, double h)
         fu_slackness *of = &run->slackness[c];
         if (!run->model->cables[c].gives_way) continue;
         int element;
-        const double before = of->least, limit = of->is_slack ? 0.0 : -SLACK;
+        const double before = of->least, limit = of->is_slack ? 0.0 : -FU_SLACK_STRAIN;
         of->least = least_strain(&run->model->cables[c], run->next.q, &element);
         if (of->is_slack != (of->least < limit)) {
             of->is_slack = !of->is_slack;

@@ -1,0 +1,93 @@
+"""Elements that are folded onto themselves: the search for rest avoids them, and results tell of them."""
+
+import numpy as np
+import pytest
+from funicular import Circle, FunicularWarning, Material, Scene
+from funicular.model.build import build
+from funicular.parts.laid import laid
+from funicular.solve.folds import Folds, folds
+from shared_scenes import cable_scene
+
+SOFT = Material(youngs_modulus=1e6, poisson_ratio=0.5, density=1000)
+
+
+def crossing_ropes(elements: int) -> Scene:
+    """Two hanging ropes that cross, the upper one with supports 70 mm below where they are drawn."""
+    scene = Scene(gravity=(0, 0, -9.81))
+    for name, (x, y), z, down in (("lower", (0.4, 0), 0.0, 0.0), ("upper", (0, 0.4), 0.02, 0.07)):
+        scene.cable(name, start=(-x, -y, z), end=(x, y, z), rest_length=1.0, shape="hanging", elements=elements,
+                    element="cable12", law="engineering_exact", rest="straight", section=Circle(radius=0.005),
+                    material=SOFT)
+        for s in (0.0, 1.0):
+            scene.motion(name, s=s, displacement=(0, 0, -down))
+    scene.crossing("upper", "lower", stiffness=1e5, name="crossing")
+    return scene
+
+
+@pytest.mark.parametrize("seek_stable", [True, False])
+@pytest.mark.parametrize("elements", [10, 16, 20, 22, 28])
+def test_a_rope_whose_supports_are_moved_past_its_nodes_is_not_folded(elements, seek_stable):
+    """The force between the ropes converges with the elements; folded ones gave 0 or 0.077 N."""
+    rest = crossing_ropes(elements).equilibrium(seek_stable=seek_stable)
+    assert rest["crossing.normal_force"] == pytest.approx(0.188161, rel=0.012)
+    assert rest["crossing.s"] == pytest.approx(0.5, abs=1e-6)
+    assert rest.stable and not any("folded" in message for message in rest.messages)
+
+
+def pushed_back(way) -> Scene:
+    """A wire without weight whose last element is pushed together along its axis, by its support, to nearly nothing."""
+    scene = cable_scene(pins=(0, 0.75), gravity=(0, 0, 0), elements=4, element="cable12", material=SOFT,
+                        section=Circle(radius=0.005))
+    scene.motion("wire", s=1.0, displacement=(way, 0, 0))
+    return scene
+
+
+def test_rows_of_a_run_tell_of_the_element_that_is_folded_most_and_when():
+    scene = laid(cable_scene(elements=4, element="cable12"))
+    model = build(scene)
+    q = np.repeat(model.q[None], 3, axis=0)
+    last = q[:, model.cables[0].coordinates].reshape(3, *model.cables[0].shape)
+    last[1:, -1, 0, 0] = 0.8, 0.76
+    q[:, model.cables[0].coordinates] = last.reshape(3, -1)
+    found = Folds(scene, model)
+    found.see({"q": q[:2], "time": np.array([0.0, 0.1])})
+    found.see({"q": q[2:], "time": np.array([0.2])})
+    [told] = found.notes()
+    assert told.startswith('cable "wire" is folded onto itself in element 3, from s = 0.75 m to 1 m')
+    assert "at t = 0.2 s" in told and "Take more elements there" in told
+
+
+def with_last_node_at(scene: Scene, x: float, slope: float) -> list[str]:
+    """Return what is told of the drawn wire of four elements with its last node and all of its slopes changed."""
+    model = build(laid(scene))
+    cable = model.cables[0]
+    vectors = model.q[cable.coordinates].reshape(cable.shape)
+    vectors[-1, 0, 0] = x
+    vectors[-2:, 1, 0] = slope
+    return folds(laid(scene), model, model.q)
+
+
+def test_an_element_that_is_compressed_evenly_or_drawn_bent_is_not_folded():
+    scene = cable_scene(elements=4, element="cable12")
+    assert not with_last_node_at(scene, 1.0, 1.0)
+    assert not with_last_node_at(scene, 0.9, 0.6)
+    [told] = with_last_node_at(scene, 0.8, 1.0)
+    assert "begin from another state" in told and "in element 3" in told
+    assert not with_last_node_at(cable_scene(elements=4, element="cable12", membrane="tension_only"), 0.76, 1.0)
+
+
+def test_a_ring_of_few_elements_is_not_folded():
+    scene = Scene(gravity=(0, 0, 0))
+    u = np.linspace(0, 4, 33)
+    points = np.stack([np.cos(u), np.sin(u), np.zeros(33)], axis=1)
+    scene.cable("arc", points=points, elements=1, element="cable12", section=Circle(radius=0.005), material=SOFT)
+    model = build(laid(scene))
+    found = Folds(laid(scene), model)
+    found.see({"q": model.q[None], "time": np.zeros(1)})
+    assert not found.notes()
+
+
+def test_a_state_of_rest_with_a_folded_element_tells_of_it():
+    with pytest.warns(FunicularWarning, match="folded onto itself in element 3"):
+        rest = pushed_back(-0.24).equilibrium()
+    assert any("folded" in message for message in rest.messages)
