@@ -8,18 +8,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from .static_problem import StaticState
+from ..model.model import Model
 
 
-def with_moved_supports(problem: StaticState, begin: dict) -> dict | None:
+def with_moved_supports(model: Model, begin: dict) -> dict:
     """Return a state, drawn but for what motions prescribe, with each cable's nodes moved as its prescribed ones are,
-    and between these by what lies on the line along the cable; None where nothing is moved, or it is another state.
+    and between these by what lies on the line along the cable.
     """
-    model, q = problem.model, begin["q"].copy()
-    end = model.cables[-1].coordinates.stop if model.cables else 0
+    if not model.motions:
+        return begin
+    q = begin["q"].copy()
+    end = model.cables[-1].coordinates.stop
     free = model.unknown_of_dof[:end] != -1
-    if np.array_equal(q[:end], model.q[:end]) or not np.array_equal(q[:end][free], model.q[:end][free]):
-        return None
     for cable in model.cables:
         place, s = cable.vectors.index("r"), cable.mesh.node_s
         fixed = ~free[cable.coordinates].reshape(cable.shape)[:, place]

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from .folds import folds
-from .moved_supports import with_moved_supports
 from .softening import Softening
 from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem
@@ -34,34 +32,10 @@ CHOICE = ("; nothing says to which side it leaves the other, so that there may b
 def find_rest(problem: StaticProblem) -> Stability | None:
     """Bring the static state to rest, stable if that can be found; None where there is none, or none was found.
 
-    What was passed on the way, and what is doubtful, is added to problem.messages. Where no state is found, or one with
-    an element that is folded onto itself, and supports have moved, cables go with them, and the search begins anew.
+    What was passed on the way, and what is doubtful, is added to problem.messages.
     """
-    begin, known = problem.keep(), list(problem.messages)
-    found = _find(problem, begin)
-    if found is not None and not _is_folded(problem):
-        return found
-    if (other := with_moved_supports(problem, begin)) is None:
-        return found
-    first, said, pushed = problem.keep(), list(problem.messages), problem.pushed
-    problem.restore(other)
-    problem.messages[:] = known
-    again = _find(problem, other)
-    if again is not None and not _is_folded(problem):
-        return again
-    problem.restore(first)
-    problem.messages[:], problem.pushed = said, pushed
-    return found
-
-
-def _is_folded(problem: StaticProblem) -> bool:
-    return bool(folds(problem.scene, problem.model, problem.keep()["q"]))
-
-
-def _find(problem: StaticProblem, begin: dict) -> Stability | None:
-    """Return `find_rest` from one state, at which the problem is."""
-    passed, passed_at = None, begin
-    problem.pushed = False
+    begin, passed = problem.keep(), None
+    passed_at, problem.pushed = begin, False
     if problem.newton():
         found = stability(problem)
         if not found.unstable or not problem.settings.seek_stable:

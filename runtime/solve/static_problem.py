@@ -21,6 +21,7 @@ from ..model.unknowns import as_supports_leave
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from .condensation import condensed, fastest
+from .moved_supports import with_moved_supports
 
 GROWTH = 1e3
 """Of a correction over the least one before: Newton diverges."""
@@ -76,6 +77,7 @@ class StaticProblem(StaticState):
 
     def __init__(self, scene: SceneData, settings: EquilibriumSettings):
         super().__init__(scene, settings)
+        self.restore(with_moved_supports(self.model, self.keep()))
         drawn = self.residual()
         self.size = self._extent()
         self.mass = self.engine.matrix(1.0, 0.0, 0.0)
