@@ -2,6 +2,8 @@
  * changes sign. */
 #include "engine.h"
 
+#include "underflow.h"
+
 #define MOST_TRIALS 80    /* steps that are tried to end on an event */
 #define FEW_TRIALS 10     /* after so many trials every second one halves the interval: rounding may rule the value */
 #define LEAST_STEP 1e-13  /* of the duration: shorter intervals are not divided */
@@ -36,6 +38,16 @@ static double output_of(const fu_run *run, const fu_state *state, const fu_coupl
     return out[which];
 }
 
+/* Returns what the caller's function makes of a state: in it numbers are as they are outside of the time loop. */
+static double called(const fu_run *run, const fu_state *state, int k)
+{
+    const unsigned before = fu_underflow();
+    fu_set_underflow(before & ~FU_TINY_IS_ZERO);
+    const double value = run->call(run->context, k, state);
+    fu_set_underflow(before);
+    return value;
+}
+
 /* Returns what is watched, for an event of the user's or of a coupling's. */
 static double watched(const fu_run *run, const fu_state *state, int k)
 {
@@ -43,7 +55,7 @@ static double watched(const fu_run *run, const fu_state *state, int k)
     if (watch->kind == FU_WATCH_Q) return state->q[watch->index] - watch->value;
     if (watch->kind == FU_WATCH_V) return state->v[watch->index] - watch->value;
     if (watch->kind == FU_WATCH_S) return state->s[watch->index] - watch->value;
-    if (watch->kind == FU_WATCH_CALL) return run->call(run->context, k, state);
+    if (watch->kind == FU_WATCH_CALL) return called(run, state, k);
     const fu_coupling *c = run->model->couplings[watch->index];
     if (watch->kind == FU_WATCH_RATE) return c->type->events->rate(run->model, c, state) - watch->value;
     if (watch->kind == FU_WATCH_OUTPUT) return output_of(run, state, c, watch->which) - watch->value;

@@ -54,6 +54,8 @@ int fu_share_among(fu_threads *threads, int dofs, fu_work work, const void *what
 
 #else
 
+#include "underflow.h"
+
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
@@ -81,6 +83,7 @@ struct fu_threads {
     atomic_int sleeping, ending;
     fu_work function;
     const void *what;
+    unsigned underflow; /* as the thread has it that shares: the bits of a result do not depend on who makes it */
     char apart[CACHE_LINES];
     pthread_mutex_t mutex;
     pthread_cond_t wake;
@@ -115,6 +118,7 @@ static void take(fu_threads *all, member *owner, unsigned work)
 {
     unsigned before = work - 1;
     if (atomic_load(&owner->taken) != before || !atomic_compare_exchange_strong(&owner->taken, &before, work)) return;
+    fu_set_underflow(all->underflow);
     all->function(all->what, owner->number, all->n); /* until this is done there is no other work */
     atomic_store(&owner->done, work);
 }
@@ -216,6 +220,7 @@ int fu_share_among(fu_threads *all, int dofs, fu_work function, const void *what
     const unsigned work = atomic_load(&all->work) + 1;
     all->function = function;
     all->what = what;
+    all->underflow = fu_underflow();
     atomic_store(&all->work, work);
     wake_all(all);
     function(what, 0, all->n);
