@@ -252,7 +252,8 @@ BAR = {"axis": None, "length": None}
     ({"exponent": 2.0}, "exponent must be 1 or 1.5"),
     ({"stiffness": 0.0}, "stiffness must be positive"),
     ({"damping": -1.0}, "damping must not be negative"),
-    ({"friction": fu.Friction(coefficient=0.1, model="stick")}, "takes the coefficient of friction and its velocity"),
+    ({"friction": fu.Friction(coefficient=0.1, model="stick"), "exponent": 1.5}, "tangential_stiffness is missing"),
+    ({"friction": fu.Friction(coefficient=0.1, viscous=1.0)}, "takes no viscous friction"),
 ])
 def test_bad_input_is_refused(changes, message):
     with pytest.raises(fu.SceneError, match=message):
