@@ -14,9 +14,10 @@ int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
     return 1;
 }
 
-/* What a state keeps of the last step: the closest points, the way between them, the stretch along and across the last line. */
+/* What a state keeps of the last step: the closest points, the way between them, the stretch along and across the last line; not zero
+ * where it has slid, as then the stretch is just what friction allows. */
 typedef struct {
-    double s[FU_LINES], way[3], stretch[2];
+    double s[FU_LINES], way[3], stretch[2], slid;
 } before;
 _Static_assert(sizeof(before) == FU_CROSSING_GRIP * sizeof(double), "numbers of a state are doubles");
 
@@ -43,6 +44,7 @@ void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, con
     memcpy(out->stretch, out->without_sliding, sizeof out->stretch);
     out->slides = fu_limit_stretch(dim, crossing->tangential, crossing->friction * fmax(press, 0.0), out->stretch);
     for (int d = 0; d < dim; ++d) out->force[d] = -crossing->tangential * out->stretch[d];
+    out->sticks = !out->slides && last->slid == 0.0;
     out->energy = 0.5 * crossing->tangential * fu_dot(dim, out->stretch, out->stretch);
 }
 
@@ -88,6 +90,7 @@ void fu_crossing_carry_grip(const fu_crossing *crossing, const fu_closest_points
     double across[3];
     fu_crossing_grip_at(crossing, state, points, contact->size, &grip);
     fu_crossing_begin_grip(crossing, points, state);
+    before_of(crossing, state)->slid = grip.slides;
     double *stretch = before_of(crossing, state)->stretch;
     stretch[0] = fu_dot(dim, grip.along, grip.stretch);
     if (dim == 2) return;

@@ -32,7 +32,7 @@ static void add_friction(const fu_crossing *crossing, const fu_state *state, con
         contact->friction[d] = contact->force[d] - contact->size * contact->normal[d];
     if (!(crossing->friction > 0.0)) return;
     fu_crossing_grip_at(crossing, state, points, contact->size, &grip);
-    contact->sticks = !grip.slides;
+    contact->sticks = grip.sticks;
     contact->energy += grip.energy;
     for (int d = 0; d < 3; ++d) {
         contact->friction[d] = grip.force[d];

@@ -30,7 +30,7 @@ extern const fu_coupling_type fu_crossing_type;
 extern const fu_coupling_events fu_crossing_events;
 
 /* Of the numbers of a state. */
-enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3, FU_CROSSING_GRIP = 7 };
+enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3, FU_CROSSING_GRIP = 8 };
 
 /* A point of a line, and its derivatives by arc-length and in time. */
 typedef struct {
@@ -58,10 +58,11 @@ typedef struct {
 } fu_crossing_contact;
 
 /* Friction that sticks: the stretch of its spring, that without sliding, that of the last step turned with the lines; the direction of
- * the last line that has a slope; force on the first line, energy, and whether it slides. */
+ * the last line that has a slope; force on the first line, energy; whether it slides, and whether it holds now and has since the last
+ * step. */
 typedef struct {
     double stretch[3], without_sliding[3], old[3], along[3], force[3], energy;
-    int slides;
+    int slides, sticks;
 } fu_crossing_grip;
 
 /* Makes how a point moves with its n coordinates: dr = P dq, dt = T dq; the numbers of these for fu_add in `at`. */
