@@ -104,8 +104,8 @@ def _crossing(dim: int) -> CouplingFamily:
 
 def _surface(dim: int) -> CouplingFamily:
     return CouplingFamily(surface.SURFACES[dim], f"surfaces and contact with them in {_SPACE[dim]}",
-                          partial(surface.build, dim), ("couplings.surface", "couplings.stretch"), role="surface", facts={"dim": dim},
-                          dim=dim)
+                          partial(surface.build, dim), ("couplings.surface", "couplings.stretch"), role="surface",
+                          facts={"dim": dim}, dim=dim)
 
 
 def _joint(dim: int, name: str) -> CouplingFamily:

@@ -1,4 +1,4 @@
-"""Friction that sticks where lines touch: held and sliding ropes, a mass on a spring that sticks and slips on a wire."""
+"""Friction that sticks where lines touch: ropes that hold each other, a mass on a spring that sticks and slips."""
 
 import funicular as fu
 import numpy as np
@@ -106,7 +106,8 @@ def test_ropes_hold_each_other_below_friction_and_slide_above():
     most = 0.3 * bare["touch.normal_force"]
     for part in (0.5, 0.95):
         rest = ropes(part * most, stick).equilibrium()
-        # the string of the upper rope takes 2000 N/m of the way by which the spring of 1e5 N/m gives: 2 %, with the lower's
+        # the string of the upper rope takes 2000 N/m of the way by which the spring of 1e5 N/m gives: 2 %, twice with
+        # that of the lower one
         assert rest["touch.friction_force"][0] == pytest.approx(-part * most, rel=0.04)
         assert rest["touch.sticking"] == 1 and rest["touch.position"][0] < 2e-5
     free = ropes(most, 0.0).equilibrium()["touch.position"][0] / most  # m/N

@@ -11,10 +11,10 @@ The force on the first line is N n, with N = k p^e (1 + damping p') of the penet
 odd in p, so that it is smooth across p = 0, where a run ends contact.
 
 Friction is Coulomb's, -mu N v/sqrt(v.v + v0^2) by the slip v: the part of the relative velocity of both lines'
-particles at the points that is square to n. Or it sticks (`stretch`): the spring is stretched by the way that both lines'
-particles have gone past each other, square to n, since the last step. Where the points were then, each line is the
-parabola of its slope and its curvature. What the spring was stretched by then turns with the last line that has a
-slope. All forces act at the points on the axes.
+particles at the points that is square to n. Or it sticks (`stretch`): the spring is stretched by the way that
+particles of both lines have gone past each other, square to n, since the last step. Where the points were then, each
+line is the parabola of its slope and its curvature. What the spring was stretched by then turns with the last line that
+has a slope. All forces act at the points on the axes.
 """
 
 from __future__ import annotations
@@ -195,7 +195,7 @@ def _with_points_moving(p: Program, lines: _Lines, F: np.ndarray, w: np.ndarray 
 
 
 class _Stretch(NamedTuple):
-    """Stretch of friction's spring without sliding; what it was before, and along what; how far the points have moved."""
+    """Stretch of friction's spring without sliding; what it was before, along what; how far the points have moved."""
 
     now: np.ndarray
     old: np.ndarray
@@ -225,9 +225,9 @@ def stretch(dim: int) -> Program:
     """Return the kernel of what friction's spring is stretched by without sliding."""
     p = Program(f"{CROSSINGS[dim]}_stretch", "stretch of the spring that friction is while it sticks", SOURCE)
     lines = _lines(p, dim)
-    side = p.input("side", (), "1", "sign of the normal")
+    c = _penalty(p)
     p.stage("normal")
-    n = _normal(p, lines, side)
+    n = _normal(p, lines, c[1])
     found = _stretch(p, lines, n)
     p.output("now", found.now, "m", "stretch, square to the normal")
     p.output("old", found.old, "m", "that of the last step, turned with the lines")
@@ -237,19 +237,19 @@ def stretch(dim: int) -> Program:
 
 def sticking(dim: int) -> Program:
     """Return the kernel of friction that sticks, with its derivatives."""
-    p = Program(f"{CROSSINGS[dim]}_sticking", "friction that sticks, and its derivatives with the points moving", SOURCE)
+    p = Program(f"{CROSSINGS[dim]}_sticking", "friction that sticks, its derivatives with the points moving", SOURCE)
     lines = _lines(p, dim)
-    side = p.input("side", (), "1", "sign of the normal")
+    c = _penalty(p)
     stiffness = p.input("k_t", (), "N/m", "stiffness of the spring")
     p.stage("normal")
-    n = _normal(p, lines, side)
+    n = _normal(p, lines, c[1])
     found = _stretch(p, lines, n)
     return _with_points_moving(p, lines, sticking_force(p, found.now, stiffness), e=found.e)
 
 
 def sliding(dim: int) -> Program:
     """Return the kernel of friction that slides, with its derivatives."""
-    p = Program(f"{CROSSINGS[dim]}_sliding", "friction that slides, and its derivatives with the points moving", SOURCE)
+    p = Program(f"{CROSSINGS[dim]}_sliding", "friction that slides, its derivatives with the points moving", SOURCE)
     lines = _lines(p, dim)
     w = p.input("w", lines.t.shape, "1/s", "rates of the slopes")
     u = p.input("u", dim, "m/s", "rate of the way d between the points on their lines")

@@ -28,8 +28,8 @@ class CrossingModel(CouplingModel):
 
     cables: their numbers, -1 for a bar; axis: of the bar, in the axes of what carries it; low, high: where the lines
     end, m; law: as the kernels take it; start, way: arc-lengths of the closest points as drawn, and the way from the
-    second to the first, m; friction, tangential: of friction that sticks, its coefficient and its spring in N/m; stiffness
-    in N/m: makes forces of lengths.
+    second to the first, m; friction, tangential: of friction that sticks, its coefficient and its spring in N/m;
+    stiffness in N/m: makes forces of lengths.
     """
 
     kernel: str

@@ -44,5 +44,6 @@ def hard_contact_models(part: Contact, scene: SceneData, attachments: Attachment
             **surface, type="hard_contact", name=part.name or "", stiffness=0.0, damping=0.0, friction=0.0,
             tangential=0.0, hertz=0, cable=-1, radius=part.radius or 0.0, n_points=1, attachments=[at],
             scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction_coefficient,
-            restitution=part.restitution, rest_velocity=part.rest_velocity, weight=weight, static_stiffness=weight / GIVES_WAY))
+            restitution=part.restitution, rest_velocity=part.rest_velocity, weight=weight,
+            static_stiffness=weight / GIVES_WAY))
     return models

@@ -27,11 +27,10 @@ class Crossing(Part):
     stiffness k (N/m, or N/m^1.5) and exponent e of the contact force ``k p^e`` at the penetration p: 1, or 1.5 after
     Hertz; damping in s/m: the force is ``k p^e (1 + damping p')``. friction: a coefficient, or a `Friction`; it acts
     along both lines, and is smooth in the speed of slip. With model "stick" what sticks is kept by a spring of
-    tangential_stiffness, ``stiffness`` if not given, and slides where that exceeds friction; in statics it is against the
-    way from the places drawn. side: the direction in which a is of b, along the
-    ground's axes, as at the start if not given: the lines cannot pass through each other. Beyond the ends of cables and
-    bars there is no contact. A crossing has one point of contact; of several possible ones the one that is closest at
-    the start.
+    tangential_stiffness, ``stiffness`` if not given, and slides where that exceeds friction; in statics it is against
+    the way from the places drawn. side: the direction in which a is of b, along the ground's axes, as at the start if
+    not given: the lines cannot pass through each other. Beyond the ends of cables and bars there is no contact. A
+    crossing has one point of contact; of several possible ones the one that is closest at the start.
     """
 
     kind: ClassVar[str] = "crossing"

@@ -1,4 +1,4 @@
-"""Friction of slides, contacts and crossings: Coulomb's, of slides also viscous and rolling, with sticking or without."""
+"""Friction of slides, contacts and crossings: Coulomb's, of slides also viscous and rolling; it may stick."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Friction(Part):
     rolling: the coefficient of rolling resistance, a force of rolling N against the motion (for wheels: the arm of the
     resistance over the radius). model: "regularised", where the force rises smoothly with the speed to its full value
     at about ``velocity`` (m/s), so that what is at rest creeps; or "stick", where it is held at rest. If not given,
-    contacts with surfaces stick, slides and crossings are regularised. Slides find the instants of sticking and breaking
-    loose as events; contacts and crossings hold what sticks by a spring, which slides where its force exceeds
+    contacts with surfaces stick, slides and crossings are regularised. Slides find the instants of sticking and
+    breaking loose as events; contacts and crossings hold what sticks by a spring, which slides where its force exceeds
     friction. A static_coefficient of its own, viscous and rolling are of slides alone.
 
     On a driven slide friction acts against the drive, which gives so much more: it is part of the slide's traction.

@@ -32,8 +32,8 @@ class Slide(Part):
     against gravity, else the cable's own.
 
     drive: s over time as a signal, in m, or ``velocity``, its rate, in m/s: the slide follows it, whatever the force.
-    friction: a coefficient, or a `Friction`. at_start, at_end: what waits at the cable's ends: "error", "leave" (the rider flies on),
-    a `HardStop` or a `Buffer`.
+    friction: a coefficient, or a `Friction`. at_start, at_end: what waits at the cable's ends: "error", "leave" (the
+    rider flies on), a `HardStop` or a `Buffer`.
     """
 
     kind: ClassVar[str] = "slide"

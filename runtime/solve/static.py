@@ -67,7 +67,8 @@ def note(problem: StaticProblem, state: RestState) -> None:
         names = " and ".join(f'"{name}"' for name in rubbing)
         problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
     problem.messages += outside_tables(problem.model, state.static_state["q"])
-    if rough := [contact.where for contact in problem.scene.contacts.values() if contact.is_hard and contact.friction_coefficient]:
+    if rough := [contact.where for contact in problem.scene.contacts.values()
+                 if contact.is_hard and contact.friction_coefficient]:
         problem.messages.append(f"friction of {' and '.join(rough)} is left out: at rest what touches moves freely")
     if not state.stable:
         leaves = "; a small disturbance leaves it" * state.stability.known

@@ -1,4 +1,4 @@
-"""Hard cases of friction that sticks where lines touch: chatter along a wire, a rope thrown over another, a bar that turns."""
+"""Hard cases of friction that sticks where lines touch: chatter along a wire, a rope thrown over another."""
 
 import funicular as fu
 import numpy as np

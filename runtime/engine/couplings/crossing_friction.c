@@ -39,7 +39,7 @@ void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, con
     double e[FU_LINES];
     memset(out, 0, sizeof *out);
     moved_since(last, points, e);
-    crossing->kernel->stretch(points->d, points->t, points->k, crossing->law[FU_LAW_SIDE], e, last->way, last->stretch,
+    crossing->kernel->stretch(points->d, points->t, points->k, crossing->law, e, last->way, last->stretch,
                               out->without_sliding, out->old, out->along);
     memcpy(out->stretch, out->without_sliding, sizeof out->stretch);
     out->slides = fu_limit_stretch(dim, crossing->tangential, crossing->friction * fmax(press, 0.0), out->stretch);
@@ -62,7 +62,7 @@ void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *s
     if (grip.slides)
         kernel->sliding(points->d, points->t, points->k, points->w, points->u, crossing->law, friction, e, last->way, last->stretch, F, F_d,
                         F_t, F_u);
-    else kernel->sticking(points->d, points->t, points->k, crossing->law[FU_LAW_SIDE], crossing->tangential, e, last->way, last->stretch,
+    else kernel->sticking(points->d, points->t, points->k, crossing->law, crossing->tangential, e, last->way, last->stretch,
                           F, F_d, F_t);
 }
 

@@ -6,7 +6,7 @@
 #include "attachments.h"
 #include "coupling.h"
 
-enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_SIDE = 1, FU_LAW_DAMPING = 4, FU_LAW_FRICTION = 6 };
+enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4, FU_LAW_FRICTION = 6 };
 #define FU_INSTANT 1e-3 /* s: makes lengths of velocities, to compare them */
 
 /* The first line is a cable, the second another one, or a bar through the attachment's point; in the plane the bar is square to
