@@ -31,6 +31,7 @@ from .stretch import sliding_force, sticking_force
 CROSSINGS = {3: "crossing", 2: "planar_crossing"}
 PENALTY = ("radii", "side", "linear", "root", "damping", "least", "friction", "v0")
 SOURCE = "Hunt & Crossley 1975; closest points by the implicit function theorem"
+NONE = np.zeros(0, dtype=object)
 
 
 class _Lines(NamedTuple):
@@ -162,14 +163,13 @@ def force(dim: int) -> Program:
     return _with_points_moving(p, lines, F, w, u)
 
 
-def _with_points_moving(p: Program, lines: _Lines, F: np.ndarray, w: np.ndarray | None = None,
-                        u: np.ndarray | None = None, e: np.ndarray | None = None) -> Program:
+def _with_points_moving(p: Program, lines: _Lines, F: np.ndarray, w: np.ndarray = NONE, u: np.ndarray = NONE,
+                        e: np.ndarray = NONE) -> Program:
     """Return the kernel with the force F on the first line and its derivatives, those of the closest points in them.
 
     w, u: rates, where F depends on them; e: what F depends on that grows as the points move along the lines.
     """
     dim, t, k = len(lines.d), lines.t, lines.k
-    u, e = [] if u is None else u, [] if e is None else e
     moving = [*lines.d, *t.ravel()]
     s_by = _points_by(p, lines, moving)
     p.stage("derivatives of the force where the points stay")
