@@ -98,14 +98,14 @@ def _drag(dim: int) -> CouplingFamily:
 
 def _crossing(dim: int) -> CouplingFamily:
     return CouplingFamily(crossing.CROSSINGS[dim], f"lines that touch at their closest points in {_SPACE[dim]}",
-                          partial(crossing.build, dim), ("couplings.crossing",), role="crossing",
+                          partial(crossing.build, dim), ("couplings.crossing", "couplings.stretch"), role="crossing",
                           facts={"dim": dim}, dim=dim)
 
 
 def _surface(dim: int) -> CouplingFamily:
     return CouplingFamily(surface.SURFACES[dim], f"surfaces and contact with them in {_SPACE[dim]}",
-                          partial(surface.build, dim), ("couplings.surface",), role="surface", facts={"dim": dim},
-                          dim=dim)
+                          partial(surface.build, dim), ("couplings.surface", "couplings.stretch"), role="surface",
+                          facts={"dim": dim}, dim=dim)
 
 
 def _joint(dim: int, name: str) -> CouplingFamily:

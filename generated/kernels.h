@@ -1429,6 +1429,16 @@ void crossing_contact(const fu_real *d, const fu_real *t, const fu_real *u, cons
  * 3[m/s]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N]; F_u 3x3[N s/m]; s_d 2x3[1];
  * s_t 2x6[m] */
 void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
+/* stretch of the spring that friction is while it sticks: d 3[m]; t 2x3[1]; k 2x3[1/m]; c 8[m, 1, N/m, N/m^1.5, s/m,
+ * m, 1, m/s]; e 2[m]; before 3[m]; x 2[m] -> now 3[m]; old 3[m]; along 3[1] */
+void crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *now, fu_real *old, fu_real *along);
+/* friction that sticks, its derivatives with the points moving: d 3[m]; t 2x3[1]; k 2x3[1/m]; c 8[m, 1, N/m,
+ * N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e 2[m]; before 3[m]; x 2[m] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N] */
+void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, fu_real k_t, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t);
+/* friction that slides, its derivatives with the points moving: d 3[m]; t 2x3[1]; k 2x3[1/m]; w 2x3[1/s]; u 3[m/s];
+ * c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 2[m]; before 3[m]; x 2[m] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N];
+ * F_u 3x3[N s/m] */
+void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
 
 /* planar_crossing: lines that touch at their closest points in the plane */
 /* a step of Newton's method to the closest points: d 2[m]; t 1x2[1]; k 1x2[1/m] -> step 1[m] */
@@ -1440,6 +1450,16 @@ void planar_crossing_contact(const fu_real *d, const fu_real *t, const fu_real *
  * 2[m/s]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N]; F_u 2x2[N s/m]; s_d 1x2[1];
  * s_t 1x2[m] */
 void planar_crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
+/* stretch of the spring that friction is while it sticks: d 2[m]; t 1x2[1]; k 1x2[1/m]; c 8[m, 1, N/m, N/m^1.5, s/m,
+ * m, 1, m/s]; e 1[m]; before 2[m]; x 1[m] -> now 2[m]; old 2[m]; along 2[1] */
+void planar_crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *now, fu_real *old, fu_real *along);
+/* friction that sticks, its derivatives with the points moving: d 2[m]; t 1x2[1]; k 1x2[1/m]; c 8[m, 1, N/m,
+ * N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e 1[m]; before 2[m]; x 1[m] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N] */
+void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, fu_real k_t, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t);
+/* friction that slides, its derivatives with the points moving: d 2[m]; t 1x2[1]; k 1x2[1/m]; w 1x2[1/s]; u 2[m/s];
+ * c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 1[m]; before 2[m]; x 1[m] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N];
+ * F_u 2x2[N s/m] */
+void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
 
 /* surface: surfaces and contact with them in space */
 /* distance from a plane, and its gradient: y 3[m]; normal 3[1] -> g 1[m]; g_y 3[1] */
@@ -1716,6 +1736,9 @@ typedef struct {
     void (*closest)(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
     void (*contact)(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *f, fu_real *U, fu_real *P);
     void (*force)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
+    void (*stretch)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *now, fu_real *old, fu_real *along);
+    void (*sticking)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, fu_real k_t, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t);
+    void (*sliding)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
 } fu_crossing_kernels;
 
 /* What the engine needs of a surface. */

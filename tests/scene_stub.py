@@ -61,7 +61,7 @@ TYPES = {
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Exponent": "float",
-    "Material": "Material", "Friction": "Friction",
+    "Material": "Material", "AnyFriction": "Friction | float",
     "float": "float", "str": "str", "Callable": "Callable[..., Any]",
     "Any": "Callable[..., Any]",
 }

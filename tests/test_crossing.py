@@ -165,11 +165,15 @@ def own_unknowns_eliminated(matrix: np.ndarray, own: int) -> np.ndarray:
     return kept - beside @ np.linalg.solve(matrix[-own:, -own:], matrix[-own:, :-own])
 
 
-def touching(dim: int, other: str, exponent: float) -> fu.Scene:
+GRIPS = {"regularised": {"friction": fu.Friction(coefficient=0.3, velocity=2.0)},
+         "sticking": {"friction": fu.Friction(coefficient=50.0, model="stick"), "tangential_stiffness": 3e4},
+         "sliding": {"friction": fu.Friction(coefficient=1e-3, model="stick"), "tangential_stiffness": 3e4}}
+
+
+def touching(dim: int, other: str, exponent: float, friction: str = "regularised") -> fu.Scene:
     """A wire of three elements that a turning body's bar, or another wire, has come into, off the nodes and moving."""
     scene = wire(3, dim=dim)
-    law = {"stiffness": STIFFNESS, "exponent": exponent, "damping": 0.3, "radius": 0.01,
-           "friction": fu.Friction(coefficient=0.3, velocity=2.0)}
+    law = {"stiffness": STIFFNESS, "exponent": exponent, "damping": 0.3, "radius": 0.01} | GRIPS[friction]
     if other == "cable":
         scene.cable("other", start=(6.1, -0.004, -5), end=(7, -0.005, 6), elements=3, element="cable12",
                     section=fu.Circle(radius=RADIUS), velocity=(0.3, 2, 0), rest_length=11.0,
@@ -186,9 +190,10 @@ def touching(dim: int, other: str, exponent: float) -> fu.Scene:
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")  # the lines overlap
 @pytest.mark.parametrize(("dim", "other"), [(2, "bar"), (3, "bar"), (3, "cable")])
-@pytest.mark.parametrize("exponent", [1.0, 1.5])
-def test_matrix_is_the_derivative_of_the_residual(dim, other, exponent):
-    engine = Engine(build(touching(dim, other, exponent)))
+@pytest.mark.parametrize(("exponent", "friction"), [(1.0, "regularised"), (1.5, "regularised"), (1.0, "sticking"),
+                                                    (1.5, "sliding")])
+def test_matrix_is_the_derivative_of_the_residual(dim, other, exponent, friction):
+    engine = Engine(build(touching(dim, other, exponent, friction)))
     status, _ = engine.start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=GeneralisedAlpha(0.8),
                              first_step=1e-3)
     assert status is None
@@ -200,7 +205,8 @@ def test_matrix_is_the_derivative_of_the_residual(dim, other, exponent):
         for step in (1e-5, 1e-6, 1e-7):
             found = of_a_step(engine, h, at, step)[:-own, :-own]
             errors.append(np.abs(found - matrix).max() / np.abs(matrix).max())
-        assert min(errors) < 1e-9  # measured: 1e-12 to 1e-10
+        # measured: 1e-12 to 1e-10; where it sticks 6e-8: how the curvature changes along a line is left out there
+        assert min(errors) < (2e-7 if friction == "sticking" else 1e-9)
 
 
 @pytest.mark.parametrize("integrator", ["radau", "genalpha", "explicit"])
@@ -254,7 +260,8 @@ BAR = {"axis": None, "length": None}
     ({"exponent": 2.0}, "exponent must be 1 or 1.5"),
     ({"stiffness": 0.0}, "stiffness must be positive"),
     ({"damping": -1.0}, "damping must not be negative"),
-    ({"friction": fu.Friction(coefficient=0.1, model="stick")}, "takes the coefficient of friction and its velocity"),
+    ({"friction": fu.Friction(coefficient=0.1, model="stick"), "exponent": 1.5}, "tangential_stiffness is missing"),
+    ({"friction": fu.Friction(coefficient=0.1, viscous=1.0)}, "takes no viscous friction"),
 ])
 def test_bad_input_is_refused(changes, message):
     with pytest.raises(fu.SceneError, match=message):

@@ -11,7 +11,10 @@ The force on the first line is N n, with N = k p^e (1 + damping p') of the penet
 odd in p, so that it is smooth across p = 0, where a run ends contact.
 
 Friction is Coulomb's, -mu N v/sqrt(v.v + v0^2) by the slip v: the part of the relative velocity of both lines'
-particles at the points that is square to n. Both forces act at the points on the axes.
+particles at the points that is square to n. Or it sticks (`stretch`): the spring is stretched by the way that
+particles of both lines have gone past each other, square to n, since the last step. Where the points were then, each
+line is the parabola of its slope and its curvature. What the spring was stretched by then turns with the last line that
+has a slope. All forces act at the points on the axes.
 """
 
 from __future__ import annotations
@@ -23,10 +26,12 @@ import numpy as np
 import sympy as sp
 
 from ..codegen.program import Program, jacobian
+from .stretch import sliding_force, sticking_force
 
 CROSSINGS = {3: "crossing", 2: "planar_crossing"}
 PENALTY = ("radii", "side", "linear", "root", "damping", "least", "friction", "v0")
 SOURCE = "Hunt & Crossley 1975; closest points by the implicit function theorem"
+NONE = np.zeros(0, dtype=object)
 
 
 class _Lines(NamedTuple):
@@ -44,7 +49,7 @@ class _Lines(NamedTuple):
 
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
-    return [closest(dim), contact(dim), force(dim)]
+    return [closest(dim), contact(dim), force(dim), stretch(dim), sticking(dim), sliding(dim)]
 
 
 def _lines(p: Program, dim: int, with_curvature: bool = True) -> _Lines:
@@ -135,34 +140,124 @@ def contact(dim: int) -> Program:
     return p
 
 
+def _points_by(p: Program, lines: _Lines, moving: list[sp.Expr]) -> np.ndarray:
+    """Return the derivatives of the arc-lengths of the closest points by d and the slopes."""
+    p.stage("closest points: derivatives of the arc-lengths by d and by the slopes")
+    gaps = [slope.dot(lines.d) for slope in lines.t]
+    columns = _solve(p, lines, [[-sp.diff(gap, symbol) for gap in gaps] for symbol in moving])
+    return np.array([[p.define(f"s{i}_{j}", column[i]) for j, column in enumerate(columns)]
+                     for i in range(len(lines.t))])
+
+
 def force(dim: int) -> Program:
     """Return the kernel of the force on the first line, and of its derivatives and those of the closest points."""
     p = Program(f"{CROSSINGS[dim]}_force", "contact force, and its derivatives with the closest points moving", SOURCE)
     lines = _lines(p, dim)
-    t, k = lines.t, lines.k
-    w = p.input("w", t.shape, "1/s", "rates of the slopes")
+    w = p.input("w", lines.t.shape, "1/s", "rates of the slopes")
     u = p.input("u", dim, "m/s", "rate of the way d between the points on their lines")
     c = _penalty(p)
     p.stage("normal")
     n = _normal(p, lines, c[1])
     p.stage("law")
     F = _law(p, n, lines.d, u, c)["force"]
-    p.stage("closest points: derivatives of the arc-lengths by d and by the slopes")
-    gaps = [slope.dot(lines.d) for slope in t]
+    return _with_points_moving(p, lines, F, w, u)
+
+
+def _with_points_moving(p: Program, lines: _Lines, F: np.ndarray, w: np.ndarray = NONE, u: np.ndarray = NONE,
+                        e: np.ndarray = NONE) -> Program:
+    """Return the kernel with the force F on the first line and its derivatives, those of the closest points in them.
+
+    w, u: rates, where F depends on them; e: what F depends on that grows as the points move along the lines.
+    """
+    dim, t, k = len(lines.d), lines.t, lines.k
     moving = [*lines.d, *t.ravel()]
-    columns = _solve(p, lines, [[-sp.diff(gap, symbol) for gap in gaps] for symbol in moving])
-    s_by = np.array([[p.define(f"s{i}_{j}", column[i]) for j, column in enumerate(columns)] for i in range(len(t))])
+    s_by = _points_by(p, lines, moving)
     p.stage("derivatives of the force where the points stay")
-    at_point = jacobian(p, F, [*moving, *u])
-    by_d, by_t, by_u = np.split(at_point, [dim, dim + t.size], axis=1)
+    at_point = jacobian(p, F, [*moving, *u, *e])
+    by_d, by_t, by_u, by_e = np.split(at_point, np.cumsum([dim, t.size, len(u)]), axis=1)
     p.stage("derivatives of the force along the lines")
-    along = [p.vector(f"F_s{i}", sign * by_d @ t[i] + by_t[:, dim * i: dim * (i + 1)] @ k[i] + sign * by_u @ w[i])
-             for i, sign in enumerate(lines.signs)]
+    along = []
+    for i, sign in enumerate(lines.signs):
+        rate = sign * by_d @ t[i] + by_t[:, dim * i: dim * (i + 1)] @ k[i]
+        if len(u):
+            rate = rate + sign * by_u @ w[i]
+        along.append(p.vector(f"F_s{i}", rate + by_e[:, i] if len(e) else rate))
     total = at_point[:, :len(moving)] + np.stack(along, axis=-1) @ s_by
     p.output("F", F, "N", "force on the first line; its opposite acts on the second")
     p.output("F_d", total[:, :dim], "N/m", "derivatives of F by d, with the closest points moving")
     p.output("F_t", total[:, dim:], "N", "derivatives of F by the slopes, likewise")
-    p.output("F_u", by_u, "N s/m", "derivatives of F by u")
-    p.output("s_d", s_by[:, :dim], "1", "derivatives of the arc-lengths of the closest points by d")
-    p.output("s_t", s_by[:, dim:], "m", "derivatives of these by the slopes")
+    if len(u):
+        p.output("F_u", by_u, "N s/m", "derivatives of F by u")
+    if not len(e):
+        p.output("s_d", s_by[:, :dim], "1", "derivatives of the arc-lengths of the closest points by d")
+        p.output("s_t", s_by[:, dim:], "m", "derivatives of these by the slopes")
     return p
+
+
+class _Stretch(NamedTuple):
+    """Stretch of friction's spring without sliding; what it was before, along what; how far the points have moved."""
+
+    now: np.ndarray
+    old: np.ndarray
+    along: np.ndarray
+    e: np.ndarray
+
+
+def _stretch(p: Program, lines: _Lines, n: np.ndarray) -> _Stretch:
+    """Declare what is known of the last step; return the stretch that follows."""
+    t, k, d = lines.t, lines.k, lines.d
+    dim = len(d)
+    e = p.input("e", len(t), "m", "arc-lengths of the closest points less those of the last step")
+    before = p.input("before", dim, "m", "d of the last step")
+    x = p.input("x", dim - 1, "m", "stretch of the last step: along the last line that has a slope, and square to it")
+    p.stage("stretch of the spring")
+    last = t[-1]
+    along = p.vector("tau", p.define("inv_t", 1 / p.define("len_t", sp.sqrt(last.dot(last)))) * last)
+    old = p.vector("old", x[0] * along if dim == 2 else x[0] * along + x[1] * np.cross(n, along))
+    way = d - before
+    for i, sign in enumerate(lines.signs):
+        way = way - sign * (e[i] * t[i] - e[i] * e[i] / 2 * k[i])
+    way = p.vector("way", way)
+    return _Stretch(p.vector("x_now", old + way - p.define("n_way", n.dot(way)) * n), old, along, e)
+
+
+def stretch(dim: int) -> Program:
+    """Return the kernel of what friction's spring is stretched by without sliding."""
+    p = Program(f"{CROSSINGS[dim]}_stretch", "stretch of the spring that friction is while it sticks", SOURCE)
+    lines = _lines(p, dim)
+    c = _penalty(p)
+    p.stage("normal")
+    n = _normal(p, lines, c[1])
+    found = _stretch(p, lines, n)
+    p.output("now", found.now, "m", "stretch, square to the normal")
+    p.output("old", found.old, "m", "that of the last step, turned with the lines")
+    p.output("along", found.along, "1", "direction of the last line that has a slope")
+    return p
+
+
+def sticking(dim: int) -> Program:
+    """Return the kernel of friction that sticks, with its derivatives."""
+    p = Program(f"{CROSSINGS[dim]}_sticking", "friction that sticks, its derivatives with the points moving", SOURCE)
+    lines = _lines(p, dim)
+    c = _penalty(p)
+    stiffness = p.input("k_t", (), "N/m", "stiffness of the spring")
+    p.stage("normal")
+    n = _normal(p, lines, c[1])
+    found = _stretch(p, lines, n)
+    return _with_points_moving(p, lines, sticking_force(p, found.now, stiffness), e=found.e)
+
+
+def sliding(dim: int) -> Program:
+    """Return the kernel of friction that slides, with its derivatives."""
+    p = Program(f"{CROSSINGS[dim]}_sliding", "friction that slides, its derivatives with the points moving", SOURCE)
+    lines = _lines(p, dim)
+    w = p.input("w", lines.t.shape, "1/s", "rates of the slopes")
+    u = p.input("u", dim, "m/s", "rate of the way d between the points on their lines")
+    c = _penalty(p)
+    mu = p.input("mu", (), "1", "coefficient of friction")
+    p.stage("normal")
+    n = _normal(p, lines, c[1])
+    p.stage("law")
+    normal = _law(p, n, lines.d, u, c)["normal"]
+    found = _stretch(p, lines, n)
+    return _with_points_moving(p, lines, sliding_force(p, found.now, mu * normal), w, u, found.e)

@@ -6,8 +6,7 @@ the vertical one over sqrt(1 + h'^2), which is exact to first order at the surfa
 
 Contact presses by p = k d^e (1 + c d'), with the depth d below the surface and e = 1 or 3/2 (Hertz): the law of Hunt &
 Crossley, J. Appl. Mech. 42 (1975) 440-445, whose damping makes no jump where contact begins. Friction is Coulomb's with
-a tangential spring from an anchor on the surface: elastic while it sticks, of the size of friction where it slides
-(return mapping, Wriggers, Computational Contact Mechanics, 2nd ed. 2006, section 5.2).
+a tangential spring from an anchor on the surface (`stretch`).
 """
 
 from __future__ import annotations
@@ -16,6 +15,7 @@ import numpy as np
 import sympy as sp
 
 from ..codegen.program import DirectionalDerivative, Program
+from .stretch import sliding_force, sticking_force
 
 SURFACES = {3: "surface", 2: "planar_surface"}
 SOURCE = "Hunt & Crossley 1975; Wriggers 2006"
@@ -185,7 +185,7 @@ def sticking(dim: int) -> Program:
     k = p.input("k_t", (), "N/m (a length)", "stiffness")
     p.stage("friction")
     t = _across(p, dim, n, x)
-    f = p.vector("F", -k * t)
+    f = sticking_force(p, t, k)
     by = [DirectionalDerivative(p, f"dy{j}", {n[i]: H[i, j] for i in range(dim)}
                                 | {x[i]: sp.Integer(i == j) for i in range(dim)}) for j in range(dim)]
     p.stage("derivatives")
@@ -203,7 +203,5 @@ def sliding(dim: int) -> Program:
     mu = p.input("mu", (), "1", "coefficient of friction")
     p.stage("friction")
     t = _across(p, dim, n, x)
-    size = p.define("size", sp.sqrt(t.dot(t)))
-    inverse = p.define("inv_size", 1 / size)
-    f = p.vector("F", -mu * press * inverse * t)
+    f = sliding_force(p, t, mu * press)
     return _outputs(p, f, _moving(p, dim, press, n, H, w, by_d, by_rate, x))

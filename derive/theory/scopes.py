@@ -374,7 +374,11 @@ def crossing_scope(name: str) -> Scope:
     rows = [Symbol(latex, argument, row(k)) for argument, names in (
         ("t", (r"\mathbf{a}", r"\mathbf{b}")), ("k", (r"\boldsymbol{\kappa}_{a}", r"\boldsymbol{\kappa}_{b}")),
         ("w", (r"\dot{\mathbf{a}}", r"\dot{\mathbf{b}}"))) for k, latex in enumerate(names[:family.dim - 1])]
-    return Scope(family, (Symbol(r"\mathbf{d}", "d", column), *rows, Symbol(r"\mathbf{u}", "u", column), *law))
+    of_spring = [Symbol(latex, argument, entry(k)) for argument, names in (
+        ("e", ("e_{a}", "e_{b}")), ("x", ("x_{1}", "x_{2}"))) for k, latex in enumerate(names[:family.dim - 1])]
+    return Scope(family, (Symbol(r"\mathbf{d}", "d", column), *rows, Symbol(r"\mathbf{u}", "u", column), *law,
+                          *of_spring, Symbol(r"\mathbf{d}_{0}", "before", column), Symbol("k_{t}", "k_t", number),
+                          Symbol(r"\mu_{t}", "mu", number)))
 
 
 def surface_scope(name: str) -> Scope:

@@ -72,7 +72,7 @@ def placed_contact(scene: SceneData, contact: Contact) -> Contact:
     if contact.is_hard:
         _check_hard_start(scene, contact, surface, drawn)
         return contact
-    if contact.exponent != 1.0 and contact.friction and contact.tangential_stiffness is None:
+    if contact.exponent != 1.0 and contact.friction_coefficient and contact.tangential_stiffness is None:
         raise SceneError(contact.where, "tangential_stiffness is missing, which the stiffness of the exponent 1.5 is "
                          "not", "give it, in N/m (a length of a cable)")
     _check_start(scene, contact, surface, drawn)

@@ -91,8 +91,9 @@ def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilde
     tangential = part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness
     model = ContactModel(
         **surface_entries(surface, scene, attachments), type="contact", name=part.name or "",
-        is_damped=part.damping > 0, stiffness=part.stiffness, damping=part.damping, friction=part.friction,
-        tangential=tangential, hertz=int(part.exponent == 1.5), cable=-1, radius=part.radius, n_points=0)
+        is_damped=part.damping > 0, stiffness=part.stiffness, damping=part.damping,
+        friction=part.friction_coefficient, tangential=tangential, hertz=int(part.exponent == 1.5), cable=-1,
+        radius=part.radius, n_points=0)
     if part.a in attachments.cable_index:
         drawn = _along_cable(model, attachments.cable_index[part.a], scene, attachments)
     else:
@@ -101,7 +102,7 @@ def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilde
         model.attachments = [attachments.model(Attachment(on=part.a, at=point)) for point in part.points]
         model.n_points = len(part.points)
         drawn = np.array([body.point(point) for point in part.points])
-    if part.friction:
+    if part.friction_coefficient:
         on = scene.bodies.get(surface.on or "")
         model.anchors = surface.geometry.into(surface.in_axes(on, drawn))[:, : scene.dim].copy()
         model.n_numbers = model.anchors.size

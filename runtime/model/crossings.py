@@ -17,6 +17,8 @@ from .coupling import CouplingModel
 LEAST_PENETRATION = 1e-30
 """m: what the size of a penetration is not below under a root."""
 
+GRIP_NUMBERS = 8
+"""That a state keeps of friction that sticks: FU_CROSSING_GRIP of engine/include/crossings.h."""
 KERNELS = {2: "planar_crossing", 3: "crossing"}
 
 
@@ -25,8 +27,9 @@ class CrossingModel(CouplingModel):
     """Contact of a cable with another one, or with a bar at the one attachment.
 
     cables: their numbers, -1 for a bar; axis: of the bar, in the axes of what carries it; low, high: where the lines
-    end, m; law: as the kernels take it; start: arc-lengths of the closest points as drawn, m; stiffness in N/m: makes
-    forces of lengths.
+    end, m; law: as the kernels take it; start, way: arc-lengths of the closest points as drawn, and the way from the
+    second to the first, m; friction, tangential: of friction that sticks, its coefficient and its spring in N/m;
+    stiffness in N/m: makes forces of lengths.
     """
 
     kernel: str
@@ -37,6 +40,9 @@ class CrossingModel(CouplingModel):
     high: tuple[float, float]
     law: tuple[float, ...]
     start: tuple[float, ...]
+    way: tuple[float, ...]
+    friction: float
+    tangential: float
     stiffness: float
 
 
@@ -60,11 +66,14 @@ def crossing_model(part: Crossing, scene: SceneData, attachments: AttachmentBuil
     radius = radii(scene, part)
     linear = part.exponent == 1
     law = (radius, sign_of(part, start.normal, start.d), part.stiffness * linear, part.stiffness * (not linear),
-           part.damping, LEAST_PENETRATION, *((0.0, 1.0) if part.friction is None
+           part.damping, LEAST_PENETRATION, *((0.0, 1.0) if part.friction is None or part.friction.sticks
                                               else (part.friction.coefficient, part.friction.velocity)))
+    sticking = part.friction.coefficient if part.friction is not None and part.friction.sticks else 0.0
     return CrossingModel(
         kernel=KERNELS[dim], cables=numbers, attachments=ends, axis=axis, low=(0.0, low),
         high=(of_lines[0].mesh.total, high), law=law, start=tuple(start.s),
+        way=tuple(start.d), friction=sticking, n_numbers=GRIP_NUMBERS if sticking else 0,
+        tangential=part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness,
         stiffness=part.stiffness * (1.0 if linear else math.sqrt(max(radius, 1e-3))), type="crossing",
         name=part.name or "", scale=[max(*masses, *(end.mass for end in ends), 0.0)] * (2 * dim - 1),
-        is_damped=part.damping > 0 or part.friction is not None, follows_law=True)
+        is_damped=part.damping > 0 or (part.friction is not None and not part.friction.sticks), follows_law=True)

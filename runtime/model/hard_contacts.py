@@ -35,7 +35,7 @@ class HardContactModel(ContactModel):
 def hard_contact_models(part: Contact, scene: SceneData, attachments: AttachmentBuilder) -> list[HardContactModel]:
     """Return the models of a hard contact of the scene, one for each of its points."""
     assert part.restitution is not None and part.points is not None, f"{part.where} is not complete"
-    models, rows = [], scene.dim if part.friction else 1
+    models, rows = [], scene.dim if part.friction_coefficient else 1
     weight = scene.bodies[part.a].mass * (float(np.linalg.norm(scene.gravity)) or 1.0)
     surface = surface_entries(scene.surfaces[part.b], scene, attachments)
     for point in part.points:
@@ -43,6 +43,7 @@ def hard_contact_models(part: Contact, scene: SceneData, attachments: Attachment
         models.append(HardContactModel(
             **surface, type="hard_contact", name=part.name or "", stiffness=0.0, damping=0.0, friction=0.0,
             tangential=0.0, hertz=0, cable=-1, radius=part.radius or 0.0, n_points=1, attachments=[at],
-            scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction, restitution=part.restitution,
-            rest_velocity=part.rest_velocity, weight=weight, static_stiffness=weight / GIVES_WAY))
+            scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction_coefficient,
+            restitution=part.restitution, rest_velocity=part.rest_velocity, weight=weight,
+            static_stiffness=weight / GIVES_WAY))
     return models

@@ -178,9 +178,10 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
 
 
 def crossing_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what results tell of a crossing, from the engine's numbers (time, 10) of it."""
+    """Return what results tell of a crossing, from the engine's numbers (time, 14) of it."""
     return {"force": numbers[:, :3], "normal_force": numbers[:, 3], "penetration": numbers[:, 4], "s": numbers[:, 5],
-            "s_b": numbers[:, 6], "position": numbers[:, 7:]}
+            "s_b": numbers[:, 6], "position": numbers[:, 7:10], "friction_force": numbers[:, 10:13],
+            "sticking": numbers[:, 13]}
 
 
 AT_REST = ("drag", "contact", "hard_contact", "crossing")

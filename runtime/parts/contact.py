@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
+from .friction import AnyFriction
 from .part import Part
 from .penalty_law import Exponent
 from .plane import across
@@ -37,9 +38,9 @@ class Contact(Part):
     spheres about a body's points. points: of a body, in its axes, in m; its origin if not given.
     restitution: of hard contact of a body's points, which do not sink in: what part of the normal velocity they come
     back with, 0 to 1 (Newton). What would come back by less than rest_velocity, in m/s, stays.
-    friction: Coulomb's coefficient. What sticks is kept by a spring of tangential_stiffness, that of the normal
-    force if not given, and slides where that exceeds friction. In statics friction is against the way from the places
-    drawn.
+    friction: Coulomb's coefficient, or a `Friction` with model "stick". What sticks is kept by a spring of
+    tangential_stiffness, that of the normal force if not given, and slides where that exceeds friction. In statics
+    friction is against the way from the places drawn.
     """
 
     kind: ClassVar[str] = "contact"
@@ -60,7 +61,7 @@ class Contact(Part):
     stiffness: Annotated[float, positive("N/m")] | None = None
     exponent: Exponent = 1.0
     damping: Annotated[float, not_negative("s/m")] = 0.0
-    friction: Annotated[float, not_negative()] = 0.0
+    friction: AnyFriction | None = None
     tangential_stiffness: Annotated[float, positive("N/m")] | None = None
     radius: Annotated[float, not_negative("m")] | None = None
     restitution: Annotated[float, within(0, 1, ends=True)] | None = None
@@ -72,6 +73,19 @@ class Contact(Part):
     def is_hard(self) -> bool:
         """Return whether it has a constraint in place of a stiffness."""
         return self.restitution is not None
+
+    @property
+    def friction_coefficient(self) -> float:
+        """Return Coulomb's coefficient, 0 without friction."""
+        return 0.0 if self.friction is None else self.friction.coefficient
+
+    @model_validator(mode="after")
+    def _has_friction_that_sticks(self) -> Contact:
+        if self.friction is not None:
+            self.friction.check_coulomb()
+            if self.friction.model == "regularised":
+                raise ValueError("has friction that sticks, and no other", 'leave model="regularised" out')
+        return self
 
     @model_validator(mode="after")
     def _has_one_law(self) -> Contact:

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 from pydantic import model_validator
 
 from .cable import Cable
-from .friction import Friction
+from .friction import AnyFriction
 from .part import Part
 from .penalty_law import Exponent
 from .plane import across
@@ -25,11 +25,12 @@ class Crossing(Part):
     scene the bar is square to the plane and has neither. Bar and cables are round: radius: in m, the distance of both
     axes at which they touch, the sum of the radii of the cables' sections if not given, where a bar has none.
     stiffness k (N/m, or N/m^1.5) and exponent e of the contact force ``k p^e`` at the penetration p: 1, or 1.5 after
-    Hertz; damping in s/m: the force is ``k p^e (1 + damping p')``. friction: its coefficient and velocity; it acts
-    along both lines, and is smooth in the speed of slip. side: the direction in which a is of b, along the
-    ground's axes, as at the start if not given: the lines cannot pass through each other. Beyond the ends of cables and
-    bars there is no contact. A crossing has one point of contact; of several possible ones the one that is closest at
-    the start.
+    Hertz; damping in s/m: the force is ``k p^e (1 + damping p')``. friction: a coefficient, or a `Friction`; it acts
+    along both lines, and is smooth in the speed of slip. With model "stick" what sticks is kept by a spring of
+    tangential_stiffness, ``stiffness`` if not given, and slides where that exceeds friction; in statics it is against
+    the way from the places drawn. side: the direction in which a is of b, along the ground's axes, as at the start if
+    not given: the lines cannot pass through each other. Beyond the ends of cables and bars there is no contact. A
+    crossing has one point of contact; of several possible ones the one that is closest at the start.
     """
 
     kind: ClassVar[str] = "crossing"
@@ -37,7 +38,9 @@ class Crossing(Part):
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
     results: ClassVar[dict[str, Quantity]] = {
         "force": vector_of_time("N", "contact force on the cable a"),
-        "normal_force": of_time("N", "size of the contact force"),
+        "friction_force": vector_of_time("N", "the part of it that is friction"),
+        "sticking": of_time("1", "1 where the lines touch and friction holds them, else 0"),
+        "normal_force": of_time("N", "size of the contact force along the normal"),
         "penetration": of_time("m", "penetration of both lines, negative where they are apart"),
         "s": of_time("m", "arc-length of the closest point on the cable a"),
         "s_b": of_time("m", "arc-length of the closest point on b, of a bar from its middle"),
@@ -53,16 +56,19 @@ class Crossing(Part):
     stiffness: Annotated[float, positive("N/m")]
     exponent: Exponent = 1.0
     damping: Annotated[float, not_negative("s/m")] = 0.0
-    friction: Friction | None = None
+    friction: AnyFriction | None = None
+    tangential_stiffness: Annotated[float, positive("N/m")] | None = None
     side: Annotated[Vector | None, direction()] = None
 
     @model_validator(mode="after")
     def _is_of_two_lines(self) -> Crossing:
         if self.a == self.b:
             raise ValueError(f'is of the cable "{self.a}" with itself', "name two cables, or a cable and a body")
-        if self.friction is not None and (self.friction.sticks or self.friction.viscous or self.friction.rolling):
-            raise ValueError("takes the coefficient of friction and its velocity alone",
-                             'leave out viscous, rolling and model="stick"')
+        if self.friction is not None:
+            self.friction.check_coulomb()
+            if self.friction.sticks and self.exponent != 1.0 and self.tangential_stiffness is None:
+                raise ValueError("tangential_stiffness is missing, which the stiffness of the exponent 1.5 is not",
+                                 "give it, in N/m")
         return self
 
     def off_plane(self) -> Iterator[str]:

@@ -1,31 +1,39 @@
-"""Friction of slides: Coulomb's, viscous and rolling, regularised or with sticking."""
+"""Friction of slides, contacts and crossings: Coulomb's, of slides also viscous and rolling; it may stick."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from numbers import Real
+from typing import Annotated, Any
 
-from pydantic import model_validator
+from pydantic import BeforeValidator, model_validator
 
 from .part import Part
-from .validation import not_negative, one_of, positive, show
+from .schemas import GivenAs, number_schema
+from .validation import not_negative, one_of, positive, show, shown
 
 
 class Friction(Part):
-    """Friction along the tangent of a slide, from its normal force N (the two multipliers) and its speed.
+    """Friction of a slide, a contact or a crossing, from the normal force N there and the speed of sliding.
+
+    A part that takes it takes a number, too: the coefficient alone.
 
     coefficient: of sliding, Coulomb's; static_coefficient: of sticking, that of sliding if not given; viscous in N s/m;
     rolling: the coefficient of rolling resistance, a force of rolling N against the motion (for wheels: the arm of the
     resistance over the radius). model: "regularised", where the force rises smoothly with the speed to its full value
-    at about ``velocity`` (m/s), so that a rider at rest creeps; or "stick", where it is held at rest, and the instants
-    of sticking and breaking loose are found as events. On a driven slide friction acts against the drive, which gives
-    so much more: it is part of the slide's traction. While the drive stands it takes none.
+    at about ``velocity`` (m/s), so that what is at rest creeps; or "stick", where it is held at rest. If not given,
+    contacts with surfaces stick, slides and crossings are regularised. Slides find the instants of sticking and
+    breaking loose as events; contacts and crossings hold what sticks by a spring, which slides where its force exceeds
+    friction. A static_coefficient of its own, viscous and rolling are of slides alone.
+
+    On a driven slide friction acts against the drive, which gives so much more: it is part of the slide's traction.
+    While the drive stands it takes none.
     """
 
     coefficient: Annotated[float, not_negative()] = 0.0
     static_coefficient: Annotated[float, not_negative()] | None = None
     viscous: Annotated[float, not_negative("N s/m")] = 0.0
     rolling: Annotated[float, not_negative()] = 0.0
-    model: Annotated[str, one_of(("regularised", "stick"))] = "regularised"
+    model: Annotated[str, one_of(("regularised", "stick"))] | None = None
     velocity: Annotated[float, positive("m/s")] = 1e-3
 
     @model_validator(mode="after")
@@ -37,7 +45,7 @@ class Friction(Part):
 
     @property
     def sticks(self) -> bool:
-        """Return whether it keeps a rider at rest."""
+        """Return whether it keeps at rest what is slow: where it says so."""
         return self.model == "stick"
 
     @property
@@ -54,3 +62,26 @@ class Friction(Part):
     def static(self) -> float:
         """Return the coefficient of sticking."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
+
+    def check_coulomb(self) -> None:
+        """Raise ValueError unless it is Coulomb's alone, as contacts and crossings take it."""
+        for name in ("viscous", "rolling"):
+            if getattr(self, name):
+                raise ValueError(f"takes no {name} friction, which is of slides", f"leave {name} out")
+        if self.static != self.coefficient:
+            raise ValueError("sticks by its coefficient of sliding: a static_coefficient of its own is of slides",
+                             "leave static_coefficient out")
+
+
+def _friction(value: Any) -> Any:
+    """Return what a number, the coefficient, stands for as a table; else what is given."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        return {"coefficient": value}
+    if not isinstance(value, Friction | dict):
+        raise ValueError(f"must be a coefficient, a Friction or a table of its values, got {shown(value)}")
+    return value
+
+
+AnyFriction = Annotated[Friction, BeforeValidator(
+    _friction, json_schema_input_type=Annotated[float, GivenAs(number_schema(minimum=0))] | Friction)]
+"""A `Friction`, a table of its values, or its coefficient."""

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from .attachment import Attachment
 from .end_stops import CableEnd, Stop
-from .friction import Friction
+from .friction import AnyFriction
 from .part import Part
 from .plane import across
 from .quantity import Quantity, of_time, vector_of_time
@@ -32,8 +32,8 @@ class Slide(Part):
     against gravity, else the cable's own.
 
     drive: s over time as a signal, in m, or ``velocity``, its rate, in m/s: the slide follows it, whatever the force.
-    friction: see `Friction`. at_start, at_end: what waits at the cable's ends: "error", "leave" (the rider flies on),
-    a `HardStop` or a `Buffer`.
+    friction: a coefficient, or a `Friction`. at_start, at_end: what waits at the cable's ends: "error", "leave" (the
+    rider flies on), a `HardStop` or a `Buffer`.
     """
 
     kind: ClassVar[str] = "slide"
@@ -60,7 +60,7 @@ class Slide(Part):
     up: Annotated[Vector | None, direction()] = None
     drive: AnySignal | None = None
     velocity: AnySignal | None = None
-    friction: Friction | None = None
+    friction: AnyFriction | None = None
     at_start: CableEnd = "error"
     at_end: CableEnd = "error"
 

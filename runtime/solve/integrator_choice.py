@@ -177,7 +177,7 @@ def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: En
     frequency, decay = fastest_rates(model, engine)
     decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
     rubs = any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values()) or any(
-        contact.is_hard and contact.friction for contact in scene.contacts.values())
+        contact.is_hard and contact.friction_coefficient for contact in scene.contacts.values())
     return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), rubs, settings.tol)
 
 
@@ -202,7 +202,7 @@ def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine
         if integrator.needs_discrete_gradient:
             raise SceneError(crossing.where, f"{who} has no discrete gradient of it", "take another integrator")
     for contact in scene.contacts.values():
-        if contact.is_hard and contact.friction and not integrator.takes_friction_and_stops:
+        if contact.is_hard and contact.friction_coefficient and not integrator.takes_friction_and_stops:
             raise SceneError(contact.where, f"{who} does not know friction of hard contacts",
                              _take_another("takes_friction_and_stops"))
         on = scene.surfaces[contact.b].on

@@ -69,7 +69,8 @@ def note(problem: StaticProblem, state: RestState) -> None:
         problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
     problem.messages += folds(problem.scene, problem.model, state.static_state["q"])
     problem.messages += outside_tables(problem.model, state.static_state["q"])
-    if rough := [contact.where for contact in problem.scene.contacts.values() if contact.is_hard and contact.friction]:
+    if rough := [contact.where for contact in problem.scene.contacts.values()
+                 if contact.is_hard and contact.friction_coefficient]:
         problem.messages.append(f"friction of {' and '.join(rough)} is left out: at rest what touches moves freely")
     if not state.stable:
         leaves = "; a small disturbance leaves it" * state.stability.known

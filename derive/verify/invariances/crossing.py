@@ -31,3 +31,12 @@ def crossing(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invarianc
     elastic = k("contact", {**s, "u": 0 * s["u"]})["N"][0]
     power = relative(-F @ s["u"] - elastic * rate - told["P"], told["P"])
     yield "the force's power is stored or dissipated", power, 256 * EPS
+    stretch, sliding = k("stretch", s), k("sliding", s)["F"]
+    now = stretch["now"]
+    yield "the stretch is square to the normal", float(abs(now @ n)), 64 * EPS
+    yield "what was stretched turns with the lines", relative(stretch["old"] @ stretch["old"] - s["x"] @ s["x"],
+                                                              s["x"] @ s["x"]), 64 * EPS
+    yield "what slides is as large as friction", relative(sliding @ sliding - (s["mu"] * told["N"]) ** 2,
+                                                          sliding @ sliding), 256 * EPS
+    yield "what slides is against the stretch", relative(sliding @ now + np.sqrt((sliding @ sliding) * (now @ now)),
+                                                         sliding @ now), 64 * EPS

@@ -30,7 +30,7 @@ class Lines:
             d = d + sign * (x[i] * t[i] + x[i] * x[i] / 2 * k[i])
             u = u + sign * x[i] * w[i]
             slopes.append(t[i] + x[i] * k[i])
-        return {**s, "d": d, "u": u, "t": np.array(slopes)}
+        return {**s, "d": d, "u": u, "t": np.array(slopes), "e": s["e"] + np.array(x)}
 
     def points(self, s: State) -> list[Any]:
         """Return the closest points, by their arc-lengths from those of the state."""
@@ -68,8 +68,8 @@ def crossing(family: CouplingFamily) -> list[Relation]:
         """Return a state of straight lines off their closest points."""
         return {**s, "d": s["d"] + s["t"][0] / 3, "k": 0 * s["k"]}
 
-    def force_by(name: str) -> Callable:
-        return lambda k, s, t, j: k("force", lines.closest(moved(s, name, t, j)))["F"]
+    def force_by(name: str, kernel: str = "force") -> Callable:
+        return lambda k, s, t, j: k(kernel, lines.closest(moved(s, name, t, j)))["F"]
 
     def points_by(name: str) -> Callable:
         return lambda k, s, t, j: np.array(lines.points(moved(s, name, t, j)))
@@ -79,29 +79,65 @@ def crossing(family: CouplingFamily) -> list[Relation]:
 
     return [*(Relation("force", f"F_{name}", f"dF by {name}, closest points found anew", 1, force_by(name), n)
               for name, n in (*numbers.items(), ("u", dim))),
+            *(Relation(kernel, f"F_{name}", f"dF by {name}, closest points found anew", 1, force_by(name, kernel), n)
+              for kernel, more in (("sticking", {}), ("sliding", {"u": dim})) for name, n in (numbers | more).items()),
+            *_friction(lines),
             *(Relation("force", f"s_{name}", f"closest points by {name}, found anew", 1, points_by(name), n)
               for name, n in numbers.items()),
             Relation("force", "F", "-dU by d without damping", 1, energy, dim,
                      of=lambda k, s: k("force", {**s, "u": 0 * s["u"]})["F"]),
-            *_contact(lines.lines),
+            *_contact(),
             Relation("closest", "step", "closest points of lines without curvature", 0,
                      root(lambda s: np.array(lines.points(off(s)))), of=lambda k, s: k("closest", off(s))["step"])]
 
 
-def _contact(lines: int) -> list[Relation]:
-    """Return the relations of what contact is at the closest points, in closed form."""
-    def across(s: State) -> Any:
-        t = s["t"]
-        square = np.array([t[0][1], -t[0][0]]) if lines == 1 else np.cross(t[0], t[1])
-        return s["c"][1] / square.dot(square) ** 0.5 * square
+def across(s: State) -> Any:
+    """Return the normal of both lines."""
+    t = s["t"]
+    square = np.array([t[0][1], -t[0][0]]) if len(t) == 1 else np.cross(t[0], t[1])
+    return s["c"][1] / square.dot(square) ** 0.5 * square
 
+
+def _size(s: State) -> Any:
+    """Return the force along the normal."""
+    n, c = across(s), s["c"]
+    p = c[0] - n.dot(s["d"])
+    return (c[2] * p + c[3] * p * p**0.5) * (1 - c[4] * n.dot(s["u"]))
+
+
+def _friction(lines: Lines) -> list[Relation]:
+    """Return the relations of friction that sticks, or slides by its spring, in closed form."""
+    def along(s: State) -> Any:
+        return s["t"][-1] / s["t"][-1].dot(s["t"][-1]) ** 0.5
+
+    def old(s: State) -> Any:
+        i = along(s)
+        return s["x"][0] * i + (s["x"][1] * np.cross(across(s), i) if lines.lines == 2 else 0)
+
+    def now(s: State) -> Any:
+        """Return the stretch after the way of the particles that were the closest points, square to the normal."""
+        way = lines.along(s, [-each for each in s["e"]])["d"] - s["before"]
+        n = across(s)
+        return old(s) + way - n * n.dot(way)
+
+    def sliding(s: State) -> Any:
+        x = now(s)
+        return -s["mu"] * _size(s) / x.dot(x) ** 0.5 * x
+
+    return [Relation(kernel, name, text, 0, root(function)) for kernel, name, text, function in (
+        ("stretch", "along", "b/|b|, in the plane a/|a|", along), ("stretch", "old", "x_1 i + x_2 n x i", old),
+        ("stretch", "now", "old and the way of the particles, square to n", now),
+        ("sticking", "F", "-k_t now", lambda s: -s["k_t"] * now(s)), ("sliding", "F", "-mu N now/|now|", sliding))]
+
+
+def _contact() -> list[Relation]:
+    """Return the relations of what contact is at the closest points, in closed form."""
     def depth(s: State) -> Any:
         n = across(s)
         return np.array([s["c"][0] - n.dot(s["d"]), -n.dot(s["u"])])
 
     def size(s: State) -> Any:
-        p, rate = depth(s)
-        return np.array([(s["c"][2] * p + s["c"][3] * p * p**0.5) * (1 + s["c"][4] * rate)])
+        return np.array([_size(s)])
 
     def stored(s: State) -> Any:
         p = depth(s)[0]

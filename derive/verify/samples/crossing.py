@@ -9,10 +9,13 @@ from ..numbers import Numbers, State
 
 
 def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
-    """Return two curved lines at their closest points, in contact, and a penalty with both of its terms."""
+    """Return two curved lines at their closest points, in contact, a penalty with both of its terms, and a stretch."""
     dim, shape = family.dim, (family.dim - 1, family.dim)
     t, k, w = random.normal(size=shape), 0.3 * random.normal(size=shape), random.normal(size=shape)
     square = np.array([t[0, 1], -t[0, 0]]) if dim == 2 else np.cross(*t)
     side = float(random.choice([-1, 1]))
-    return {"d": 0.4 * side * square / np.linalg.norm(square), "t": t, "k": k, "w": w,
-            "u": 0.3 * random.normal(size=dim), "c": np.array([0.7, side, 5.0, 3.0, 0.2, 1e-30, 0.3, 0.1])}
+    d = 0.4 * side * square / np.linalg.norm(square)
+    return {"d": d, "t": t, "k": k, "w": w,
+            "u": 0.3 * random.normal(size=dim), "c": np.array([0.7, side, 5.0, 3.0, 0.2, 1e-30, 0.3, 0.1]),
+            "mu": 0.4, "k_t": 7.0, "e": 0.1 * random.normal(size=dim - 1),
+            "before": d + 0.1 * random.normal(size=dim), "x": 0.6 + 0.2 * random.random(dim - 1)}

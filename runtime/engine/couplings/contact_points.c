@@ -37,10 +37,8 @@ static void map_stretch(const fu_model *model, const fu_contact *contact, const 
     from_anchor(dim, on, point, x);
     const double along = fu_dot(dim, n, x) / fu_dot(dim, n, n);
     for (int d = 0; d < dim; ++d) x[d] -= along * n[d];
-    const double size = contact->law.tangential * sqrt(fu_dot(dim, x, x));
-    point->slides = size > most;
+    point->slides = fu_limit_stretch(dim, contact->law.tangential, most, x);
     for (int d = 0; d < dim; ++d) {
-        if (point->slides) x[d] *= most / size;
         point->friction[d] = -contact->law.tangential * x[d];
         point->f[d] += point->friction[d];
     }

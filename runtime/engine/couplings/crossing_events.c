@@ -73,6 +73,11 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     const double stored = coupling->type->energy(run->model, coupling, &run->now);
     run->now.numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND] = *touches ? stored : 0.0;
     *touches = !*touches;
+    if (*touches && crossing_of(coupling)->friction > 0.0) {
+        fu_closest_points points;
+        fu_find_closest(run->model, crossing_of(coupling), &run->now, &points);
+        fu_crossing_begin_grip(crossing_of(coupling), &points, &run->now);
+    }
     /* a bar that comes in from beyond an end may overlap already: what that stores comes from outside */
     if (*touches) run->external += coupling->type->energy(run->model, coupling, &run->now);
     *what = *touches ? "came into contact" : "lost contact";
@@ -82,6 +87,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
     coupling->type->touch(run->model, coupling, &run->now);
+    coupling->type->carry(run->model, coupling, &run->now);
     return FU_RUNNING;
 }
 

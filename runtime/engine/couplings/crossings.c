@@ -24,6 +24,22 @@ int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const 
     return fu_dot(3, state->numbers + crossing->base.numbers + FU_CROSSING_NORMAL, contact->normal) < 0.0;
 }
 
+/* Makes the part of the force that is friction; adds that which sticks. */
+static void add_friction(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, fu_crossing_contact *contact)
+{
+    fu_crossing_grip grip;
+    for (int d = 0; d < 3 && crossing->law[FU_LAW_FRICTION] > 0.0; ++d)
+        contact->friction[d] = contact->force[d] - contact->size * contact->normal[d];
+    if (!(crossing->friction > 0.0)) return;
+    fu_crossing_grip_at(crossing, state, points, contact->size, &grip);
+    contact->sticks = grip.sticks;
+    contact->energy += grip.energy;
+    for (int d = 0; d < 3; ++d) {
+        contact->friction[d] = grip.force[d];
+        contact->force[d] += grip.force[d];
+    }
+}
+
 /* Makes the force on the first line; the closest points, and what the contact tells. Not a number where there are no such points. */
 static void contact_force(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *points,
                           fu_crossing_contact *contact, double force[3])
@@ -32,6 +48,7 @@ static void contact_force(const fu_model *model, const fu_crossing *crossing, co
     fu_find_closest(model, crossing, state, points);
     fu_crossing_contact_at(crossing, points, contact);
     if (!points->found || fu_crossing_swung(crossing, state, contact)) contact->size = NAN;
+    add_friction(crossing, state, points, contact);
     for (int d = 0; d < 3; ++d) force[d] = !touches ? 0.0 : isnan(contact->size) ? NAN : contact->force[d];
 }
 
@@ -65,6 +82,22 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
 typedef struct {
     double F[3], F_d[9], F_t[18], F_u[9], s_d[6], s_t[12];
 } derivatives;
+
+static void add_friction_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                                     derivatives *by)
+{
+    const int dim = crossing->kernel->dim;
+    derivatives of;
+    fu_crossing_contact contact;
+    fu_crossing_contact_at(crossing, points, &contact);
+    fu_crossing_grip_derivatives(crossing, state, points, contact.size, of.F, of.F_d, of.F_t, of.F_u);
+    for (int d = 0; d < dim; ++d) by->F[d] += of.F[d];
+    for (int i = 0; i < dim * dim; ++i) {
+        by->F_d[i] += of.F_d[i];
+        by->F_u[i] += of.F_u[i];
+    }
+    for (int i = 0; i < dim * dim * (dim - 1); ++i) by->F_t[i] += of.F_t[i];
+}
 
 /* How a line's point moves by the unknowns: its derivatives turned, and what its velocity changes with the place. */
 typedef struct {
@@ -138,6 +171,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     fu_find_closest(model, crossing, at->next, &points);
     crossing->kernel->force(points.d, points.t, points.k, points.w, points.u, crossing->law, by.F, by.F_d, by.F_t, by.F_u, by.s_d,
                             by.s_t);
+    if (crossing->friction > 0.0) add_friction_derivatives(crossing, at->next, &points, &by);
     for (int line = 0; line < FU_LINES; ++line) {
         changes_of(model, crossing, line, at, &points.line[line], by.F, &changes);
         add_line(model, crossing, line, at, &changes, &by, row, unit, system);
@@ -150,7 +184,8 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
     for (int i = 0; i < coupling->n_forces; ++i) state->forces[coupling->force + i] = 0.0;
 }
 
-/* Writes the force on the first line, its size, the penetration, the arc-lengths, and the place on the first line's axis. */
+/* Writes the force on the first line, the size of that along the normal, the penetration, the arc-lengths, the place on the first
+ * line's axis, the part of the force that is friction, and whether that sticks. */
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
                     const fu_accelerator *work, double *out)
 {
@@ -162,6 +197,8 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     out[4] = contact.depth[0];
     memcpy(out + 5, points.s, sizeof points.s);
     memcpy(out + 7, points.line[0].r, sizeof points.line[0].r);
+    for (int d = 0; d < 3; ++d) out[10 + d] = state->flags[coupling->flags] ? contact.friction[d] : 0.0;
+    out[13] = state->flags[coupling->flags] ? contact.sticks : 0.0;
 }
 
 static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
@@ -186,11 +223,19 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     return contact.dissipated;
 }
 
-/* What contact had stored when it ended goes to heat in the step after. */
+/* Returns what friction that sticks takes as it slides. What contact had stored when it ended goes to heat in the step after. */
 static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
 {
-    (void)model, (void)to;
-    return from->flags[coupling->flags] ? 0.0 : from->numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND];
+    const fu_crossing *crossing = crossing_of(coupling);
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    fu_crossing_grip grip;
+    if (!from->flags[coupling->flags]) return from->numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND];
+    if (!(crossing->friction > 0.0)) return 0.0;
+    fu_find_closest(model, crossing, to, &points);
+    fu_crossing_contact_at(crossing, &points, &contact);
+    fu_crossing_grip_at(crossing, to, &points, contact.size, &grip);
+    return fu_crossing_slid(crossing, &grip);
 }
 
 /* Notes in the state where the closest points are, unless the lines have been parallel. */
@@ -210,6 +255,11 @@ static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *
 {
     fu_closest_points points;
     fu_find_closest(model, crossing_of(coupling), state, &points);
+    if (crossing_of(coupling)->friction > 0.0 && state->flags[coupling->flags] && points.found) {
+        fu_crossing_contact contact;
+        fu_crossing_contact_at(crossing_of(coupling), &points, &contact);
+        fu_crossing_carry_grip(crossing_of(coupling), &points, &contact, state);
+    }
     note(coupling, &points, state);
 }
 
@@ -217,6 +267,7 @@ static void reset(const fu_coupling *coupling, fu_state *state)
 {
     const fu_crossing *crossing = crossing_of(coupling);
     memcpy(state->numbers + coupling->numbers + FU_CROSSING_S, crossing->start, sizeof crossing->start);
+    if (crossing->friction > 0.0) fu_crossing_reset_grip(crossing, state);
 }
 
 /* In statics lines touch where they penetrate; where that is not known, so is no force. */
@@ -238,12 +289,15 @@ static const fu_field fields[] = {
     FU_FIELD_ARRAY(fu_crossing, high, FU_REAL),
     FU_FIELD_ARRAY(fu_crossing, law, FU_REAL),
     FU_FIELD_ARRAY(fu_crossing, start, FU_REAL),
+    FU_FIELD_ARRAY(fu_crossing, way, FU_REAL),
+    FU_FIELD(fu_crossing, friction, FU_REAL, 0),
+    FU_FIELD(fu_crossing, tangential, FU_REAL, 0),
     FU_FIELD(fu_crossing, stiffness, FU_REAL, 0),
     {0},
 };
 
 const fu_coupling_type fu_crossing_type = {
-    .name = "crossing", .size = sizeof(fu_crossing), .fields = fields, .n_outputs = 10, .n_numbers = FU_CROSSING_NUMBERS,
+    .name = "crossing", .size = sizeof(fu_crossing), .fields = fields, .n_outputs = 14, .n_numbers = FU_CROSSING_NUMBERS,
     .n_flags = 1, .events = &fu_crossing_events, .residual = residual, .tangent = tangent, .force = own_force,
     .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step,
     .carry = carry, .reset = reset, .touch = touch};

@@ -1,17 +1,18 @@
 /* Two lines that touch at their closest points, a cable and another one or a bar: couplings/crossings.c, crossing_points.c,
- * crossing_events.c. */
+ * crossing_friction.c, crossing_events.c. */
 #ifndef FUNICULAR_CROSSINGS_H
 #define FUNICULAR_CROSSINGS_H
 
 #include "attachments.h"
 #include "coupling.h"
 
-enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4 };
+enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4, FU_LAW_FRICTION = 6 };
 #define FU_INSTANT 1e-3 /* s: makes lengths of velocities, to compare them */
 
 /* The first line is a cable, the second another one, or a bar through the attachment's point; in the plane the bar is square to
  * it and has no axis. Numbers of a state: the arc-lengths of the closest points, the energy that
- * contact had stored when it ended, J, and the normal; the flag: whether the lines touch. */
+ * contact had stored when it ended, J, and the normal; where friction sticks, so many more as FU_CROSSING_GRIP; the flag: whether
+ * the lines touch. */
 typedef struct {
     fu_coupling base;
     const fu_crossing_kernels *kernel;
@@ -21,13 +22,15 @@ typedef struct {
     double low[FU_LINES], high[FU_LINES]; /* where the lines end, m; infinite in the plane, for a bar */
     double law[FU_CROSSING_LAW]; /* as the kernels take them */
     double start[FU_LINES];      /* the arc-lengths as drawn, m */
+    double way[3];               /* between the points as drawn, from the second, m */
+    double friction, tangential; /* of friction that sticks: its coefficient, 0 for none, and its spring, N/m */
     double stiffness;            /* N/m: makes forces of lengths, to scale equations */
 } fu_crossing;
 extern const fu_coupling_type fu_crossing_type;
 extern const fu_coupling_events fu_crossing_events;
 
 /* Of the numbers of a state. */
-enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3 };
+enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3, FU_CROSSING_GRIP = 8 };
 
 /* A point of a line, and its derivatives by arc-length and in time. */
 typedef struct {
@@ -47,10 +50,20 @@ typedef struct {
     double d[3], u[3], t[6], k[6], w[6];
 } fu_closest_points;
 
-/* What kernel->contact tells. */
+/* What kernel->contact tells, and friction that sticks: force and energy have it in them. */
 typedef struct {
     double normal[3], depth[2], size, force[3], energy, dissipated; /* depth: penetration and its rate */
+    double friction[3];
+    int sticks;
 } fu_crossing_contact;
+
+/* Friction that sticks: the stretch of its spring, that without sliding, that of the last step turned with the lines; the direction of
+ * the last line that has a slope; force on the first line, energy; whether it slides, and whether it holds now and has since the last
+ * step. */
+typedef struct {
+    double stretch[3], without_sliding[3], old[3], along[3], force[3], energy;
+    int slides, sticks;
+} fu_crossing_grip;
 
 /* Makes how a point moves with its n coordinates: dr = P dq, dt = T dq; the numbers of these for fu_add in `at`. */
 typedef struct {
@@ -68,6 +81,20 @@ void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int li
 /* crossing_events.c: how far the lines are in contact, m, negative where they are not; not a number where no points are
  * the closest, though the lines may touch. */
 double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state);
+
+/* crossing_friction.c. Limits a stretch to what friction allows, in N; returns whether that slides. */
+int fu_limit_stretch(int dim, double stiffness, double most, double *stretch);
+void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
+                         fu_crossing_grip *out);
+void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
+                                  double F[3], double F_d[9], double F_t[18], double F_u[9]);
+/* Returns what friction has taken since the last step, J: the mean force times the way that the spring has not stretched by. */
+double fu_crossing_slid(const fu_crossing *crossing, const fu_crossing_grip *grip);
+/* Lets the spring begin at a state, without stretch; take its stretch along to a state; begin as drawn. */
+void fu_crossing_begin_grip(const fu_crossing *crossing, const fu_closest_points *points, fu_state *state);
+void fu_crossing_carry_grip(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
+                            fu_state *state);
+void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state);
 
 /* crossings.c; the second: whether the normal has swung round since the last state, as where the lines have been parallel. */
 void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out);

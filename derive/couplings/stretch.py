@@ -1,0 +1,25 @@
+"""Coulomb friction with stick, by a spring that is stretched along what is touched.
+
+While it sticks the spring is elastic. What it is stretched by beyond friction slides: the spring is then as long as
+friction allows (return mapping, Wriggers, Computational Contact Mechanics, 2nd ed. 2006, section 5.2). The stretch is
+that of a point from its anchor on a surface, or of the particles of two lines that have met.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ..codegen.program import Program
+
+
+def sticking_force(p: Program, stretch: np.ndarray, stiffness: sp.Expr) -> np.ndarray:
+    """Return the force of the spring while it sticks, against the stretch."""
+    return p.vector("F", -stiffness * stretch)
+
+
+def sliding_force(p: Program, stretch: np.ndarray, most: sp.Expr) -> np.ndarray:
+    """Return the force of the spring while it slides: friction of the size ``most``, against the stretch."""
+    size = p.define("size", sp.sqrt(stretch.dot(stretch)))
+    inverse = p.define("inv_size", 1 / size)
+    return p.vector("F", -most * inverse * stretch)
