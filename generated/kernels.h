@@ -805,6 +805,8 @@ void cable8p_engineering_exact_tension_only_step_stiffness(fu_real l, const fu_r
 void cable8p_engineering_exact_tension_only_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* rigid: rigid body */
+/* position and Jacobian of a point: b 7[m, 1]; u 3[m] -> p 3[m]; p_q 3x6[1, m] */
+void rigid_place(const fu_real *b, const fu_real *u, fu_real *p, fu_real *p_q);
 /* position, Jacobian, velocity and acceleration bias of a point: b 7[m, 1]; u 3[m]; w 6[m/s, rad/s] -> p 3[m]; p_q
  * 3x6[1, m]; v 3[m/s]; bias 3[m/s^2] */
 void rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
@@ -846,6 +848,8 @@ void rigid_rate(const fu_real *b, const fu_real *w, fu_real *b_rate);
 void rigid_increment(const fu_real *b, const fu_real *change, fu_real *step);
 
 /* planar_rigid: planar rigid body */
+/* position and Jacobian of a point: b 4[m, 1]; u 2[m] -> p 2[m]; p_q 2x3[1, m] */
+void planar_rigid_place(const fu_real *b, const fu_real *u, fu_real *p, fu_real *p_q);
 /* position, Jacobian, velocity and acceleration bias of a point: b 4[m, 1]; u 2[m]; w 3[m/s, rad/s] -> p 2[m]; p_q
  * 2x3[1, m]; v 2[m/s]; bias 2[m/s^2] */
 void planar_rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
@@ -1635,6 +1639,7 @@ typedef struct {
     int dim;
     int configuration;
     int velocity;
+    void (*place)(const fu_real *b, const fu_real *u, fu_real *p, fu_real *p_q);
     void (*point)(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
     void (*point_force)(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *p, fu_real *p_q, fu_real *K);
     void (*frame)(const fu_real *b, const fu_real *m, fu_real *A, fu_real *T, fu_real *K);

@@ -152,10 +152,11 @@ static const fu_law_kernels laws[] = {
 };
 
 static const fu_body_kernels bodys[] = {
-    {"rigid", 3, 7, 6, rigid_point, rigid_point_force, rigid_frame, rigid_inertia_force, rigid_inertia_tangent,
-     rigid_kinetic_energy, rigid_discrete_point, rigid_force, rigid_follower_force, rigid_moment, rigid_move,
-     rigid_move_tangent, rigid_cayley_move, rigid_cayley_tangent, rigid_halfway, rigid_rate, rigid_increment},
-    {"planar_rigid", 2, 4, 3, planar_rigid_point, planar_rigid_point_force, planar_rigid_frame,
+    {"rigid", 3, 7, 6, rigid_place, rigid_point, rigid_point_force, rigid_frame, rigid_inertia_force,
+     rigid_inertia_tangent, rigid_kinetic_energy, rigid_discrete_point, rigid_force, rigid_follower_force, rigid_moment,
+     rigid_move, rigid_move_tangent, rigid_cayley_move, rigid_cayley_tangent, rigid_halfway, rigid_rate,
+     rigid_increment},
+    {"planar_rigid", 2, 4, 3, planar_rigid_place, planar_rigid_point, planar_rigid_point_force, planar_rigid_frame,
      planar_rigid_inertia_force, planar_rigid_inertia_tangent, planar_rigid_kinetic_energy, planar_rigid_discrete_point,
      planar_rigid_force, planar_rigid_follower_force, planar_rigid_moment, planar_rigid_move, planar_rigid_move_tangent,
      planar_rigid_cayley_move, planar_rigid_cayley_tangent, planar_rigid_halfway, planar_rigid_rate,
@@ -541,6 +542,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable8p_engineering_exact_tension_only_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_engineering_exact_tension_only_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_engineering_exact_tension_only_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(rigid_place, a[0], a[1], out[0], out[1]) \
     X(rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \
     X(rigid_point_force, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(rigid_frame, a[0], a[1], out[0], out[1], out[2]) \
@@ -558,6 +560,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(rigid_halfway, a[0], a[1], out[0]) \
     X(rigid_rate, a[0], a[1], out[0]) \
     X(rigid_increment, a[0], a[1], out[0]) \
+    X(planar_rigid_place, a[0], a[1], out[0], out[1]) \
     X(planar_rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \
     X(planar_rigid_point_force, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(planar_rigid_frame, a[0], a[1], out[0], out[1], out[2]) \

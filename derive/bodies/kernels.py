@@ -18,7 +18,7 @@ from .body import Body, Rider
 
 def build(body: Body) -> list[Program]:
     """Return the programs of every kernel of a body."""
-    return [point(body), point_force(body), frame(body), inertia_force(body), inertia_tangent(body),
+    return [place(body), point(body), point_force(body), frame(body), inertia_force(body), inertia_tangent(body),
             kinetic_energy(body), discrete_point(body), *load_kernels.build(body), *moves.build(body)]
 
 
@@ -38,6 +38,15 @@ def _jacobian(p: Program, at: np.ndarray, by: list[DirectionalDerivative]) -> np
     p.output("p", at, "m", "position R + A u")
     p.output("p_q", p_q, "1, m", "derivatives by translation and rotation about body axes")
     return p_q
+
+
+def place(body: Body) -> Program:
+    """Return the kernel of the position R + A u and its Jacobian, which are all that a joint's equations need."""
+    p = Program(f"{body.NAME}_place", "position and Jacobian of a point", body.SOURCE)
+    b, u = body.configuration(p), body.attachment(p)
+    _, at, by = _position(p, body, b, u)
+    _jacobian(p, at, by)
+    return p
 
 
 def point(body: Body) -> Program:

@@ -48,6 +48,8 @@ def body(family: BodyFamily) -> list[Relation]:
         p_q,
         Relation("point", "v", "dp/dt", 1, lambda k, s, t, j: point(k, s, t * s["w"])),
         Relation("point", "bias", "d²p/dt² at constant velocities", 2, lambda k, s, t, j: point(k, s, t * s["w"])),
+        replace(at, kernel="place"),
+        replace(p_q, kernel="place"),
         replace(at, kernel="point_force"),
         replace(p_q, kernel="point_force"),
         *_frame(rider),

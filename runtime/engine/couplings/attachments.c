@@ -92,15 +92,16 @@ int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, co
     return n + 1;
 }
 
-static void point_of(const fu_model *model, const fu_attachment *on, const fu_state *state, fu_attachment_state *out)
+static void point_of(const fu_model *model, const fu_attachment *on, const fu_state *state, int rates, fu_attachment_state *out)
 {
     const int dim = model->dim, n = out->n;
     for (int d = 0; d < 3; ++d) out->v[d] = out->bias[d] = 0.0;
     memcpy(out->p, on->u, sizeof out->p);
     if (on->body >= 0) {
         const fu_body *body = &model->bodies[on->body];
-        body->kernel->point(state->q + body->configuration, on->u, state->v + body->dof, out->p, out->P, out->v,
-                            out->bias);
+        const double *b = state->q + body->configuration;
+        if (rates) body->kernel->point(b, on->u, state->v + body->dof, out->p, out->P, out->v, out->bias);
+        else body->kernel->place(b, on->u, out->p, out->P);
         return;
     }
     memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
@@ -173,7 +174,7 @@ void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_s
         of_modes(model, on, state, out);
         return;
     }
-    if (what & FU_POINT) point_of(model, on, state, out);
+    if (what & FU_PLACE) point_of(model, on, state, what & FU_RATES, out);
     if (what & FU_AXES) axes_of(model, on, state, s_rate, out);
 }
 

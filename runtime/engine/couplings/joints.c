@@ -19,13 +19,14 @@ typedef struct {
 
 static const double nil[9] = {0.0};
 
+/* Makes what a joint sees of a state; s_rate: of the slides that its ends are on, null where no velocities are wanted. */
 static void look(const fu_model *model, const fu_joint *joint, const fu_state *state, const double s_rate[2],
                  joint_view *view)
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    const int what = (s_rate ? FU_POINT : FU_PLACE) | (joint->of_points ? 0 : FU_AXES);
     for (int e = 0; e < 2; ++e) {
-        fu_attachment_at(model, &joint->attachments[e], state, s_rate ? s_rate[e] : 0.0,
-                         joint->of_points ? FU_POINT : FU_POINT | FU_AXES, &view->at[e]);
+        fu_attachment_at(model, &joint->attachments[e], state, s_rate ? s_rate[e] : 0.0, what, &view->at[e]);
         view->A[e] = joint->of_points ? nil : view->at[e].A;
     }
     view->moves = dim + 2 * turns;
@@ -35,8 +36,9 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
     view->c[0] = joint->c0;
     if (joint->signal >= 0)
         view->c[0] += fu_signal_at(&model->signals[joint->signal], state->t, &view->rate, &view->second);
-    view->c[1] = cos(view->c[0]);
-    view->c[2] = sin(view->c[0]);
+    const int is_turned = view->c[0] != 0.0; /* most joints have no angle to see */
+    view->c[1] = is_turned ? cos(view->c[0]) : 1.0;
+    view->c[2] = is_turned ? sin(view->c[0]) : 0.0;
 }
 
 /* Adds a value times a row of n numbers to another. */

@@ -21,7 +21,7 @@ typedef struct {
 
 /* State of an attachment, and how it moves with its n coordinates (numbers for fu_add in `at`): dp = P dq, and axes turn
  * by T dq about global axes; velocities, and accelerations where those of the coordinates are zero. */
-enum { FU_POINT = 1, FU_AXES = 2 };
+enum { FU_PLACE = 1, FU_AXES = 2, FU_RATES = 4, FU_POINT = FU_PLACE | FU_RATES }; /* of a point p and P, and v and bias */
 typedef struct {
     int n, at[FU_ATTACHMENT_COORDINATES];
     double p[3], v[3], bias[3], P[3 * FU_ATTACHMENT_COORDINATES];
