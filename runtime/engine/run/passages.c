@@ -1,6 +1,18 @@
 /* Passages: changes of couplings that a step goes over, as the jump that they make in its forces is within what is allowed. The
- * step's end has the forces of what couplings are there; its error counts the jump (integrators/genalpha.c). */
+ * forces at the step's end, and at all stages within it, are of what couplings are there.
+ *
+ * A passage at a part x of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. What a rule of weights b at c makes
+ * of that is wrong by a part of F h, which is a change of momentum: |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. The largest for
+ * any x bounds the error of velocities, and that times h counts as the local error of positions, as errors of velocities go on
+ * for the rest of the run and what is allowed is h/t of the whole. (Hairer, Norsett & Wanner 1993, II.6.)
+ *
+ * A discrete gradient of the energy has the mean force over the way, over passages too: it errs by less than by a smooth change of
+ * the force, keeps the energy, and goes over all passages of forces that have one. */
 #include "engine.h"
+
+#define DOUBLE 2.0 /* the error that is counted over the bound, lest energy come of many */
+#define AROUND 0.1 /* of a step: how far from where it seems to be a passage may be, for the bound of its error */
+#define PARTS 8    /* so many instants are looked at on either side */
 
 #include <math.h>
 #include <string.h>
@@ -11,22 +23,38 @@ int fu_can_pass(const fu_coupling *coupling)
     return fu_can_act(coupling) && coupling->type->events->pass;
 }
 
+/* Returns whether steps of the run may go over changes of a coupling: damped ones have no potential. */
+static int passes(const fu_run *run, const fu_coupling *coupling)
+{
+    return fu_can_pass(coupling) && !(run->integrator->keeps_energy && coupling->is_damped);
+}
+
 static int has_passed(const fu_run *run, const fu_coupling *c)
 {
     const size_t size = sizeof(int) * (size_t)c->type->n_flags;
-    return fu_can_pass(c) && memcmp(run->now.flags + c->flags, run->next.flags + c->flags, size) != 0;
+    return passes(run, c) && memcmp(run->now.flags + c->flags, run->next.flags + c->flags, size) != 0;
 }
 
-/* Gives the couplings of `next` the flags that follow from where it is, unless they are to keep those of `now`. The matrix is of the
- * flags that it was made with. */
-void fu_choose_passages(fu_run *run)
+/* Gives the couplings of `next` the flags that follow from where it is, unless they are to keep those of `now`; returns whether that
+ * changes them. First: it is the first stage of the step, or the only one. */
+int fu_choose_passages(fu_run *run, int first)
 {
     const fu_model *model = run->model;
-    if (run->keep_forces) return;
+    int changed = 0;
+    if (run->keep_forces) return 0;
     for (int k = 0; k < model->n_couplings && model->n_passing; ++k) {
         const fu_coupling *c = model->couplings[k];
-        if (fu_can_pass(c) && c->type->events->pass(model, c, &run->now, &run->next)) run->factored = 0;
+        changed |= passes(run, c) && c->type->events->pass(model, c, &run->now, &run->next);
     }
+    const int count = model->n_passing ? fu_count_passages(run) : 0;
+    if (first || count > run->most_passages) run->most_passages = count;
+    return changed;
+}
+
+/* Returns whether a stage of the step just made passed what its end did not: then nothing bounds its error. */
+int fu_strayed(const fu_run *run)
+{
+    return !run->keep_forces && run->model->n_passing && run->most_passages > fu_count_passages(run);
 }
 
 /* Returns how many couplings have passed something in the step. */
@@ -60,13 +88,61 @@ void fu_note_passages(fu_run *run, double h)
     }
 }
 
-/* Adds to f, times a factor, by how much forces at `next` differ from those without the step's passages. */
-void fu_add_passed_forces(const fu_run *run, double factor, double *f)
+/* Returns by what part of F h the rule errs in the momentum of a force that is F at the end, and grows to that from a part x of the step
+ * on; or is F from there on, where it jumps. */
+static double defect(fu_quadrature rule, double x, int jumps)
 {
-    for (int k = 0; k < run->model->n_couplings && run->model->n_passing; ++k) {
-        const fu_coupling *c = run->model->couplings[k];
-        if (has_passed(run, c)) c->type->events->passed_force(run->model, c, &run->now, &run->next, factor, f);
+    const double left = 1.0 - x;
+    double sum = jumps ? left : 0.5 * left;
+    for (int k = 0; k < rule.n; ++k)
+        if (rule.c[k] > x) sum -= rule.b[k] * (jumps ? 1.0 : (rule.c[k] - x) / left);
+    return fabs(sum);
+}
+
+/* Returns the largest for instants near x, which is not known better. */
+static double largest_defect(fu_quadrature rule, double x, int jumps)
+{
+    double worst = 0.0;
+    for (int i = -PARTS; i <= PARTS; ++i) {
+        const double at = x + AROUND * i / PARTS;
+        if (at >= 0.0 && at < 1.0) worst = fmax(worst, defect(rule, at, jumps));
     }
+    return worst;
+}
+
+/* Returns the size of what a force makes in a time of which this is the square, s^2; by the matrix of the step, where there is one, for
+ * vibrations that it does not resolve to count by their amplitude and not by their acceleration. */
+static double size_of_response(fu_run *run, const double *force, double square)
+{
+    const fu_model *model = run->model;
+    if (run->integrator->has_matrix) {
+        fu_gather(model, force, run->rhs);
+        for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+        fu_system_solve(&run->newton, model->lapack, run->rhs);
+        fu_spread(model, run->rhs, run->work);
+    } else {
+        if (fu_prepare_response(model, &run->next, &run->accelerator)) return INFINITY;
+        fu_response(model, &run->accelerator, force, run->work);
+    }
+    for (int i = 0; i < model->n_dof; ++i) run->work[i] *= square;
+    return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
+}
+
+/* Returns the local error of positions by the passages of the step just made, m. */
+double fu_passage_error(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    if (!run->integrator->quadrature || !fu_count_passages(run)) return 0.0;
+    memset(run->before, 0, sizeof(double) * (size_t)model->n_dof);
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        const char *unused;
+        if (!has_passed(run, c)) continue;
+        const double x = c->type->events->passed(model, c, &run->now, &run->next, h, &unused);
+        const double part = largest_defect(run->integrator->quadrature(run), x, c->is_damped);
+        c->type->events->passed_force(model, c, &run->now, &run->next, part, run->before);
+    }
+    return size_of_response(run, run->before, DOUBLE * h * h);
 }
 
 /* Makes the earliest of passages and slack cables that the caller does not know of the run's event; returns 0 where there is none. */
