@@ -2,37 +2,32 @@
  * forces at the step's end, and at all stages within it, are of what couplings are there.
  *
  * A passage at a part x of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. What a rule of weights b at c makes
- * of that is wrong by a part of F h, which is a change of momentum: |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. The largest for
- * any x bounds the error of velocities, and that times h counts as the local error of positions, as errors of velocities go on
- * for the rest of the run and what is allowed is h/t of the whole. (Hairer, Norsett & Wanner 1993, II.6.)
+ * of that is wrong by a part of F h, which is a change of momentum: |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. That is the
+ * error of velocities, and times h it counts as a local error of positions, as errors of velocities go on for the rest of the run and
+ * what is allowed is h/t of the whole. Estimates of integrators do not replace it: they rest on smooth forces, and by chance are nil.
  *
- * A discrete gradient of the energy has the mean force over the way, over passages too: it errs by less than by a smooth change of
- * the force, keeps the energy, and goes over all passages of forces that have one. */
+ * A discrete gradient of the energy is the mean force over the way, that over passages too: it keeps the energy, errs by hardly more
+ * than where there is no passage, and goes over all of them, at steps of any kind. */
 #include "engine.h"
+
+#include <math.h>
+#include <string.h>
 
 #define DOUBLE 2.0 /* the error that is counted over the bound, lest energy come of many */
 #define AROUND 0.1 /* of a step: how far from where it seems to be a passage may be, for the bound of its error */
 #define PARTS 8    /* so many instants are looked at on either side */
 
-#include <math.h>
-#include <string.h>
-
-/* Returns whether steps may go over changes of a coupling. */
+/* Returns whether steps may go over changes of a coupling. Where it has a damper its force jumps there, and what it dissipates: steps
+ * then end there, lest the balance of energy err by more than positions do. */
 int fu_can_pass(const fu_coupling *coupling)
 {
-    return fu_can_act(coupling) && coupling->type->events->pass;
-}
-
-/* Returns whether steps of the run may go over changes of a coupling: damped ones have no potential. */
-static int passes(const fu_run *run, const fu_coupling *coupling)
-{
-    return fu_can_pass(coupling) && !(run->integrator->keeps_energy && coupling->is_damped);
+    return fu_can_act(coupling) && coupling->type->events->pass && !coupling->is_damped;
 }
 
 static int has_passed(const fu_run *run, const fu_coupling *c)
 {
     const size_t size = sizeof(int) * (size_t)c->type->n_flags;
-    return passes(run, c) && memcmp(run->now.flags + c->flags, run->next.flags + c->flags, size) != 0;
+    return fu_can_pass(c) && memcmp(run->now.flags + c->flags, run->next.flags + c->flags, size) != 0;
 }
 
 /* Gives the couplings of `next` the flags that follow from where it is, unless they are to keep those of `now`; returns whether that
@@ -44,7 +39,7 @@ int fu_choose_passages(fu_run *run, int first)
     if (run->keep_forces) return 0;
     for (int k = 0; k < model->n_couplings && model->n_passing; ++k) {
         const fu_coupling *c = model->couplings[k];
-        changed |= passes(run, c) && c->type->events->pass(model, c, &run->now, &run->next);
+        changed |= fu_can_pass(c) && c->type->events->pass(model, c, &run->now, &run->next);
     }
     const int count = model->n_passing ? fu_count_passages(run) : 0;
     if (first || count > run->most_passages) run->most_passages = count;
@@ -88,24 +83,22 @@ void fu_note_passages(fu_run *run, double h)
     }
 }
 
-/* Returns by what part of F h the rule errs in the momentum of a force that is F at the end, and grows to that from a part x of the step
- * on; or is F from there on, where it jumps. */
-static double defect(fu_quadrature rule, double x, int jumps)
+/* Returns by what part of F h the rule errs in the momentum of a force that grows to F from a part x of the step on. */
+static double defect(fu_quadrature rule, double x)
 {
-    const double left = 1.0 - x;
-    double sum = jumps ? left : 0.5 * left;
+    double sum = 0.5 * (1.0 - x);
     for (int k = 0; k < rule.n; ++k)
-        if (rule.c[k] > x) sum -= rule.b[k] * (jumps ? 1.0 : (rule.c[k] - x) / left);
+        if (rule.c[k] > x) sum -= rule.b[k] * (rule.c[k] - x) / (1.0 - x);
     return fabs(sum);
 }
 
 /* Returns the largest for instants near x, which is not known better. */
-static double largest_defect(fu_quadrature rule, double x, int jumps)
+static double largest_defect(fu_quadrature rule, double x)
 {
     double worst = 0.0;
     for (int i = -PARTS; i <= PARTS; ++i) {
         const double at = x + AROUND * i / PARTS;
-        if (at >= 0.0 && at < 1.0) worst = fmax(worst, defect(rule, at, jumps));
+        if (at >= 0.0 && at < 1.0) worst = fmax(worst, defect(rule, at));
     }
     return worst;
 }
@@ -139,7 +132,7 @@ double fu_passage_error(fu_run *run, double h)
         const char *unused;
         if (!has_passed(run, c)) continue;
         const double x = c->type->events->passed(model, c, &run->now, &run->next, h, &unused);
-        const double part = largest_defect(run->integrator->quadrature(run), x, c->is_damped);
+        const double part = largest_defect(run->integrator->quadrature(run), x);
         c->type->events->passed_force(model, c, &run->now, &run->next, part, run->before);
     }
     return size_of_response(run, run->before, DOUBLE * h * h);
