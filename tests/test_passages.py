@@ -1,4 +1,5 @@
-"""Steps that go over springs that become slack or taut, by integrator: closed forms, instants, energy, what is landed on."""
+"""Steps that go over springs that become slack or taut, by integrator: closed forms, instants, energy, what is landed
+on."""
 
 import funicular as fu
 import numpy as np
@@ -27,7 +28,8 @@ class Pair:
         scene = fu.Scene(gravity=(0, 0, 0))
         scene.rigid_body("m", mass=MASS, inertia=(1, 1, 1), position=(0, 0, 0), velocity=(self.speed, 0, 0))
         for name, side in (("left", -1), ("right", 1)):
-            scene.spring((side, 0, 0), "m", name=name, stiffness=self.stiffness, length=1 - self.reach, tension_only=True)
+            scene.spring((side, 0, 0), "m", name=name, stiffness=self.stiffness, length=1 - self.reach,
+                         tension_only=True)
         if self.beside:
             scene.spring((-1, 0, 0), "m", name="beside", stiffness=self.beside, length=1.0)
         return scene

@@ -213,7 +213,8 @@ static double locate(fu_run *run, fu_event event, double h)
     }
     const fu_coupling *passes = passing(run, event);
     const char *unused;
-    if (passes) middle = h * passes->type->events->passed(run->model, passes, &run->now, &run->next, h, &unused);
+    if (passes)
+        middle = h * passes->type->events->passed(run->model, passes, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
     if (b.g_high <= at.aim + at.close) return h;
     if (is_of_a_coupling(run, event) && fabs(b.g_low) <= (at.aim > 0.0 ? PRECISE * (b.g_high - b.g_low) : at.close)) {
         const int found = leave_zero(run, event, &b, least, at.close);

@@ -78,7 +78,8 @@ void fu_note_passages(fu_run *run, double h)
     for (int k = 0; k < run->n_watches && run->model->n_passing; ++k) {
         const fu_coupling *c = fu_own_coupling(run, k);
         if (!c || !has_passed(run, c)) continue;
-        const double part = c->type->events->passed(run->model, c, &run->now, &run->next, h, &run->passed[k]);
+        const double part = c->type->events->passed(run->model, c, &run->now, &run->next, h,
+                                                        !run->integrator->keeps_energy, &run->passed[k]);
         run->passed_at[k] = run->now.t + part * h;
     }
 }
@@ -131,7 +132,7 @@ double fu_passage_error(fu_run *run, double h)
         const fu_coupling *c = model->couplings[k];
         const char *unused;
         if (!has_passed(run, c)) continue;
-        const double x = c->type->events->passed(model, c, &run->now, &run->next, h, &unused);
+        const double x = c->type->events->passed(model, c, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
         const double part = largest_defect(run->integrator->quadrature(run), x);
         c->type->events->passed_force(model, c, &run->now, &run->next, part, run->before);
     }
