@@ -60,7 +60,18 @@ def test_a_mass_thrown_up_follows_sines_and_parabolas(integrator):
 
 
 @pytest.mark.parametrize("integrator", BY_STEP)
-def test_fixed_steps_end_where_it_becomes_slack_and_keep_their_order(integrator):
+def test_integrators_of_order_two_follow_the_same_by_tol(integrator):
+    run = hanging(0.5, stiffness=STIFFNESS, tension_only=True).run(
+        duration=0.6, output_step=0.01, integrator=integrator, tol=1e-8)
+    exact = Thrown(0.5, 0.6)
+    assert np.abs(extension(run) - exact(run.time)).max() < 1e-8
+    events = [event["time"] for event in run.report["events"] if event["time"] > 1e-6]
+    assert np.abs(np.subtract(events, exact.instants[1:3])).max() < 1e-8
+    assert np.ptp(total_energy(run)) < (1e-12 if integrator == "energy" else 1e-9)
+
+
+@pytest.mark.parametrize("integrator", BY_STEP)
+def test_fixed_steps_keep_their_order_where_it_becomes_slack(integrator):
     exact, errors = Thrown(0.5, 1.0), []
     for step in (2e-3, 1e-3):
         run = hanging(0.5, stiffness=STIFFNESS, tension_only=True).run(
@@ -211,7 +222,7 @@ def test_steps_go_over_what_tol_allows_and_tell_when(tol):
     along = CubicHermiteSpline(run.time, extension(run), -run["m.velocity"][:, 2])
     speed = np.abs(along.derivative()([event["time"] for event in passed]))
     assert np.all(np.abs(along([event["time"] for event in passed])) < 1e-3 * tol * speed)
-    landed = scene.run(duration=2.0, output_step=0.01, integrator="radau", tol=tol)
+    landed = scene.run(duration=2.0, output_step=0.01, integrator="radau", step=0.01)
     assert not any(event.get("passed") for event in landed.report["events"])
     assert drift(run) < 10 * tol * np.ptp(run["energy.kinetic"])
 
@@ -281,7 +292,7 @@ def test_a_spring_that_is_taut_for_a_part_of_a_step_is_not_missed(integrator, da
     events = run.report["events"]
     assert [event["what"] for event in events] == ["became taut", "became slack"]
     found = [event["time"] for event in events]
-    assert found[0] == pytest.approx(peak - half, abs=1e-9)
+    assert found[0] == pytest.approx(peak - half, abs=1e-5 * STEP if events[0].get("passed") else 1e-9)
     assert found[0] < found[1] < peak + half * (1 + part)
     assert run.report["steps"] < 1.5 / STEP
 

@@ -140,6 +140,29 @@ static const char *words(const fu_point_force *between, int before, int after)
     return is_free ? "became slack" : !was_free ? "" : after > before ? "became taut" : "came into contact";
 }
 
+/* The distance of the points at a state, and what tells of the force: the gap, its rate, its acceleration. */
+typedef struct {
+    double distance, gap[3], rate[3], acceleration[3];
+} look;
+
+static look look_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
+{
+    look l = {.distance = 0.0};
+    for (int e = 0; e < 2; ++e) {
+        fu_attachment_state at;
+        fu_attachment_at(model, &between->attachments[e], state, 0.0, FU_POINT, &at);
+        for (int d = 0; d < between->dim; ++d) {
+            double acceleration = at.bias[d];
+            for (int i = 0; i < at.n; ++i) acceleration += at.P[d * at.n + i] * state->acceleration[at.at[i]];
+            l.gap[d] += e ? at.p[d] : -at.p[d];
+            l.rate[d] += e ? at.v[d] : -at.v[d];
+            l.acceleration[d] += e ? acceleration : -acceleration;
+        }
+    }
+    l.distance = norm(between->dim, l.gap);
+    return l;
+}
+
 /* Returns the distance of the points, less that at which a piece ends, m, and its rate. */
 static fu_course from_bound(const fu_model *model, const fu_point_force *between, const fu_state *state, int bound)
 {
@@ -149,9 +172,34 @@ static fu_course from_bound(const fu_model *model, const fu_point_force *between
     return (fu_course){distance - between->bounds[bound], fu_dot(between->dim, gap, gap_rate) / distance};
 }
 
-/* By the cubic of the distance through both ends of the step; where a damper turns the force round, by the line of its margins. */
+/* The distance of the points at an end of a step, less that at which a piece ends, and its derivatives by the part of the step, m. */
+typedef struct {
+    double value, rate, bend;
+} end_course;
+
+static end_course end_of(const fu_model *model, const fu_point_force *between, const fu_state *state, int bound, double h)
+{
+    const int dim = between->dim;
+    const look l = look_at(model, between, state);
+    const double rate = fu_dot(dim, l.gap, l.rate) / l.distance;
+    const double bend = (fu_dot(dim, l.rate, l.rate) + fu_dot(dim, l.gap, l.acceleration) - rate * rate) / l.distance;
+    return (end_course){l.distance - between->bounds[bound], h * rate, h * h * bend};
+}
+
+/* Returns where the polynomial is at a part of the step: of degree 3 where the bends at its ends are not known, else of degree 5. */
+static double between_ends(end_course a, end_course b, int bends, double x)
+{
+    const double y = 1.0 - x;
+    if (!bends)
+        return y * y * ((1.0 + 2.0 * x) * a.value + x * a.rate) + x * x * ((1.0 + 2.0 * y) * b.value - y * b.rate);
+    return y * y * y * ((1.0 + 3.0 * x + 6.0 * x * x) * a.value + x * (1.0 + 3.0 * x) * a.rate + 0.5 * x * x * a.bend) +
+           x * x * x * ((1.0 + 3.0 * y + 6.0 * y * y) * b.value - y * (1.0 + 3.0 * y) * b.rate + 0.5 * y * y * b.bend);
+}
+
+/* By the polynomial of the distance through both ends of the step (Hermite's); where a damper turns the force round, by the line of its
+ * margins. */
 static double passed(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,
-                     const char **what)
+                     int bends, const char **what)
 {
     const fu_point_force *between = force_of(coupling);
     const int before = fu_force_piece(between, from), there = fu_force_piece(between, to);
@@ -163,11 +211,9 @@ static double passed(const fu_model *model, const fu_coupling *coupling, const f
         return a < 0.0 && b > 0.0 ? a / (a - b) : 1.0;
     }
     const int bound = up ? before : before - 1;
-    const fu_course a = from_bound(model, between, from, bound), b = from_bound(model, between, to, bound);
+    const end_course a = end_of(model, between, from, bound, h), b = end_of(model, between, to, bound, h);
     for (int i = 0; i < BISECTIONS; ++i) {
-        const double x = 0.5 * (low + high), y = 1.0 - x;
-        const double way = y * y * ((1.0 + 2.0 * x) * a.value + x * h * a.rate) +
-                           x * x * ((1.0 + 2.0 * y) * b.value - y * h * b.rate);
+        const double x = 0.5 * (low + high), way = between_ends(a, b, bends, x);
         if ((up ? way : -way) < 0.0) low = x;
         else high = x;
     }
@@ -200,29 +246,6 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
 {
     (void)which;
     return next_passage(run->model, force_of(coupling), state).margin;
-}
-
-/* The distance of the points at a state, and what tells of the force: the gap, its rate, its acceleration. */
-typedef struct {
-    double distance, gap[3], rate[3], acceleration[3];
-} look;
-
-static look look_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
-{
-    look l = {.distance = 0.0};
-    for (int e = 0; e < 2; ++e) {
-        fu_attachment_state at;
-        fu_attachment_at(model, &between->attachments[e], state, 0.0, FU_POINT, &at);
-        for (int d = 0; d < between->dim; ++d) {
-            double acceleration = at.bias[d];
-            for (int i = 0; i < at.n; ++i) acceleration += at.P[d * at.n + i] * state->acceleration[at.at[i]];
-            l.gap[d] += e ? at.p[d] : -at.p[d];
-            l.rate[d] += e ? at.v[d] : -at.v[d];
-            l.acceleration[d] += e ? acceleration : -acceleration;
-        }
-    }
-    l.distance = norm(between->dim, l.gap);
-    return l;
 }
 
 /* Returns by how much the distance is beyond that of a bound to a side, m, and its rate. */

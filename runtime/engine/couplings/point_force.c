@@ -3,6 +3,7 @@
  */
 #include "engine.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Makes position and velocity of an attachment's point, and how it moves with its coordinates; returns its first dof. */
@@ -42,18 +43,80 @@ static void force_at(const fu_model *model, const fu_coupling *coupling, const f
     force_of_piece(between, fu_force_piece(between, state), gap, rate, force);
 }
 
+static double length(int dim, const double *gap)
+{
+    return sqrt(fu_dot(dim, gap, gap));
+}
+
+/* A way over several pieces of a law without a damper: the distances at its ends, m, and the mean tension, N. */
+typedef struct {
+    double from, to, tension;
+} way;
+
+/* Returns the way from one gap to another. The tension of each piece counts for as much of it as lies on the piece: what the mean does
+ * on the way is the change of the energy. */
+static way way_of(const fu_point_force *between, const double gap[3], const double gap_next[3])
+{
+    const int dim = between->dim;
+    const double from = length(dim, gap), to = length(dim, gap_next), low = fmin(from, to), high = fmax(from, to);
+    double work = 0.0;
+    for (int piece = 0; piece < between->n_pieces; ++piece) {
+        const double a = piece > 0 ? fmax(low, between->bounds[piece - 1]) : low;
+        const double b = piece < between->n_pieces - 1 ? fmin(high, between->bounds[piece]) : high;
+        const double start[3] = {a, 0.0, 0.0}, end[3] = {b, 0.0, 0.0};
+        double tension[3], unused;
+        if (!(b > a) || between->senses[piece] == FU_HAS_NO_FORCE) continue;
+        between->law->discrete_force(fu_piece_parameters(between, piece), 1.0, start, end, tension, &unused);
+        work += tension[0] * (b - a);
+    }
+    return (way){from, to, work / (high - low)};
+}
+
+/* Makes the derivatives of the mean force by the gap in the middle, which moves by half of what its end does: those across the mean
+ * direction are of the mean tension. */
+static void mean_stiffness(const fu_point_force *between, const double gap[3], const double gap_next[3], int piece, double by_gap[9])
+{
+    const way w = way_of(between, gap, gap_next);
+    const int dim = between->dim;
+    const double end[3] = {w.to, 0.0, 0.0}, rate[3] = {0.0, 0.0, 0.0};
+    double tension[3], e[3];
+    force_of_piece(between, piece, end, rate, tension);
+    const double along = 2.0 * (tension[0] - w.tension) / (w.to - w.from), across = 2.0 * w.tension / (w.from + w.to);
+    for (int d = 0; d < dim; ++d) e[d] = (gap[d] + gap_next[d]) / (w.from + w.to);
+    for (int d = 0; d < dim; ++d)
+        for (int k = 0; k < dim; ++k) by_gap[d * dim + k] = (along - across) * e[d] * e[k] + (d == k ? across : 0.0);
+}
+
+/* Returns the piece on which a step ends: without a damper that of the distance, as energy has it. */
+static int step_piece(const fu_model *model, const fu_point_force *between, const fu_equations *at)
+{
+    return between->base.is_damped ? fu_force_piece(between, at->next) : fu_piece_at(model, between, at->next);
+}
+
+/* Returns whether the force over a step is that of several pieces: those of a law without a damper that the distance goes over. */
+static int is_of_several(const fu_model *model, const fu_point_force *between, const fu_equations *at)
+{
+    if (between->base.is_damped || between->n_pieces == 1) return 0;
+    return fu_piece_at(model, between, at->now) != fu_piece_at(model, between, at->next);
+}
+
 /* Makes the force over a step; returns the power that it dissipates, W. */
 static double step_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double force[3])
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    const int piece = fu_force_piece(between, at->next);
+    const int several = is_of_several(model, between, at), piece = step_piece(model, between, at);
     double gap[3], gap_next[3], unused[3], power;
-    if (between->senses[piece] == FU_HAS_NO_FORCE) {
+    if (!several && between->senses[piece] == FU_HAS_NO_FORCE) {
         memset(force, 0, sizeof(double[3]));
         return 0.0;
     }
     fu_gap(model, between, at->now->q, model->zero, gap, unused);
     fu_gap(model, between, at->next->q, model->zero, gap_next, unused);
+    if (several) {
+        const way w = way_of(between, gap, gap_next);
+        for (int d = 0; d < between->dim; ++d) force[d] = w.tension * (gap[d] + gap_next[d]) / (w.from + w.to);
+        return 0.0;
+    }
     between->law->discrete_force(fu_piece_parameters(between, piece), at->h, gap, gap_next, force, &power);
     return power;
 }
@@ -146,17 +209,20 @@ void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_stat
     fu_turn_columns(body->kernel, K, n, n, 0, turn);
 }
 
-/* Adds the derivatives of the equations at a state to a system, by the law of a piece; own: the forces; psi as in fu_equations. */
+/* Adds the derivatives of the equations at a state to a system, by the law of a piece; own: the forces; psi as in fu_equations;
+ * known: the derivatives by the gap of a force that does not follow that law, else null. */
 static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int piece, const double *own,
-                   const double *psi, fu_weights weights, fu_system *system)
+                   const double *psi, const double *known, fu_weights weights, fu_system *system)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int dim = between->dim, row = fu_extra(model, coupling->unknown);
     const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), stiffness = weights.stiffness;
     double gap[3], rate[3], force[3], by_gap[9], by_rate[9];
     fu_gap(model, between, state->q, state->v, gap, rate);
-    if (between->senses[piece] == FU_HAS_NO_FORCE) memset(by_gap, 0, sizeof by_gap), memset(by_rate, 0, sizeof by_rate);
-    else between->law->tangent(fu_piece_parameters(between, piece), gap, rate, force, by_gap, by_rate);
+    memset(by_gap, 0, sizeof by_gap), memset(by_rate, 0, sizeof by_rate);
+    if (known) memcpy(by_gap, known, sizeof by_gap);
+    else if (between->senses[piece] != FU_HAS_NO_FORCE)
+        between->law->tangent(fu_piece_parameters(between, piece), gap, rate, force, by_gap, by_rate);
     for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
@@ -186,15 +252,22 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
     const int piece = fu_force_piece((const fu_point_force *)coupling, at->next);
-    matrix(model, coupling, at->next, piece, at->next->forces + coupling->force, at->psi, at->weights, system);
+    matrix(model, coupling, at->next, piece, at->next->forces + coupling->force, at->psi, 0, at->weights, system);
 }
 
 /* The middle moves by half of psi, which weights.stiffness has. */
 static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                                  fu_system *system)
 {
-    const int piece = fu_force_piece((const fu_point_force *)coupling, at->next);
-    matrix(model, coupling, at->middle, piece, at->next->forces + coupling->force, 0, at->weights, system);
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int several = is_of_several(model, between, at), piece = step_piece(model, between, at);
+    double gap[3], gap_next[3], unused[3], by_gap[9];
+    if (several) {
+        fu_gap(model, between, at->now->q, model->zero, gap, unused);
+        fu_gap(model, between, at->next->q, model->zero, gap_next, unused);
+        mean_stiffness(between, gap, gap_next, piece, by_gap);
+    }
+    matrix(model, coupling, at->middle, piece, at->next->forces + coupling->force, 0, several ? by_gap : 0, at->weights, system);
 }
 
 static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)

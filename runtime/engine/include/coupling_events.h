@@ -46,9 +46,10 @@ struct fu_coupling_events {
      *
      * Makes the flags of `to` those that follow from the flags of `from` and from where `to` is; returns whether that changes them. */
     int (*pass)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to);
-    /* Returns after which part of a step of h from one state to the other the coupling has passed; *what as above. */
+    /* Returns after which part of a step of h from one state to the other the coupling has passed; *what as above. Bends: the states
+     * have the accelerations there, and not means of steps. */
     double (*passed)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,
-                     const char **what);
+                     int bends, const char **what);
     /* Returns how long before a state close to it the coupling has passed what it is about to, s; not a number where that needs the
      * state itself. */
     double (*since)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);

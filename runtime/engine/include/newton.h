@@ -34,6 +34,6 @@ int fu_newton_step(fu_run *run, const fu_newton *method, double h);
 void fu_predict_own(fu_run *run, double h);
 void fu_add_solution(fu_run *run, double inertia, double scale);
 double fu_spread_size(fu_run *run);
-double fu_filtered_size(fu_run *run, double square);
+double fu_filtered_size(fu_run *run);
 
 #endif

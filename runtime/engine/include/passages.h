@@ -5,11 +5,12 @@
 #include "coupling_events.h"
 
 int fu_can_pass(const fu_coupling *coupling);
-void fu_choose_passages(fu_run *run);
+int fu_choose_passages(fu_run *run, int first);
+int fu_strayed(const fu_run *run);
 int fu_count_passages(const fu_run *run);
 void fu_undo_passages(fu_run *run);
 void fu_note_passages(fu_run *run, double h);
-void fu_add_passed_forces(const fu_run *run, double factor, double *f);
+double fu_passage_error(fu_run *run, double h);
 int fu_take_passage(fu_run *run);
 
 #endif

@@ -79,6 +79,8 @@ struct fu_run {
     double matrix_cost; /* of the factored matrix and of the steps made with it, in iterations */
     int matrix_steps;   /* how many these are */
     int factored, stopped_slide, turned, acts;
+    int goes_over;   /* the last passage that a step led to was gone over */
+    int most_passages; /* of any stage of a step, of those of other integrators of its end */
     int keep_forces; /* couplings pass nothing in a step, which ends where one of them would */
     int keep_pieces; /* couplings keep their pieces in a step, which ends where one of them leaves its piece */
     int net_rejections; /* steps rejected of late, less those taken */

@@ -84,6 +84,7 @@ static void kinematics(fu_run *run, double h)
         m.v[i] = run->psi[i] / h;
     }
     fu_between(model, now->q, next->q, m.q);
+    if (fu_choose_passages(run, 1)) run->factored = 0;
 }
 
 /* Returns the equations over a step. */
@@ -177,7 +178,7 @@ static double error(fu_run *run, double h)
     const double factor = h * h * h / 12.0 / (0.5 * h + run->since);
     for (int i = 0; i < run->model->n_dof; ++i)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
-    return fu_filtered_size(run, 0.0);
+    return fu_filtered_size(run);
 }
 
 /* Adds the work of the forces that are not conserved, as the step has it: energy balances to rounding. */
@@ -189,6 +190,7 @@ static void account(fu_run *run, double h)
     const fu_state middle_state = middle_of(run, h);
     const fu_equations at = equations(run, &middle_state, h);
     run->since = 0.5 * h;
+    if (fu_count_passages(run)) run->factored = 0; /* the matrix has the mean stiffness of the step's way */
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_rate_forces(model, m.q, m.v, m.force);
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof; /* gyroscopic moments do no work */

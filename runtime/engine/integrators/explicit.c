@@ -94,7 +94,9 @@ static int move_to(fu_run *run, const double *row, int n, double t, double h)
     combine(run, row, n, h, next->q, next->v);
     next->t = t;
     if (model->n_motions) fu_prescribe(model, next);
-    return fu_find_own(run);
+    if (fu_find_own(run)) return 1;
+    fu_choose_passages(run, n == 1);
+    return 0;
 }
 
 static int start(fu_run *run)
@@ -177,6 +179,12 @@ static double error(fu_run *run, double h)
     return fine * fine / sqrt(fine * fine + COARSE_SHARE * coarse * coarse);
 }
 
+static fu_quadrature quadrature(const fu_run *run)
+{
+    const tableau method = tableau_of(run);
+    return (fu_quadrature){method.stages, method.b, method.c};
+}
+
 static void account(fu_run *run, double h)
 {
     const tableau method = tableau_of(run);
@@ -195,4 +203,5 @@ const fu_integrator fu_explicit = {.name = "explicit",
                                    .start = start,
                                    .step = step,
                                    .error = error,
+                                   .quadrature = quadrature,
                                    .account = account};

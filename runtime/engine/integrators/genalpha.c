@@ -19,7 +19,6 @@
 #include <string.h>
 
 #define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
-#define PASSAGE 1.0 /* of a step: twice the most that a velocity errs by over the force of a passage, lest energy come of it */
 
 
 typedef struct {
@@ -111,7 +110,7 @@ static void kinematics(fu_run *run, double h)
     fu_share(model->threads, model->n_dof, kinematics_part, &job);
     fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
-    fu_choose_passages(run);
+    if (fu_choose_passages(run, 1)) run->factored = 0; /* the matrix is of the flags that it was made with */
 }
 
 /* Returns the equations at the end of a step. */
@@ -185,15 +184,22 @@ static int step(fu_run *run, double h)
 
 /* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has changed its
  * element the accelerations have jumped at some instant of the step, and velocities are wrong by the part of h that lies
- * between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. Where the step
- * goes over a passage, the same holds of what the force of that has become. */
+ * between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. */
 static double error(fu_run *run, double h)
 {
     const parameters *g = scheme_of(run);
     const double smooth = fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
     const double factor = h * h * (fu_count_changes(run) ? JUMP : smooth);
     fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration, run->work);
-    return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run, PASSAGE * h * h);
+    return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run);
+}
+
+/* What the spectral radius changes of the rule of trapezoids, passages do not need. */
+static fu_quadrature quadrature(const fu_run *run)
+{
+    static const double b[] = {0.5, 0.5}, c[] = {0.0, 1.0};
+    (void)run;
+    return (fu_quadrature){2, b, c};
 }
 
 static void account(fu_run *run, double h)
@@ -221,7 +227,9 @@ const fu_integrator fu_genalpha = {.name = "genalpha",
                                    .start = start,
                                    .step = step,
                                    .error = error,
+                                   .quadrature = quadrature,
                                    .account = account,
+                                   .has_matrix = 1,
                                    .crosses_boundaries = 1,
                                    .keeps_scratch = 1,
                                    .newton = &newton};

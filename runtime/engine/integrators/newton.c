@@ -277,13 +277,11 @@ int fu_newton_step(fu_run *run, const fu_newton *method, double h)
 }
 
 /* Returns the size of an error of positions in run->work, passed through (M + sigma K)^-1 M on the constraints' tangent space so that
- * vibrations that the step does not resolve count by their amplitude and not by their acceleration; with what the forces of the step's
- * passages make in a time of which this is the square, s^2. */
-double fu_filtered_size(fu_run *run, double square)
+ * vibrations that the step does not resolve count by their amplitude and not by their acceleration. */
+double fu_filtered_size(fu_run *run)
 {
     const fu_model *model = run->model;
     fu_mass_times(model, run->next.q, run->work, run->before);
-    fu_add_passed_forces(run, square, run->before);
     fu_gather(model, run->before, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
     const double begin = fu_clock();

@@ -141,6 +141,12 @@ static int step(fu_run *run, double h)
     return fu_complete(run, &run->next) ? fu_fail_eq38(run) : 0;
 }
 
+static fu_quadrature quadrature(const fu_run *run)
+{
+    const fu_radau_parameters *method = fu_radau_method(run);
+    return (fu_quadrature){STAGES, method->A + STAGES * (STAGES - 1), method->c};
+}
+
 static void forget(fu_run *run)
 {
     fu_radau_space(run)->h_last = 0.0;
@@ -152,5 +158,7 @@ const fu_integrator fu_radau = {.name = "radau",
                                 .start = start,
                                 .step = step,
                                 .error = fu_radau_error,
+                                .quadrature = quadrature,
                                 .account = fu_radau_account,
+                                .has_matrix = 1,
                                 .forget = forget};

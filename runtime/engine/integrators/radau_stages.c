@@ -61,7 +61,9 @@ int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h)
     for (int i = 0; i < model->n_dof; ++i) next->v[i] = run->now.v[i] + w->Z[(long)k * model->n_dof + i];
     next->t = run->now.t + fu_radau_method(run)->c[k] * h;
     if (model->n_motions) fu_prescribe(model, next);
-    return fu_find_own(run);
+    if (fu_find_own(run)) return 1;
+    fu_choose_passages(run, k == 0);
+    return 0;
 }
 
 /* Keeps the multipliers of the state that accelerations have just been found of, as those of stage k. */

@@ -110,11 +110,11 @@ static double root_of_parabola(double g_low, double g_high, double rate)
     return square > 0.0 ? -2.0 * g_low / (rate + sqrt(square)) : -g_low / (g_high - g_low);
 }
 
-/* Returns the coupling whose passage an event is; null where it is none. */
+/* Returns the coupling whose own an event is, and which tells when it happens; null where there is none. */
 static const fu_coupling *passing(const fu_run *run, fu_event event)
 {
     const fu_coupling *c = event.kind == FU_WATCHED ? fu_own_coupling(run, event.which) : 0;
-    return c && fu_can_pass(c) ? c : 0;
+    return c && c->type->events->passed ? c : 0;
 }
 
 /* Returns whether a step may end a little off an event: the slope of a force jumps there, which over so short a way makes nothing, and
@@ -122,7 +122,7 @@ static const fu_coupling *passing(const fu_run *run, fu_event event)
 static int may_miss(const fu_run *run, fu_event event)
 {
     const fu_coupling *c = passing(run, event);
-    return c && run->fixed_step <= 0.0 && !c->is_damped;
+    return c && fu_can_pass(c) && run->fixed_step <= 0.0;
 }
 
 /* Where a step that ends on an event ends: the event's value is `aim` there, within `close`. */
@@ -225,7 +225,8 @@ static double locate(fu_run *run, fu_event event, double h)
     }
     const fu_coupling *passes = passing(run, event);
     const char *unused;
-    if (passes) middle = h * passes->type->events->passed(run->model, passes, &run->now, &run->next, h, &unused);
+    if (passes)
+        middle = h * passes->type->events->passed(run->model, passes, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
     if (b.g_high <= at.aim + at.close) return h;
     if (is_of_a_coupling(run, event) && fabs(b.g_low) <= (at.aim > 0.0 ? PRECISE * (b.g_high - b.g_low) : at.close)) {
         const int found = leave_zero(run, event, &b, least, at.close);

@@ -1,6 +1,8 @@
 /* Steps: their size, trial, error and events, until one is accepted. */
 #include "engine.h"
 
+#include <math.h>
+
 #define SMALLEST_STEP 1e-12   /* of the duration: a run that needs a shorter step ends */
 #define BEYOND 0.1            /* of a step: how far it may go on after a coupling should have reached its boundary */
 #define MOST_REJECTIONS 10000 /* steps rejected beyond those taken, before a run ends */
@@ -64,15 +66,16 @@ static int must_keep_pieces(const fu_run *run)
 /* Returns whether couplings must pass nothing in a step, which ends where one of them would. */
 static int must_keep_forces(const fu_run *run)
 {
-    return !is_adaptive(run) || !run->integrator->crosses_boundaries;
+    if (run->integrator->keeps_energy) return 0;
+    return !is_adaptive(run) || !run->goes_over || !run->integrator->quadrature;
 }
 
 /* A step that is tried: the size that is wanted and the one that is taken, s; where it is cut, as something watched is farthest
  * beyond zero there, s, else 0, and how often; its error, m, and that over what is allowed; how many boundaries couplings have
- * passed in it, and how many passages it goes over; the event that it ends on. */
+ * passed in it, and how many passages it goes over; whether it has been found to go over none; the event that it ends on. */
 typedef struct {
     double want, h, cut, error, ratio;
-    int cuts, changes, passages;
+    int cuts, changes, passages, refused;
     fu_event event;
 } trial;
 
@@ -105,9 +108,17 @@ static int make(fu_run *run, double h)
 /* Returns the estimate of the step's error, m. */
 static double error_of(fu_run *run, double h)
 {
-    const double begin = uncounted(run), error = run->integrator->error(run, h);
+    const double begin = uncounted(run), error = fmax(run->integrator->error(run, h), fu_passage_error(run, h));
     run->statistics.time_error += uncounted(run) - begin;
     return error;
+}
+
+/* Lets couplings be as in `now` for the rest of the step. */
+static void refuse(fu_run *run, trial *t)
+{
+    fu_undo_passages(run);
+    t->refused = 1;
+    run->goes_over = 0;
 }
 
 /* Makes the step and estimates its error; returns 0 where it is rejected, and a shorter one is wanted. */
@@ -116,19 +127,24 @@ static int attempt(fu_run *run, trial *t)
     const double allowed = fu_allow(run, t->h);
     run->failure.cause = FU_NO_FAILURE;
     run->usual = t->want;
+    run->most_passages = 0;
     if (make(run, t->h)) {
         if (run->model->n_passing && !run->keep_forces) { /* its iteration may go to and fro over one */
-            fu_undo_passages(run);
+            refuse(run, t);
             return 0;
         }
         if (!run->failure.cause) fu_fail(run, FU_ITERATION, run->next.v, -1);
         t->want = fu_retry_step(run, t->h);
         return 0;
     }
+    if (fu_strayed(run)) {
+        refuse(run, t);
+        return 0;
+    }
     t->error = error_of(run, t->h);
     t->ratio = t->error / allowed;
     t->changes = fu_count_changes(run);
-    t->passages = fu_count_passages(run);
+    t->passages = run->integrator->quadrature ? fu_count_passages(run) : 0;
     if (is_adaptive(run) && !t->changes && !t->passages && !(t->ratio <= ACCEPTED)) {
         t->want = fu_shrink_step(run, t->h, t->ratio);
         return 0;
@@ -136,10 +152,22 @@ static int attempt(fu_run *run, trial *t)
     return 1;
 }
 
+/* Returns whether the step, which was made as if there were no passage, is to be made anew and go over those that it leads to. This comes
+ * first where the last passage was not gone over: iterations and stages beyond one cost more than without. */
+static int shall_go_over(fu_run *run, trial *t)
+{
+    if (!is_adaptive(run) || !run->integrator->quadrature || !run->keep_forces || t->refused || !run->model->n_passing) return 0;
+    run->keep_forces = 0;
+    fu_choose_passages(run, 1);
+    if (fu_count_passages(run) && fmax(t->error, fu_passage_error(run, t->h)) <= run->allowed) return 1;
+    fu_undo_passages(run);
+    return 0;
+}
+
 /* Finds the event that the step leads to. Where accelerations jump by too much within it, it shall end at the boundary. */
 static void find_event(fu_run *run, trial *t)
 {
-    if (t->passages && !(t->ratio <= 1.0)) fu_undo_passages(run);
+    if (t->passages && is_adaptive(run) && !(t->ratio <= 1.0)) refuse(run, t);
     t->event = fu_find_event(run, fu_no_event);
     if (t->changes && (t->event.kind == FU_CROSSING || !(t->ratio <= 1.0))) {
         fu_keep_pieces(run);
@@ -166,7 +194,7 @@ static int end_on_event(fu_run *run, trial *t)
 /* Returns whether a step that was cut at a jump is accurate: its error without the jump was not known before. */
 static int is_accurate_without_jump(fu_run *run, trial *t)
 {
-    const double ratio = error_of(run, t->h) / fu_allow(run, t->h);
+    const double ratio = fu_strayed(run) ? INFINITY : error_of(run, t->h) / fu_allow(run, t->h);
     if (ratio <= ACCEPTED) return 1;
     t->want = fu_shrink_step(run, t->h, ratio);
     return 0;
@@ -185,6 +213,7 @@ static int is_cut_at_dip(fu_run *run, trial *t)
 /* Takes a step that ends on no event; returns a status. */
 static int take_step(fu_run *run, const trial *t)
 {
+    if (t->passages) run->goes_over = 1;
     accept(run, t->h, t->event);
     if (fu_has_lost_a_watch(run)) return FU_NO_CONVERGENCE;
     run->turned = 0;
@@ -205,7 +234,7 @@ int fu_step_towards(fu_run *run, double target)
     run->keep_forces = must_keep_forces(run);
     for (;;) {
         if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
-        if (!attempt(run, &t)) continue;
+        if (!attempt(run, &t) || shall_go_over(run, &t)) continue;
         find_event(run, &t);
         const double turn = run->keep_pieces ? fu_time_of_turn(run, t.h) : 0.0;
         if (turn > shortest(run) && run->turned < MOST_TURNS) {
