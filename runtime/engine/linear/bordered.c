@@ -233,7 +233,8 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
         const fu_piece *columns = s->columns + start, *rows = s->rows + start;
         for (const fu_piece *p = columns; p < columns + s->n_columns[c]; ++p)
             for (const fu_piece *r = rows; r < rows + s->n_rows[c]; ++r)
-                s->D[fu_fronts_at(s->fronts, r->k, p->k)] -= times(s, r, p->rows, s->X + s->strips[p->strip].x);
+                if (r->rows.first < p->rows.end && p->rows.first < r->rows.end) /* else to find the place takes longer */
+                    s->D[fu_fronts_at(s->fronts, r->k, p->k)] -= times(s, r, p->rows, s->X + s->strips[p->strip].x);
     }
     if (s->D[s->fronts->size] != 0.0) return 1; /* the order of elimination has no place for it */
     if (s->fronts->n > 1) return fu_fronts_factor(s->fronts, s->D, &s->factors, lapack);
