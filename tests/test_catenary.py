@@ -6,6 +6,8 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular import catenary
+from funicular.catenary.form import add_wire
+from funicular.catenary.local_sag import mean_missing_compliance, missing_compliance
 from matplotlib.figure import Figure
 
 X = [4.5, 10.25, 16, 21.75, 27.5, 33.25, 39, 44.75, 50.5]
@@ -57,6 +59,33 @@ def test_lengths_of_the_55_m_line():
 def test_forces_come_to_those_of_strings_as_bending_goes():
     form = catenary.form(line55(bending=0.01), (0.25, 0.25))
     assert form.tensions == pytest.approx(form.line.strings.forces, rel=1e-2)  # kinks are rounded off over an element
+
+
+@pytest.mark.parametrize(("nodes", "at"), [(np.linspace(0, 40, 41), 20.0), (np.linspace(0, 40, 41), 20.4),
+                                           (np.array([0, 1, 3, 7, 11, 13, 14, 18, 20.0]), 11.0)])
+def test_elements_give_way_less_than_the_wire_by_what_is_said(nodes, at):
+    """A wire under 20 kN that is pushed by 1 N gives way as a string does, less the rounding of the kink."""
+    span, tension, bending, stretch = float(nodes[-1]), 20e3, 195.0, 1 + 20e3 / 15e6
+    scene = fu.Scene(gravity=(0, 0, 0))
+    wire = catenary.Wire(mass=1.35, tension=tension, axial_stiffness=15e6, bending_stiffness=bending)
+    add_wire(scene, "contact", wire, 0.0, span, 0.0, nodes / stretch)
+    for s in (0.0, scene.cables["contact"].length):
+        scene.pin("contact", s=s)
+    scene.force("contact", s=at / stretch, value=(0, 1.0, 0))
+    vectors = scene.equilibrium()["contact.nodal_vectors"][..., 1]
+    k = int(np.searchsorted(nodes, at, "right")) - 1
+    h = (nodes[k + 1] - nodes[k]) / stretch
+    z = (at - nodes[k]) / (nodes[k + 1] - nodes[k])
+    shapes = np.array([1 - 3 * z**2 + 2 * z**3, h * (z - 2 * z**2 + z**3), 3 * z**2 - 2 * z**3, h * (z**3 - z**2)])
+    exact = (at * (span - at) / span - np.sqrt(bending / tension) / 2) / tension
+    missing = missing_compliance(tension, bending, nodes, np.array([at]))
+    assert exact - shapes @ vectors[k:k + 2].ravel() == pytest.approx(missing[0], rel=4e-3)
+
+
+def test_fine_elements_give_way_as_the_wire_does():
+    nodes = np.linspace(0, 20, 401)
+    assert abs(missing_compliance(20e3, 195.0, nodes, np.array([10.0, 10.02]))).max() < 4e-9
+    assert mean_missing_compliance(20e3, 195.0, nodes[::20]) == pytest.approx(1.16e-6, rel=2e-2)
 
 
 def test_spans_repeat_the_one_that_was_formed():
@@ -128,7 +157,10 @@ def test_a_collector_rests_under_the_wire():
     rest = scene.equilibrium()
     raised = float(rest["pantograph_2.position"][1] - scene.bodies["pantograph_2"].position[1])
     assert float(rest["pantograph_contact.normal_force"]) == pytest.approx(120 - 50 * raised, rel=1e-6)
-    assert float(rest["pantograph_contact.penetration"]) == pytest.approx((120 - 50 * raised) / 50e3, rel=1e-6)
+    stiffness = scene.crossings["pantograph_contact"].stiffness  # of the collector, and of the dent between the nodes
+    dent = mean_missing_compliance(22e3, 179, np.arange(0, 60, 0.958))
+    assert 1 / stiffness == pytest.approx(1 / 50e3 + dent, rel=5e-3)
+    assert float(rest["pantograph_contact.penetration"]) == pytest.approx((120 - 50 * raised) / stiffness, rel=1e-6)
     # at a mast the wire is pushed up between two droppers, and against the arm
     assert 0.02 < raised < 0.06
 
@@ -205,38 +237,38 @@ def test_pictures(passage):
     assert [len(each.lines) for each in axes] == [6, 3, 9]
 
 
-def reference(sag=0.0):
-    """Return the line of EN 50318:2002, which is withdrawn; not printed are the droppers' lengths: level droppers."""
-    damping = {"mass_damping": catenary.mass_damping(0.005, 10.0), "damping_time": 1e-4}
+def reference():
+    """Return the line of EN 50318:2002, which is withdrawn; sag and damping are chosen as the benchmark says."""
+    damping = {"mass_damping": catenary.mass_damping(0.005, 20.0), "damping_time": 1e-4}
     return catenary.Line(
         spans=10, span=60.0, height=1.2, support=50e3, steady_arm=catenary.SteadyArm(stiffness=300),
         contact=catenary.Wire(mass=1.35, tension=20e3, axial_stiffness=15e6, bending_stiffness=195, **damping),
         messenger=catenary.Wire(mass=1.07, tension=16e3, axial_stiffness=12e6, bending_stiffness=131.7, **damping),
-        droppers=catenary.Droppers(at=[5, 10.5, 17, 23.5, 30, 36.5, 43, 49.5, 55], stiffness=100e3, sag=sag))
+        droppers=catenary.Droppers(at=[5, 10.5, 17, 23.5, 30, 36.5, 43, 49.5, 55], stiffness=100e3, sag=5e-3))
 
 
-ACCEPTED = {250: {"mean": (110, 120), "maximum": (175, 210)},
+ACCEPTED = {250: {"mean": (110, 120), "standard_deviation": (26, 31), "statistical_maximum": (190, 210),
+                  "statistical_minimum": (20, 40), "maximum": (175, 210), "minimum": (50, 75)},
             300: {"mean": (110, 120), "standard_deviation": (32, 40), "statistical_maximum": (210, 230),
                   "statistical_minimum": (-5, 20), "maximum": (190, 225), "minimum": (30, 55)}}
-"""Ranges of EN 50318:2002 that are met; the mean by the uplift force, which is chosen for it."""
+"""Ranges of EN 50318:2002; the mean by the uplift force, which is chosen for it, the others by sag and damping."""
 UPLIFT = {250: (0.048, 0.055), 300: (0.055, 0.065)}
-CONVERGED = {250: {"standard_deviation": 32.8, "minimum": 45.4}, 300: {"standard_deviation": 35.8, "minimum": 45.4}}
-"""Between meshes of 1 m and 0.5 m, and tolerances (tests/benchmarks/pantographs.py): to 4 %, and 4 N."""
+CONVERGED = {250: 30.6, 300: 35.0}
+"""Standard deviation: between meshes of 1 m and 0.5 m, and tolerances (tests/benchmarks/pantographs.py), to 1 %."""
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kmh", [250, 300])
 def test_ranges_of_the_withdrawn_reference_model(kmh):
-    scene = catenary.scene(reference(), (1.0, 2.0))
+    scene = catenary.scene(reference())
     catenary.add_pantograph(scene, TWO_MASSES, 20.0, kmh / 3.6)
-    run = scene.run(progress=False)
+    run = scene.run(progress=False, absolute_tol=5e-3, duration=358 / (kmh / 3.6))
     found = catenary.assess(run, [(240, 360)])
     for name, (low, high) in ACCEPTED[kmh].items():
         assert low < float(found[name][0]) < high, name
     low, high = UPLIFT[kmh]
     assert low < float(found.uplift.sel(mast=slice(241, 361)).max()) < high
     assert int(found.losses[0]) == 0
-    assert float(found.standard_deviation[0]) == pytest.approx(CONVERGED[kmh]["standard_deviation"], rel=0.04)
-    assert float(found.minimum[0]) == pytest.approx(CONVERGED[kmh]["minimum"], abs=4.0)
+    assert float(found.standard_deviation[0]) == pytest.approx(CONVERGED[kmh], rel=0.02)
     balance = run.energy_balance()
     assert np.abs(balance.residual).max() < 0.03 * balance.exchanged

@@ -12,12 +12,13 @@ from ..parts.material import Material
 from ..parts.section import GeneralSection
 from ..scene import Scene
 from .line import Line
+from .local_sag import missing_compliance
 from .wires import MODULUS, Wire
 
 if TYPE_CHECKING:
     from ..results.equilibrium import Equilibrium
 
-LONGEST = 1.0, 2.0
+LONGEST = 1.0, 1.0
 """Of an element of the contact wire and of the messenger, in m, where nothing else is said."""
 
 
@@ -25,9 +26,10 @@ LONGEST = 1.0, 2.0
 class Form:
     """A span at rest, on meshes with elements of `longest` or shorter: of the contact wire, of the messenger, in m.
 
-    lengths: of the droppers, free of force, in m; tensions: their forces in N; stiffnesses in N/m; contact_length,
-    messenger_length: of the wires, undeformed, in m; height: of the contact wire at the masts over that at the outer
-    droppers, in m; mast_force: the weight that an inner mast bears, in N; rest: the state of rest of the span.
+    lengths: of the droppers, free of force, in m; tensions: their forces in N; stiffnesses: theirs, and that of the
+    dents in both wires that elements leave out, in series, in N/m; contact_length, messenger_length: of the wires,
+    undeformed, in m; height: of the contact wire at the masts over that at the outer droppers, in m; mast_force: the
+    weight that an inner mast bears, in N; rest: the state of rest of the span.
     """
 
     line: Line
@@ -60,6 +62,14 @@ def add_wire(scene: Scene, name: str, wire: Wire, start: float, end: float, heig
                 section=section,
                 material=Material(youngs_modulus=MODULUS, poisson_ratio=0.3, density=density,
                                   mass_damping=wire.mass_damping, damping_time=wire.damping_time))
+
+
+def missing_at_droppers(line: Line, longest: tuple[float, float]) -> np.ndarray:
+    """Return by how much less elements of both wires give way to each dropper than the wires do, in m/N."""
+    at = np.array(line.droppers.at)
+    missing = [missing_compliance(wire.tension, wire.bending_stiffness, mesh(line, each) * line.span, at)
+               for wire, each in zip((line.contact, line.messenger), longest, strict=True)]
+    return missing[0] + missing[1]
 
 
 def hold_ends(scene: Scene) -> None:
@@ -101,10 +111,11 @@ def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
         scene.pin("messenger", s=s)
     hold_ends(scene)
     adjust, to = {"contact.rest_length": "free", "messenger.rest_length": "free"}, {}
+    missing = missing_at_droppers(line, longest)
     for k, x in enumerate(droppers.at):
         upper, lower = (x / line.span * lengths[name] for name in ("messenger", "contact"))
         distance, force = float(strings.distances[k]), float(strings.forces[k])
-        stiffness = droppers.stiffness_of(distance)
+        stiffness = 1 / (1 / droppers.stiffness_of(distance) + float(missing[k]))
         add_dropper(scene, f"dropper_{k + 1}", "messenger", (upper, lower), (line.hanging[k], droppers.contact_clamp),
                     stiffness=stiffness, length=distance - force / stiffness)
         adjust[f"dropper_{k + 1}.length"] = "free"
@@ -116,11 +127,12 @@ def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
 def _read(line: Line, longest: tuple[float, float], rest: Equilibrium) -> Form:
     names = [f"dropper_{k + 1}" for k in range(len(line.droppers.at))]
     forces = np.array([float(rest[f"{name}.tension"]) for name in names])
-    distances = np.array([float(rest[f"{name}.length"]) for name in names])
+    missing = missing_at_droppers(line, longest)
+    distances = np.array([float(rest[f"{name}.length"]) for name in names]) - missing * forces
     lengths = np.array([rest.adjusted[f"{name}.length"] for name in names])
     if line.droppers.axial_stiffness is not None:  # which is over this length, not over the distance
         lengths = distances / (1 + forces / line.droppers.axial_stiffness)
-    stiffnesses = np.array([line.droppers.stiffness_of(length) for length in lengths.tolist()])
+    own = np.array([line.droppers.stiffness_of(length) for length in lengths.tolist()])
     mast = 2 * float(rest["messenger@0.force"][1])
-    return Form(line, longest, lengths, forces, stiffnesses, rest.adjusted["contact.rest_length"],
+    return Form(line, longest, lengths, forces, 1 / (1 / own + missing), rest.adjusted["contact.rest_length"],
                 rest.adjusted["messenger.rest_length"], float(rest["contact.position"][0, 1]), mast, rest)

@@ -8,12 +8,14 @@ import numpy as np
 from pydantic import model_validator
 
 from ..errors import SceneError
+from ..parts.cable import Cable
 from ..parts.part import Part
 from ..parts.schemas import checked
 from ..parts.settings import overridden
 from ..parts.solids import Box
 from ..parts.validation import not_negative, positive, shown, vector
 from ..scene import Scene
+from .local_sag import mean_missing_compliance
 
 RUN = {"initial": "equilibrium", "integrator": "genalpha", "spectral_radius": 0.5, "tol": 1e-6, "absolute_tol": 2e-2,
        "quantities": ["contact.position.y"], "output_step": 0.004}
@@ -31,6 +33,9 @@ BASE_MASS = 1.0
 
 RADIUS = 0.05
 """m: from the wire's axis to the middle of the collector where they touch; more than any penetration."""
+
+NODES = 80
+"""Of the contact wire, from its start on: on so many the mean is taken of what its elements leave of the dent."""
 
 TURNING = 1.0
 """kg m²: moments of inertia of the masses, which do not turn."""
@@ -57,7 +62,8 @@ class Pantograph(Part):
     masses in kg; stiffness in N/m and damping in N s/m: of the spring and the damper below each mass, the last of them
     on the base. They are free of force where the collector meets the contact wire's height at its outer droppers; each
     mass bears its weight. uplift in N: the static force on the lowest mass; aerodynamic in N s²/m²: times the square
-    of the speed, added to it. contact_stiffness in N/m, between wire and collector.
+    of the speed, added to it. contact_stiffness in N/m, between wire and collector; the scene's
+    contact has it in series with the dent in the wire that elements leave out, see `local_sag`.
     """
 
     masses: Annotated[tuple[float, ...], _each("kg", above=True)]
@@ -116,5 +122,15 @@ def add_pantograph(scene: Scene, pantograph: Pantograph, at: float, speed: float
         scene.force(body, value=(0, lift - pantograph.masses[k] * scene.gravity[1], 0), name=f"{name}_lift_{k + 1}")
         scene.spring(body, bodies[k + 1], stiffness=pantograph.stiffness[k], damping=pantograph.damping[k],
                      length=APART, name=f"{name}_spring_{k + 1}")
-    scene.crossing("contact", bodies[0], radius=RADIUS, side=(0, 1, 0), stiffness=pantograph.contact_stiffness,
-                   name=f"{name}_contact")
+    scene.crossing("contact", bodies[0], radius=RADIUS, side=(0, 1, 0), name=f"{name}_contact",
+                   stiffness=1 / (1 / pantograph.contact_stiffness + _missing(wire)))
+
+
+def _missing(wire: Cable) -> float:
+    """Return by how much less the elements of the contact wire give way to a collector than the wire does, in m/N."""
+    modulus, length = wire.material.youngs_modulus, wire.drawn_through[-1][0] - wire.drawn_through[0][0]
+    tension = modulus * wire.section.area * (length / wire.length - 1)
+    if tension <= 0:
+        return 0.0
+    nodes = wire.node_s[:NODES] * length / wire.length
+    return mean_missing_compliance(tension, modulus * wire.section.second_moment_about_z, nodes)

@@ -176,7 +176,7 @@ cdef extern from "engine.h" nogil:
         int *done
         int most_numbers, most_unknowns
     ctypedef struct fu_system:
-        int n, width, m, n_chains, n_strips, n_strip_rows, definite
+        int n, width, m, n_chains, n_strips, n_strip_rows, definite, unpivoted
         const fu_strip *strips
         const int *first_strip
         const int *chain_start
@@ -191,6 +191,7 @@ cdef extern from "engine.h" nogil:
         const int *half
         double *K
         double *L
+        double *U
         double *B
         double *C
         double *D

@@ -313,7 +313,8 @@ cdef class Translation(Arrays):
         middles = (model.chains[:-1] + model.chains[1:]) // 2
         system.half = self._ints(np.searchsorted(np.sort([*model.chains[:-1], *middles]), np.arange(n), "right") - 1)
         system.D, system.mirror = self._zeros(elimination.size + 1.0), self._zeros(n)
-        system.L = self._zeros((width + 1.0) * (n + <double>FU_BAND_MORE(width) * chains))
+        factor = (width + 1.0) * (n + <double>FU_BAND_MORE(width) * chains)
+        system.L, system.U = self._zeros(factor), self._zeros(factor)
         system.pivot_band, system.pivot_border = self._int_zeros(n), self._int_zeros(m)
 
     cdef _state(self, fu_state *state, model):

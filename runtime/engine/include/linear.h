@@ -1,5 +1,5 @@
 /* Banded matrices with a border, and LAPACK for their parts: linear/band.c, linear/bordered.c,
- * linear/inverse.c, linear/small.c. */
+ * linear/unsymmetric_band.c, linear/inverse.c, linear/small.c. */
 #ifndef FUNICULAR_LINEAR_H
 #define FUNICULAR_LINEAR_H
 
@@ -78,7 +78,8 @@ typedef struct {
     int m;             /* border */
     int n_chains;
     int constant;      /* of the border, from the first on, that stay */
-    int definite;      /* the band is factored in L (band.c), else in K (dgbtrf) */
+    int definite;      /* the band is factored in L (band.c) */
+    int unpivoted;     /* where it is not: it is factored in L and U (unsymmetric_band.c), else in K (dgbtrf) */
     int n_strips, n_strip_rows; /* n_strip_rows: the numbers of B, or of C */
     const fu_strip *strips; /* by unknown of the border, then by chain */
     const int *first_strip; /* m + 1: of each unknown of the border, and n_strips */
@@ -86,7 +87,7 @@ typedef struct {
     const int *chains; /* n_chains + 1: the first row of each, and n */
     const int *half;   /* of each row of the band: 2 chain, and 1 more from the middle on */
     double *K;         /* LAPACK's band storage, FU_BAND_ROWS x n; of all systems of a run the same */
-    double *L;         /* (width + 1) x n, and FU_BAND_MORE for each chain */
+    double *L, *U;     /* (width + 1) x n, and FU_BAND_MORE for each chain */
     double *mirror;    /* n: right sides from the ends of chains backwards */
     double *B;         /* strip by strip */
     double *C;         /* the border's rows, likewise */
@@ -108,6 +109,9 @@ void fu_band_scale(int n, int width, double *A);
 void fu_band_forward(int n, int width, const double *A, int first, double *x);
 void fu_band_backward(int n, int width, const double *A, double *x);
 void fu_band_solve(int n, int width, const double *A, int first, double *x);
+
+int fu_unsymmetric_pack(const fu_system *system, int chain, double *L, double *U);
+int fu_unsymmetric_factor(int n, int width, double *L, double *U);
 
 int fu_fronts_block(const fu_fronts *fronts, int row, int column, int *stride);
 int fu_fronts_at(const fu_fronts *fronts, int row, int column);

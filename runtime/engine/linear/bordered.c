@@ -36,10 +36,16 @@ static int size_of(const fu_system *s, int chain)
     return s->chains[chain + 1] - s->chains[chain];
 }
 
+/* Returns where a chain's columns of L and U begin. */
+static long factor_at(const fu_system *s, int chain)
+{
+    return (s->width + 1) * ((long)s->chains[chain] + FU_BAND_MORE(s->width) * (long)chain);
+}
+
 /* Returns a chain's columns of L. */
 double *fu_factor_of(const fu_system *s, int chain)
 {
-    return s->L + (s->width + 1) * ((long)s->chains[chain] + FU_BAND_MORE(s->width) * (long)chain);
+    return s->L + factor_at(s, chain);
 }
 
 /* Makes, of K between these rows, the lower half in L as band.c wants it, backwards with the last row first; returns zero where
@@ -72,7 +78,12 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
         s->definite = fu_is_twisted(s, c) ? !fu_twisted_factor(s, lapack, c)
                                           : fu_pack(s, (fu_span){s->chains[c], s->chains[c + 1]}, 0, fu_factor_of(s, c)) &&
                                                 !fu_band_factor(lapack, size_of(s, c), width, fu_factor_of(s, c));
-    for (int c = 0; c < s->n_chains && !s->definite; ++c) {
+    s->unpivoted = !s->definite;
+    for (int c = 0; c < s->n_chains && s->unpivoted; ++c) {
+        double *L = s->L + factor_at(s, c), *U = s->U + factor_at(s, c);
+        s->unpivoted = fu_unsymmetric_pack(s, c, L, U) && !fu_unsymmetric_factor(size_of(s, c), width, L, U);
+    }
+    for (int c = 0; c < s->n_chains && !s->definite && !s->unpivoted; ++c) {
         int n = size_of(s, c), first = s->chains[c];
         lapack->dgbtrf(&n, &n, &width, &width, s->K + (long)first * rows, &rows, s->pivot_band + first, &info);
         if (info) return first + info;
@@ -111,7 +122,10 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
     if (s->inverted) multiply_chain(s, chain, (fu_span){of.first - start, of.end - start}, x + start);
     else if (s->definite && fu_is_twisted(s, chain)) fu_twisted_solve(s, chain, of, x);
     else if (s->definite) fu_band_solve(n, width, fu_factor_of(s, chain), of.first - start, x + start);
-    else
+    else if (s->unpivoted) {
+        fu_band_forward(n, width, s->L + factor_at(s, chain), of.first - start, x + start);
+        if (n) fu_band_backward(n, width, s->U + factor_at(s, chain), x + start);
+    } else
         lapack->dgbtrs("N", &n, &width, &width, &one, s->K + (long)start * rows, &rows, s->pivot_band + start,
                        x + start, &n, &info);
 }
@@ -219,7 +233,8 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
         const fu_piece *columns = s->columns + start, *rows = s->rows + start;
         for (const fu_piece *p = columns; p < columns + s->n_columns[c]; ++p)
             for (const fu_piece *r = rows; r < rows + s->n_rows[c]; ++r)
-                s->D[fu_fronts_at(s->fronts, r->k, p->k)] -= times(s, r, p->rows, s->X + s->strips[p->strip].x);
+                if (r->rows.first < p->rows.end && p->rows.first < r->rows.end) /* else to find the place takes longer */
+                    s->D[fu_fronts_at(s->fronts, r->k, p->k)] -= times(s, r, p->rows, s->X + s->strips[p->strip].x);
     }
     if (s->D[s->fronts->size] != 0.0) return 1; /* the order of elimination has no place for it */
     if (s->fronts->n > 1) return fu_fronts_factor(s->fronts, s->D, &s->factors, lapack);
