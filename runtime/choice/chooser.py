@@ -7,10 +7,11 @@ the mesh, and that of time, which the integrator bounds by the tolerance that it
 2. A ladder of meshes, each of half the element length, is run until the error of the next one can be extrapolated
    (`mesh_error`). On its second mesh two integrators are compared, which tells how loose the steps of the other probes
    may be (`time_error`). Meshes so close to each other that these steps hide it are run again with shorter ones.
+   Where the meshes do not converge from the first on, the finest one is run by the automatic choice, too: if the
+   cheaper integrator of the probes errs there by more than the second mesh tells, all is done again without it. What
+   moves along a cable faster than its waves makes short ones: then the ladder begins with meshes that show them
+   (`short_waves`).
 3. With more than one cable, each is run on half of its elements, the others as they are: that tells whose mesh matters.
-   Where the meshes do not converge from the first on, the finest one is run by the automatic choice, too: if the cheaper
-   integrator of the probes errs there by more than the second mesh tells, all is done again by the automatic choice. What moves along a cable faster than its waves makes
-   short ones: then the ladder begins with meshes that show them (`short_waves`).
 4. What cable elements leave out is estimated on the second mesh, from the energy of shear and the dependence of the
    motion on the bending stiffness (`indicators`).
 5. Of the models whose estimated error keeps the tolerance the one with the least work is taken (`deciding`): cables, or
@@ -39,7 +40,7 @@ from .indicators import SOFTER, deformation, shear_compliance, softened
 from .mesh_error import MeshError, mesh_error
 from .motion import motion
 from .probes import Probe, Prober, S, Simulate
-from .remaking import CableModel, remade, with_model
+from .remaking import CableModel, remade
 from .short_waves import elements_for_waves
 from .time_error import ASSUMED, DAMPING, InTime, compared
 
@@ -143,8 +144,6 @@ class Chooser(Generic[S]):
         level = 1 if all(each.base > 1 or each.fixed for each in self.free) else 2
         while True:
             try:
-                for each in self.free:
-                    with_model(each.cable, each.model(self.kinds[each.cable.name], level))
                 self.prober.scene_of(self.models(level))  # a coarse mesh may begin inside of what it touches
             except SceneError:
                 if 2 * level * self._base > MOST_ELEMENTS:
@@ -161,10 +160,10 @@ class Chooser(Generic[S]):
     def _in_time(self, level: int) -> InTime:
         """Return the integrators of the run and of probes, from runs on the mesh of a level."""
         models = self.models(level)
-        rubs = any(slide.friction is not None for slide in self.scene.slides.values())
-        found = compared(lambda integrator, tol: self.prober.probe(models, tol, integrator), self.prober.difference,
-                         self.settings.integrator, self.tol, rubs)
-        return found
+        rubbing = self.scene.slides, self.scene.contacts, self.scene.crossings
+        rubs = any(part.friction for parts in rubbing for part in parts.values())
+        return compared(lambda integrator, tol: self.prober.probe(models, tol, integrator), self.prober.difference,
+                        self.settings.integrator, self.tol, rubs)
 
     def _level_of_waves(self, level: int) -> int:
         """Return the level of a mesh that shows the short waves of what moves fast along a cable, a power of two times

@@ -61,8 +61,9 @@ def softened(scene: S, names: Collection[str]) -> S:
 @lru_cache
 def _soft(kind: type[Section]) -> type[Section]:
     """Return the sections of a kind with `SOFTER` second moments: what reads their radius still finds it."""
+    softer = [1, SOFTER, SOFTER, 1, 1, 1]
     return type(f"Soft{kind.__name__}", (kind,),
-                {"moments": lambda section: kind.moments(section) * [1, SOFTER, SOFTER, 1, 1, 1], "__module__": __name__})
+                {"moments": lambda section: kind.moments(section) * softer, "__module__": __name__})
 
 
 def deformation(cable: Cable, run: Run) -> float:

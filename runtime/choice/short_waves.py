@@ -1,8 +1,9 @@
 """Waves that a point makes which moves along a cable faster than the waves of its tension: coarse meshes have none.
 
-Waves of wave number k along a cable of tension T, bending stiffness B and mass m a metre have the speed
-sqrt((T + B k²)/m). A point that moves along at the speed v, a slide or a crossing, makes those of its own speed, with
-B k² = m v² - T. Meshes whose elements are longer than half such a wave agree with each other, and are all wrong.
+Waves of wave number k along a cable of tension T, stretch a, bending stiffness B and mass m, all of a metre at rest,
+have the speed sqrt((T/a + B k²)/m) along it. A point that moves along at the speed v, a slide or a crossing, makes
+those of its own speed, with B k² = m v² - T/a. Meshes whose elements are longer than half such a wave agree with each
+other, and are all wrong.
 """
 
 from __future__ import annotations
@@ -52,12 +53,13 @@ def _wave_number(cable: Cable, run: Run, s: np.ndarray) -> float:
     """
     area = float(cable.section.moments()[0])
     stretch = np.linalg.norm(along(cable, run[f"{cable.name}.nodal_vectors"], PARTS, 1), axis=-1).mean(axis=1)
-    tension = cable.material.youngs_modulus * area * ((stretch[1:] + stretch[:-1]) / 2 - 1)
+    stretch = (stretch[1:] + stretch[:-1]) / 2
+    tension = cable.material.youngs_modulus * area * (stretch - 1)
     way = np.abs(np.diff(s.reshape(len(run.time), -1)[:, 0]))
     speed = way / np.diff(run.time)
     bending = cable.material.youngs_modulus * min(cable.section.second_moment_about_z,
                                                   cable.section.second_moment_about_y)
-    k = np.sqrt(np.maximum(cable.material.density * area * speed**2 - tension, 0.0) / bending)
+    k = np.sqrt(np.maximum(cable.material.density * area * speed**2 - tension / stretch, 0.0) / bending)
     k = np.where(np.isfinite(k), k, 0.0)
     order = np.argsort(-k)
     gone = np.cumsum(np.nan_to_num(way)[order])

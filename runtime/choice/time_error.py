@@ -117,7 +117,11 @@ def compared(probe: Callable[[str, float], Probe], difference: Callable[[Probe, 
         return InTime(asked, tol, ASSUMED * tol, asked, min(tol, LOOSEST), ASSUMED, 1.0, tol,
                       f"integrator {asked}: as asked for")
     tried = min((1.0 if rubs else LOOSER) * tol, LOOSEST)
-    found, other = probe(AUTO, tried), probe(DAMPING, tried)
+    found = probe(AUTO, tried)
+    if found.run is None and tried > tol:  # steps that are too long may end nowhere
+        tried = tol
+        found = probe(AUTO, tried)
+    other = probe(DAMPING, tried)
     apart = difference(other, found)
     if found.run is None or not np.isfinite(apart):  # one of them fails
         return InTime(AUTO, tol, ASSUMED * tol, AUTO, tried, ASSUMED, (tried / tol) ** OF_AUTO, tried,
