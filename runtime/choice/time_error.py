@@ -16,6 +16,9 @@ import numpy as np
 from ..integrators import AUTO
 from .probes import INSTANTS, Probe
 
+TIGHTER = 10.0
+"""By what the tolerance of the automatic choice is made smaller where it ends nowhere with that of the run."""
+
 SHARE = 0.5
 """Of the tolerance, at most, for the error of generalised-alpha in time; model and mesh get what it leaves."""
 
@@ -93,8 +96,9 @@ class InTime:
 
     def automatic(self, tol: float, why: str) -> InTime:
         """Return it with the automatic choice for the run and its probes; tol: that of the choice; why: in words."""
-        return replace(self, integrator=AUTO, tol=tol, error=ASSUMED * tol, probed=AUTO, probe_tol=self.tried,
-                       rate=ASSUMED, longer=(self.tried / tol) ** OF_AUTO,
+        own = min(tol, self.tried)
+        return replace(self, integrator=AUTO, tol=own, error=ASSUMED * tol, probed=AUTO, probe_tol=self.tried,
+                       rate=ASSUMED, longer=(self.tried / own) ** OF_AUTO,
                        why=f"integrator {AUTO}, by stiffness and tolerance: {why}")
 
     def tightened(self, tol: float) -> InTime | None:
@@ -118,22 +122,24 @@ def compared(probe: Callable[[str, float], Probe], difference: Callable[[Probe, 
                       f"integrator {asked}: as asked for")
     tried = min((1.0 if rubs else LOOSER) * tol, LOOSEST)
     found = probe(AUTO, tried)
-    if found.run is None and tried > tol:  # steps that are too long may end nowhere
-        tried = tol
-        found = probe(AUTO, tried)
+    for shorter in (tol, tol / TIGHTER):  # steps that are too long may end nowhere
+        if found.run is None and shorter < tried:
+            tried = shorter
+            found = probe(AUTO, tried)
+    own = min(tol, tried)
     other = probe(DAMPING, tried)
     apart = difference(other, found)
     if found.run is None or not np.isfinite(apart):  # one of them fails
-        return InTime(AUTO, tol, ASSUMED * tol, AUTO, tried, ASSUMED, (tried / tol) ** OF_AUTO, tried,
+        return InTime(AUTO, own, ASSUMED * tol, AUTO, tried, ASSUMED, (tried / own) ** OF_AUTO, tried,
                       f"integrator {AUTO}, by stiffness and tolerance: on a coarse mesh {DAMPING} fails, or it does")
     rate = max(apart / tried, AT_LEAST if _is_bounded(other) else 1e-300)
-    allowed, loose = min(SHARE * tol / rate, tol), min(AT_FIRST * tol / rate, tried)
+    allowed, loose = min(SHARE * tol / rate, own), min(AT_FIRST * tol / rate, tried)
     work, probing = (other.work * (tried / one) ** OF_DAMPING for one in (allowed, loose))
     best = found.work * (tried / tol) ** OF_AUTO
     probed = (DAMPING, loose, rate) if probing <= FINER * found.work else (AUTO, tried, ASSUMED)
     spent = probing if probed[0] == DAMPING else found.work
     if allowed < TIGHTEST * tol or work >= FINER * best:
-        return InTime(AUTO, tol, ASSUMED * tol, *probed, best / spent, tried,
+        return InTime(AUTO, own, ASSUMED * tol, *probed, best / spent, tried,
                       f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on a coarse mesh is "
                       f"{apart:.1e} with tol {tried:.2g}, is no cheaper")
     return InTime(DAMPING, allowed, rate * allowed, *probed, work / spent, tried,

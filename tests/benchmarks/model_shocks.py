@@ -147,13 +147,14 @@ def _factor(elements: int, finer: int) -> int:
 def row(name: str, tol: float, finer: int, seconds: float = 60.0) -> dict:
     """One line of the table."""
     subject = SCENES[name]
-    found: dict = {"scene": name, "tol": tol}
+    found: dict = {"scene": name, "tol": tol, "error/tol": float("nan"), "estimate": float("nan"), "kept": False,
+                   "probes": 0, "choice": float("nan"), "chosen": ""}
     try:
         choice = subject.make().choose(tol, duration=subject.duration, initial=subject.initial, free="all")
     except fu.FunicularError as error:
         return found | {"chosen": f"refused: {error}"[:150]}
     models = "; ".join(dict.fromkeys(map(str, choice.models.values())))
-    found |= {"error/tol": float("nan"), "estimate": choice.error / tol, "kept": choice.kept, "probes": choice.probes,
+    found |= {"estimate": choice.error / tol, "kept": choice.kept, "probes": choice.probes,
               "chosen": f"{models}, {choice.integrator} {choice.time_tol:.1g}"}
     settings = {"output_step": subject.duration / TIMES, "initial": subject.initial}
     try:
