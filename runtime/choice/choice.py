@@ -38,7 +38,7 @@ class Choice(Generic[S]):
     runs that took, seconds: their CPU time with all else; given: cables whose element or mesh was given: what these err
     by is not in the estimate; planar: what is said of a spatial scene that was chosen planar, else empty; mesh_error:
     what of the error is that of the mesh; unchanged: the quantities that stay as they are, so that nothing can be
-    estimated of them.
+    estimated of them; unresolved: what no mesh at hand resolves and is not in the estimate.
     """
 
     scene: S
@@ -57,6 +57,7 @@ class Choice(Generic[S]):
     planar: str = ""
     mesh_error: float = 0.0
     unchanged: list[str] = field(default_factory=list)
+    unresolved: list[str] = field(default_factory=list)
 
     @property
     def table(self) -> list[dict[str, Any]]:
@@ -69,11 +70,11 @@ class Choice(Generic[S]):
 
     def messages(self) -> list[str]:
         """Return what the messages of a run say of the choice."""
-        kept = "" if self.kept else f"; no model at hand keeps it, the estimate is {self.error:.1e}"
+        kept = "" if self.kept or self.unresolved else f"; no model at hand keeps it, the estimate is {self.error:.1e}"
         given = f"; what was given of {', '.join(self.given)} is kept, its error not estimated" if self.given else ""
         still = [f"{' and '.join(self.unchanged)} did not change in the short runs: nothing is estimated of that"]
         return [f"model chosen {self.heading}{kept}{given}", *([self.planar] if self.planar else []),
-                *(still if self.unchanged else [])]
+                *(still if self.unchanged else []), *self.unresolved]
 
     def facts(self) -> dict[str, Any]:
         """Return what the report of a run says of the choice."""

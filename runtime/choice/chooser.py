@@ -7,6 +7,10 @@ the mesh, and that of time, which the integrator bounds by the tolerance that it
 2. A ladder of meshes, each of half the element length, is run until the error of the next one can be extrapolated
    (`mesh_error`). On its second mesh two integrators are compared, which tells how loose the steps of the other probes
    may be (`time_error`). Meshes so close to each other that these steps hide it are run again with shorter ones.
+   Where the meshes do not converge from the first on, the finest one is run by the automatic choice, too: if the
+   cheaper integrator of the probes errs there by more than the second mesh tells, all is done again without it. What
+   moves along a cable faster than its waves makes short ones: then the ladder begins with meshes that show them
+   (`short_waves`).
 3. With more than one cable, each is run on half of its elements, the others as they are: that tells whose mesh matters.
 4. What cable elements leave out is estimated on the second mesh, from the energy of shear and the dependence of the
    motion on the bending stiffness (`indicators`).
@@ -18,24 +22,27 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Generic
 
 import numpy as np
 
 from ..errors import SceneError
+from ..integrators import AUTO
 from ..parts.cable import Cable
 from ..parts.settings import RunSettings
 from ..results.trajectories import largest_change
 from .choice import Choice
-from .deciding import ROUNDED, decide
+from .deciding import LEAST, ROUNDED, decide
 from .estimate import Estimate, Free
 from .indicators import SOFTER, deformation, shear_compliance, softened
 from .mesh_error import MeshError, mesh_error
 from .motion import motion
 from .probes import Probe, Prober, S, Simulate
-from .remaking import CableModel, remade, with_model
-from .time_error import ASSUMED, InTime, compared
+from .remaking import CableModel, remade
+from .short_waves import elements_for_waves
+from .time_error import ASSUMED, DAMPING, InTime, compared
 
 SHEAR_SAFETY = 2.0
 """The estimate of what shear does is low by up to that."""
@@ -63,6 +70,8 @@ class Chooser(Generic[S]):
         self.scene, self.settings, self.tol, self.free = scene, settings, settings.tol, list(free)
         self.prober: Prober[S] = Prober(scene, settings, quantities, simulate)
         self.reasons: list[str] = []
+        self.unresolved: list[str] = []
+        self.least = 1
         self.time: InTime
         self.kinds = {each.cable.name: each.kinds.slender or each.kinds.finest for each in free}
 
@@ -83,11 +92,16 @@ class Chooser(Generic[S]):
         level = self._first_level()
         second = 2 * level if self._base else level
         self.time = self._in_time(second)
+        if (finer := self._level_of_waves(second)) > second:
+            self.least, second = finer // 2, finer
+            if self.settings.integrator == AUTO:
+                self.time = self.time.automatic(self.tol, f"{DAMPING} damps short waves")
+        self.reasons.append(self.time.why)
         shear = self._model_errors(second)
-        mesh, levels = self._ladder(level)
+        mesh, levels = self._trusted_ladder(max(level, self.least), second)
         probes = [self.probe(at) for at in levels[-2:]]
         estimate = Estimate(mesh, self._shares(mesh, levels), shear, self.time.error, probes, self.free,
-                            self.time.longer)
+                            self.time.longer, self.least)
         return self._result(estimate, time.process_time() - begin)
 
     def _ladder(self, level: int) -> tuple[MeshError, list[int]]:
@@ -123,15 +137,14 @@ class Chooser(Generic[S]):
     def wanted(self) -> float:
         """Return the error that the mesh may have, as long as that of the model is not known."""
         could_shear = any(each.could_shear for each in self.free)
-        return (1 - ASSUMED * could_shear) * self.tol - self.time.error
+        return max((1 - ASSUMED * could_shear) * self.tol - self.time.error, LEAST * self.tol)
 
     def _first_level(self) -> int:
         """Return the level of the coarsest mesh to start from: two elements at least, and able to follow a curve."""
         level = 1 if all(each.base > 1 or each.fixed for each in self.free) else 2
         while True:
             try:
-                for each in self.free:
-                    with_model(each.cable, each.model(self.kinds[each.cable.name], level))
+                self.prober.scene_of(self.models(level))  # a coarse mesh may begin inside of what it touches
             except SceneError:
                 if 2 * level * self._base > MOST_ELEMENTS:
                     raise
@@ -147,11 +160,52 @@ class Chooser(Generic[S]):
     def _in_time(self, level: int) -> InTime:
         """Return the integrators of the run and of probes, from runs on the mesh of a level."""
         models = self.models(level)
-        rubs = any(slide.friction is not None for slide in self.scene.slides.values())
-        found = compared(lambda integrator, tol: self.prober.probe(models, tol, integrator), self.prober.difference,
-                         self.settings.integrator, self.tol, rubs)
-        self.reasons.append(found.why)
-        return found
+        rubbing = self.scene.slides, self.scene.contacts, self.scene.crossings
+        rubs = any(part.friction for parts in rubbing for part in parts.values())
+        return compared(lambda integrator, tol: self.prober.probe(models, tol, integrator), self.prober.difference,
+                        self.settings.integrator, self.tol, rubs)
+
+    def _level_of_waves(self, level: int) -> int:
+        """Return the level of a mesh that shows the short waves of what moves fast along a cable, a power of two times
+        a level; that itself where there are none.
+        """
+        probe = self.prober.probe(self.models(level), self.time.probe_tol, self.time.probed)
+        if probe.run is None:
+            return level
+        found, finer = elements_for_waves(probe.scene, probe.run), level
+        for each in self.free:
+            elements, maker = found.get(each.cable.name, (0, ""))
+            if elements <= probe.models[each.cable.name].elements:
+                continue
+            waves = f"{maker} moves faster than the waves of the tension of {each.cable.where}, and makes short ones " \
+                    f"that show from {elements} elements on"
+            self.reasons.append(waves)
+            if elements > (MOST_ELEMENTS if each.fixed is None else each.fixed):
+                self.unresolved.append(f"{waves}: they are not resolved, and what they do is not in the estimate")
+            while each.fixed is None and finer * each.base < elements and 2 * finer * self._base <= MOST_ELEMENTS:
+                finer *= 2
+        return finer
+
+    def _trusted_ladder(self, level: int, second: int) -> tuple[MeshError, list[int]]:
+        """Return the ladder, by probes whose integrator errs on its finest mesh by no more than on the second one.
+
+        That is looked at where meshes did not converge from the first on, and where the integrator was asked for.
+        """
+        mesh, levels = self._ladder(level)
+        asked = self.settings.integrator != AUTO
+        if not asked and (self.time.probed != DAMPING or levels[-1] <= second or mesh.regular):
+            return mesh, levels
+        finest = self.prober.probe(self.models(levels[-1]), self.time.tried, AUTO)
+        apart = self.prober.difference(self.probe(levels[-1]), finest)
+        if not self.time.distrusts(apart):
+            return mesh, levels
+        tells = f"on a fine mesh {self.time.probed} with tol {self.time.probe_tol:.2g} errs by {apart:.1e}"
+        self.reasons.append(tells)
+        if asked:
+            self.time = replace(self.time, error=apart)
+            return mesh, levels
+        self.time = self.time.automatic(self.tol, tells)
+        return self._ladder(level)
 
     def _model_errors(self, level: int) -> dict[str, float]:
         """Return what cable elements leave out of each cable that could be a beam, over the largest change."""
@@ -213,14 +267,14 @@ class Chooser(Generic[S]):
         """Return the choice, with what it and its alternatives are estimated to err and to cost."""
         models, mesh = decide(estimate, self.tol, MOST_ELEMENTS), estimate.mesh
         error = estimate.error(models)
-        kept = error <= self.tol * (1 + ROUNDED)
+        kept = bool(error <= self.tol * (1 + ROUNDED)) and not self.unresolved
         if self._base:
             self.reasons.append(f"the error of {mesh.level} times the coarsest meshes is about {mesh.error:.1e}, of "
                                 f"order {mesh.order:.1f} in the length of an element")
         stiff = [each.cable.where for each in self.free if self._is_stiff(each.cable, estimate.probes[-1])]
         if stiff:
             self.reasons.append(f"{', '.join(stiff)}: deforms by less than tol; a rigid or a modal body may do")
-        if not kept:
+        if error > self.tol * (1 + ROUNDED):
             self.reasons.append(f"no model at hand keeps tol = {self.tol:g}: the finest is taken, which errs by about "
                                 f"{error:.1e}")
         unchanged = [name for name, values in estimate.probes[-1].sampled.items() if not largest_change(values) > 0]
@@ -233,7 +287,7 @@ class Chooser(Generic[S]):
         return Choice(scene, self.tol, self.time.tol, self.time.integrator, models, error, estimate.cost(models), kept,
                       self.reasons, estimate.alternatives(models, self.tol), len(self.prober.made), seconds,
                       [each.cable.name for each in self.free if each.fixed is not None or each.keeps],
-                      mesh_error=estimate.mesh_error(models), unchanged=unchanged)
+                      mesh_error=estimate.mesh_error(models), unchanged=unchanged, unresolved=self.unresolved)
 
     def _is_stiff(self, cable: Cable, probe: Probe[S]) -> bool:
         """Return whether a cable moves as a rigid body does, but for a part of the tolerance."""

@@ -51,7 +51,7 @@ def _meshed(estimate: Estimate, kinds: Mapping[str, Kind], tol: float, most: int
         errors = [estimate.of_cable[each.cable.name] for each in meshed]
         longer = balanced(errors, work, estimate.mesh.order, max(left, LEAST * tol))
         for each, ratio in zip(meshed, longer, strict=True):
-            levels[each.cable.name] = min(max(estimate.mesh.level / ratio, 1.0), max(most // each.base, 1))
+            levels[each.cable.name] = min(max(estimate.mesh.level / ratio, estimate.least), max(most // each.base, 1))
     return {each.cable.name: each.model(kinds[each.cable.name], levels[each.cable.name]) for each in estimate.free}
 
 

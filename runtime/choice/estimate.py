@@ -43,7 +43,8 @@ class Estimate:
 
     mesh: the error of the finest probe's mesh; of_cable: what of it comes from each cable; shear: what cable elements
     leave out of each; time: the error of the integrator; all over the largest change of a quantity; longer: how many
-    times the work of a probe a run with its models takes, whose steps are shorter.
+    times the work of a probe a run with its models takes, whose steps are shorter;
+    least: the level of the coarsest mesh that may be chosen.
     """
 
     mesh: MeshError
@@ -53,6 +54,7 @@ class Estimate:
     probes: Sequence[Probe]
     free: Sequence[Free]
     longer: float = 1.0
+    least: int = 1
 
     def error(self, models: Mapping[str, CableModel]) -> float:
         """Return the error of models of all cables."""

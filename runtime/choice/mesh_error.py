@@ -25,13 +25,15 @@ SAME = 0.7
 class MeshError:
     """The error of a mesh of ``level`` times the coarsest number of elements, ~ level to the power of -order.
 
-    trusted: how many times as fine a mesh may be for that to hold.
+    trusted: how many times as fine a mesh may be for that to hold; regular: whether all meshes converged to it, each
+    difference of neighbours being less than the one before by an order above the lowest.
     """
 
     level: int
     error: float
     order: float
     trusted: float = NEAR
+    regular: bool = True
 
     def at(self, level: float) -> float:
         """Return the error at another level."""
@@ -50,10 +52,12 @@ def mesh_error(levels: Sequence[int], differences: Sequence[float]) -> MeshError
     finite = [difference for difference in differences if np.isfinite(difference)]
     if not finite:
         return MeshError(levels[-1], np.inf, FIRST_ORDER)
-    ratios = np.log2(np.divide(finite[:-1], np.maximum(finite[1:], 1e-300)))[-2:]
+    all_ratios = np.log2(np.divide(finite[:-1], np.maximum(finite[1:], 1e-300)))
+    ratios = all_ratios[-2:]
     orders = np.clip(ratios, *ORDERS)
     order = float(orders[-1]) if len(orders) else FIRST_ORDER
     if len(ratios) > 1 and ratios[0] < 0:  # differences grew just before: they fall by chance in part
         order = float(orders.mean())
     steady = len(orders) > 1 and float(np.ptp(orders)) < SAME
-    return MeshError(levels[-1], finite[-1] / (2**order - 1), order, FAR if steady else NEAR)
+    return MeshError(levels[-1], finite[-1] / (2**order - 1), order, FAR if steady else NEAR,
+                     bool(np.all(all_ratios >= ORDERS[0])))

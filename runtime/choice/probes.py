@@ -82,7 +82,7 @@ class Prober(Generic[S]):
     def _probed(self, models: dict[str, CableModel], tol: float, integrator: str,
                 change: Callable[[S], S] | None, label: str) -> Probe[S]:
         begin = time.process_time()
-        scene = self._scene_of(models, change, label)
+        scene = self.scene_of(models, change, label)
         settings = RunSettings(duration=self.settings.duration, tol=tol, output_step=self.settings.duration / INSTANTS,
                                initial=self.settings.initial, integrator=integrator)
         try:
@@ -96,8 +96,8 @@ class Prober(Generic[S]):
         self.seconds += time.process_time() - begin
         return Probe(models, scene, run, sampled, run.report["time_s"]["solve_cpu"])
 
-    def _scene_of(self, models: Mapping[str, CableModel], change: Callable[[S], S] | None, label: str) -> S:
-        """Return the scene with these models, made once for all tolerances and integrators."""
+    def scene_of(self, models: Mapping[str, CableModel], change: Callable[[S], S] | None = None, label: str = "") -> S:
+        """Return the scene with these models, made once for all tolerances and integrators. Raises SceneError."""
         key = (*((name, models[name]) for name in sorted(models)), label)
         if key not in self.scenes:
             scene = remade(self.scene, models)

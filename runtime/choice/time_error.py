@@ -16,6 +16,9 @@ import numpy as np
 from ..integrators import AUTO
 from .probes import INSTANTS, Probe
 
+TIGHTER = 10.0
+"""By what the tolerance of the automatic choice is made smaller where it ends nowhere with that of the run."""
+
 SHARE = 0.5
 """Of the tolerance, at most, for the error of generalised-alpha in time; model and mesh get what it leaves."""
 
@@ -57,12 +60,16 @@ their error, which then falls more slowly than the tolerance."""
 AT_LEAST = 0.5
 """Of its tolerance: what generalised-alpha is taken to err by there."""
 
+GROWN = 3.0
+"""Times what it errs by on the coarse mesh: where generalised-alpha errs by more on the finest one, it does not follow
+its tolerance, as where short waves grow that only fine meshes have."""
+
 
 @dataclass(frozen=True)
 class InTime:
     """integrator, tol: of the run; error: what it errs by in time, over the largest change; probed, probe_tol: the
     integrator of probes and its tolerance; rate: their error over that tolerance; longer: the work of a run over that
-    of a probe with its models; why: in words.
+    of a probe with its models; tried: the tolerance of the comparison; why: in words.
     """
 
     integrator: str
@@ -72,12 +79,27 @@ class InTime:
     probe_tol: float
     rate: float
     longer: float
+    tried: float
     why: str
 
     @property
     def noise(self) -> float:
         """Return how far apart two probes are by their steps alone, about."""
         return APART * self.rate * self.probe_tol
+
+    def distrusts(self, apart: float) -> bool:
+        """Return whether probes by generalised-alpha err by more than is taken, so that they tell nothing.
+
+        apart: how far one on a fine mesh is from the automatic choice.
+        """
+        return bool(np.isfinite(apart)) and apart > GROWN * self.rate * self.probe_tol
+
+    def automatic(self, tol: float, why: str) -> InTime:
+        """Return it with the automatic choice for the run and its probes; tol: that of the choice; why: in words."""
+        own = min(tol, self.tried)
+        return replace(self, integrator=AUTO, tol=own, error=ASSUMED * tol, probed=AUTO, probe_tol=self.tried,
+                       rate=ASSUMED, longer=(self.tried / own) ** OF_AUTO,
+                       why=f"integrator {AUTO}, by stiffness and tolerance: {why}")
 
     def tightened(self, tol: float) -> InTime | None:
         """Return it with probes of a smaller error, None where that is small already; tol: that of the choice."""
@@ -96,25 +118,31 @@ def compared(probe: Callable[[str, float], Probe], difference: Callable[[Probe, 
     integrator of the settings; rubs: whether the scene has friction.
     """
     if asked != AUTO:
-        return InTime(asked, tol, ASSUMED * tol, asked, min(tol, LOOSEST), ASSUMED, 1.0,
+        return InTime(asked, tol, ASSUMED * tol, asked, min(tol, LOOSEST), ASSUMED, 1.0, tol,
                       f"integrator {asked}: as asked for")
     tried = min((1.0 if rubs else LOOSER) * tol, LOOSEST)
-    found, other = probe(AUTO, tried), probe(DAMPING, tried)
+    found = probe(AUTO, tried)
+    for shorter in (tol, tol / TIGHTER):  # steps that are too long may end nowhere
+        if found.run is None and shorter < tried:
+            tried = shorter
+            found = probe(AUTO, tried)
+    own = min(tol, tried)
+    other = probe(DAMPING, tried)
     apart = difference(other, found)
     if found.run is None or not np.isfinite(apart):  # one of them fails
-        return InTime(AUTO, tol, ASSUMED * tol, AUTO, tried, ASSUMED, (tried / tol) ** OF_AUTO,
+        return InTime(AUTO, own, ASSUMED * tol, AUTO, tried, ASSUMED, (tried / own) ** OF_AUTO, tried,
                       f"integrator {AUTO}, by stiffness and tolerance: on a coarse mesh {DAMPING} fails, or it does")
     rate = max(apart / tried, AT_LEAST if _is_bounded(other) else 1e-300)
-    allowed, loose = min(SHARE * tol / rate, tol), min(AT_FIRST * tol / rate, tried)
+    allowed, loose = min(SHARE * tol / rate, own), min(AT_FIRST * tol / rate, tried)
     work, probing = (other.work * (tried / one) ** OF_DAMPING for one in (allowed, loose))
     best = found.work * (tried / tol) ** OF_AUTO
     probed = (DAMPING, loose, rate) if probing <= FINER * found.work else (AUTO, tried, ASSUMED)
     spent = probing if probed[0] == DAMPING else found.work
     if allowed < TIGHTEST * tol or work >= FINER * best:
-        return InTime(AUTO, tol, ASSUMED * tol, *probed, best / spent,
+        return InTime(AUTO, own, ASSUMED * tol, *probed, best / spent, tried,
                       f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on a coarse mesh is "
                       f"{apart:.1e} with tol {tried:.2g}, is no cheaper")
-    return InTime(DAMPING, allowed, rate * allowed, *probed, work / spent,
+    return InTime(DAMPING, allowed, rate * allowed, *probed, work / spent, tried,
                   f"integrator {DAMPING} with tol {allowed:.2g}: on a coarse mesh, with tol {tried:.2g}, within "
                   f"{apart:.1e} of the automatic choice ({found.run.report['integrator']}), for "
                   f"{other.work / found.work:.2g} of its work")
