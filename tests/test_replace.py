@@ -181,7 +181,7 @@ OTHERS = {
     "contact": {"a": "rope", "b": "side", "stiffness": 1e4, "exponent": 1.5, "damping": 0.1, "friction": 0.2,
                 "tangential_stiffness": 1e5, "radius": 0.02, "name": "x"},
     "crossing": {"a": "hook", "b": "A", "at": (0, 0.6, 0), "axis": (0, 1, 1), "length": 0.3, "radius": 0.02,
-                 "stiffness": 2e3, "exponent": 1.5, "damping": 0.1,
+                 "tangential_stiffness": 2e3, "stiffness": 2e3, "exponent": 1.5, "damping": 0.1,
                  "friction": fu.Friction(coefficient=0.2), "side": (0, 1, 0), "name": "x"},
     "event": {"name": "x", "quantity": "B.position.x", "value": 1.0, "direction": "rising", "action": "stop"},
 }
