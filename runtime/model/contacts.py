@@ -62,6 +62,7 @@ class ContactModel(CouplingModel, SurfaceModel):
     length: float = 0.0
     n_hull: int = 0
     hull: np.ndarray = field(default_factory=lambda: NONE)
+    spread: np.ndarray = field(default_factory=lambda: NONE)
     anchors: np.ndarray = field(default_factory=lambda: NONE)
     attachments: list[AttachmentModel] = field(default_factory=list)
 
@@ -118,6 +119,7 @@ def _along_cable(model: ContactModel, index: int, scene: SceneData, attachments:
                         for length in lengths])
     model.hull = np.array([_hull(cable.kernel("on_axis"), length) for length in lengths])
     model.n_hull = model.hull.shape[1]
+    model.spread = np.abs(model.hull).max(axis=1)
     model.weights = np.outer(lengths, weights) / 2
     model.stride = 0 if cable.mesh.is_even else model.n_points
     model.arc = _arc_lengths(cable.mesh, x)
