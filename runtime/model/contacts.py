@@ -119,7 +119,7 @@ def _along_cable(model: ContactModel, index: int, scene: SceneData, attachments:
                         for length in lengths])
     model.hull = np.array([_hull(cable.kernel("on_axis"), length) for length in lengths])
     model.n_hull = model.hull.shape[1]
-    model.spread = np.abs(model.hull).max(axis=1)
+    model.spread = np.array([_spread(hull) for hull in model.hull])
     model.weights = np.outer(lengths, weights) / 2
     model.stride = 0 if cable.mesh.is_even else model.n_points
     model.arc = _arc_lengths(cable.mesh, x)
@@ -133,6 +133,13 @@ def _arc_lengths(mesh: Mesh, x: np.ndarray) -> np.ndarray:
     """Return (elements points,): arc-lengths of points on all elements, in m."""
     starts = mesh.node_s[:-1, None]
     return (starts + np.diff(mesh.node_s)[:, None] * (1 + x) / 2).ravel()
+
+
+def _spread(hull: np.ndarray) -> np.ndarray:
+    """Return (vectors,): the largest share of each in a point of the hull; infinite if the nodes' first are not their places."""
+    places = hull[:, 0] + hull[:, hull.shape[1] // 2]
+    spread: np.ndarray = np.abs(hull).max(axis=0)
+    return spread if np.abs(places - 1).max() < 1e-12 else np.full_like(spread, np.inf)
 
 
 def _hull(on_axis: Any, length: float) -> np.ndarray:
