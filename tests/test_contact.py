@@ -483,7 +483,7 @@ def test_a_deep_penetration_and_a_surface_that_nothing_touches_are_noted():
 @pytest.mark.parametrize("element", ["cable12", "cable18", "beam24"])
 @pytest.mark.parametrize("shape", sorted(SHAPES))
 def test_elements_are_passed_over_only_where_nothing_touches(element, shape):
-    """With and without the cheap sphere about an element's node, forces and stiffness are the same bit for bit at random states."""
+    """Forces and stiffness at random states are bit for bit those without the cheap sphere about a node."""
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1, 0.001, 0), elements=12, element=element, **ROPE)
     scene.surface("s", SHAPES[shape])
