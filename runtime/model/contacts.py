@@ -136,7 +136,7 @@ def _arc_lengths(mesh: Mesh, x: np.ndarray) -> np.ndarray:
 
 
 def _spread(hull: np.ndarray) -> np.ndarray:
-    """Return (vectors,): the largest share of each in a point of the hull; infinite where nodes do not begin with places."""
+    """Return (vectors,): the largest share of each in a hull point; infinite where nodes do not begin with places."""
     places = hull[:, 0] + hull[:, hull.shape[1] // 2]
     spread: np.ndarray = np.abs(hull).max(axis=0)
     return spread if np.abs(places - 1).max() < 1e-12 else np.full_like(spread, np.inf)
