@@ -479,3 +479,31 @@ def test_a_deep_penetration_and_a_surface_that_nothing_touches_are_noted():
     soft = mooring(15, stiffness=5e3)
     with pytest.warns(fu.FunicularWarning, match="below its surface"):
         assert any("below its surface" in message for message in soft.equilibrium().messages)
+
+
+@pytest.mark.parametrize("element", ["cable12", "cable18", "beam24"])
+@pytest.mark.parametrize("shape", sorted(SHAPES))
+def test_elements_are_passed_over_only_where_nothing_touches(element, shape):
+    """Forces and stiffness at random states are bit for bit those without the cheap sphere about a node."""
+    scene = fu.Scene()
+    scene.cable("wire", start=(0, 0, 0), end=(1, 0.001, 0), elements=12, element=element, **ROPE)
+    scene.surface("s", SHAPES[shape])
+    scene.contact("wire", "s", stiffness=1e5)
+    model = build(scene)
+    (contact,) = [each for each in model.couplings if hasattr(each, "spread")]
+    assert np.isfinite(contact.spread).all()
+    cheap = Engine(model)
+    contact.spread = np.full_like(contact.spread, np.inf)
+    whole = Engine(model)
+    random, touched = np.random.default_rng(5), 0
+    for size in (0.003, 0.03, 0.1, 0.3) * 5:
+        moved = size * random.standard_normal(cheap.unknowns)
+        found = []
+        for engine in (cheap, whole):
+            engine.set_state(0.0)
+            engine.move(moved)
+            found.append((engine.static_residual().copy(), engine.dense_matrix(0, 0, 1).copy(),
+                          engine.static_outputs("contact")[0].copy()))
+        assert all(np.array_equal(a, b) for a, b in zip(*found, strict=True))
+        touched += found[0][2][6] > 0
+    assert touched

@@ -62,6 +62,7 @@ class ContactModel(CouplingModel, SurfaceModel):
     length: float = 0.0
     n_hull: int = 0
     hull: np.ndarray = field(default_factory=lambda: NONE)
+    spread: np.ndarray = field(default_factory=lambda: NONE)
     anchors: np.ndarray = field(default_factory=lambda: NONE)
     attachments: list[AttachmentModel] = field(default_factory=list)
 
@@ -119,6 +120,7 @@ def _along_cable(model: ContactModel, index: int, scene: SceneData, attachments:
                         for length in lengths])
     model.hull = np.array([_hull(cable.kernel("on_axis"), length) for length in lengths])
     model.n_hull = model.hull.shape[1]
+    model.spread = np.array([_spread(hull) for hull in model.hull])
     model.weights = np.outer(lengths, weights) / 2
     model.stride = 0 if cable.mesh.is_even else model.n_points
     model.arc = _arc_lengths(cable.mesh, x)
@@ -132,6 +134,13 @@ def _arc_lengths(mesh: Mesh, x: np.ndarray) -> np.ndarray:
     """Return (elements points,): arc-lengths of points on all elements, in m."""
     starts = mesh.node_s[:-1, None]
     return (starts + np.diff(mesh.node_s)[:, None] * (1 + x) / 2).ravel()
+
+
+def _spread(hull: np.ndarray) -> np.ndarray:
+    """Return (vectors,): the largest share of each in a hull point; infinite where nodes do not begin with places."""
+    places = hull[:, 0] + hull[:, hull.shape[1] // 2]
+    spread: np.ndarray = np.abs(hull).max(axis=0)
+    return spread if np.abs(places - 1).max() < 1e-12 else np.full_like(spread, np.inf)
 
 
 def _hull(on_axis: Any, length: float) -> np.ndarray:

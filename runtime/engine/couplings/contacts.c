@@ -36,6 +36,20 @@ int fu_contact_first(const fu_model *model, const fu_contact *contact, int eleme
     return cable->first + element * cable->per_node;
 }
 
+/* Returns whether a sphere about an element's first node, larger than need be but cheap, is off the surface by more than `beyond`. */
+static int is_far(int dim, int n, const fu_contact *contact, const fu_attachment_state *on, int element, const double *q, double beyond)
+{
+    const double *spread = contact->spread + (contact->stride ? (long)element * n : 0);
+    const double *end = q + n / 2 * dim;
+    double reach = 0.0;
+    for (int d = 0; d < dim; ++d) reach += spread[n / 2] * fabs(end[d] - q[d]);
+    for (int i = 1; i < n; ++i) {
+        if (i == n / 2) continue;
+        for (int d = 0; d < dim; ++d) reach += spread[i] * fabs(q[i * dim + d]);
+    }
+    return fu_surface_clearance(dim, &contact->surface, on, q, reach) > beyond;
+}
+
 /* Returns whether any point of an element may be nearer to the surface than `below` is beyond the radius. */
 int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
                          double below)
@@ -44,6 +58,7 @@ int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const
     const fu_cable *cable = &model->cables[contact->cable];
     const int dim = model->dim, n = cable->coordinates / dim;
     const double *q = state->q + fu_contact_first(model, contact, element);
+    if (is_far(dim, n, contact, on, element, q, contact->radius + below)) return 0;
     double points[8 * 3], middle[3] = {0.0, 0.0, 0.0}, square = 0.0;
     for (int k = 0; k < contact->n_hull; ++k)
         for (int d = 0; d < dim; ++d) {
@@ -290,6 +305,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_contact, length, FU_REAL, 0),
     FU_FIELD(fu_contact, n_hull, FU_INTEGER, 0),
     FU_FIELD(fu_contact, hull, FU_REALS, 0),
+    FU_FIELD(fu_contact, spread, FU_REALS, 0),
     FU_FIELD(fu_contact, anchors, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_contact, attachments, FU_ATTACHMENT),
     {0},
