@@ -160,7 +160,7 @@ VERTICAL = {"body": "B", "along": "link", "s": 0.5}
     ({"velocity": 1, "at_end": HardStop(restitution=0)}, "is driven, and a stop at_end would act against that; leave "
      "one of them out"),
     ({"velocity": "t"}, "velocity must be a number or a signal such as Ramp(start=0, end=1), got 't'"),
-    ({"friction": 0.3}, "friction must be a Friction or a table of its values, got 0.3"),
+    ({"friction": "rough"}, "friction must be a coefficient, a Friction or a table of its values, got 'rough'"),
     ({"friction": {"coefficient": -0.3}}, "friction.coefficient must not be negative, got -0.3"),
     ({"friction": {"mu": 0.3}}, 'friction "mu" is not known here; known: coefficient, static_coefficient, viscous, '
      "rolling, model, velocity"),
