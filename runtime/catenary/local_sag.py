@@ -12,9 +12,16 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.polynomial.polynomial import polyder, polyval
 
 SAMPLES = 8
 """Of an element, over which the mean is taken."""
+
+ENDS = np.array([[polyval(end, polyder(np.eye(4), order)) for order in (0, 1)] for end in (0.0, 1.0)]).reshape(4, 4)
+"""Position and slope at both ends, 0 and 1, of the powers 0 to 3."""
+SHAPES = np.linalg.inv(ENDS)
+"""(4, 4): by power, the cubics of which one of these is one, and the others are zero."""
 
 
 def missing_compliance(tension: float, bending: float, nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
@@ -43,12 +50,13 @@ def _stiffness(tension: float, bending: float, nodes: np.ndarray) -> np.ndarray:
     """Return the stiffness matrix of position and slope at all nodes; both ends do not move."""
     size = 2 * len(nodes)
     total = np.zeros((size, size))
+    points, weights = leggauss(3)  # exact for products of slopes, of the fourth degree
+    points, weights = (1 + points) / 2, weights / 2
+    slopes, bends = (polyval(points, polyder(SHAPES, order)) for order in (1, 2))
+    string, beam = (np.einsum("g,ig,jg->ij", weights, each, each) for each in (slopes, bends))
     for k, h in enumerate(np.diff(nodes)):
-        string = np.array([[36, 3 * h, -36, 3 * h], [3 * h, 4 * h * h, -3 * h, -h * h],
-                           [-36, -3 * h, 36, -3 * h], [3 * h, -h * h, -3 * h, 4 * h * h]]) * tension / (30 * h)
-        beam = np.array([[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h],
-                         [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]) * bending / h**3
-        total[2 * k:2 * k + 4, 2 * k:2 * k + 4] += string + beam
+        scale = np.outer(_units(h), _units(h))
+        total[2 * k:2 * k + 4, 2 * k:2 * k + 4] += scale * (tension / h * string + bending / h**3 * beam)
     for end in (0, size - 2):
         total[end], total[:, end], total[end, end] = 0.0, 0.0, 1.0
     return total
@@ -59,9 +67,13 @@ def _shapes(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
     shapes = np.zeros((len(at), 2 * len(nodes)))
     element = np.clip(np.searchsorted(nodes, at, "right") - 1, 0, len(nodes) - 2)
     h = np.diff(nodes)[element]
-    z = (at - nodes[element]) / h
-    values = (1 - 3 * z**2 + 2 * z**3, h * (z - 2 * z**2 + z**3), 3 * z**2 - 2 * z**3, h * (z**3 - z**2))
+    values = polyval((at - nodes[element]) / h, SHAPES) * _units(h)
     for j, value in enumerate(values):
         shapes[np.arange(len(at)), 2 * element + j] = value
     shapes[:, [0, -2]] = 0.0
     return shapes
+
+
+def _units(h: float | np.ndarray) -> np.ndarray:
+    """Return (4,), or (4, n) of h (n,): what shape functions of the length 1 are multiplied by for the length h, in m."""
+    return np.array([np.ones_like(h), h, np.ones_like(h), h])
