@@ -75,5 +75,6 @@ def _shapes(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def _units(h: float | np.ndarray) -> np.ndarray:
-    """Return (4,), or (4, n) of h (n,): what shape functions of the length 1 are multiplied by for the length h, in m."""
+    """Return (4,), or (4, n) of h (n,), in m: by what shape functions of the length 1 are multiplied for the length h.
+    """
     return np.array([np.ones_like(h), h, np.ones_like(h), h])
