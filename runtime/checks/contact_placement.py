@@ -55,10 +55,10 @@ def placed_contact(scene: SceneData, contact: Contact) -> Contact:
         raise SceneError(contact.where, f'there is no surface "{contact.b}"',
                          near(contact.b, scene.surfaces) if scene.surfaces else
                          'add one before: scene.surface("ground", fu.Plane())')
-    for other in scene.contacts.values():
-        if (other.a, other.b) == (contact.a, contact.b):
-            raise SceneError(contact.where, f'"{contact.a}" and "{contact.b}" have the {other.where} already',
-                             "leave one of them out")
+    if (other := scene.touching.get((contact.a, contact.b))) is not None:
+        where = scene.contacts[other].where
+        raise SceneError(contact.where, f'"{contact.a}" and "{contact.b}" have the {where} already',
+                         "leave one of them out")
     surface = scene.surfaces[contact.b]
     if contact.a in scene.cables:
         contact = _of_cable(scene, contact, scene.cables[contact.a])

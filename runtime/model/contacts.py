@@ -11,6 +11,7 @@ import numpy as np
 from ..kernels.mesh import Mesh
 from ..parts.attachment import Attachment
 from ..parts.contact import Contact
+from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.surface import Surface
 from ..parts.surface_shapes import WIDE
@@ -102,6 +103,7 @@ def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilde
         body = scene.bodies[part.a]
         model.attachments = [attachments.model(Attachment(on=part.a, at=point)) for point in part.points]
         model.n_points = len(part.points)
+        model.spread = np.array([np.inf if isinstance(body, ModalBody) else np.linalg.norm(part.points, axis=1).max()])
         drawn = np.array([body.point(point) for point in part.points])
     if part.friction_coefficient:
         on = scene.bodies.get(surface.on or "")

@@ -39,7 +39,7 @@ class SceneData:
     ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
     else a list. ``messages`` lists what was adjusted; ``run_settings``, ``equilibrium_settings`` and ``relax_settings``
     hold the settings that a scene file gives; ``title`` is what pictures are called, the name of its file without the
-    ending.
+    ending. ``touching`` has the names of contacts by what touches.
     """
 
     cables: dict[str, Cable]
@@ -71,6 +71,7 @@ class SceneData:
             raise SceneError("scene", f"gravity {error}") from None
         for kind in KINDS:
             setattr(self, kind.group, {} if kind.is_named() else [])
+        self.touching: dict[tuple[str, str], str] = {}
         self.messages: list[str] = []
         self.title = ""
         self.run_settings: dict[str, Any] = {}
@@ -125,6 +126,8 @@ class SceneData:
     def put(self, part: Part) -> None:
         """Store a part in its group, as it is."""
         group = getattr(self, part.group)
+        if isinstance(part, Contact):
+            self.touching[part.a, part.b] = part.given_name or ""
         if isinstance(group, dict):
             group[part.given_name] = part
         else:

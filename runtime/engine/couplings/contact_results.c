@@ -234,7 +234,7 @@ static double gap_of(const fu_model *model, const fu_contact *contact, const fu_
 static double reach_of(const fu_model *model, const fu_contact *contact, const fu_state *state, double h)
 {
     double fastest = 0.0;
-    if (contact->cable < 0) return 0.0;
+    if (contact->cable < 0) return INFINITY;
     const fu_cable *cable = &model->cables[contact->cable];
     const int n = cable->coordinates + (cable->n_elements - 1) * cable->per_node;
     for (int i = cable->first; i < cable->first + n; i += cable->per_node)

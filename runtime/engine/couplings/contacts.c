@@ -54,9 +54,13 @@ static int is_far(int dim, int n, const fu_contact *contact, const fu_attachment
 int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
                          double below)
 {
-    if (contact->cable < 0) return 1;
+    const int dim = model->dim;
+    if (contact->cable < 0) {
+        const double *origin = state->q + model->bodies[contact->attachments[0].body].configuration;
+        return fu_surface_clearance(dim, &contact->surface, on, origin, contact->spread[0]) <= contact->radius + below;
+    }
     const fu_cable *cable = &model->cables[contact->cable];
-    const int dim = model->dim, n = cable->coordinates / dim;
+    const int n = cable->coordinates / dim;
     const double *q = state->q + fu_contact_first(model, contact, element);
     if (is_far(dim, n, contact, on, element, q, contact->radius + below)) return 0;
     double points[8 * 3], middle[3] = {0.0, 0.0, 0.0}, square = 0.0;

@@ -28,7 +28,8 @@ typedef struct {
     double length;       /* of the cable, m */
     int n_hull;          /* points between which an element lies, made of its vectors by `hull` (n_hull x vectors of an element) */
     const double *hull;
-    const double *spread; /* of each vector of an element: the largest share of it in a point of the hull */
+    const double *spread; /* of each vector of an element: the largest share of it in a point of the hull; of a body: how far from its
+                           * origin its points are at most, m */
     const double *anchors; /* as drawn */
     fu_attachment attachments[FU_CONTACT_POINTS];
 } fu_contact;
