@@ -219,6 +219,7 @@ SHAPES = {"plane": fu.Plane(point=(0, -0.0075, 0), normal=(0.02, 1, 0)),
           "cylinder": fu.Cylinder(radius=0.5, length=1, at=(0.4, -0.507, 0)),
           "sphere": fu.Sphere(radius=0.5, at=(0.4, -0.507, 0)),
           "capsule": fu.Capsule(radius=0.5, length=0.3, axis=(1, 0, 0), at=(0.4, -0.507, 0)),
+          "box": fu.Box(size=(0.6, 0.1, 0.5), along=(1, -0.01, 0), up=(0.01, 1, 0), at=(0.4, -0.06, 0)),
           "terrain": fu.HeightField.of(lambda x: -0.009 + 0.003 * sin(3 * x), np.linspace(-0.5, 1.5, 20)),
           "hills": fu.HeightField.of(lambda x, z: -0.009 + 0.003 * sin(3 * x) * cos(2 * z), np.linspace(-0.5, 1.5, 20),
                                      np.linspace(-0.4, 0.4, 9))}

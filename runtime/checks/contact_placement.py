@@ -145,10 +145,17 @@ def _check_start(scene: SceneData, contact: Contact, surface: Surface, drawn: np
     _check_depth(scene, contact, surface, drawn, allowed, f"; {show(float(allowed), 'm')} is allowed")
 
 
+def _normal(scene: SceneData) -> np.ndarray | None:
+    """Return the unit vector (3,) across the plane of a planar scene, None in space."""
+    if scene.dim == 3:
+        return None
+    return np.array([0.0, 0.0, 1.0]) if scene.plane is None else scene.plane.normal
+
+
 def _check_depth(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray, allowed: float,
                  why: str) -> None:
     """Raise SceneError where one of the points drawn (n, 3) is deeper below the surface than is allowed, in m."""
-    depth = (contact.radius or 0.0) - surface.distance(scene.bodies.get(surface.on or ""), drawn)
+    depth = (contact.radius or 0.0) - surface.distance(scene.bodies.get(surface.on or ""), drawn, _normal(scene))
     k = int(np.argmax(depth))
     if depth[k] > allowed:
         raise SceneError(

@@ -35,6 +35,7 @@ class SurfaceModel:
     direction: np.ndarray
     round_radius: float
     half_length: float
+    half_size: np.ndarray
     n_first: int
     n_second: int
     first: np.ndarray
@@ -81,8 +82,8 @@ def surface_entries(surface: Surface, scene: SceneData, attachments: AttachmentB
         cells = np.zeros((len(first) - 1, 1, 4, 4))
         cells[:, 0, :, 0] = shape.cells
     return {"kernel": KERNELS[dim], "shape": shape.word, "direction": shape.direction[:dim],
-            "round_radius": shape.radius, "half_length": shape.half_length, "n_first": len(first),
-            "n_second": len(second), "first": first, "second": second, "heights": cells, "highest": shape.highest,
+            "round_radius": shape.radius, "half_length": shape.half_length,
+            "half_size": shape.half_size[:dim], "n_first": len(first), "n_second": len(second), "first": first, "second": second, "heights": cells, "highest": shape.highest,
             "on": [on]}
 
 

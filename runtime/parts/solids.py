@@ -1,4 +1,4 @@
-"""Shapes that pictures draw for rigid bodies; nothing that moves depends on them.
+"""Shapes that pictures draw for rigid bodies; a motion depends on those alone that surfaces have, too.
 
 A further shape is one class and one entry in `SOLIDS`.
 """
@@ -9,9 +9,13 @@ import os
 from pathlib import PurePath
 from typing import Annotated, Any, ClassVar
 
+import numpy as np
+from pydantic import model_validator
+
 from .part import Part, part_of_table
+from .plane import aligned
 from .schemas import checked, list_schema, tagged
-from .validation import Vector, direction, positive, shown, vector, xyz
+from .validation import Vector, check_square, direction, positive, shown, vector, xyz
 
 Length = Annotated[float, positive("m")]
 MESH_FILES = (".stl", ".glb", ".gltf")
@@ -41,11 +45,27 @@ class Solid(Part):
 
 
 class Box(Solid):
-    """A box along the body's axes, ``size`` its three lengths in m, its middle ``at`` a point in body axes."""
+    """A box, ``size`` its three lengths in m: along ``along``, along ``up``, and across both.
+
+    Those are the body's axes if not given; its middle ``at`` is a point in body axes.
+    """
 
     kind: ClassVar[str] = "box"
     positional: ClassVar[tuple[str, ...]] = ("size",)
     size: Annotated[Vector, checked(_lengths, list_schema("m"))]
+    along: Annotated[Vector, direction()] = (1.0, 0.0, 0.0)
+    up: Annotated[Vector, direction()] = (0.0, 1.0, 0.0)
+
+    @model_validator(mode="after")
+    def _has_square_axes(self) -> Box:
+        check_square("along", self.along, "up", self.up)
+        return self
+
+    @property
+    def axes(self) -> np.ndarray:
+        """Return (3, 3): unit vectors along the three lengths, as columns, a right-handed system."""
+        along, up = (aligned(np.array(v) / np.linalg.norm(v)) for v in (self.along, self.up))
+        return np.column_stack([along, up, aligned(np.cross(along, up))])
 
 
 class Sphere(Solid):

@@ -10,7 +10,7 @@ import numpy as np
 from ..rotations import conjugate, rotate
 from .part import Part
 from .plane import FLAT, across
-from .solids import Cylinder, Sphere
+from .solids import Box, Cylinder, Sphere
 from .surface_shapes import AnySurfaceShape, Capsule, Geometry, geometry
 from .validation import Name, Reference, Vector, show, xyz
 
@@ -18,9 +18,9 @@ from .validation import Name, Reference, Vector, show, xyz
 class Surface(Part):
     """A surface of the ground or of a rigid body; what touches it, a `Contact` says.
 
-    shape: a `Plane`, `HeightField`, `Sphere`, `Cylinder` or `Capsule`; on: the body, whose axes those of the shape are
-    then, the ground if not given; at: from where the shape's own places count, in m, the origin if not given. A
-    cylinder has no ends: its length is what pictures draw.
+    shape: a `Plane`, `HeightField`, `Sphere`, `Cylinder`, `Capsule` or `Box`; on: the body, whose axes those of the
+    shape are then, the ground if not given; at: from where the shape's own places count, in m, the origin if not given.
+    A cylinder has no ends: its length is what pictures draw.
     """
 
     kind: ClassVar[str] = "surface"
@@ -44,6 +44,11 @@ class Surface(Part):
             lies = bool(axis[2] <= FLAT)
             if not lies and max(axis[:2]) > FLAT:
                 yield f"axis {show(self.shape.axis)}"
+        if isinstance(self.shape, Box):
+            box = self.geometry
+            lies = abs(box.origin[2]) > box.half_size[2]
+            if np.abs(box.axes[:2, 2]).max() > FLAT:
+                yield f"along {show(self.shape.along)}, up {show(self.shape.up)}"
         if lies:  # what stands square to the plane, or has no end that way, reaches it from anywhere
             yield from across("at", self.at, "m")
             yield from across("shape.at", getattr(self.shape, "at", None), "m")
@@ -56,6 +61,12 @@ class Surface(Part):
         position, orientation = body.frame
         return rotate(conjugate(orientation), points - position)
 
-    def distance(self, body: Any, points: np.ndarray) -> np.ndarray:
-        """Return the distances (...) of points (..., 3) of the ground from it as drawn, negative inside, in m."""
-        return self.geometry.distance(self.in_axes(body, points))
+    def distance(self, body: Any, points: np.ndarray, normal: np.ndarray | None = None) -> np.ndarray:
+        """Return the distances (...) of points (..., 3) of the ground from it as drawn, negative inside, in m.
+
+        normal: a unit vector (3,) across the plane of a planar scene, to whose side no distance goes.
+        """
+        shape = self.geometry
+        if normal is not None:
+            shape = shape.in_plane(normal if body is None else rotate(conjugate(body.frame[1]), normal))
+        return shape.distance(self.in_axes(body, points))

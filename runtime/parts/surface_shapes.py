@@ -1,6 +1,6 @@
 """Shapes of surfaces that cables and bodies touch, and how far points are from them.
 
-`Sphere` and `Cylinder` are those that pictures draw bodies with, too. A further shape is one class, its entry in
+`Box`, `Sphere` and `Cylinder` are those that pictures draw bodies with, too. A further shape is one class, its entry in
 `SURFACE_SHAPES`, and what `geometry` makes of it.
 """
 
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Annotated, Any, ClassVar
 
@@ -16,10 +16,10 @@ import numpy as np
 from pydantic import model_validator
 
 from .part import Part, part_of_table
-from .plane import across, aligned
+from .plane import FLAT, across, aligned
 from .schemas import checked, list_schema, tagged
-from .solids import Cylinder, Length, Sphere
-from .validation import Vector, check_function, direction, list_of, shown, vector, xyz
+from .solids import Box, Cylinder, Length, Sphere
+from .validation import Vector, check_function, check_square, direction, list_of, shown, vector, xyz
 
 WIDE = 1e6
 """m: half the width of a height field that does not change across."""
@@ -104,8 +104,7 @@ class HeightField(SurfaceShape):
             raise ValueError("heights are a list of lists where across is given, and only there")
         if self.across is not None:
             check_function(self.across, "across", "m", self.heights[0], "the lists of heights")
-        if abs(float(np.dot(self.along, self.up))) > 1e-9 * np.linalg.norm(self.along) * np.linalg.norm(self.up):
-            raise ValueError(f"along must be square to up, got {self.along} and {self.up}")
+        check_square("along", self.along, "up", self.up)
         return self
 
     @property
@@ -123,7 +122,8 @@ class HeightField(SurfaceShape):
             yield "across"
 
 
-SURFACE_SHAPES: dict[str, type[Part]] = {shape.kind: shape for shape in (Plane, HeightField, Sphere, Cylinder, Capsule)}
+SURFACE_SHAPES: dict[str, type[Part]] = {
+    shape.kind: shape for shape in (Plane, HeightField, Sphere, Cylinder, Capsule, Box)}
 
 
 def _shape(value: Any) -> Part:
@@ -140,8 +140,9 @@ AnySurfaceShape = Annotated[Part, checked(_shape, tagged("surface_shape"))]
 class Geometry:
     """A surface as the engine takes it (engine/include/surfaces.h), from an origin (3,) along axes (3, 3) by columns.
 
-    word: the kind of shape; direction (3,): a normal or an axis; radius, half_length in m; first, second: knots of a
-    height field, and cells (first, second, 4, 4) of its coefficients, or (first, 4) where there is no second.
+    word: the kind of shape; direction (3,): a normal or an axis; radius, half_length in m; half_size (3,): of a box
+    along its axes, in m; first, second: knots of a height field, and cells (first, second, 4, 4) of its coefficients,
+    or (first, 4) where there is no second.
     """
 
     word: str
@@ -150,6 +151,7 @@ class Geometry:
     direction: np.ndarray
     radius: float = 0.0
     half_length: float = 0.0
+    half_size: np.ndarray = field(default_factory=lambda: np.zeros(3))
     first: np.ndarray | None = None
     second: np.ndarray | None = None
     cells: np.ndarray | None = None
@@ -158,6 +160,10 @@ class Geometry:
     def moved(self, by: Any) -> Geometry:
         """Return it with its origin farther by (3,), in m."""
         return replace(self, origin=self.origin + np.array(by))
+
+    def in_plane(self, normal: np.ndarray) -> Geometry:
+        """Return what is of it in planes across a unit vector (3,): a box has no end that way."""
+        return replace(self, half_size=np.where(np.abs(normal @ self.axes) > 1 - FLAT, np.inf, self.half_size))
 
     def into(self, points: np.ndarray) -> np.ndarray:
         """Return points (..., 3), in m, from its origin along its axes."""
@@ -168,6 +174,9 @@ class Geometry:
         y = self.into(points)
         if self.word == "terrain":
             return self._above(y)
+        if self.word == "box":
+            beyond = np.abs(y) - self.half_size
+            return np.linalg.norm(np.maximum(beyond, 0.0), axis=-1) + np.minimum(beyond.max(axis=-1), 0.0)
         along = y @ self.direction
         if self.word == "flat":
             return along
@@ -208,6 +217,8 @@ def geometry(shape: Part) -> Geometry:
         return _terrain(shape)
     if isinstance(shape, Plane):
         return Geometry("flat", np.array(shape.point), np.eye(3), _unit(shape.normal))
+    if isinstance(shape, Box):
+        return _box(shape)
     assert isinstance(shape, Sphere | Cylinder | Capsule), f"{shape!r} is no shape of a surface"
     axis = np.zeros(3) if isinstance(shape, Sphere) else _unit(shape.axis)
     half = shape.length / 2 if isinstance(shape, Capsule) else 0.0
@@ -216,6 +227,13 @@ def geometry(shape: Part) -> Geometry:
 
 def _unit(v: Vector) -> np.ndarray:
     return aligned(np.array(v) / np.linalg.norm(v))
+
+
+def _box(shape: Box) -> Geometry:
+    """Return the geometry of a box. Of its axes the one most nearly along z is the last: the others are in the plane."""
+    axes = shape.axes
+    order = np.roll(np.arange(3), 2 - int(np.argmax(np.abs(axes[2]))))
+    return Geometry("box", np.array(shape.at), axes[:, order], np.zeros(3), half_size=np.array(shape.size)[order] / 2)
 
 
 def _terrain(shape: HeightField) -> Geometry:

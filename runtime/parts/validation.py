@@ -237,6 +237,12 @@ def check_function(arguments: tuple[float, ...], of: str, unit: str, values: tup
             raise ValueError(f"{of} must increase, got {show(after, unit)} after {show(before, unit)}")
 
 
+def check_square(name: str, one: Vector, of: str, other: Vector) -> None:
+    """Raise ValueError unless two directions are square to each other, but for rounding."""
+    if abs(float(np.dot(one, other))) > 1e-9 * np.linalg.norm(one) * np.linalg.norm(other):
+        raise ValueError(f"{name} must be square to {of}, got {one} and {other}")
+
+
 def names() -> PlainValidator:
     """Return the check of a list of one or more texts, each once."""
     def check(value: Any) -> tuple[str, ...]:

@@ -5,7 +5,7 @@
 #include <string.h>
 
 const char *const fu_surface_role[] = {"surface", 0};
-const char *const fu_surface_shapes[] = {"flat", "round", "capsule", "terrain", 0};
+const char *const fu_surface_shapes[] = {"flat", "round", "capsule", "terrain", "box", 0};
 
 void fu_surface_at(const fu_model *model, const fu_surface *surface, const fu_state *state, fu_attachment_state *at)
 {
@@ -74,9 +74,29 @@ static void heights_at(int dim, const fu_surface *surface, const double *y, doub
     }
 }
 
+/* Makes what a point is nearest to of a box: y from it, which is a corner (zero axis), an edge (its axis) or, returning 1, a face
+ * (its normal); of a point inside the nearest face. */
+static int nearest_of_box(int dim, const fu_surface *surface, double *y, double *axis, double *normal)
+{
+    const double *half = surface->half_size;
+    int outside = 0, face = 0;
+    for (int d = 0; d < dim; ++d) {
+        outside += fabs(y[d]) > half[d];
+        if (fabs(y[d]) - half[d] > fabs(y[face]) - half[face]) face = d;
+        axis[d] = normal[d] = 0.0;
+    }
+    for (int d = 0; d < dim; ++d) {
+        const double side = copysign(1.0, y[d]), beyond = fabs(y[d]) - half[d];
+        if (outside < 2 ? d == face : beyond > 0.0) y[d] = side * beyond;
+        else if (outside > 1) axis[d] = 1.0;
+        if (d == face) normal[d] = side;
+    }
+    return outside < 2;
+}
+
 void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, fu_distance *out)
 {
-    double y[3] = {0.0, 0.0, 0.0}, n[3], H[9], heights[10], half[9], axis[3] = {0.0, 0.0, 0.0};
+    double y[3] = {0.0, 0.0, 0.0}, n[3], H[9], heights[10], half[9], normal[3] = {0.0}, axis[3] = {0.0};
     local(dim, at, r, y);
     memcpy(out->y, y, sizeof y);
     memset(out->H, 0, sizeof out->H);
@@ -88,6 +108,14 @@ void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment
     case FU_TERRAIN:
         heights_at(dim, surface, y, heights);
         surface->kernel->terrain(y, heights, &out->g, n, H);
+        break;
+    case FU_BOX:
+        if (nearest_of_box(dim, surface, y, axis, normal)) {
+            surface->kernel->flat(y, normal, &out->g, n);
+            fu_surface_out(dim, at, n, out->n);
+            return;
+        }
+        surface->kernel->rounded(y, axis, 0.0, &out->g, n, H);
         break;
     default: {
         const double along = fu_dot(dim, surface->direction, y);
@@ -119,11 +147,24 @@ void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachm
     for (int d = 0; d < dim; ++d) n[d] = middle->n[d] + beyond * way[d];
 }
 
+/* Returns the distance of a point from a box, m, negative inside. */
+static double from_box(int dim, const double *half, const double *y)
+{
+    double most = -HUGE_VAL, square = 0.0;
+    for (int d = 0; d < dim; ++d) {
+        const double beyond = fabs(y[d]) - half[d];
+        most = fmax(most, beyond);
+        square += beyond > 0.0 ? beyond * beyond : 0.0;
+    }
+    return most > 0.0 ? sqrt(square) : most;
+}
+
 double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach)
 {
     double y[3] = {0.0, 0.0, 0.0}, along;
     local(dim, at, r, y);
     if (surface->shape == FU_TERRAIN) return y[1] - reach - surface->highest;
+    if (surface->shape == FU_BOX) return from_box(dim, surface->half_size, y) - reach;
     along = fu_dot(dim, surface->direction, y);
     if (surface->shape == FU_FLAT) return along - reach;
     if (surface->shape == FU_CAPSULE) along = fmin(fmax(along, -surface->half_length), surface->half_length);

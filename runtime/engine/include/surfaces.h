@@ -6,8 +6,8 @@
 #include "fields.h"
 
 /* Shapes: a plane; a sphere, or a cylinder without ends; a cylinder with half spheres at its ends; a height over a line or over
- * two horizontal axes. */
-enum { FU_FLAT, FU_ROUND, FU_CAPSULE, FU_TERRAIN };
+ * two horizontal axes; a box. */
+enum { FU_FLAT, FU_ROUND, FU_CAPSULE, FU_TERRAIN, FU_BOX };
 
 /* A surface: its shape from an origin along axes that an attachment gives, of the ground or of a body. */
 typedef struct {
@@ -15,6 +15,7 @@ typedef struct {
     int shape;
     double direction[3];        /* normal of a plane; axis of a cylinder or capsule, zero for a sphere */
     double round_radius, half_length; /* m */
+    double half_size[3];        /* of a box along its axes, m */
     int n_first, n_second;      /* knots of a terrain along its horizontal axes, m; no second in the plane */
     const double *first, *second, *heights; /* heights: 4 (or 4 x 4) coefficients of a cell's cubics, from its first knots */
     double highest;             /* of a terrain, m */
@@ -54,6 +55,7 @@ extern const char *const fu_surface_shapes[], *const fu_surface_role[];
     FU_SURFACE_FIELD(structure, shape, FU_WORD, fu_surface_shapes),                                                      \
     {"direction", FU_REAL, offsetof(structure, surface.direction), 3, sizeof(double), NULL},                            \
     FU_SURFACE_FIELD(structure, round_radius, FU_REAL, 0), FU_SURFACE_FIELD(structure, half_length, FU_REAL, 0),         \
+    {"half_size", FU_REAL, offsetof(structure, surface.half_size), 3, sizeof(double), NULL},                            \
     FU_SURFACE_FIELD(structure, n_first, FU_INTEGER, 0), FU_SURFACE_FIELD(structure, n_second, FU_INTEGER, 0),           \
     FU_SURFACE_FIELD(structure, first, FU_REALS, 0), FU_SURFACE_FIELD(structure, second, FU_REALS, 0),                   \
     FU_SURFACE_FIELD(structure, heights, FU_REALS, 0), FU_SURFACE_FIELD(structure, highest, FU_REAL, 0),                 \

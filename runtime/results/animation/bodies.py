@@ -42,7 +42,7 @@ def given_shape(solid: Solid) -> dict[str, object]:
     offset = list(solid.at)
     match solid:
         case Box():
-            return {"kind": "box", "size": list(solid.size), "offset": offset}
+            return box_shape(solid, offset)
         case Sphere():
             return {"kind": "sphere", "radius": solid.radius, "offset": offset}
         case Cylinder():
@@ -53,6 +53,14 @@ def given_shape(solid: Solid) -> dict[str, object]:
             vertices, triangles = read_mesh(solid.file)
             return {"kind": "mesh", "vertices": solid.scale * vertices, "triangles": triangles, "offset": offset}
     raise FunicularError(f"pictures know no shape of the kind {solid.kind!r}")
+
+
+def box_shape(box: Box, offset: list[float]) -> dict[str, object]:
+    """Return a box as pictures take it, its middle at an offset (3,) in m."""
+    if np.array_equal(box.axes, np.eye(3)):
+        return {"kind": "box", "size": list(box.size), "offset": offset}
+    vertices, triangles = BOX
+    return {"kind": "mesh", "vertices": (vertices * box.size) @ box.axes.T, "triangles": triangles, "offset": offset}
 
 
 def plausible_shape(body: RigidBody) -> dict[str, object]:

@@ -1,13 +1,14 @@
-"""Surfaces that cables and bodies touch, in a picture: a piece of a plane or of hills, and what is round."""
+"""Surfaces that cables and bodies touch, in a picture: a piece of a plane or of hills, boxes, and what is round."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ...parts.solids import Sphere
+from ...parts.solids import Box, Sphere
 from ...parts.surface import Surface
 from ...parts.surface_shapes import Geometry
 from ...view.animation import BodyShape
+from .bodies import box_shape
 from .frames import Frames, one_or_all
 
 PIECES = 12
@@ -36,6 +37,8 @@ def _drawn(surface: Surface, shape: Geometry, size: float, offset: np.ndarray) -
     """Return the shape as pictures take it."""
     if isinstance(surface.shape, Sphere):
         return {"kind": "sphere", "radius": shape.radius, "offset": offset.tolist()}
+    if isinstance(surface.shape, Box):
+        return box_shape(surface.shape, offset.tolist())
     if shape.word in ("round", "capsule"):
         length = getattr(surface.shape, "length", 0.0) + (2 * shape.radius if shape.word == "capsule" else 0.0)
         return {"kind": "cylinder", "radius": shape.radius, "length": length, "axis": shape.direction.tolist(),
