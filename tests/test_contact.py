@@ -301,17 +301,6 @@ def test_a_scene_in_another_plane_touches_alike():
     assert not found[friction][:, 0].any()
 
 
-def test_an_energy_conserving_step_takes_no_moving_surface():
-    scene = fu.Scene()
-    scene.cable("wire", start=(0, 0.1, 0), end=(1, 0.1, 0), elements=2, **ROPE)
-    scene.rigid_body("B", mass=1, inertia=(1, 2, 3), position=(0, 0, 0))
-    scene.surface("s", fu.Sphere(radius=0.05), on="B")
-    scene.contact("wire", "s", stiffness=1e4)
-    with pytest.raises(fu.SceneError, match='contact "contact_1": the integrator "energy" takes no surface that is on '
-                                            "a body"):
-        scene.run(0.1, integrator="energy")
-
-
 def wire(scene):
     return scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=2, **ROPE)
 

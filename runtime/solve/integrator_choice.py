@@ -226,10 +226,6 @@ def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, eng
         if not of_library(cable.library)[cable.element].laws[cable.law].discrete_gradient:
             raise SceneError(scene.cables[cable.name].where, f'{who} has no discrete gradient of the law "{cable.law}"',
                              "take another law, or another integrator")
-    for contact in scene.contacts.values():
-        if scene.surfaces[contact.b].on is not None:
-            raise SceneError(contact.where, f'the {who} takes no surface that is on a body: "{contact.b}" is on '
-                             f'"{scene.surfaces[contact.b].on}"', "take another integrator")
     if getattr(integrator, "spectral_radius", 1.0) < 1:
         for cable in [model.cables[i] for i in engine.without_algorithmic_force()]:
             raise SceneError(scene.cables[cable.name].where,

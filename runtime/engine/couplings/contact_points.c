@@ -109,7 +109,7 @@ static void add_step_friction(const fu_model *model, const fu_contact *contact, 
                 by_next[d * dim + e] -= 0.5 * contact->law.tangential * ((d == e) - end.distance.n[d] * end.distance.n[e]);
 }
 
-/* Makes the force over a step of h, s, between two places of a point on a surface that does not move, and what it does by the one at
+/* Makes the force over a step of h, s, between two places of a point in axes where the surface stays, and what it does by the one at
  * the end: of the normal force's elastic part a discrete gradient (Gonzalez 1996). Returns the energy that its damping takes, J. */
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
                        const fu_touch_point *now, const fu_touch_point *next, double f[3], double by_next[9])

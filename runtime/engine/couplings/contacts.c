@@ -105,7 +105,7 @@ void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu
 }
 
 /* Adds P' f of a motion, times a factor, to what stands on the left of the equations of motion. */
-static void add_to(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum)
+void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum)
 {
     for (int d = 0; d < dim; ++d)
         for (int i = 0; i < n; ++i) sum[at[i]] += factor * P[d * n + i] * f[d];
@@ -120,7 +120,7 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
     double P[3 * FU_ATTACHMENT_COORDINATES];
     if (on->n) {
         fu_surface_motion(dim, on, r, P);
-        add_to(dim, on->n, on->at, P, force, weight, f);
+        fu_contact_add_along(dim, on->n, on->at, P, force, weight, f);
     }
     if (contact->cable >= 0) {
         const int n = model->cables[contact->cable].coordinates / dim, first = fu_contact_first(model, contact, element);
@@ -131,7 +131,7 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
     }
     fu_attachment_state end;
     fu_attachment_at(model, &contact->attachments[point], state, 0.0, FU_POINT, &end);
-    add_to(dim, end.n, end.at, end.P, force, -weight, f);
+    fu_contact_add_along(dim, end.n, end.at, end.P, force, -weight, f);
 }
 
 void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state, fu_contact_visitor *visit, void *context)
@@ -208,90 +208,6 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     matrix(model, of(coupling), at->next, at->psi, at->weights, system);
 }
 
-/* Makes the two ends of a step of a point; returns whether it may touch in it. */
-static int ends_of_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_equations *at, int element,
-                        int point, fu_touch_point *now, fu_touch_point *next)
-{
-    fu_contact_place(model, contact, at->now, element, point, now);
-    fu_contact_place(model, contact, at->next, element, point, next);
-    const int touched = fu_contact_touches(model, contact, on, now);
-    return fu_contact_touches(model, contact, on, next) || touched;
-}
-
-/* Does for a step what `force` does for an instant; returns the energy that goes to heat in it, J. f may be null. */
-static double over_step(const fu_model *model, const fu_contact *contact, const fu_equations *at, double *f)
-{
-    const int dim = model->dim;
-    double lost = 0.0;
-    fu_attachment_state on;
-    fu_surface_at(model, &contact->surface, at->now, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_touch(model, contact, &on, at->now, e, 0.0) && !fu_contact_may_touch(model, contact, &on, at->next, e, 0.0)) continue;
-        for (int k = 0; k < contact->n_points; ++k) {
-            fu_touch_point now, next;
-            double force[3], by_next[9];
-            if (!ends_of_step(model, contact, &on, at, e, k, &now, &next)) continue;
-            fu_contact_step(model, contact, &on, at->h, &now, &next, force, by_next);
-            const double weight = fu_contact_weight(contact, e, k);
-            for (int d = 0; d < dim; ++d) lost -= weight * force[d] * (next.r[d] - now.r[d]);
-            if (!f) continue;
-            if (contact->cable >= 0) {
-                fu_contact_add_force(model, contact, at->now, &on, e, k, now.r, force, f);
-                continue;
-            }
-            const fu_attachment *to = &contact->attachments[k];
-            fu_attachment_state end;
-            fu_attachment_at(model, to, at->now, 0.0, FU_POINT, &end);
-            fu_discrete_point(model, to, at->now, at->next, end.P);
-            add_to(dim, end.n, end.at, end.P, force, -weight, f);
-        }
-    }
-    return lost;
-}
-
-static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
-{
-    (void)own;
-    over_step(model, of(coupling), at, f);
-}
-
-/* The middle moves by half of psi, which weights.stiffness has: what the end does counts twice. */
-static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
-{
-    const fu_contact *contact = of(coupling);
-    const int dim = model->dim;
-    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    fu_attachment_state on;
-    fu_surface_at(model, &contact->surface, at->now, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        int touches = 0;
-        if (!fu_contact_may_touch(model, contact, &on, at->now, e, 0.0) && !fu_contact_may_touch(model, contact, &on, at->next, e, 0.0)) continue;
-        const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;
-        for (int k = 0; k < contact->n_points; ++k) {
-            fu_touch_point now, next;
-            if (!ends_of_step(model, contact, &on, at, e, k, &now, &next)) continue;
-            fu_contact_step(model, contact, &on, at->h, &now, &next, next.f, next.by_place);
-            for (int i = 0; i < dim * dim; ++i) next.by_place[i] *= 2.0;
-            memset(next.by_rate, 0, sizeof next.by_rate);
-            if (!n) {
-                fu_contact_add_derivatives(model, contact, &on, at->middle, e, k, &next, 0, at->weights, system);
-                continue;
-            }
-            if (!touches++) memset(K, 0, sizeof(double) * (size_t)(n * n));
-            const double *N = fu_contact_shapes(contact, n / dim, e, k);
-            fu_add_element_product(dim, n, -at->weights.stiffness * fu_contact_weight(contact, e, k), N, N, next.by_place, K);
-        }
-        if (touches) fu_add_element_matrix(model, fu_contact_first(model, contact, e), n, K, system);
-    }
-}
-
-/* All that goes to heat, less what fu_contact_lost counts. */
-static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
-{
-    const double stored = fu_contact_energy(model, coupling, at->next) - fu_contact_energy(model, coupling, at->now);
-    return over_step(model, of(coupling), at, 0) - stored - fu_contact_lost(model, coupling, at->now, at->next);
-}
-
 static const fu_field fields[] = {
     FU_SURFACE_FIELDS(fu_contact),
     {"stiffness", FU_REAL, offsetof(fu_contact, law.stiffness), 1, 0, NULL},
@@ -317,6 +233,6 @@ static const fu_field fields[] = {
 
 const fu_coupling_type fu_contact_type = {
     .name = "contact", .size = sizeof(fu_contact), .fields = fields, .n_outputs = FU_CONTACT_OUTPUTS, .n_flags = 1,
-    .events = &fu_contact_events, .residual = residual, .tangent = tangent, .step_residual = step_residual, .step_tangent = step_tangent,
-    .step_dissipation = step_dissipation, .force = force, .energy = fu_contact_energy, .dissipation = fu_contact_dissipation,
+    .events = &fu_contact_events, .residual = residual, .tangent = tangent, .step_residual = fu_contact_step_residual, .step_tangent = fu_contact_step_tangent,
+    .step_dissipation = fu_contact_step_dissipation, .force = force, .energy = fu_contact_energy, .dissipation = fu_contact_dissipation,
     .lost_in_step = fu_contact_lost, .outputs = fu_contact_outputs, .reset = fu_contact_reset, .carry = fu_contact_carry};

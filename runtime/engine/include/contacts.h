@@ -65,6 +65,7 @@ const double *fu_contact_shapes(const fu_contact *contact, int n, int element, i
 int fu_contact_first(const fu_model *model, const fu_contact *contact, int element);
 void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
                           int point, const double *r, const double *force, double *f);
+void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum);
 
 /* Calls `visit` with each point that touches. */
 typedef void fu_contact_visitor(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
@@ -76,6 +77,11 @@ void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu
 void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
                                 int element, int number, const fu_touch_point *point, const double *psi, fu_weights weights,
                                 fu_system *system);
+
+/* couplings/contact_steps.c */
+void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
+void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
+double fu_contact_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
 /* couplings/contact_results.c */
 void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,

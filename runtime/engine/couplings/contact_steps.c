@@ -1,0 +1,214 @@
+/* Contact over a step, for the integrator that balances energy: residuals, their derivatives, and what goes to heat.
+ *
+ * On a body that moves the step is taken along the shape's own axes, where a point's place is y = A'(r - p). The force there has the
+ * product -(U_next - U) with the way y_next - y. As y is bilinear in A and r - p, its change is, with means over the step,
+ * mean(A)'(change of r - p) + (change of A)' mean(r - p): so mean(A) times the force acts on the point, and its opposite on the body
+ * at the lever mean(r - p). Both have the same line, and keep momentum and angular momentum as they keep energy.
+ */
+#include "engine.h"
+
+#include <string.h>
+
+static const fu_contact *of(const fu_coupling *coupling)
+{
+    return (const fu_contact *)coupling;
+}
+
+/* A surface over a step: at both ends, its mean p and A, and the frame in which points are placed: the ground's axes if it does not
+ * move, else the shape's own. */
+typedef struct {
+    int moves;
+    fu_attachment_state ends[2], mean, frame;
+} surface_step;
+
+/* A point over a step: at both ends in the surface's frame, and its mean place in the ground's axes. */
+typedef struct {
+    fu_touch_point now, next;
+    double middle[3];
+} point_step;
+
+static void surface_over_step(const fu_model *model, const fu_contact *contact, const fu_equations *at, surface_step *out)
+{
+    const int dim = model->dim;
+    fu_attachment_state *const ends = out->ends;
+    fu_surface_at(model, &contact->surface, at->now, &ends[0]);
+    fu_surface_at(model, &contact->surface, at->next, &ends[1]);
+    out->moves = ends[0].n > 0;
+    if (!out->moves) {
+        out->frame = ends[0];
+        return;
+    }
+    memset(&out->frame, 0, sizeof out->frame);
+    memset(&out->mean, 0, sizeof out->mean);
+    for (int d = 0; d < dim; ++d) {
+        out->frame.A[d * dim + d] = 1.0;
+        out->mean.p[d] = 0.5 * (ends[0].p[d] + ends[1].p[d]);
+    }
+    for (int i = 0; i < dim * dim; ++i) out->mean.A[i] = 0.5 * (ends[0].A[i] + ends[1].A[i]);
+}
+
+/* Returns whether any point of an element may touch at an end of the step. */
+static int may_touch(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int element)
+{
+    return fu_contact_may_touch(model, contact, &on->ends[0], at->now, element, 0.0) ||
+           fu_contact_may_touch(model, contact, &on->ends[1], at->next, element, 0.0);
+}
+
+/* Places a point at an end of a step along the axes of the shape; forces of the step do not depend on its velocity there. */
+static void place_along_shape(int dim, const fu_attachment_state *end, fu_touch_point *point)
+{
+    double from[3] = {0.0};
+    for (int d = 0; d < dim; ++d) from[d] = point->r[d] - end->p[d];
+    memset(point->r, 0, sizeof point->r);
+    memset(point->v, 0, sizeof point->v);
+    fu_surface_into(dim, end, from, point->r);
+}
+
+/* Makes a point over a step; returns whether it may touch in it. */
+static int point_over_step(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int element,
+                           int number, point_step *out)
+{
+    fu_contact_place(model, contact, at->now, element, number, &out->now);
+    fu_contact_place(model, contact, at->next, element, number, &out->next);
+    for (int d = 0; d < 3; ++d) out->middle[d] = 0.5 * (out->now.r[d] + out->next.r[d]);
+    if (on->moves) {
+        place_along_shape(model->dim, &on->ends[0], &out->now);
+        place_along_shape(model->dim, &on->ends[1], &out->next);
+    }
+    const int touched = fu_contact_touches(model, contact, &on->frame, &out->now);
+    return fu_contact_touches(model, contact, &on->frame, &out->next) || touched;
+}
+
+/* Makes the derivative of a force by the place along the shape's axes that by the place along the ground's. */
+static void turn_derivative(int dim, const fu_attachment_state *mean, double *by_place)
+{
+    double half[9];
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) half[i * dim + j] = fu_dot(dim, by_place + i * dim, mean->A + j * dim);
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            by_place[i * dim + j] = 0.0;
+            for (int k = 0; k < dim; ++k) by_place[i * dim + j] += mean->A[i * dim + k] * half[k * dim + j];
+        }
+}
+
+/* Adds what a force over a step puts on the body that the surface is on: at its point u with mean(A of the body) u the lever. */
+static void add_reaction(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at,
+                         const double *middle, const double *force, double weight, double *f)
+{
+    const int dim = model->dim;
+    fu_attachment there = contact->surface.on[0];
+    double lever[3], columns[9], P[3 * FU_ATTACHMENT_COORDINATES];
+    int pivot[3];
+    for (int i = 0; i < dim; ++i) {
+        lever[i] = middle[i] - on->mean.p[i];
+        for (int j = 0; j < dim; ++j) columns[j * dim + i] = on->mean.A[i * dim + j];
+    }
+    if (fu_small_factor(dim, columns, pivot)) return; /* a turn by pi in a step, which no Cayley vector makes */
+    fu_small_solve(dim, columns, pivot, lever);
+    for (int i = 0; i < dim; ++i) there.u[i] += fu_dot(dim, there.axes + i * dim, lever);
+    fu_discrete_point(model, &there, at->now, at->next, P);
+    fu_contact_add_along(dim, on->ends[0].n, on->ends[0].at, P, force, weight, f);
+}
+
+/* Adds a force over a step on a point, and its reaction, to what stands on the left of the equations. */
+static void add_step_force(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int element,
+                           int number, const point_step *point, const double *own, double *f)
+{
+    const int dim = model->dim;
+    const double weight = fu_contact_weight(contact, element, number);
+    double force[3] = {own[0], own[1], dim == 3 ? own[2] : 0.0};
+    if (on->moves) {
+        fu_surface_out(dim, &on->mean, own, force);
+        add_reaction(model, contact, on, at, point->middle, force, weight, f);
+    }
+    if (contact->cable >= 0) {
+        const int n = model->cables[contact->cable].coordinates / dim, first = fu_contact_first(model, contact, element);
+        const double *N = fu_contact_shapes(contact, n, element, number);
+        for (int k = 0; k < n; ++k)
+            for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
+        return;
+    }
+    const fu_attachment *to = &contact->attachments[number];
+    fu_attachment_state end;
+    fu_attachment_at(model, to, at->now, 0.0, FU_POINT, &end);
+    fu_discrete_point(model, to, at->now, at->next, end.P);
+    fu_contact_add_along(dim, end.n, end.at, end.P, force, -weight, f);
+}
+
+/* Does for a step what the force does for an instant; returns the energy that goes to heat in it and that the contact stores, J.
+ * f may be null. */
+static double over_step(const fu_model *model, const fu_contact *contact, const fu_equations *at, double *f)
+{
+    const int dim = model->dim;
+    double lost = 0.0;
+    surface_step on;
+    surface_over_step(model, contact, at, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!may_touch(model, contact, &on, at, e)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            point_step point;
+            double force[3], by_next[9];
+            if (!point_over_step(model, contact, &on, at, e, k, &point)) continue;
+            fu_contact_step(model, contact, &on.frame, at->h, &point.now, &point.next, force, by_next);
+            const double weight = fu_contact_weight(contact, e, k);
+            for (int d = 0; d < dim; ++d) lost -= weight * force[d] * (point.next.r[d] - point.now.r[d]);
+            if (f) add_step_force(model, contact, &on, at, e, k, &point, force, f);
+        }
+    }
+    return lost;
+}
+
+void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+{
+    (void)own;
+    over_step(model, of(coupling), at, f);
+}
+
+/* The middle moves by half of psi, which weights.stiffness has: what the end does counts twice. How bodies turn in the step is taken as
+ * at its middle. */
+void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    const fu_contact *contact = of(coupling);
+    const int dim = model->dim;
+    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    surface_step on;
+    fu_attachment_state on_middle;
+    surface_over_step(model, contact, at, &on);
+    fu_surface_at(model, &contact->surface, at->middle, &on_middle);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        int touches = 0;
+        if (!may_touch(model, contact, &on, at, e)) continue;
+        const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;
+        for (int k = 0; k < contact->n_points; ++k) {
+            point_step point;
+            fu_touch_point *next = &point.next;
+            double force[3];
+            if (!point_over_step(model, contact, &on, at, e, k, &point)) continue;
+            fu_contact_step(model, contact, &on.frame, at->h, &point.now, next, force, next->by_place);
+            for (int i = 0; i < dim * dim; ++i) next->by_place[i] *= 2.0;
+            memset(next->by_rate, 0, sizeof next->by_rate);
+            memcpy(next->f, force, sizeof next->f);
+            if (on.moves) {
+                fu_surface_out(dim, &on.mean, force, next->f);
+                turn_derivative(dim, &on.mean, next->by_place);
+            }
+            if (on.moves || !n) {
+                memcpy(next->r, point.middle, sizeof next->r);
+                fu_contact_add_derivatives(model, contact, &on_middle, at->middle, e, k, next, 0, at->weights, system);
+                continue;
+            }
+            if (!touches++) memset(K, 0, sizeof(double) * (size_t)(n * n));
+            const double *N = fu_contact_shapes(contact, n / dim, e, k);
+            fu_add_element_product(dim, n, -at->weights.stiffness * fu_contact_weight(contact, e, k), N, N, next->by_place, K);
+        }
+        if (touches) fu_add_element_matrix(model, fu_contact_first(model, contact, e), n, K, system);
+    }
+}
+
+/* All that goes to heat, less what fu_contact_lost counts. */
+double fu_contact_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
+{
+    const double stored = fu_contact_energy(model, coupling, at->next) - fu_contact_energy(model, coupling, at->now);
+    return over_step(model, of(coupling), at, 0) - stored - fu_contact_lost(model, coupling, at->now, at->next);
+}
