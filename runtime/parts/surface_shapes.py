@@ -230,7 +230,7 @@ def _unit(v: Vector) -> np.ndarray:
 
 
 def _box(shape: Box) -> Geometry:
-    """Return the geometry of a box. Of its axes the one most nearly along z is the last: the others are in the plane."""
+    """Return the geometry of a box. Of its axes the one most nearly along z is the last."""
     axes = shape.axes
     order = np.roll(np.arange(3), 2 - int(np.argmax(np.abs(axes[2]))))
     return Geometry("box", np.array(shape.at), axes[:, order], np.zeros(3), half_size=np.array(shape.size)[order] / 2)
