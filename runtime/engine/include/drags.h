@@ -63,6 +63,10 @@ void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const 
                               const double *psi, fu_weights weights, fu_system *system);
 void fu_fluid_inertia(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
 void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
+/* Makes what it does a length of a cable without accelerations, at all points of quadrature: out (points x FU_INERTIA_DENSITIES),
+ * the force (3) and that on the slope (3), as they act on the cable, and the mass added (dim x dim of 9). */
+#define FU_INERTIA_DENSITIES 15
+void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 double fu_fluid_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
                                int past_fluid);
 
