@@ -16,6 +16,7 @@ from ..model.attachments import CARRIED, UP, AttachmentModel
 from ..model.contacts import ContactModel
 from ..model.drag_forces import densities
 from ..model.drags import DragModel
+from ..model.element_coordinates import element_coordinates, positions
 from ..model.loads import GAUSS
 from ..model.model import CableModel, Kernel, Model
 from ..model.states import attachment_points, spatial
@@ -109,17 +110,6 @@ def spread_along(cable: CableModel, of: DragModel | ContactModel, density: np.nd
 def at_element(cable: CableModel, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Return the elements that arc-lengths s are in, and x in them; at a node the element that begins there."""
     return cable.mesh.place(s)
-
-
-def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarray | None = None) -> np.ndarray:
-    """Return (T, elements, vectors, dim) of a cable from (T, n), or with element (T,) those of one each: (T, vectors,
-    dim).
-    """
-    nodal = values[:, cable.coordinates].reshape(len(values), *cable.shape)
-    if element is not None:
-        rows = np.arange(len(values))
-        return np.concatenate([nodal[rows, element], nodal[rows, element + 1]], axis=1)
-    return np.concatenate([nodal[:, :-1], nodal[:, 1:]], axis=2)
 
 
 def shape_on_axis(cable: CableModel, element: ArrayLike, x: ArrayLike) -> np.ndarray:
@@ -365,11 +355,6 @@ class CableLoads:
             elif name == "r" and k >= len(cable.vectors):
                 straight[k] = length
         return float(np.clip(end.N @ straight, 0.0, length))
-
-
-def positions(cable: CableModel) -> np.ndarray:
-    """Return (vectors,): which of an element's nodal vectors are positions."""
-    return np.array([name == "r" for name in cable.vectors] * 2)
 
 
 def across(tangent: np.ndarray) -> np.ndarray:

@@ -8,8 +8,9 @@ import numpy as np
 from scipy.sparse import block_diag, coo_array, csc_array, csr_array, kron
 from scipy.sparse.linalg import splu
 
+from ..model.element_coordinates import element_coordinates
 from ..model.model import CableModel, Model
-from .cable_loads import CableLoads, Instants, Spread, element_coordinates, rows
+from .cable_loads import CableLoads, Instants, Spread, rows
 
 
 @dataclass

@@ -18,10 +18,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..model.element_coordinates import positions
 from ..model.model import CableModel
 from ..model.states import spatial
 from ..parts.cable import EXACT, Cable
-from .cable_loads import CableLoads, Spread, lengths_of_rows, positions, rows, shape_on_axis
+from .cable_loads import CableLoads, Spread, lengths_of_rows, rows, shape_on_axis
 from .nodal_forces import ElementForces
 
 
