@@ -322,13 +322,26 @@ cdef class Engine(Report):
             return None
         return self._own("joint", left, 6)
 
-    def contact_densities(self, int contact, int points, q, v):
+    def contact_densities(self, int contact, int points, double t, q, v):
         """(points, 3): what a surface presses on the points of a contact with, N/m or N, at a state; friction as in statics."""
         cdef double[:, ::1] out = np.zeros((points, 3))
-        self.set_state(0.0, q=q)
+        self.set_state(t, q=q)
         self._view(&self.run.next, "v")[:] = v
         fu_contact_densities(&self.model, self.couplings[<int>self._of("contact")[contact]], &self.run.next, &out[0, 0])
         return np.asarray(out)
+
+    def fluid_inertia_densities(self, int drag, int points, double t, q, v):
+        """Inertia of the fluid along a cable at a state without accelerations, at the points of quadrature of its drag.
+
+        Returned: the force on it (points, 3), that on its slope (points, 3), and the mass added (points, dim, dim).
+        """
+        found = np.zeros((points, FU_INERTIA_DENSITIES))
+        cdef double[:, ::1] out = found
+        cdef int dim = self.model.dim
+        self.set_state(t, q=q)
+        self._view(&self.run.next, "v")[:] = v
+        fu_fluid_inertia_densities(&self.model, self.couplings[<int>self._of("drag")[drag]], &self.run.next, &out[0, 0])
+        return found[:, :3], found[:, 3:6], found[:, 6:6 + dim * dim].reshape(points, dim, dim)
 
     def static_outputs(self, str kind):
         """(couplings, numbers of one): of all couplings of a kind in the static state, as in rows of output."""

@@ -278,13 +278,6 @@ def test_bad_input_is_refused(case):
         add(scene)
 
 
-def test_section_forces_in_balance_are_refused():
-    run = swimming(body=False).run(0.01, step=1e-3, integrator="genalpha")
-    with pytest.raises(fu.FunicularError, match='take method="constitutive"'):
-        run.section_forces("wire", 0.5)
-    assert np.isfinite(run.section_forces("wire", 0.5, method="constitutive")["force"]).all()
-
-
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_driven_end_gives_what_the_water_takes(integrator):
     scene = fu.Scene()

@@ -7,6 +7,7 @@ import numpy as np
 from ..kernels.libraries import kernels_of
 from ..parts.validation import EXACT
 from .drags import DragModel
+from .element_coordinates import element_coordinates, positions
 from .model import Model
 from .states import attachment_points, spatial
 
@@ -17,10 +18,8 @@ def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v:
     time (T,) in s, q (T, n_q), v (T, n_dof).
     """
     cable, dim = model.cables[drag.cable], model.dim
-    e, rates = (np.concatenate([each[:, :-1], each[:, 1:]], axis=2) for each in (
-        values[:, cable.coordinates].reshape(len(values), *cable.shape) for values in (q, v)))
-    is_r = np.array([name == "r" for name in cable.vectors] * 2)
-    local = e - np.where(is_r[:, None], e[:, :, :1], 0.0)
+    e, rates = (element_coordinates(cable, values) for values in (q, v))
+    local = e - np.where(positions(cable)[:, None], e[:, :, :1], 0.0)
     r, slope, velocity = (np.einsum("egk,tekd->tegd", np.broadcast_to(shape, (cable.n_elements, *shape.shape[1:])), of)
                           for shape, of in ((drag.N, e), (drag.N_x, local), (drag.N, rates)))
     flow = _velocity(drag, time[:, None, None], r)

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..engine import Engine
-from ..errors import SceneError
 from ..kernels.libraries import kernels_of
 from ..kernels.mesh import Mesh
 from ..model.attachments import CARRIED, UP, AttachmentModel
+from ..model.contacts import ContactModel
 from ..model.drag_forces import densities
+from ..model.drags import DragModel
+from ..model.element_coordinates import element_coordinates, positions
 from ..model.loads import GAUSS
 from ..model.model import CableModel, Kernel, Model
 from ..model.states import attachment_points, spatial
@@ -55,6 +58,7 @@ class Spread:
     """A force a length along an element from x = start to stop (m).
 
     x (n,): places in between; density (T, n, 3) there, in N/m, a polynomial between them; f (T, vectors, dim).
+    on_slope (T, n, 3), in N: what does work with the change of r_x, likewise a polynomial; None: nothing.
     """
 
     element: int
@@ -63,22 +67,49 @@ class Spread:
     x: np.ndarray
     density: np.ndarray
     f: np.ndarray
+    on_slope: np.ndarray | None = None
+
+
+@dataclass
+class AddedMass:
+    """Mass of a fluid that moves with a cable: M (T, elements, points, dim, dim), kg/m, where its drag has points."""
+
+    M: np.ndarray
+    drag: DragModel
+
+    def matrices(self) -> np.ndarray:
+        """Return (T, elements, n, n): mass matrices of the elements, n = vectors dim."""
+        N = np.broadcast_to(self.drag.N, (self.M.shape[1], *self.drag.N.shape[1:]))
+        found = np.einsum("eg,egk,tegij,egl->tekilj", np.broadcast_to(self.drag.weights, N.shape[:2]), N, self.M, N)
+        n = N.shape[2] * self.M.shape[-1]
+        return found.reshape(*found.shape[:2], n, n)
+
+    def spreads(self, cable: CableModel, a: np.ndarray) -> Iterator[Spread]:
+        """Yield the force of the fluid by the accelerations a (T, elements, vectors, dim) of the elements."""
+        N = np.broadcast_to(self.drag.N, (self.M.shape[1], *self.drag.N.shape[1:]))
+        return spread_along(cable, self.drag, spatial(-np.einsum("tegij,egk,tekj->tegi", self.M, N, a)))
+
+
+def spread_along(cable: CableModel, of: DragModel | ContactModel, density: np.ndarray,
+                 on_slope: np.ndarray | None = None) -> Iterator[Spread]:
+    """Yield what acts at the points of quadrature of a drag or contact on a cable, (T, elements, points, 3)."""
+    for element in range(cable.n_elements):
+        k, length = 0 if cable.mesh.is_even else element, cable.mesh.length(element)
+        f = np.einsum("g,gk,tgd->tkd", of.weights[k], of.N[k], density[:, element, :, : cable.shape[2]])
+        if isinstance(of, ContactModel):
+            first = element * of.n_points
+            places = of.arc[first : first + of.n_points] - cable.mesh.start(element)
+        else:
+            places = length / 2 * (1 + np.array(GAUSS[0]))
+        slope = None if on_slope is None else on_slope[:, element]
+        if slope is not None and isinstance(of, DragModel):
+            f = f + np.einsum("g,gk,tgd->tkd", of.weights[k], of.N_x[k], slope[..., : cable.shape[2]])
+        yield Spread(element, 0.0, length, places, density[:, element], f, slope)
 
 
 def at_element(cable: CableModel, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Return the elements that arc-lengths s are in, and x in them; at a node the element that begins there."""
     return cable.mesh.place(s)
-
-
-def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarray | None = None) -> np.ndarray:
-    """Return (T, elements, vectors, dim) of a cable from (T, n), or with element (T,) those of one each: (T, vectors,
-    dim).
-    """
-    nodal = values[:, cable.coordinates].reshape(len(values), *cable.shape)
-    if element is not None:
-        rows = np.arange(len(values))
-        return np.concatenate([nodal[rows, element], nodal[rows, element + 1]], axis=1)
-    return np.concatenate([nodal[:, :-1], nodal[:, 1:]], axis=2)
 
 
 def shape_on_axis(cable: CableModel, element: ArrayLike, x: ArrayLike) -> np.ndarray:
@@ -99,13 +130,18 @@ def rows(kernel: Kernel, n: int, *given: ArrayLike) -> Any:
 
 
 class CableLoads:
-    """Collects what acts on cables between nodes. Gravity, inertia and what is given to nodes are not in it."""
+    """Collects what acts on cables between nodes. Gravity, inertia and what is given to nodes are not in it.
 
-    def __init__(self, scene: SceneData, model: Model, at: Instants):
+    cables: numbers of those whose contacts and fluids are of interest. added: masses of fluids that move with them.
+    """
+
+    def __init__(self, scene: SceneData, model: Model, at: Instants, cables: Collection[int]):
         self.scene, self.model, self.at, self.dim = scene, model, at, model.dim
         self.times, self.gravity = len(at.time), at.weight * np.array(scene.gravity)[: self.dim]
         self.points: dict[int, list[PointLoad]] = {}
         self.spreads: dict[int, list[Spread]] = {}
+        self.added: dict[int, AddedMass] = {}  # a cable has one drag
+        self.cables = cables
         names = [cable.name for cable in model.cables]
         self.number = {name: k for k, name in enumerate(names)}
         self._loads()
@@ -175,42 +211,40 @@ class CableLoads:
             f = sum(half * w * part for w, part in zip(GAUSS[1], each, strict=True))
             self.spreads.setdefault(number, []).append(Spread(element, start, stop, places, density, f))
 
+    @cached_property
+    def _engine(self) -> Engine:
+        return Engine(self.model)
+
+    def _at_points(self, n: int, compute: Callable) -> list[np.ndarray]:
+        """Return what compute(n, t, q, v) has at n points of quadrature, at all instants: each (T, n, ...)."""
+        each = [compute(n, t, q, v) for t, q, v in zip(self.at.time, self.at.q, self.at.v, strict=True)]
+        return [np.stack(values) for values in zip(*each, strict=True)]
+
     def _drags(self) -> None:
-        """Add what fluids do to cables."""
-        for drag in self.model.drags:
-            if drag.cable < 0:
+        """Add what fluids do to cables: drag, buoyancy, and their inertia but for the accelerations of the cables."""
+        for number, drag in enumerate(self.model.drags):
+            if drag.cable not in self.cables:
                 continue
             cable = self.model.cables[drag.cable]
-            density = self.at.load * densities(self.model, drag, self.at.time, self.at.q, self.at.v)
-            for element in range(cable.n_elements):
-                k, length = 0 if cable.mesh.is_even else element, cable.mesh.length(element)
-                f = np.einsum("g,gk,tgd->tkd", drag.weights[k], drag.N[k], density[:, element, :, : self.dim])
-                places = length / 2 * (1 + np.array(GAUSS[0]))
-                self.spreads.setdefault(drag.cable, []).append(
-                    Spread(element, 0.0, length, places, density[:, element], f))
+            density, on_slope = self.at.load * densities(self.model, drag, self.at.time, self.at.q, self.at.v), None
+            if drag.has_inertia:
+                shape = self.times, cable.n_elements, drag.n_points
+                found = self._at_points(shape[1] * shape[2], partial(self._engine.fluid_inertia_densities, number))
+                force, on_slope, M = (values.reshape(*shape, *values.shape[2:]) for values in found)
+                density, on_slope = density + self.at.load * force, self.at.load * on_slope
+                self.added[drag.cable] = AddedMass(M, drag)
+            self.spreads.setdefault(drag.cable, []).extend(spread_along(cable, drag, density, on_slope))
 
     def _contacts(self) -> None:
-        """Add what surfaces press on cables with. Raises SceneError where results do not tell it."""
-        on_cables = [k for k, contact in enumerate(self.model.contacts) if contact.cable >= 0]
-        engine = Engine(self.model) if on_cables else None
-        for number in on_cables:
-            contact = self.model.contacts[number]
-            assert engine is not None
-            if contact.on[0].body >= 0 or (contact.friction and not self.at.is_rest):
-                why = "has friction, which results do not tell along" if contact.friction else "moves with a body along"
-                raise SceneError(f'contact "{contact.name}"', f'{why} "{self.model.cables[contact.cable].name}"',
-                                 'take method="constitutive", which follows from the strains')
+        """Add what surfaces press on cables with, of which `out_of_balance` tells that it is known."""
+        for number, contact in enumerate(self.model.contacts):
+            if contact.cable not in self.cables:
+                continue
             cable = self.model.cables[contact.cable]
-            shape = (self.times, cable.n_elements, contact.n_points, 3)
-            density = np.array([engine.contact_densities(number, shape[1] * shape[2], q, v)
-                                for q, v in zip(self.at.q, self.at.v, strict=True)]).reshape(shape)
-            for element in range(cable.n_elements):
-                k, length = 0 if cable.mesh.is_even else element, cable.mesh.length(element)
-                first = element * contact.n_points
-                x = contact.arc[first : first + contact.n_points] - cable.mesh.start(element)
-                f = np.einsum("g,gk,tgd->tkd", contact.weights[k], contact.N[k], density[:, element, :, : self.dim])
-                self.spreads.setdefault(contact.cable, []).append(
-                    Spread(element, 0.0, length, x, density[:, element], f))
+            n = cable.n_elements * contact.n_points
+            density, = self._at_points(n, lambda *at, number=number: (self._engine.contact_densities(number, *at),))
+            density = density.reshape(self.times, cable.n_elements, contact.n_points, 3)
+            self.spreads.setdefault(contact.cable, []).extend(spread_along(cable, contact, density))
 
     def _slides(self) -> None:
         """Add riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""
@@ -321,11 +355,6 @@ class CableLoads:
             elif name == "r" and k >= len(cable.vectors):
                 straight[k] = length
         return float(np.clip(end.N @ straight, 0.0, length))
-
-
-def positions(cable: CableModel) -> np.ndarray:
-    """Return (vectors,): which of an element's nodal vectors are positions."""
-    return np.array([name == "r" for name in cable.vectors] * 2)
 
 
 def across(tangent: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ import numpy as np
 from ..view.plot import SNAPSHOTS
 from ..view.projections import axis_name
 from .animation.recorded import Recorded
+from .balance_limits import known_method
 from .quantities import ENERGIES
 from .section_forces import even, jumps, of_run, with_sides
 
@@ -73,13 +74,16 @@ def section_forces(run: Recorded, figure: Figure, cable: str) -> bool:
     riders = [run[f"{name}.s"][shown] for name, slide in run.scene.slides.items() if slide.along == cable]
     places = np.concatenate([np.broadcast_to(fixed, (len(shown), len(fixed))), *(s[:, None] for s in riders)], axis=1)
     s = with_sides(described, even(described), places)
-    forces = of_run(run, cable, s, shown)
+    method = known_method(run.scene, run.model, cable, False)
+    forces = of_run(run, cable, s, shown, method=method)
     figure.set_size_inches(7, 4.8)
     tension, moment = figure.subplots(2, sharex=True)
     for k, time in enumerate(run.time[shown]):
         tension.plot(s[k], forces["tension"][k], color=colour.to_rgba(time))
         moment.plot(s[k], np.linalg.norm(forces["moment"][k], axis=-1), color=colour.to_rgba(time))
     tension.set_ylabel("tension / N")
+    if method != "balance":
+        tension.set_title("of the elastic law: results do not tell all that acts")
     moment.set_ylabel("moment / (N m)")
     moment.set_xlabel(f"arc-length s of {cable} / m")
     figure.colorbar(colour, ax=[tension, moment], label="time / s", pad=0.02, fraction=0.04)

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.sparse import block_diag, coo_array, csc_array, csr_array, kron
 from scipy.sparse.linalg import splu
 
+from ..model.element_coordinates import element_coordinates
 from ..model.model import CableModel, Model
-from ..parts.scene_data import SceneData
-from .cable_loads import CableLoads, Instants, element_coordinates, rows
+from .cable_loads import CableLoads, Instants, Spread, rows
 
 
 @dataclass
@@ -19,38 +19,29 @@ class ElementForces:
 
     given (T, elements, vectors, dim): the generalised forces of its nodes on each element; inertia, the same shape:
     nodal accelerations with what mass damping adds, those of gravity subtracted, so that mass times inertia is what a
-    length of cable takes; e, likewise, nodal vectors.
+    length of cable takes; e, likewise, nodal vectors. spreads: what the mass of a fluid adds by the accelerations.
     """
 
     given: np.ndarray
     inertia: np.ndarray
     e: np.ndarray
+    spreads: list[Spread]
 
 
-def element_forces(scene: SceneData, model: Model, at: Instants, loads: CableLoads, cable: int,
-                   at_rest: bool) -> ElementForces:
-    """Return those of cable number `cable`; at_rest: without accelerations."""
-    tied = [cable] if at_rest else tied_cables(scene, model, cable)
-    forces = {k: internal(model.cables[k], at) - _external(model, k, at, loads) for k in tied}
-    accelerations = np.zeros_like(at.v) if at_rest else _accelerations(model, at, forces)
+def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) -> ElementForces:
+    """Return those of cable number `cable`, one of those that the loads are of; at rest without accelerations."""
+    forces = {k: internal(model.cables[k], at) - _external(model, k, at, loads) for k in loads.cables}
+    accelerations = np.zeros_like(at.v) if at.is_rest else _accelerations(model, at, forces, loads)
     of = model.cables[cable]
     a = element_coordinates(of, accelerations)
     given = forces[cable] + mass_times(of, a)
+    spreads: list[Spread] = []
+    if cable in loads.added and not at.is_rest:
+        spreads = list(loads.added[cable].spreads(of, a))
+    for spread in spreads:
+        given[:, spread.element] -= spread.f
     inertia = a + of.mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
-    return ElementForces(given, inertia, element_coordinates(of, at.q))
-
-
-def tied_cables(scene: SceneData, model: Model, cable: int) -> list[int]:
-    """Return the numbers of the cables that joins tie to one, itself included: their accelerations go together."""
-    found, new = {model.cables[cable].name}, [model.cables[cable].name]
-    while new:
-        name = new.pop()
-        for tie in scene.ties.values():
-            pair = {tie.cable, tie.to}
-            if name in pair:
-                new += pair - found
-                found |= pair
-    return [k for k, each in enumerate(model.cables) if each.name in found]
+    return ElementForces(given, inertia, element_coordinates(of, at.q), spreads)
 
 
 def internal(cable: CableModel, at: Instants) -> np.ndarray:
@@ -101,12 +92,12 @@ def _external(model: Model, number: int, at: Instants, loads: CableLoads) -> np.
     return f
 
 
-def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) -> np.ndarray:
+def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray], loads: CableLoads) -> np.ndarray:
     """Return (T, n_dof): nodal accelerations of these cables; forces (T, elements, vectors, dim) are internal less
     outer ones.
 
     M a = -forces on what is free, with what supports and joins hold and motions prescribe. Eq 38 gave the same at each
-    of the instants: so a run need not keep them.
+    of the instants: so a run need not keep them. A fluid's mass turns with the cable, and M with it.
     """
     chosen = np.concatenate([np.arange(model.cables[k].coordinates.start, model.cables[k].coordinates.stop)
                            for k in forces])
@@ -121,25 +112,43 @@ def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) ->
     M = block_diag(masses, format="csr")
     T = _reduction(model, chosen)
     prescribed = _prescribed(model, at.time)[:, chosen]
-    right = -(assembled[:, chosen] + (M @ prescribed.T).T)
     found = np.zeros_like(assembled)
-    if T.shape[1]:
-        solve = splu(csc_array(T.T @ M @ T)).solve
-        found[:, chosen] = (T @ solve(np.ascontiguousarray(T.T @ right.T))).T
+    of_fluid = {k: loads.added[k].matrices() for k in forces if k in loads.added}
+    blocks = [slice(None)] if not of_fluid else [slice(t, t + 1) for t in range(len(at.time))]
+    for block in blocks:
+        whole = M if not of_fluid else M + block_diag([_fluid_mass(model.cables[k], of_fluid.get(k), block.start)
+                                                       for k in forces], format="csr")
+        right = -(assembled[block, chosen] + (whole @ prescribed[block].T).T)
+        if T.shape[1]:
+            solve = splu(csc_array(T.T @ whole @ T)).solve
+            found[block, chosen] = (T @ solve(np.ascontiguousarray(T.T @ right.T))).T
     found[:, chosen] += prescribed
     return found
 
 
 def _mass(cable: CableModel) -> csr_array:
     """Return the mass matrix of a cable, (coordinates, coordinates), sparse."""
-    per_node = cable.shape[1]
+    return kron(_assembled(cable, cable.m, cable.shape[1]), np.eye(cable.shape[2]), format="csr")
+
+
+def _fluid_mass(cable: CableModel, matrices: np.ndarray | None, instant: int) -> csr_array:
+    """Return that of a fluid at an instant, from matrices (T, elements, n, n); None: there is none."""
+    per_node = cable.shape[1] * cable.shape[2]
+    if matrices is None:
+        return csr_array((cable.shape[0] * per_node,) * 2)
+    return _assembled(cable, matrices[instant], per_node)
+
+
+def _assembled(cable: CableModel, matrices: np.ndarray, per_node: int) -> csr_array:
+    """Return the sum of matrices (1 or elements, 2 per_node, 2 per_node) of the elements, sparse."""
     n = cable.shape[0] * per_node
     index = np.arange(cable.n_elements)[:, None, None] * per_node
     local = np.arange(2 * per_node)
     at_row = np.broadcast_to(index + local[:, None], (cable.n_elements, 2 * per_node, 2 * per_node))
     at_column = np.broadcast_to(index + local, at_row.shape)
-    m = coo_array((np.broadcast_to(cable.m, at_row.shape).ravel(), (at_row.ravel(), at_column.ravel())), shape=(n, n))
-    return kron(m.tocsr(), np.eye(cable.shape[2]), format="csr")
+    found = coo_array((np.broadcast_to(matrices, at_row.shape).ravel(), (at_row.ravel(), at_column.ravel())),
+                      shape=(n, n))
+    return found.tocsr()
 
 
 def _reduction(model: Model, dofs: np.ndarray) -> csr_array:

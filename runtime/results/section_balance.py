@@ -18,10 +18,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..model.element_coordinates import positions
 from ..model.model import CableModel
 from ..model.states import spatial
 from ..parts.cable import EXACT, Cable
-from .cable_loads import CableLoads, Spread, lengths_of_rows, positions, rows, shape_on_axis
+from .cable_loads import CableLoads, Spread, lengths_of_rows, rows, shape_on_axis
 from .nodal_forces import ElementForces
 
 
@@ -75,7 +76,8 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: Cabl
     taken = _of_inertia(cable, model, cuts, e, inertia)
     force, moment = force + taken[0], moment + taken[1]
     change = cable.material.density * cable.section.area * _at(shape_on_axis(model, cuts.element, cuts.x), inertia)
-    for spread in loads.spreads.get(number, []):
+    spreads = [*loads.spreads.get(number, []), *forces.spreads]
+    for spread in spreads:
         inside = (cuts.element == spread.element) & (cuts.x > spread.start)
         columns = np.flatnonzero(inside.any(axis=0))
         if len(columns):
@@ -92,7 +94,14 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: Cabl
         for total, value in zip((force, moment), jump, strict=True):
             total -= before[..., None] * value[:, None]
     r = np.einsum("tnk,tnkd->tnd", shape_on_axis(model, cuts.element, cuts.x), e)
-    return force, moment - np.cross(r, force), change
+    moment = moment - np.cross(r, force)
+    for spread in spreads:
+        if spread.on_slope is not None:
+            columns = np.flatnonzero((cuts.element == spread.element).any(axis=0))
+            here, of_x = (cuts.element == spread.element)[:, columns, None], cuts.x[:, columns]
+            for total, weights in zip((force, change), _lagrange(spread.x, of_x), strict=True):
+                total[:, columns] += np.where(here, _through(weights, spread.on_slope), 0.0)
+    return force, moment, change
 
 
 def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: np.ndarray) -> tuple[np.ndarray,
@@ -141,17 +150,35 @@ def _of_spread(model: CableModel, spread: Spread, x: np.ndarray, e: np.ndarray) 
         share = _density(spread, at) * (weight * length)[..., None]
         force = force + share
         moment = moment + np.cross(_at(shape_on_axis(model, spread.element, at), e), share)
+        if spread.on_slope is not None:
+            pull = _through(_lagrange(spread.x, at)[0], spread.on_slope) * (weight * length)[..., None]
+            moment = moment + np.cross(_at(_slope_on_axis(model, spread.element, at), e), pull)
     return force, moment, _density(spread, x)
 
 
 def _density(spread: Spread, x: np.ndarray) -> np.ndarray:
     """Return (T, n, 3): force a length at x (T or 1, n)."""
-    weights, times = _lagrange(spread.x, x), len(spread.density)
-    return np.einsum("tnp,tpd->tnd", np.broadcast_to(weights, (times, *weights.shape[1:])), spread.density)
+    return _through(_lagrange(spread.x, x)[0], spread.density)
 
 
-def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Return (..., nodes): weights of the values at nodes in the polynomial through them, at x (...)."""
+def _through(weights: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return (T, n, 3) from weights (T or 1, n, nodes) of values (T, nodes, 3)."""
+    return np.einsum("tnp,tpd->tnd", np.broadcast_to(weights, (len(values), *weights.shape[1:])), values)
+
+
+def _slope_on_axis(model: CableModel, element: int, x: np.ndarray) -> np.ndarray:
+    """Return (..., vectors): slopes of shape functions at places x (...) of the centreline of an element."""
+    lengths = lengths_of_rows(model.mesh, element, x.shape)
+    return rows(model.kernel("on_axis"), x.size, lengths, x.ravel())[1].reshape(*x.shape, -1)
+
+
+def _lagrange(nodes: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return (..., nodes): weights of the values at nodes in the polynomial through them, at x (...), and those in its
+    derivative.
+    """
     others = [np.delete(nodes, k) for k in range(len(nodes))]
-    return np.stack([np.prod((x[..., None] - other) / (node - other), axis=-1)
-                     for node, other in zip(nodes, others, strict=True)], axis=-1)
+    weights = np.stack([np.prod((x[..., None] - other) / (node - other), axis=-1)
+                        for node, other in zip(nodes, others, strict=True)], axis=-1)
+    slopes = [sum(np.prod((x[..., None] - np.delete(other, k)), axis=-1) for k in range(len(other)))
+              / np.prod(node - other) for node, other in zip(nodes, others, strict=True)]
+    return weights, np.stack(slopes, axis=-1)

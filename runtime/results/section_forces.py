@@ -18,8 +18,9 @@ from ..parts.section_stiffness import section_stiffness
 from ..parts.slide import Slide
 from ..parts.validation import show
 from ..solve.rest_state import RestState
+from .balance_limits import balanced_cables, out_of_balance
 from .cable_loads import CableLoads, Instants, lengths_of_rows, rows
-from .nodal_forces import element_forces, tied_cables
+from .nodal_forces import element_forces
 from .section_balance import Cuts, balanced
 from .section_components import balanced_components, components, labels, taut_bending
 from .section_kinks import kinks
@@ -88,7 +89,7 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     """Return the forces in sections of the cable ``name`` at instants.
 
     s: (1 or T, n) arc-lengths in m. Returns force and moment (T, n, 3), along the ground's axes, and the components
-    of `section_components.labels` (T, n). At rest accelerations are nil.
+    of `section_components.labels` (T, n). At rest accelerations are nil. Raises SceneError, see `out_of_balance`.
     """
     cable, number = scene.cables[name], list(scene.cables).index(name)
     of = model.cables[number]
@@ -97,32 +98,14 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     force, moment, axes, strain = constitutive(cable, nodal, cuts)
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
-    if (drag := unbalanced_drag(scene, model, number, at.is_rest)) is not None:
-        raise FunicularError(f'section forces of "{name}": the balance does not know added mass, which drag '
-                             f'"{drag}" has; take method="constitutive"')
-    loads = CableLoads(scene, model, at)
-    forces = element_forces(scene, model, at, loads, number, at.is_rest)
+    if (refusal := out_of_balance(scene, model, number, at.is_rest)) is not None:
+        raise refusal
+    loads = CableLoads(scene, model, at, balanced_cables(scene, model, number, at.is_rest))
+    forces = element_forces(model, at, loads, number)
     balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
     taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
         cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
     return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
-
-
-def unbalanced_drag(scene: SceneData, model: Model, number: int, at_rest: bool) -> str | None:
-    """Return the name of a drag on a cable of this number, or on one tied to it, whose inertia the balance does not
-    know; None: there is none.
-    """
-    for drag in model.drags:
-        is_still = at_rest and not drag.fluid.moves
-        if drag.has_inertia and not is_still and drag.cable in tied_cables(scene, model, number):
-            return drag.name
-    return None
-
-
-def known_method(scene: SceneData, model: Model, name: str, at_rest: bool) -> str:
-    """Return the method for pictures of a cable: "balance" where that knows all that acts, else "constitutive"."""
-    number = list(scene.cables).index(name)
-    return "balance" if unbalanced_drag(scene, model, number, at_rest) is None else "constitutive"
 
 
 def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",

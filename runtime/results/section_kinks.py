@@ -6,12 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..model.element_coordinates import positions
 from ..model.model import CableModel
 from ..model.states import spatial
 from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
 from ..parts.support import Clamp, Motion, Support
-from .cable_loads import CableLoads, positions, shape_on_axis
+from .cable_loads import CableLoads, shape_on_axis
 from .nodal_forces import ElementForces
 from .section_balance import Cuts, balanced, resultants
 from .section_layer import Kink, fixed_direction

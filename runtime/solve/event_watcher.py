@@ -17,7 +17,7 @@ from ..parts.event import Event
 from ..parts.scene_data import SceneData
 
 LEAVES_TABLE = "leaves the table of its fluid"
-"""What the engine says of it (engine/couplings/drags.c)."""
+"""What the engine says of it (engine/couplings/table_events.c)."""
 
 
 class Watch:

@@ -7,95 +7,10 @@
  */
 #include "engine.h"
 
-#include <math.h>
 #include <string.h>
 
-#define AT_EDGE 1e-9 /* of an axis of a table: what is beyond its edge by less is at it, as a run that ends with a table */
-
-/* What the fluid does at a place: its velocity with derivatives; drag with its derivatives. */
-typedef struct {
-    fu_flow_state flow;
-    double w[3], f[3], by_slope[9], by_w[9], by_turn[9];
-} action;
-
-static void add_to(int n, const double *x, double *sum)
-{
-    for (int i = 0; i < n; ++i) sum[i] += x[i];
-}
-
-/* Makes a x b; in the plane b turned by a quarter times a[0]. */
-static void cross(int dim, const double *a, const double *b, double out[3])
-{
-    if (dim == 2) {
-        out[0] = -a[0] * b[1];
-        out[1] = a[0] * b[0];
-        return;
-    }
-    fu_cross(a, b, out);
-}
-
-/* Makes coefficients of drag and lift, each with its derivative by the angle of attack, of the flow w past axes by rows of A. */
-static void coefficients_of(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w,
-                            double coefficients[4])
-{
-    coefficients[0] = coefficients[1] = coefficients[3] = 0.0;
-    coefficients[2] = drag->foil_lift;
-    if (!drag->n_angles) return;
-    double normal[3];
-    cross(dim, span, chord, normal);
-    const double angle = atan2(fu_dot(dim, w, normal), fu_dot(dim, w, chord));
-    const fu_signal of_drag = {drag->n_angles, drag->angles, drag->polar_drag, 0.0, 0.0, 0.0};
-    const fu_signal of_lift = {drag->n_angles, drag->angles, drag->polar_lift, 0.0, 0.0, 0.0};
-    coefficients[0] = fu_signal_at(&of_drag, angle, &coefficients[1], 0);
-    coefficients[2] = fu_signal_at(&of_lift, angle, &coefficients[3], 0);
-}
-
-/* Adds drag and lift on a body with a span, of axes A. */
-static void add_foil(int dim, const fu_drag *drag, const double *A, action *out)
-{
-    const int turns = dim == 3 ? 3 : 1;
-    double span[3] = {drag->span[0]}, chord[3], coefficients[4], f[3], by_w[9];
-    for (int d = 0; d < dim; ++d) {
-        chord[d] = fu_dot(dim, A + d * dim, drag->chord);
-        if (dim == 3) span[d] = fu_dot(dim, A + d * dim, drag->span);
-    }
-    coefficients_of(dim, drag, chord, span, out->w, coefficients);
-    drag->kernel->on_foil(out->w, span, drag->foil, coefficients, f, by_w);
-    add_to(dim, f, out->f);
-    add_to(dim * dim, by_w, out->by_w);
-    for (int k = 0; k < turns; ++k) { /* by a turn of the body, as if the flow had turned back */
-        const double axis[3] = {k == 0, k == 1, k == 2};
-        double turned[3], flow[3];
-        cross(dim, axis, f, turned);
-        cross(dim, axis, out->w, flow);
-        for (int d = 0; d < dim; ++d) out->by_turn[d * turns + k] = turned[d] - fu_dot(dim, by_w + d * dim, flow);
-    }
-}
-
-static void add_lift(const fu_drag *drag, const fu_drag_place *at, action *out)
-{
-    double f[3], by_slope[9], by_w[9];
-    drag->kernel->lift_along_cable(at->r_x, out->w, drag->lift, f, by_slope, by_w);
-    add_to(3, f, out->f);
-    add_to(9, by_slope, out->by_slope);
-    add_to(9, by_w, out->by_w);
-}
-
-/* Makes what the fluid does at a place; A: axes of a body there. */
-static void act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A, action *out)
-{
-    fu_flow_at(model, &drag->flow, t, at->r, &out->flow);
-    for (int d = 0; d < model->dim; ++d) out->w[d] = out->flow.U[d] - at->v[d];
-    if (drag->cable >= 0)
-        drag->kernel->along_cable(at->r_x, out->w, drag->coefficients, out->f, out->by_slope, out->by_w);
-    else
-        drag->kernel->on_point(out->w, drag->coefficients, out->f, out->by_w);
-    if (drag->lift[0] != 0.0) add_lift(drag, at, out);
-    if (drag->is_foil) add_foil(model->dim, drag, A, out);
-}
-
 /* Makes the derivative of drag by the place (dim x dim). */
-static void by_place(int dim, const action *a, double out[9])
+static void by_place(int dim, const fu_drag_action *a, double out[9])
 {
     for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) {
@@ -105,14 +20,14 @@ static void by_place(int dim, const action *a, double out[9])
 }
 
 /* Makes the force of drag and buoyancy, N/m or N: so much of it as of all loads acts. */
-static void whole_force(const fu_model *model, const fu_drag *drag, const action *a, double force[3])
+static void whole_force(const fu_model *model, const fu_drag *drag, const fu_drag_action *a, double force[3])
 {
     for (int d = 0; d < model->dim; ++d) force[d] = model->load_fraction * (a->f[d] + drag->buoyancy[d]);
 }
 
 /* Adds to `sum` the powers at a place of this weight. */
-static void add_powers(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const action *a, double weight,
-                       fu_drag_powers *sum)
+static void add_powers(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const fu_drag_action *a,
+                       double weight, fu_drag_powers *sum)
 {
     const double part = weight * model->load_fraction;
     sum->dissipated += part * fu_dot(model->dim, a->f, a->w);
@@ -157,11 +72,11 @@ static void on_cable(const fu_model *model, const fu_drag *drag, double t, const
         const int first = cable->first + e * cable->per_node;
         for (int g = 0; g < drag->n_points; ++g) {
             fu_drag_place at;
-            action a;
+            fu_drag_action a;
             double force[3];
             const fu_quadrature_point point = fu_drag_point(drag, n, e, g);
             fu_drag_place_on_axis(model, drag, q + first, v + first, 0, point, &at);
-            act(model, drag, t, &at, 0, &a);
+            fu_drag_act(model, drag, t, &at, 0, &a);
             whole_force(model, drag, &a, force);
             if (sums->power) add_powers(model, drag, &at, &a, point.weight, sums->power);
             for (int d = 0; d < dim; ++d) {
@@ -189,9 +104,9 @@ static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu
             const double scale = -weights.stiffness * model->load_fraction * point.weight;
             double gradient[9];
             fu_drag_place at;
-            action a;
+            fu_drag_action a;
             fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, point, &at);
-            act(model, drag, state->t, &at, 0, &a);
+            fu_drag_act(model, drag, state->t, &at, 0, &a);
             by_place(dim, &a, gradient);
             for (int i = 0; i < dim; ++i)
                 for (int j = 0; j < dim; ++j) {
@@ -233,10 +148,10 @@ static void on_body(const fu_model *model, const fu_drag *drag, double t, const 
 {
     fu_attachment_state end;
     fu_drag_place at;
-    action a;
+    fu_drag_action a;
     double force[3];
     place_on_body(model, drag, state, step, &at, &end);
-    act(model, drag, t, &at, end.A, &a);
+    fu_drag_act(model, drag, t, &at, end.A, &a);
     whole_force(model, drag, &a, force);
     if (sums->power) add_powers(model, drag, &at, &a, 1.0, sums->power);
     for (int d = 0; d < model->dim; ++d) {
@@ -254,9 +169,9 @@ static void matrix_of_body(const fu_model *model, const fu_drag *drag, const fu_
     double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], force[3], gradient[9];
     fu_attachment_state end;
     fu_drag_place at;
-    action a;
+    fu_drag_action a;
     place_on_body(model, drag, state, 0, &at, &end);
-    act(model, drag, state->t, &at, end.A, &a);
+    fu_drag_act(model, drag, state->t, &at, end.A, &a);
     whole_force(model, drag, &a, force);
     const int n = end.n;
     memcpy(turned, end.P, sizeof turned);
@@ -386,69 +301,6 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     add_all(model, coupling, state, acceleration, &sums);
 }
 
-/* Returns how far within its table all of what a fluid acts on is, as a part of the table's axes; negative beyond its edges. */
-static double margin(const fu_model *model, const fu_drag *drag, const fu_state *state)
-{
-    double least = 1.0;
-    if (drag->cable >= 0) {
-        const fu_cable *cable = &model->cables[drag->cable];
-        for (int k = 0; k <= cable->n_elements; ++k)
-            least = fmin(least, fu_flow_margin(model, &drag->flow, state->t, state->q + cable->first + k * cable->per_node));
-    } else {
-        fu_attachment_state end;
-        fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT, &end);
-        least = fu_flow_margin(model, &drag->flow, state->t, end.p);
-    }
-    return least + AT_EDGE;
-}
-
-static int *is_outside(const fu_coupling *coupling, const fu_state *state)
-{
-    return state->flags + coupling->flags;
-}
-
-static int watches(const fu_coupling *coupling, fu_watch *out)
-{
-    if (((const fu_drag *)coupling)->flow.degree == 0) return 0;
-    if (out) *out = (fu_watch){.which = 0, .direction = 0};
-    return 1;
-}
-
-static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
-{
-    (void)which;
-    return margin(run->model, (const fu_drag *)coupling, state);
-}
-
-static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
-{
-    (void)model, (void)which;
-    return *is_outside(coupling, state) ? -1 : 1;
-}
-
-/* Notes that something leaves the table, or that all is in it again. The velocity does not jump there, but its derivatives do. */
-static int pass_edge(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
-{
-    (void)which;
-    *is_outside(coupling, &run->now) = side < 0;
-    *what = side < 0 ? "leaves the table of its fluid" : "is back in the table of its fluid";
-    return FU_RUNNING;
-}
-
-static int has_edges(const fu_coupling *coupling)
-{
-    return ((const fu_drag *)coupling)->flow.degree > 0;
-}
-
-static int begin(fu_run *run, const fu_coupling *coupling)
-{
-    *is_outside(coupling, &run->now) = margin(run->model, (const fu_drag *)coupling, &run->now) < 0.0;
-    return FU_RUNNING;
-}
-
-static const fu_coupling_events edges = {
-    .watches = watches, .watched = watched, .sign = sign, .act = pass_edge, .can_act = has_edges, .begin = begin};
-
 static const char *const role[] = {"drag", 0};
 static const char *const profiles[] = {"uniform", "power", "table", 0};
 #define FLOW_FIELD(member, kind, words) {#member, kind, offsetof(fu_drag, flow.member), 1, 0, words}
@@ -498,7 +350,7 @@ static const fu_field fields[] = {
 };
 
 const fu_coupling_type fu_drag_type = {
-    .name = "drag", .size = sizeof(fu_drag), .fields = fields, .n_outputs = 3, .n_flags = 1, .events = &edges, .residual = residual, .tangent = tangent,
+    .name = "drag", .size = sizeof(fu_drag), .fields = fields, .n_outputs = 3, .n_flags = 1, .events = &fu_table_edges, .residual = residual, .tangent = tangent,
     .step_residual = step_residual, .step_tangent = step_tangent, .step_dissipation = step_dissipation, .step_work = step_work,
     .inertia = fu_fluid_inertia, .mass = fu_fluid_mass, .kinetic_energy = fu_fluid_kinetic_energy,
     .force = force, .external_power = external_power, .dissipation = dissipation, .outputs = outputs};

@@ -103,6 +103,31 @@ static void on_cable(const fu_model *model, const fu_drag *drag, const fu_state 
     }
 }
 
+void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+{
+    const fu_drag *drag = (const fu_drag *)coupling;
+    const fu_cable *cable = &model->cables[drag->cable];
+    const int dim = model->dim, n = cable->coordinates / dim;
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        for (int k = 0; k < drag->n_points; ++k, out += FU_INERTIA_DENSITIES) {
+            double left[3];
+            fu_drag_place at;
+            of_length terms;
+            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, fu_drag_point(drag, n, e, k), &at);
+            const passage past = pass(model, drag, state->t, at.r, at.v, at.a);
+            terms_of_length(drag, &at, &past, &terms);
+            of_particles(model, drag, &past, terms.p, terms.p_rate, at.v, model->load_fraction, left, 0);
+            memset(out, 0, sizeof(double[FU_INERTIA_DENSITIES]));
+            for (int d = 0; d < dim; ++d) {
+                out[d] = -left[d];
+                out[3 + d] = model->load_fraction * terms.g[d];
+            }
+            memcpy(out + 6, terms.M, sizeof(double) * (size_t)(dim * dim));
+        }
+    }
+}
+
 /* The same over a step, with the change of impulse and a discrete gradient: the energy T changes by the work of the force. */
 static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
 {

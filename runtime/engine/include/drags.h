@@ -40,6 +40,12 @@ typedef struct {
     double r[3], r_x[3], v[3], r_x_rate[3], a[3];
 } fu_drag_place;
 
+/* What the fluid does at a place: its velocity with derivatives, that past the place; drag and lift with their derivatives. */
+typedef struct {
+    fu_flow_state flow;
+    double w[3], f[3], by_slope[9], by_w[9], by_turn[9];
+} fu_drag_action;
+
 /* Powers: what goes to heat, what the fluid gives, W. */
 typedef struct {
     double dissipated, external;
@@ -55,6 +61,13 @@ fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int p
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
                            fu_quadrature_point point, fu_drag_place *at);
 
+/* drag_action.c: makes what the fluid does at a place; A: axes of a body there. */
+void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
+                 fu_drag_action *out);
+
+/* table_events.c */
+extern const fu_coupling_events fu_table_edges;
+
 /* fluid_inertia.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or without, null. */
 void fu_fluid_inertia_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                              const fu_drag_sums *sums);
@@ -63,6 +76,10 @@ void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const 
                               const double *psi, fu_weights weights, fu_system *system);
 void fu_fluid_inertia(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
 void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
+/* Makes what it does a length of a cable without accelerations, at all points of quadrature: out (points x FU_INERTIA_DENSITIES),
+ * the force (3) and that on the slope (3), as they act on the cable, and the mass added (dim x dim of 9). */
+#define FU_INERTIA_DENSITIES 15
+void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 double fu_fluid_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
                                int past_fluid);
 

@@ -8,11 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import FunicularError
+from ...model.model import Model
 from ...parts.modal_body import ModalBody
 from ...parts.scene_data import SceneData
 from ...solve.modes import Modes
 from ...solve.rest_state import RestState, in_loads
 from ...view.animation import Animation, BodyShape, CableShape, Clip, Curve, EventMark, Mark
+from ..balance_limits import out_of_balance
 from . import sources
 from .bodies import body_shape
 from .cables import cable_shape, modal_line, stations
@@ -53,12 +55,23 @@ def of_run(run: Recorded, title: str, frames: int = FRAMES, with_results: bool =
     if not with_results:
         places = replace(sources.of_run(run, chosen), section_forces=no_forces)
         return _animation(run.scene, title, [_clip(places, title, notes)], notes)
-    notes += [f'tension of "{name}" is that of the elastic law, not in balance with what acts: the run is large'
-              for name, cable in run.scene.cables.items()
+    notes += [_by_law(name, "the run is large") for name, cable in run.scene.cables.items()
               if not sources.is_balanced(len(chosen), len(stations(cable)))]
+    notes += _out_of_balance(run.scene, run.model, is_rest=False)
     clip = _clip(sources.of_run(run, chosen), title, notes)
     clip = replace(clip, curves=tuple(curves(run, notes)), events=tuple(events(run)), details=dict(run.summary_rows()))
     return _animation(run.scene, title, [clip], notes)
+
+
+def _by_law(cable: str, why: str) -> str:
+    """Return the note of a cable whose forces are not those in balance."""
+    return f'tension of "{cable}" is that of the elastic law, not in balance with what acts: {why}'
+
+
+def _out_of_balance(scene: SceneData, model: Model, is_rest: bool) -> list[str]:
+    """Return a note of each cable on which something acts that results do not tell."""
+    found = ((name, out_of_balance(scene, model, number, is_rest)) for number, name in enumerate(scene.cables))
+    return [_by_law(name, f"{error.place} {error.cause}") for name, error in found if error is not None]
 
 
 def of_scene(scene: SceneData, title: str) -> Animation:
@@ -69,7 +82,7 @@ def of_scene(scene: SceneData, title: str) -> Animation:
 
 def of_equilibrium(state: RestState, title: str) -> Animation:
     """Return the picture of a state of rest."""
-    notes = [*state.messages]
+    notes = [*state.messages, *_out_of_balance(state.scene, state.model, is_rest=True)]
     clip = _clip(sources.of_states([state]), title, notes)
     return _animation(state.scene, title, [replace(clip, time=np.zeros(1), details=details(state))], notes)
 
@@ -82,7 +95,7 @@ def details(state: RestState) -> dict[str, str]:
 
 def of_path(state: RestState, title: str) -> Animation:
     """Return the animation of the states of rest on the way to one: its time is the load factor, if that only rises."""
-    notes, states = [*state.messages], state.path
+    notes, states = [*state.messages, *_out_of_balance(state.scene, state.model, is_rest=True)], state.path
     if len(states) < 2:
         raise FunicularError("the equilibrium has one state on its path; find it with load_steps or "
                              'method="arc_length" for a path to see')

@@ -8,8 +8,8 @@ import numpy as np
 
 from ...errors import FunicularError
 from ...view.animation import Curve, EventMark
+from ..balance_limits import known_method
 from ..quantities import ENERGIES, Variable
-from ..section_forces import known_method
 from ..section_forces import of_run as forces_of_run
 from .recorded import Recorded
 

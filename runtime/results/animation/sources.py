@@ -14,9 +14,10 @@ from ...parts.scene_data import SceneData
 from ...rotations import product, rotate, turned_by
 from ...solve.modes import Modes
 from ...solve.rest_state import RestState
+from ..balance_limits import known_method
 from ..section_balance import Cuts
 from ..section_components import components
-from ..section_forces import constitutive, known_method, of_equilibrium
+from ..section_forces import constitutive, of_equilibrium
 from ..section_forces import of_run as forces_of_run
 from .frames import Frames, SectionForces
 from .recorded import Recorded

@@ -1,0 +1,69 @@
+/* Events of drag in a fluid with a table: what it acts on leaves the table, or all of it is back. */
+#include "engine.h"
+
+#include <math.h>
+
+#define AT_EDGE 1e-9 /* of an axis of a table: what is beyond its edge by less is at it, as a run that ends with a table */
+
+/* Returns how far within its table all of what a fluid acts on is, as a part of the table's axes; negative beyond its edges. */
+static double margin(const fu_model *model, const fu_drag *drag, const fu_state *state)
+{
+    double least = 1.0;
+    if (drag->cable >= 0) {
+        const fu_cable *cable = &model->cables[drag->cable];
+        for (int k = 0; k <= cable->n_elements; ++k)
+            least = fmin(least, fu_flow_margin(model, &drag->flow, state->t, state->q + cable->first + k * cable->per_node));
+    } else {
+        fu_attachment_state end;
+        fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT, &end);
+        least = fu_flow_margin(model, &drag->flow, state->t, end.p);
+    }
+    return least + AT_EDGE;
+}
+
+static int *is_outside(const fu_coupling *coupling, const fu_state *state)
+{
+    return state->flags + coupling->flags;
+}
+
+static int watches(const fu_coupling *coupling, fu_watch *out)
+{
+    if (((const fu_drag *)coupling)->flow.degree == 0) return 0;
+    if (out) *out = (fu_watch){.which = 0, .direction = 0};
+    return 1;
+}
+
+static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)which;
+    return margin(run->model, (const fu_drag *)coupling, state);
+}
+
+static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)model, (void)which;
+    return *is_outside(coupling, state) ? -1 : 1;
+}
+
+/* Notes that something leaves the table, or that all is in it again. The velocity does not jump there, but its derivatives do. */
+static int pass_edge(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    (void)which;
+    *is_outside(coupling, &run->now) = side < 0;
+    *what = side < 0 ? "leaves the table of its fluid" : "is back in the table of its fluid";
+    return FU_RUNNING;
+}
+
+static int has_edges(const fu_coupling *coupling)
+{
+    return ((const fu_drag *)coupling)->flow.degree > 0;
+}
+
+static int begin(fu_run *run, const fu_coupling *coupling)
+{
+    *is_outside(coupling, &run->now) = margin(run->model, (const fu_drag *)coupling, &run->now) < 0.0;
+    return FU_RUNNING;
+}
+
+const fu_coupling_events fu_table_edges = {
+    .watches = watches, .watched = watched, .sign = sign, .act = pass_edge, .can_act = has_edges, .begin = begin};
