@@ -37,7 +37,8 @@ def off_the_edge(hard, radius=0.1, speed=0.3):
     scene.surface("table", fu.Box(size=(1, 0.5, 0.8), at=(-0.5, -0.25, 0)))
     stiffness = 1e6
     sunk = 0 if hard else G / stiffness
-    scene.rigid_body("ball", mass=1.0, inertia=(4e-3,) * 3, position=(-0.05, radius - sunk, 0.1), velocity=(speed, 0, 0))
+    scene.rigid_body("ball", mass=1.0, inertia=(4e-3,) * 3, position=(-0.05, radius - sunk, 0.1),
+                     velocity=(speed, 0, 0))
     law = {"restitution": 0.0} if hard else {"stiffness": stiffness, "damping": 1.0}
     scene.contact("ball", "table", radius=radius, name="foot", **law)
     return scene
@@ -118,7 +119,8 @@ REFUSED = {
 
 
 def rope(scene):
-    scene.cable("rope", start=(-1, 0.2, 0), end=(1, 0.2, 0), elements=4, element="cable8p", section=fu.Circle(radius=0.01),
+    scene.cable("rope", start=(-1, 0.2, 0), end=(1, 0.2, 0), elements=4, element="cable8p",
+                section=fu.Circle(radius=0.01),
                 material=fu.Material(youngs_modulus=1e7, poisson_ratio=0, density=1000))
 
 

@@ -83,8 +83,8 @@ def surface_entries(surface: Surface, scene: SceneData, attachments: AttachmentB
         cells[:, 0, :, 0] = shape.cells
     return {"kernel": KERNELS[dim], "shape": shape.word, "direction": shape.direction[:dim],
             "round_radius": shape.radius, "half_length": shape.half_length,
-            "half_size": shape.half_size[:dim], "n_first": len(first), "n_second": len(second), "first": first, "second": second, "heights": cells, "highest": shape.highest,
-            "on": [on]}
+            "half_size": shape.half_size[:dim], "n_first": len(first), "n_second": len(second), "first": first,
+            "second": second, "heights": cells, "highest": shape.highest, "on": [on]}
 
 
 def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilder) -> ContactModel:
