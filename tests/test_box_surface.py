@@ -5,6 +5,7 @@ from math import atan2, cos, hypot, pi, sin, sqrt
 import funicular as fu
 import numpy as np
 import pytest
+from turned_scenes import turned_scene
 
 G = 9.81
 SIZE = (0.4, 0.2, 0.3)
@@ -105,6 +106,13 @@ def test_in_a_planar_scene_a_box_is_a_rectangle():
     other, _ = over_the_edge(elements=30)
     alike = other.replace("box", shape=thin).equilibrium()
     assert np.abs(alike["rope.position"] - here["rope.position"]).max() < 1e-12
+
+
+def test_a_turned_scene_has_the_same_forces():
+    scene, _ = over_the_edge(elements=60)
+    here = scene.equilibrium()["contact_1.force"]
+    there = turned_scene(scene, (0, -pi / 2, 0), (3, 0, 0)).equilibrium()["contact_1.force"]  # x to z
+    assert np.abs(there - here[[2, 1, 0]]).max() < 1e-8 * TENSION
 
 
 REFUSED = {
