@@ -9,6 +9,7 @@ from funicular.results.animation.bodies import plausible_size
 from funicular.results.animation.cables import line_order
 from funicular.results.animation.clips import overlaid
 from funicular.results.animation.curves import thinned
+from funicular.results.animation.marks import arrow_length
 from funicular.rotations import product, rotate, turned_by
 from funicular.view.page import is_exaggerable
 from numpy.testing import assert_allclose
@@ -442,3 +443,10 @@ def test_modes_as_drawn_say_that_weight_does_not_act_yet():
     note = "what swings by its weight has 0 Hz"
     assert any(note in each for each in scene.modes(1).animation().notes)
     assert not any(note in each for each in scene.modes(1, about=scene.equilibrium()).animation().notes)
+
+
+@pytest.mark.parametrize(("extents", "length"), [((4, 3, 0), 0.15 * 5), ((120, 0, 5), 5), ((600, 4, 0), 18),
+                                                 ((10, 0, 0), 1.5), ((0, 0, 0), 0.15)])
+def test_arrows_are_no_longer_than_a_slender_scene_is_high(extents, length):
+    size = float(np.linalg.norm(extents)) or 1.0
+    assert arrow_length(np.array(extents, float), size) == pytest.approx(length, rel=1e-3)

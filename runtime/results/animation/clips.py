@@ -20,7 +20,7 @@ from .bodies import body_shape
 from .cables import cable_shape, modal_line, stations
 from .curves import curves, events, thinned
 from .frames import Frames, no_forces
-from .marks import marks, segments
+from .marks import arrow_length, marks, segments
 from .recorded import Recorded
 from .references import references
 from .surfaces import surface_shape
@@ -181,12 +181,17 @@ def _is_planar(clips: list[Clip]) -> bool:
 
 def scene_size(frames: Frames) -> float:
     """Return the diagonal in m of the box about cables and bodies over all frames; 1 m of a single point."""
+    return float(np.linalg.norm(_extents(frames))) or 1.0
+
+
+def _extents(frames: Frames) -> np.ndarray:
+    """Return the extents (3,) in m of the box about cables and bodies over all frames."""
     points = [frames.value(f"{name}.nodal_vectors")[:, :, cable.kind_of_element.nodal_vectors.index("r")].reshape(-1, 3)
               for name, cable in frames.scene.cables.items()]
     points += [frames.value(f"{name}.position") for name in frames.scene.bodies]
     points += [frames.value(f"{name}.nodes").reshape(-1, 3) for name, body in frames.scene.bodies.items()
                if isinstance(body, ModalBody)]
-    return float(np.linalg.norm(np.ptp(np.concatenate(points), axis=0))) or 1.0 if points else 1.0
+    return np.ptp(np.concatenate(points), axis=0) if points else np.zeros(3)
 
 
 def _centre(frames: Frames) -> np.ndarray:
@@ -212,7 +217,7 @@ def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
             points += _cloud(frames, name)
     bodies += [surface_shape(frames, name, _centre(frames), size) for name in frames.scene.surfaces]
     return Clip(label, frames.time, tuple(cables), tuple(bodies), (*marks(frames, refs, size), *points),
-                tuple(segments(frames, refs, size)))
+                tuple(segments(frames, refs, size, arrow_length(_extents(frames), size))))
 
 
 def _cloud(frames: Frames, name: str) -> list[Mark]:

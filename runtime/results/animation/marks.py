@@ -26,6 +26,10 @@ ARROWS = 9
 """Of a distributed force."""
 ARROW = 0.15
 """Of the scene's size: the length of the arrow of the largest force."""
+SLENDER_ARROW = 0.03
+"""The same at the least, in scenes that are less high or wide than long: there it is no longer than they are high."""
+STRAIGHT = 1e-3
+"""Of its size: a scene of less height is a straight line, and has none to compare arrows with."""
 
 
 def still(position: np.ndarray) -> np.ndarray:
@@ -100,10 +104,16 @@ def slide_place(frames: Frames, name: str) -> np.ndarray:
                   frames.value(f"{slide.along}.nodal_vectors"))
 
 
-def segments(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
+def arrow_length(extents: np.ndarray, size: float) -> float:
+    """Return the length in m of the largest arrow in a scene of this size, whose box has the extents (3,), in m."""
+    height = np.sort(extents)[1] / size
+    return size * (ARROW if height < STRAIGHT else float(np.clip(height, SLENDER_ARROW, ARROW)))
+
+
+def segments(frames: Frames, refs: Frames, size: float, arrow: float) -> Iterator[Segment]:
     """Yield springs, lever arms, joints of points that are apart, and loads as arrows.
 
-    refs: see `references`; size: of the scene, in m.
+    refs: see `references`; size: of the scene, arrow: the length of the largest arrow, in m.
     """
     scene = frames.scene
     for name, spring in scene.point_forces.items():
@@ -113,8 +123,8 @@ def segments(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
             yield _between(frames, refs, name, "joint", joint.a, joint.b)
     yield from levers(frames, refs, size)
     yield from _bars(frames, refs)
-    yield from _loads(frames, refs, size)
-    yield from _flows(frames, refs, size)
+    yield from _loads(frames, refs, arrow)
+    yield from _flows(frames, refs, arrow)
 
 
 def _bars(frames: Frames, refs: Frames) -> Iterator[Segment]:
@@ -153,7 +163,7 @@ def levers(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
             yield _between(frames, refs, f"{end.on}, {name}", "lever", centre, end)
 
 
-def _loads(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
+def _loads(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
     """Yield forces as arrows that end where they act, in proportion to each other among loads of one unit."""
     found: dict[str, list[tuple[str, Attachment, np.ndarray]]] = {"N": [], "N/m": []}
     for name, load in frames.scene.loads.items():
@@ -170,11 +180,11 @@ def _loads(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
         largest = max((np.linalg.norm(value, axis=-1).max() for _, _, value in arrows), default=0.0)
         for name, end, value in arrows:
             if largest > 0:
-                at, of, arrow = place(frames, end), place(refs, end), ARROW * size / largest * value
+                at, of, arrow = place(frames, end), place(refs, end), longest / largest * value
                 yield Segment(name, "load", at - arrow, at, _both(of - arrow, of))
 
 
-def _flows(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
+def _flows(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
     """Yield velocities of fluids as arrows that end at the middle of cables and at the points of bodies that feel them,
     in proportion to each other.
     """
@@ -191,7 +201,7 @@ def _flows(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
     largest = max((np.linalg.norm(value, axis=-1).max() for _, _, value in found), default=0.0)
     for label, end, value in found:
         if largest > 0:
-            at, of, arrow = place(frames, end), place(refs, end), ARROW * size / largest * value
+            at, of, arrow = place(frames, end), place(refs, end), longest / largest * value
             yield Segment(label, "load", at - arrow, at, _both(of - arrow, of))
 
 
