@@ -165,6 +165,20 @@ def test_a_collector_rests_under_the_wire():
     assert 0.02 < raised < 0.06
 
 
+def test_error_that_is_allowed_by_default():
+    """Of all of a run: that of a short line is less, and what the scene has already stays."""
+    long, short, own = (catenary.scene(line55(spans), (2.0, 4.0)) for spans in (8, 2, 2))
+    own.run_settings = {"absolute_tol": 1e-2}
+    for scene in (long, short, own):
+        catenary.add_pantograph(scene, TWO_MASSES, 10.0, 80.0)
+    assert long.run_settings["absolute_tol"] == 5e-3
+    assert short.run_settings["absolute_tol"] == pytest.approx(1.2e-3)
+    assert own.run_settings["absolute_tol"] == 1e-2
+    run = short.run(tol=1e-2, duration=0.02, output_step=0.01, progress=False)  # in place of it
+    assert run.report["tol"] == 1e-2
+    assert run.report["absolute_tol"] < 1e-3
+
+
 @pytest.mark.parametrize("order", [2, 4, 8])
 def test_the_filter(order):
     time = np.arange(2501) / 250
@@ -262,7 +276,7 @@ CONVERGED = {250: 30.6, 300: 35.0}
 def test_ranges_of_the_withdrawn_reference_model(kmh):
     scene = catenary.scene(reference())
     catenary.add_pantograph(scene, TWO_MASSES, 20.0, kmh / 3.6)
-    run = scene.run(progress=False, absolute_tol=5e-3, duration=358 / (kmh / 3.6))
+    run = scene.run(progress=False, duration=358 / (kmh / 3.6))  # by the default, 5e-3 m
     found = catenary.assess(run, [(240, 360)])
     for name, (low, high) in ACCEPTED[kmh].items():
         assert low < float(found[name][0]) < high, name

@@ -48,6 +48,10 @@ assert abs(form.tensions[0] / 191.35 - 1) < 0.02
 #
 # The pantograph is a chain of three masses over a base that the train moves: collector, upper and lower frame. The
 # uplift force acts on the lowest mass. Waves run along the contact wire at 460 km/h.
+#
+# By default elements are of 1 m, and steps are such that the standard deviation of the contact force is converged in
+# time to less than 1 %. The dents that elements leave out below droppers and collector are made up for. Here elements
+# are longer, to save time.
 
 pantograph = catenary.Pantograph(masses=[7.5, 9, 6], stiffness=[7000, 15500, 160], damping=[45, 0.1, 100], uplift=120)
 print(f"waves run at {3.6 * line.contact.wave_speed:.0f} km/h")
