@@ -78,8 +78,8 @@ void fu_note_passages(fu_run *run, double h)
     for (int k = 0; k < run->n_watches && run->model->n_passing; ++k) {
         const fu_coupling *c = fu_own_coupling(run, k);
         if (!c || !has_passed(run, c)) continue;
-        const double part = c->type->events->passed(run->model, c, &run->now, &run->next, h,
-                                                        !run->integrator->keeps_energy, &run->passed[k]);
+        const double part = c->type->events->passed(run->model, c, &run->now, &run->next, h, !run->integrator->keeps_energy,
+                                                    &run->passed[k]);
         run->passed_at[k] = run->now.t + part * h;
     }
 }
