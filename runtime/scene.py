@@ -6,11 +6,13 @@ import os
 import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
+from functools import partial
 from typing import TYPE_CHECKING, Any, Never, Self, TypeVar, cast
 
 from .errors import (
     ConvergenceError,
     EndOfCableError,
+    EquilibriumError,
     FunicularWarning,
     ResultFileError,
     SceneError,
@@ -246,16 +248,17 @@ class Scene(Viewable, SceneMethods):
                 unequal: bool = False) -> Choice[Self]:
         """Return the choice for a run with these settings."""
         from .choice.choosing import choose  # runs, which bring SciPy
+        from .choice.probes import Runner
 
-        def simulate(scene: Self, settings: RunSettings) -> Run:
+        def simulate(scene: Self, settings: RunSettings, rest: Equilibrium | None) -> Run:
             scene._check_for(settings)
-            run = scene._simulated(settings, None, False, False)
+            run = scene._simulated(settings, rest, False, False)
             _raise_where_stopped(run)
             if run.status == "interrupted":
                 raise KeyboardInterrupt
             return run
 
-        return choose(self, settings, quantities, free, simulate, unequal)
+        return choose(self, settings, quantities, free, Runner(simulate, partial(_at_rest, settings.initial)), unequal)
 
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
                    progress: bool | Callable[[float], None] | None, chosen: Choice | None = None,
@@ -267,10 +270,8 @@ class Scene(Viewable, SceneMethods):
                                                                     self.from_toml)
         given = state
         with saving as stream, one_blas_thread, enough_memory():
-            if settings.initial == "equilibrium" and state is None:
-                state = self.equilibrium()
-            if settings.initial == "relaxed" and state is None:
-                state = self.relax()
+            if settings.initial in ("equilibrium", "relaxed") and state is None:
+                state = _at_rest(settings.initial, self, None if chosen is None else chosen.rest)
             from .results.recording import recorded  # likewise
             from .solve.run import simulate
 
@@ -325,8 +326,9 @@ class Scene(Viewable, SceneMethods):
 
         Settings not given here are the scene file's, if it gave them. The state is stable unless it says otherwise, in
         ``stable``, in ``messages`` and by a `FunicularWarning`; friction of slides is left out. start: a state of this
-        scene, under the same loads or others, from which the search begins instead of as drawn; method "arc_length"
-        goes on from its load_fraction in its sense, or, from a state under all its loads, anew from rest without loads.
+        scene, under the same loads or others, also on other meshes of the same elements, from which the search begins
+        instead of as drawn; method "arc_length" goes on from its load_fraction in its sense, or, from a state under all
+        its loads, anew from rest without loads, and needs the same mesh.
 
         adjust, to: parameters, by path with limits or "free", that are changed until the state has given values, by
         name: ``adjust={"dropper.length": "free"}, to={"wire@20.position.y": 5.3}``. The state's ``scene`` is the
@@ -340,8 +342,9 @@ class Scene(Viewable, SceneMethods):
         given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
                  "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity,
                  "adjust": adjust, "to": to}
-        begin = None if start is None else _equilibrium_state(self, start, anew=True)
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
+        any_mesh = settings.method != "arc_length"  # whose path has a heading on its mesh
+        begin = None if start is None else _equilibrium_state(self, start, anew=True, any_mesh=any_mesh)
         self.check()
 
         from .results.equilibrium import Equilibrium  # brings SciPy
@@ -461,6 +464,31 @@ def _raise_where_stopped(run: Run) -> None:
         raise ConvergenceError(run.report["message"], run)
 
 
+def _at_rest(initial: str, scene: Scene, start: Equilibrium | None) -> Equilibrium:
+    """Return the state of rest that a run starts from, by the name that its settings have for it.
+
+    start: a state that the search for equilibrium begins from where it fits, of any mesh. Raises SceneError,
+    EquilibriumError.
+    """
+    if initial == "relaxed":
+        return scene.relax()
+    if start is not None and not scene.equilibrium_settings and _fits(scene, start):
+        try:
+            return scene.equilibrium(start=start)
+        except EquilibriumError:  # the path from the drawn state may reach what this one does not
+            pass
+    return scene.equilibrium()
+
+
+def _fits(scene: Scene, start: Equilibrium) -> bool:
+    """Return whether a search for equilibrium can begin from a state."""
+    try:
+        start.check_fits(scene, any_mesh=True)
+    except SceneError:
+        return False
+    return True
+
+
 def _state(scene: Scene, given: Equilibrium | Mapping[str, ArrayLike]) -> Start:
     """Return a state to start a run from, checked against the scene. Raises SceneError."""
     from .model.initial_state import InitialState  # brings SciPy
@@ -472,14 +500,16 @@ def _state(scene: Scene, given: Equilibrium | Mapping[str, ArrayLike]) -> Start:
     return state
 
 
-def _equilibrium_state(scene: Scene, state: Equilibrium, *, anew: bool = False) -> Equilibrium:
-    """Return a state to start from, checked against the scene; anew: a search, which may be for other values."""
+def _equilibrium_state(scene: Scene, state: Equilibrium, *, anew: bool = False, any_mesh: bool = False) -> Equilibrium:
+    """Return a state to start from, checked against the scene; anew: a search, which may be for other values; any_mesh:
+    which may begin from another mesh.
+    """
     from .results.equilibrium import Equilibrium  # brings SciPy; there is a state only where it is loaded already
 
     if not isinstance(state, Equilibrium):
         raise SceneError("scene", "the state to start from must be one that equilibrium() returned, got "
                          + shown(state))
-    state.check_fits(scene)
+    state.check_fits(scene, any_mesh)
     if not anew:
         state.check_adjusted(scene)
     return state

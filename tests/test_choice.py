@@ -390,3 +390,27 @@ def test_a_quantity_that_does_not_change_is_named():
     said = "energy.dissipated did not change in the short runs: nothing is estimated of that"
     assert said in choice.messages() and said in choice.reasons
     assert scene.choose(1e-2, duration=0.05, quantities=["A.position"]).unchanged == []
+
+
+def test_states_of_rest_are_found_once_and_begin_at_the_last_mesh(monkeypatch):
+    """Runs of one mesh share their state of rest; finer meshes, and the run itself, begin at that of the last one."""
+    searched = []
+    found = fu.Scene.equilibrium
+
+    def noted(scene, **settings):
+        state = found(scene, **settings)
+        searched.append((scene.cables["line"].elements, settings.get("start") is not None, state.iterations))
+        return state
+
+    monkeypatch.setattr(fu.Scene, "equilibrium", noted)
+    subject = SCENES["slackline"]
+    scene = subject.make()
+    scene = scene.with_parts(part.remade({"elements": None}) if part.kind == "cable" else part
+                             for part in scene.parts())
+    run = scene.run(subject.duration, tol=1e-2, initial="equilibrium", model="auto", progress=False)
+    meshes = [elements for elements, *_ in searched]
+    assert len(set(meshes[:-1])) == len(meshes) - 1 and meshes[-1] == run.scene.cables["line"].elements
+    assert [begun for _, begun, _ in searched] == [False] + [True] * (len(meshes) - 1)
+    drawn = found(run.scene)
+    assert max(iterations for *_, iterations in searched[1:]) < drawn.iterations
+    np.testing.assert_allclose(run["line.nodal_vectors"][0], drawn["line.nodal_vectors"], atol=1e-8)

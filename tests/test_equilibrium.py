@@ -218,3 +218,39 @@ def test_a_stability_that_cannot_be_counted_is_no_stability(monkeypatch):
     with pytest.warns(FunicularWarning, match="^the state is of unknown stability: no factorisation of its stiffness"):
         rest = truss(1.0).equilibrium()
     assert not rest.stable and rest.unstable_directions == 0
+
+
+def hanging(element: str, elements: int, rider: bool = True) -> Scene:
+    """A rope drawn as an arc that is 10 % longer than its span, with a trolley on it that is pushed aside."""
+    u = np.linspace(0, 1, 41)[:, None]
+    scene = Scene()
+    rope = scene.cable("rope", points=np.hstack([4 * u, -2.0 * u * (1 - u), 0 * u]), elements=elements,
+                       element=element, rest="straight", section=Circle(radius=5e-3),
+                       material=Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1100))
+    scene.pin(rope, s=0)
+    scene.pin(rope, s=rope.length)
+    if not rider:
+        return scene
+    scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(2.0, -0.5, 0))
+    scene.slide("A", along="rope", s=rope.length / 2, name="trolley")
+    scene.force("A", value=(2.0, 0, 0))
+    return scene
+
+
+@pytest.mark.parametrize(("element", "elements"), [("cable8p", 16), ("cable12", 14), ("cable18", 12), ("beam12p", 10)])
+def test_a_search_begins_at_the_state_of_another_mesh(element, elements):
+    coarse, scene = hanging(element, 6).equilibrium(), hanging(element, elements)
+    begun, drawn = scene.equilibrium(start=coarse), scene.equilibrium()
+    for name in ("rope.position", "A.position", "trolley.s", "trolley.force", "rope@0.force"):
+        np.testing.assert_allclose(begun[name], drawn[name], rtol=1e-7, atol=1e-8)
+    alone = hanging(element, 2 * elements, rider=False)
+    begun = alone.equilibrium(start=hanging(element, elements, rider=False).equilibrium())
+    assert begun.iterations < alone.equilibrium().iterations
+
+
+def test_a_state_of_another_mesh_starts_no_run_and_no_load_path():
+    state, finer = hanging("cable8p", 6).equilibrium(), hanging("cable8p", 12)
+    for use in (lambda: finer.run(0.1, initial=state), lambda: finer.equilibrium(start=state, method="arc_length"),
+                lambda: hanging("cable12", 6).equilibrium(start=state)):
+        with pytest.raises(SceneError, match="the state to start from is of another scene: its cables are"):
+            use()

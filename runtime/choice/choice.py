@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Generic
 
 from ..parts.settings import RunSettings
+from ..results.equilibrium import Equilibrium
 from .remaking import CableModel, S
 
 
@@ -38,7 +39,8 @@ class Choice(Generic[S]):
     runs that took, seconds: their CPU time with all else; given: cables whose element or mesh was given: what these err
     by is not in the estimate; planar: what is said of a spatial scene that was chosen planar, else empty; mesh_error:
     what of the error is that of the mesh; unchanged: the quantities that stay as they are, so that nothing can be
-    estimated of them; unresolved: what no mesh at hand resolves and is not in the estimate.
+    estimated of them; unresolved: what no mesh at hand resolves and is not in the estimate; rest: the state of
+    rest that the last of the short runs starts from, where they do, on its mesh.
     """
 
     scene: S
@@ -58,6 +60,7 @@ class Choice(Generic[S]):
     mesh_error: float = 0.0
     unchanged: list[str] = field(default_factory=list)
     unresolved: list[str] = field(default_factory=list)
+    rest: Equilibrium | None = field(default=None, repr=False)
 
     @property
     def table(self) -> list[dict[str, Any]]:

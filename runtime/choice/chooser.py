@@ -39,7 +39,7 @@ from .estimate import Estimate, Free
 from .indicators import SOFTER, deformation, shear_compliance, softened
 from .mesh_error import MeshError, mesh_error
 from .motion import motion
-from .probes import Probe, Prober, S, Simulate
+from .probes import Probe, Prober, Runner, S
 from .remaking import CableModel, remade
 from .short_waves import elements_for_waves
 from .time_error import ASSUMED, DAMPING, InTime, compared
@@ -64,11 +64,11 @@ MOST_ELEMENTS = 256
 class Chooser(Generic[S]):
     """Chooses for one scene; `choose` is its one method."""
 
-    def __init__(self, scene: S, settings: RunSettings, quantities: Sequence[str], simulate: Simulate,
+    def __init__(self, scene: S, settings: RunSettings, quantities: Sequence[str], runner: Runner[S],
                  free: Sequence[Free]):
         """free: the cables of the scene, with what is to be chosen of them."""
         self.scene, self.settings, self.tol, self.free = scene, settings, settings.tol, list(free)
-        self.prober: Prober[S] = Prober(scene, settings, quantities, simulate)
+        self.prober: Prober[S] = Prober(scene, settings, quantities, runner)
         self.reasons: list[str] = []
         self.unresolved: list[str] = []
         self.least = 1
@@ -287,7 +287,8 @@ class Chooser(Generic[S]):
         return Choice(scene, self.tol, self.time.tol, self.time.integrator, models, error, estimate.cost(models), kept,
                       self.reasons, estimate.alternatives(models, self.tol), len(self.prober.made), seconds,
                       [each.cable.name for each in self.free if each.fixed is not None or each.keeps],
-                      mesh_error=estimate.mesh_error(models), unchanged=unchanged, unresolved=self.unresolved)
+                      mesh_error=estimate.mesh_error(models), unchanged=unchanged, unresolved=self.unresolved,
+                      rest=self.prober.last_rest)
 
     def _is_stiff(self, cable: Cable, probe: Probe[S]) -> bool:
         """Return whether a cable moves as a rigid body does, but for a part of the tolerance."""

@@ -13,7 +13,7 @@ from .choice import Choice
 from .chooser import Chooser
 from .estimate import Free
 from .planar import Planar, planar_of
-from .probes import S, Simulate
+from .probes import Runner, S
 from .remaking import MOST_PARTS, coarsest, remade
 from .unequal import with_unequal_elements
 
@@ -21,11 +21,11 @@ FREE = ("unset", "all")
 """What is chosen: what was not given, or all."""
 
 
-def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str, simulate: Simulate,
+def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str, runner: Runner[S],
            unequal: bool = False) -> Choice[S]:
     """Return the models of a scene's cables for the tolerance of the settings.
 
-    quantities: names of results that count, none for the motion; free: see `FREE`; simulate: runs a scene; unequal:
+    quantities: names of results that count, none for the motion; free: see `FREE`; runner: runs a scene; unequal:
     whether elements of unequal lengths are tried, too. Raises SceneError.
     """
     if free not in FREE:
@@ -34,7 +34,7 @@ def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str
         raise SceneError("choose", "a state to start from fits one mesh alone", 'take initial="drawn" or "equilibrium"')
     planar = _planar(scene, free)
     taken = scene if planar is None or planar.scene is None else planar.scene
-    chooser = Chooser(taken, settings, quantities, simulate,
+    chooser = Chooser(taken, settings, quantities, runner,
                       [_free(taken, name, scene.cables[name], free) for name in scene.cables])
     choice = chooser.choose()
     if unequal:

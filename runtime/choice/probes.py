@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import FunicularError, FunicularWarning
 from ..parts.settings import RunSettings
+from ..results.equilibrium import Equilibrium
 from ..results.run import Run
 from ..results.trajectories import distance, largest_change
 from ..scene_methods import SceneMethods
@@ -20,8 +21,16 @@ from .remaking import CableModel, remade
 
 S = TypeVar("S", bound=SceneMethods)
 
-Simulate = Callable[[S, RunSettings], Run]
-"""Runs a scene; a run that stops early raises."""
+
+@dataclass(frozen=True)
+class Runner(Generic[S]):
+    """What runs a scene, from a state of rest or as drawn, and raises where the run stops early; and what finds that
+    state, from one on another mesh where that is at hand.
+    """
+
+    simulate: Callable[[S, RunSettings, Equilibrium | None], Run]
+    at_rest: Callable[[S, Equilibrium | None], Equilibrium]
+
 
 RADAU, IMPLICIT, STEP = 7.0, 2.5, 0.7
 """Work of an iteration of radau, and of the other implicit methods, and of a step of these, in evaluations of
@@ -36,7 +45,7 @@ INSTANTS = 24
 class Probe(Generic[S]):
     """A run with coarse models: the scene, what is compared (time, ...) by name, CPU seconds, and steps.
 
-    run: None where the run failed, which failed tells.
+    run: None where the run failed, which failed tells; rest: the state that it starts from, where that is one of rest.
     """
 
     models: dict[str, CableModel]
@@ -45,6 +54,7 @@ class Probe(Generic[S]):
     sampled: dict[str, np.ndarray]
     seconds: float
     failed: str = ""
+    rest: Equilibrium | None = None
 
     @property
     def work(self) -> float:
@@ -64,17 +74,18 @@ class Probe(Generic[S]):
 class Prober(Generic[S]):
     """Makes probes of a scene, each once, and compares them."""
 
-    def __init__(self, scene: S, settings: RunSettings, quantities: Sequence[str], simulate: Simulate):
+    def __init__(self, scene: S, settings: RunSettings, quantities: Sequence[str], runner: Runner[S]):
         """quantities: names of results; none stands for the motion."""
-        self.scene, self.settings, self.quantities, self.simulate = scene, settings, tuple(quantities), simulate
+        self.scene, self.settings, self.quantities, self.runner = scene, settings, tuple(quantities), runner
         self.made: dict[tuple, Probe[S]] = {}
         self.scenes: dict[tuple, S] = {}
+        self.rests: dict[tuple, Equilibrium] = {}
         self.seconds = 0.0
 
     def probe(self, models: Mapping[str, CableModel], tol: float, integrator: str,
               change: Callable[[S], S] | None = None, label: str = "") -> Probe[S]:
         """Return the run with these models; change: makes another scene of it, label: the name of that."""
-        key = (*((name, models[name]) for name in sorted(models)), tol, integrator, label)
+        key = (*_key(models), tol, integrator, label)
         if key not in self.made:
             self.made[key] = self._probed(dict(models), tol, integrator, change, label)
         return self.made[key]
@@ -88,17 +99,32 @@ class Prober(Generic[S]):
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", FunicularWarning)
-                run = self.simulate(scene, settings)
+                rest = self._rest(scene, models, label)
+                run = self.runner.simulate(scene, settings, rest)
         except FunicularError as error:
             self.seconds += time.process_time() - begin
             return Probe(models, scene, None, {}, time.process_time() - begin, str(error))
         sampled = samples(scene, run, self.quantities)
         self.seconds += time.process_time() - begin
-        return Probe(models, scene, run, sampled, run.report["time_s"]["solve_cpu"])
+        return Probe(models, scene, run, sampled, run.report["time_s"]["solve_cpu"], rest=rest)
+
+    def _rest(self, scene: S, models: Mapping[str, CableModel], label: str) -> Equilibrium | None:
+        """Return the state of rest that runs of a scene start from, found once, where they do not start as drawn."""
+        if self.settings.initial == "drawn":
+            return None
+        key = (*_key(models), label)
+        if key not in self.rests:
+            self.rests[key] = self.runner.at_rest(scene, self.last_rest)
+        return self.rests[key]
+
+    @property
+    def last_rest(self) -> Equilibrium | None:
+        """Return the last state of rest that was found, None without any."""
+        return next(reversed(self.rests.values()), None)
 
     def scene_of(self, models: Mapping[str, CableModel], change: Callable[[S], S] | None = None, label: str = "") -> S:
         """Return the scene with these models, made once for all tolerances and integrators. Raises SceneError."""
-        key = (*((name, models[name]) for name in sorted(models)), label)
+        key = (*_key(models), label)
         if key not in self.scenes:
             scene = remade(self.scene, models)
             self.scenes[key] = scene if change is None else change(scene)
@@ -119,3 +145,8 @@ class Prober(Generic[S]):
             change = largest_change(exact)
             worst = max(worst, distance(found, exact) / change if change > 0 else 0.0)
         return worst
+
+
+def _key(models: Mapping[str, CableModel]) -> tuple:
+    """Return what tells models from others."""
+    return tuple((name, models[name]) for name in sorted(models))

@@ -36,6 +36,12 @@ def layout(scene: SceneData) -> dict[str, list]:
             "crossings": list(scene.crossings)}
 
 
+def _without_mesh(cable: tuple) -> tuple:
+    """Return the name, element and length of a cable in a layout."""
+    name, element, _, length, *_ = cable
+    return name, element, length
+
+
 @dataclass
 class CriticalPoint:
     """A point of a load path at which stability changes or the load turns.
@@ -188,12 +194,18 @@ class RestState(NamedArrays):
             raise UnknownResultError(f'no result "{name}"; {near(name, self.quantities)}')
         return self.quantities[name]
 
-    def check_fits(self, scene: SceneData) -> None:
-        """Raise SceneError where the state is of a scene with other parts; supports and loads may be others."""
+    def check_fits(self, scene: SceneData, any_mesh: bool = False) -> None:
+        """Raise SceneError where the state is of a scene with other parts; supports and loads may be others.
+
+        any_mesh: cables may have other meshes, of the same element.
+        """
         for kind, here in layout(scene).items():
-            if here != self.layout[kind]:
+            held = self.layout[kind]
+            if any_mesh and kind == "cables" and [_without_mesh(c) for c in here] == [_without_mesh(c) for c in held]:
+                continue
+            if here != held:
                 raise SceneError("scene", f"the state to start from is of another scene: its {kind} are "
-                                 f"{self.layout[kind]}, here they are {here}", "take an equilibrium of this scene")
+                                 f"{held}, here they are {here}", "take an equilibrium of this scene")
 
     def check_adjusted(self, scene: SceneData) -> None:
         """Raise SceneError where the scene lacks the values that were adjusted for the state, as it would not rest."""

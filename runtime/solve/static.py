@@ -16,6 +16,7 @@ from ..errors import EquilibriumError, FunicularWarning
 from ..model.drag_forces import outside_tables
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
+from .carried_states import carried
 from .folds import folds
 from .path_following import Critical, Point, follow
 from .penetrations import penetrations
@@ -37,8 +38,8 @@ MOVED = 1e-9
 
 
 def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestState | None, made: type[S]) -> S:
-    """Return the scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, else as
-    drawn.
+    """Return the scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, also of
+    another mesh, else as drawn.
 
     made: what the states are, of which it returns one.
 
@@ -46,7 +47,7 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
     """
     problem = StaticProblem(scene, settings)
     if start is not None:
-        problem.restore(fitted(start.static_state, problem.model))
+        problem.restore(fitted(carried(start.static_state, start.model, problem.model, problem.keep()), problem.model))
     search = _Search(problem, made)
     reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
     state = search.found
