@@ -414,3 +414,22 @@ def test_states_of_rest_are_found_once_and_begin_at_the_last_mesh(monkeypatch):
     drawn = found(run.scene)
     assert max(iterations for *_, iterations in searched[1:]) < drawn.iterations
     np.testing.assert_allclose(run["line.nodal_vectors"][0], drawn["line.nodal_vectors"], atol=1e-8)
+
+
+def test_short_runs_from_an_adjusted_state_are_of_the_adjusted_scene():
+    """Where the equilibrium adjusts a spring, runs that start from it are at rest until a load moves them."""
+    scene = fu.Scene()
+    scene.cable("line", start=(0, 0, 0), end=(8, 0, 0), rest_length=7.99, elements=8, section=fu.Circle(radius=6e-3),
+                material=fu.Material(youngs_modulus=2e9, poisson_ratio=0.3, density=1100, damping_time=1e-3))
+    scene.pin("line", s=0)
+    scene.pin("line", s=7.99)
+    scene.rigid_body("A", mass=4.0, inertia=(0.1, 0.1, 0.1), position=(4, -1.2, 0))
+    scene.spring(("line", 7.99 / 2), "A", name="dropper", stiffness=5e4, length=1.0)
+    scene.force("A", value=(0, -2.0, 0), scale=fu.Ramp(start=0.0, end=0.05, before=0, after=1))
+    scene.equilibrium_settings = {"adjust": {"dropper.length": "free"}, "to": {"A.position.y": -1.5}}
+    rest = scene.equilibrium()
+    assert rest.adjusted["dropper.length"] > 1.05
+    rest.scene.equilibrium_settings = {}
+    choices = [each.choose(1e-2, duration=0.2, initial="equilibrium", free="all") for each in (scene, rest.scene)]
+    assert choices[0].kept and choices[0].models == choices[1].models
+    assert choices[0].error == pytest.approx(choices[1].error, rel=0.05)

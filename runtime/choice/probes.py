@@ -6,7 +6,7 @@ import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, TypeVar, cast
 
 import numpy as np
 
@@ -100,6 +100,8 @@ class Prober(Generic[S]):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", FunicularWarning)
                 rest = self._rest(scene, models, label)
+                if rest is not None and rest.adjusted:  # the state is at rest in the scene with the values found
+                    scene = cast(S, rest.scene)
                 run = self.runner.simulate(scene, settings, rest)
         except FunicularError as error:
             self.seconds += time.process_time() - begin
