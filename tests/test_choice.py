@@ -433,3 +433,17 @@ def test_short_runs_from_an_adjusted_state_are_of_the_adjusted_scene():
     choices = [each.choose(1e-2, duration=0.2, initial="equilibrium", free="all") for each in (scene, rest.scene)]
     assert choices[0].kept and choices[0].models == choices[1].models
     assert choices[0].error == pytest.approx(choices[1].error, rel=0.05)
+
+
+def test_the_shape_of_a_scene_at_rest_keeps_the_tolerance():
+    """The current of the mooring is constant for 20 s: all that moves is rounding, which no mesh makes smaller."""
+    scene, tol = fu.load_scene("mooring"), 1e-3
+    choice = scene.choose(tol, duration=20.0, free="all")
+    assert choice.kept and choice.unchanged == ["motion"]
+    assert choice.messages()[-1].endswith("the error of the shape at rest is over the scene's extent")
+    run = choice.scene.run(output_step=10.0, progress=False)
+    exact = remade(choice.scene, models(choice.scene, "cable8p", "engineering_exact", 64)).equilibrium()
+    shape = along(remade(choice.scene, models(choice.scene, "cable8p", "engineering_exact", 64)).cables["line"],
+                  exact["line.nodal_vectors"][None])
+    found = along(run.scene.cables["line"], run["line.nodal_vectors"])
+    assert distance(found, shape) < 3 * tol * 60.0

@@ -7,7 +7,15 @@ from typing import Any, Generic
 
 from ..parts.settings import RunSettings
 from ..results.equilibrium import Equilibrium
+from .motion import MOTION
 from .remaking import CableModel, S
+
+
+def of_unchanged(names: list[str]) -> str:
+    """Return what is said of quantities that stay as they are."""
+    told = ("the error of the shape at rest is over the scene's extent" if names == [MOTION] else
+            "nothing is estimated of that")
+    return f"{' and '.join(names)} did not change in the short runs: {told}"
 
 
 @dataclass(frozen=True)
@@ -75,7 +83,7 @@ class Choice(Generic[S]):
         """Return what the messages of a run say of the choice."""
         kept = "" if self.kept or self.unresolved else f"; no model at hand keeps it, the estimate is {self.error:.1e}"
         given = f"; what was given of {', '.join(self.given)} is kept, its error not estimated" if self.given else ""
-        still = [f"{' and '.join(self.unchanged)} did not change in the short runs: nothing is estimated of that"]
+        still = [of_unchanged(self.unchanged)]
         return [f"model chosen {self.heading}{kept}{given}", *([self.planar] if self.planar else []),
                 *(still if self.unchanged else []), *self.unresolved]
 

@@ -33,7 +33,7 @@ from ..integrators import AUTO
 from ..parts.cable import Cable
 from ..parts.settings import RunSettings
 from ..results.trajectories import largest_change
-from .choice import Choice
+from .choice import Choice, of_unchanged
 from .deciding import LEAST, ROUNDED, decide
 from .estimate import Estimate, Free
 from .indicators import SOFTER, deformation, shear_compliance, softened
@@ -277,10 +277,9 @@ class Chooser(Generic[S]):
         if error > self.tol * (1 + ROUNDED):
             self.reasons.append(f"no model at hand keeps tol = {self.tol:g}: the finest is taken, which errs by about "
                                 f"{error:.1e}")
-        unchanged = [name for name, values in estimate.probes[-1].sampled.items() if not largest_change(values) > 0]
+        unchanged = estimate.probes[-1].unchanged
         if unchanged:
-            self.reasons.append(f"{' and '.join(unchanged)} did not change in the short runs: nothing is estimated of "
-                                "that")
+            self.reasons.append(of_unchanged(unchanged))
         scene = remade(self.scene, models)
         scene.run_settings = scene.run_settings | {"duration": self.settings.duration, "tol": self.time.tol,
                                                    "integrator": self.time.integrator}

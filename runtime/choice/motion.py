@@ -17,6 +17,9 @@ from ..results.run import Run
 STATIONS = 12
 """Equal parts of a cable, at whose ends its motion is compared: what differs between two meshes shows there."""
 
+MOTION = "motion"
+"""Name of what is compared where no quantity is named."""
+
 OF_NODES = (".nodal_vectors", ".nodal_velocity", ".position", ".velocity")
 """Ends of the names of results of a cable that depend on its mesh: they are compared at the stations."""
 
@@ -27,7 +30,7 @@ def samples(scene: SceneData, run: Run, quantities: Sequence[str]) -> dict[str, 
     Raises SceneError for a quantity that the run has not.
     """
     if not quantities:
-        return {"motion": motion(scene, run)}
+        return {MOTION: motion(scene, run)}
     return {name: _sampled(scene, run, name) for name in quantities}
 
 

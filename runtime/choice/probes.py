@@ -16,7 +16,7 @@ from ..results.equilibrium import Equilibrium
 from ..results.run import Run
 from ..results.trajectories import distance, largest_change
 from ..scene_methods import SceneMethods
-from .motion import samples
+from .motion import MOTION, samples
 from .remaking import CableModel, remade
 
 S = TypeVar("S", bound=SceneMethods)
@@ -37,6 +37,9 @@ RADAU, IMPLICIT, STEP = 7.0, 2.5, 0.7
 accelerations, as measured on pendulums of 4 to 64 elements of each kind: radau has three stages and a complex system.
 """
 
+ROUNDED = 1e-12
+"""Of its largest value: what rounding may change of a quantity."""
+
 INSTANTS = 24
 """Output times of a probe, after the start."""
 
@@ -55,6 +58,29 @@ class Probe(Generic[S]):
     seconds: float
     failed: str = ""
     rest: Equilibrium | None = None
+
+    @property
+    def unchanged(self) -> list[str]:
+        """Return the names of what stays as it is, but for rounding, and a motion for what its steps may err by."""
+        allowed = 0.0 if self.run is None else self.run.report["absolute_tol"] or 0.0
+        return [name for name, values in self.sampled.items()
+                if not largest_change(values) > max(ROUNDED * float(np.abs(values).max(initial=0.0)),
+                                                    allowed if name == MOTION else 0.0)]
+
+    @property
+    def scales(self) -> dict[str, float]:
+        """Return what differences are taken over, by name: the largest change; 0 of what stays as it is.
+
+        Of a motion that is none it is the largest distance of a point from the first one: the shape still errs.
+        """
+        still = {name: self._extent(values) if name == MOTION else 0.0 for name, values in self.sampled.items()
+                 if name in self.unchanged}
+        return {name: largest_change(values) for name, values in self.sampled.items()} | still
+
+    @staticmethod
+    def _extent(points: np.ndarray) -> float:
+        """Return the largest distance at the start of a point (time, point, 3) from the first one, m."""
+        return distance(points[0], points[:1, 0])
 
     @property
     def work(self) -> float:
@@ -135,17 +161,16 @@ class Prober(Generic[S]):
     def difference(self, one: Probe[S], other: Probe[S]) -> float:
         """Return how far two probes are apart: the largest distance of a quantity over its own largest change.
 
-        The change is that of the second one; infinite where one of them failed.
+        The change is that of the second one, see `Probe.scales`; infinite where one of them failed.
         """
         if one.run is None or other.run is None:
             return np.inf
-        worst = 0.0
+        worst, scales = 0.0, other.scales
         for name, exact in other.sampled.items():
             found = one.sampled[name]
             if len(found) != len(exact):  # a run that an event ended early
                 return np.inf
-            change = largest_change(exact)
-            worst = max(worst, distance(found, exact) / change if change > 0 else 0.0)
+            worst = max(worst, distance(found, exact) / scales[name] if scales[name] > 0 else 0.0)
         return worst
 
 
