@@ -172,16 +172,20 @@ class Chooser(Generic[S]):
         probe = self.prober.probe(self.models(level), self.time.probe_tol, self.time.probed)
         if probe.run is None:
             return level
-        found, finer = elements_for_waves(probe.scene, probe.run), level
+        beams = [each.cable.name for each in self.free if each.kinds.finest.is_beam]
+        bent, found = (elements_for_waves(probe.scene, probe.run, names) for names in ((), beams))
+        finer = level
         for each in self.free:
             elements, maker = found.get(each.cable.name, (0, ""))
             if elements <= probe.models[each.cable.name].elements:
                 continue
+            most = MOST_ELEMENTS if each.fixed is None else each.fixed
             waves = f"{maker} moves faster than the waves of the tension of {each.cable.where}, and makes short ones " \
                     f"that show from {elements} elements on"
             self.reasons.append(waves)
-            if elements > (MOST_ELEMENTS if each.fixed is None else each.fixed):
+            if elements > most:
                 self.unresolved.append(f"{waves}: they are not resolved, and what they do is not in the estimate")
+                elements = bent.get(each.cable.name, (0, ""))[0]  # no mesh shows what shear adds
             while each.fixed is None and finer * each.base < elements and 2 * finer * self._base <= MOST_ELEMENTS:
                 finer *= 2
         return finer

@@ -29,6 +29,13 @@ def curvatures(cable: Cable, run: Run) -> np.ndarray:
     return found - found[:1] if cable.is_curved else found
 
 
+def shear_stiffness(cable: Cable) -> float:
+    """Return kGA of a cable's section in N, in the direction in which it is less."""
+    _, shear_modulus = cable.material.lame()
+    return float(min(cable.section.shear_factors(cable.material.poisson())) * shear_modulus
+                 * cable.section.moments()[0])
+
+
 def shear_compliance(cable: Cable, run: Run) -> float:
     """Return by how much shear and rotary inertia soften the bending of a cable, as a part of its stiffness.
 
@@ -36,16 +43,14 @@ def shear_compliance(cable: Cable, run: Run) -> float:
     stiffness of that deflection; rotary inertia does kG/E as much to a vibration (Timoshenko, Phil. Mag. 41 (1921)).
     """
     kappa = curvatures(cable, run)
-    _, shear_modulus = cable.material.lame()
-    factor = min(cable.section.shear_factors(cable.material.poisson()))
     bending = cable.material.youngs_modulus * cable.section.second_moment_about_z
-    shear = factor * shear_modulus * cable.section.moments()[0]
+    shear = shear_stiffness(cable)
     slope = np.diff(kappa, axis=1) / (cable.length / PARTS)
     middle = (kappa[:, 1:] + kappa[:, :-1]) / 2
     energy = float(np.sum(middle * middle))
     if energy == 0.0:
         return 0.0
-    rotary = factor * shear_modulus / cable.material.youngs_modulus
+    rotary = shear / (cable.material.youngs_modulus * float(cable.section.moments()[0]))
     return bending / shear * float(np.sum(slope * slope)) / energy * (1 + rotary)
 
 

@@ -1,36 +1,41 @@
 """Waves that a point makes which moves along a cable faster than the waves of its tension: coarse meshes have none.
 
-Waves of wave number k along a cable of tension T, stretch a, bending stiffness B and mass m, all of a metre at rest,
-have the speed sqrt((T/a + B k²)/m) along it. A point that moves along at the speed v, a slide or a crossing, makes
-those of its own speed, with B k² = m v² - T/a. Meshes whose elements are longer than half such a wave agree with each
-other, and are all wrong.
+A point that moves along at the speed v, a slide or a crossing, makes waves of its own speed, with B k² = X, where
+X = m v² - T/a is its `excess`. Meshes whose elements are longer than half such a wave agree with each other, and are
+all wrong. A beam bends and shears, in series: B k² = X / (1 - X/S), with S its shear stiffness. Its waves become
+shorter than any mesh as X comes to S, the point to the speed of shear waves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 import numpy as np
 
 from ..parts.cable import Cable
 from ..results.run import Run
-from .indicators import PARTS
+from ..solve.fast_riders import excess
+from .indicators import PARTS, shear_stiffness
 from .motion import along
 from .probes import S
+
+SHORTEST = 1e6
+"""rad/m: waves shorter than all that a mesh can have."""
 
 ELEMENTS_A_WAVE = 2.0
 """With fewer elements a wave is not seen at all."""
 
 
-def elements_for_waves(scene: S, run: Run) -> dict[str, tuple[int, str]]:
+def elements_for_waves(scene: S, run: Run, shearing: Collection[str] = ()) -> dict[str, tuple[int, str]]:
     """Return by cable the least number of elements that shows such waves, and the name of what makes them; none of
     cables without.
 
-    run: of the scene, on any mesh. A wave counts that its maker goes along with for a wavelength.
+    run: of the scene, on any mesh; shearing: cables whose waves are those of a beam. A wave counts that its maker goes
+    along with for a wavelength.
     """
     found: dict[str, tuple[int, str]] = {}
     for name, cable, s in _moving(scene, run):
-        k = _wave_number(cable, run, s)
+        k = _wave_number(cable, run, s, cable.name in shearing)
         elements = int(np.ceil(ELEMENTS_A_WAVE * k * cable.length / (2 * np.pi)))
         if elements > found.get(cable.name, (1, ""))[0]:
             found[cable.name] = elements, name
@@ -48,19 +53,22 @@ def _moving(scene: S, run: Run) -> Iterator[tuple[str, Cable, np.ndarray]]:
                 yield crossing.where, scene.cables[line], run[f"{crossing.name}.{quantity}"]
 
 
-def _wave_number(cable: Cable, run: Run, s: np.ndarray) -> float:
+def _wave_number(cable: Cable, run: Run, s: np.ndarray, shears: bool) -> float:
     """Return the largest wave number, in rad/m, of waves with which a point at s moves on for a wavelength; 0 if none.
+
+    shears: whether they are those of a beam.
     """
-    area = float(cable.section.moments()[0])
     stretch = np.linalg.norm(along(cable, run[f"{cable.name}.nodal_vectors"], PARTS, 1), axis=-1).mean(axis=1)
     stretch = (stretch[1:] + stretch[:-1]) / 2
-    tension = cable.material.youngs_modulus * area * (stretch - 1)
     way = np.abs(np.diff(s.reshape(len(run.time), -1)[:, 0]))
     speed = way / np.diff(run.time)
     bending = cable.material.youngs_modulus * min(cable.section.second_moment_about_z,
                                                   cable.section.second_moment_about_y)
-    k = np.sqrt(np.maximum(cable.material.density * area * speed**2 - tension / stretch, 0.0) / bending)
-    k = np.where(np.isfinite(k), k, 0.0)
+    beyond = np.nan_to_num(np.maximum(excess(cable, stretch, speed), 0.0))
+    if shears:
+        left = 1.0 - beyond / shear_stiffness(cable)
+        beyond = np.where(left > 0, beyond / np.maximum(left, 1e-12), bending * SHORTEST**2)
+    k = np.minimum(np.sqrt(beyond / bending), SHORTEST)
     order = np.argsort(-k)
     gone = np.cumsum(np.nan_to_num(way)[order])
     return float(np.max(k[order], where=gone * k[order] >= 2 * np.pi, initial=0.0))

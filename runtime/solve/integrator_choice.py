@@ -20,7 +20,7 @@ from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..parts.slide import Slide
 from .condensation import without_forces
-from .unseen_errors import outrunning
+from .fast_riders import outrunning
 
 ITERATIONS = 20
 """Of the power iteration."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..engine import Engine
 from ..integrators import stable_at
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
+from .fast_riders import outrunning
 from .fast_turns import FastTurns
 
 
@@ -29,19 +28,3 @@ def unseen_errors(scene: SceneData, engine: Engine, settings: RunSettings, turns
     return [f'integrator "genalpha" chooses its steps by the error of positions alone, which does not see '
             f'{", nor ".join(unseen)}: errors may be 10 times tol and more. Take '
             f'integrator="{stable_at(fixed_step=False).name}", or give estimate=True, which measures them']
-
-
-def outrunning(scene: SceneData) -> list[str]:
-    """Return the slides whose bodies start faster than the transverse waves of a cable that is drawn taut: the shock
-    that they run in damps out in steps of genalpha.
-    """
-    found = []
-    for slide in scene.slides.values():
-        cable, body = scene.cables[slide.along], scene.bodies.get(slide.body or "")
-        if body is None or cable.stretch <= 1.0:
-            continue
-        per_length = cable.material.density * cable.section.area
-        tension = cable.material.youngs_modulus * cable.section.area * (cable.stretch - 1.0)
-        if np.dot(body.velocity, body.velocity) * per_length > tension:
-            found.append(slide.name)
-    return found
