@@ -7,7 +7,7 @@ the mesh, and that of time, which the integrator bounds by the tolerance that it
 2. A ladder of meshes, each of half the element length, is run until the error of the next one can be extrapolated
    (`mesh_error`). On its second mesh two integrators are compared, which tells how loose the steps of the other probes
    may be (`time_error`). Meshes so close to each other that these steps hide it are run again with shorter ones.
-   Where the meshes do not converge from the first on, the finest one is run by the automatic choice, too: if the
+   Where the meshes do not converge from the first on, the finest one is run with a smaller tolerance, too: if the
    cheaper integrator of the probes errs there by more than the second mesh tells, all is done again without it. What
    moves along a cable faster than its waves makes short ones: then the ladder begins with meshes that show them
    (`short_waves`).
@@ -42,7 +42,7 @@ from .motion import motion
 from .probes import Probe, Prober, Runner, S
 from .remaking import CableModel, remade
 from .short_waves import elements_for_waves
-from .time_error import ASSUMED, DAMPING, InTime, compared
+from .time_error import ASSUMED, DAMPING, SMALLER, InTime, compared
 
 SHEAR_SAFETY = 2.0
 """The estimate of what shear does is low by up to that."""
@@ -199,8 +199,10 @@ class Chooser(Generic[S]):
         asked = self.settings.integrator != AUTO
         if not asked and (self.time.probed != DAMPING or levels[-1] <= second or mesh.regular):
             return mesh, levels
-        finest = self.prober.probe(self.models(levels[-1]), self.time.tried, AUTO)
-        apart = self.prober.difference(self.probe(levels[-1]), finest)
+        models = self.models(levels[-1])
+        finest = (self.prober.probe(models, self.time.tried, AUTO) if asked else
+                  self.prober.probe(models, self.time.probe_tol / SMALLER, DAMPING))
+        apart = self.prober.difference(self.probe(levels[-1]), finest) / (1.0 if asked else 1 - 1 / SMALLER)
         if not self.time.distrusts(apart):
             return mesh, levels
         tells = f"on a fine mesh {self.time.probed} with tol {self.time.probe_tol:.2g} errs by {apart:.1e}"
