@@ -14,12 +14,8 @@ ORDERS = 0.7, 4.0
 """Bounds of the order that is observed: below, meshes do not yet converge; above, differences cancel by chance."""
 
 
-NEAR = 2.0
-"""How many times as fine a mesh may be whose error is extrapolated by an order that is seen once; twice as fine for
-each time more that it is seen."""
-
-MOST_SEEN = 3
-"""Times that an order is counted at most; twice where it is below the lowest."""
+NEAR, FAR = 2.0, 4.0
+"""How many times as fine a mesh may be whose error is extrapolated: by an order that is seen once, and twice."""
 
 SAME = 0.7
 """Two orders that differ by less are the same."""
@@ -62,12 +58,6 @@ def mesh_error(levels: Sequence[int], differences: Sequence[float]) -> MeshError
     order = float(orders[-1]) if len(orders) else FIRST_ORDER
     if len(ratios) > 1 and ratios[0] < 0:  # differences grew just before: they fall by chance in part
         order = float(orders.mean())
-    return MeshError(levels[-1], finite[-1] / (2**order - 1), order, NEAR ** _seen(all_ratios),
+    steady = len(orders) > 1 and float(np.ptp(orders)) < SAME
+    return MeshError(levels[-1], finite[-1] / (2**order - 1), order, FAR if steady else NEAR,
                      bool(np.all(all_ratios >= ORDERS[0])))
-
-
-def _seen(orders: np.ndarray) -> int:
-    """Return how many of the last orders are the same within their bounds, at least one."""
-    within = np.clip(orders, *ORDERS)
-    most = MOST_SEEN if np.all(orders[-MOST_SEEN:] >= ORDERS[0]) else MOST_SEEN - 1
-    return max((count for count in range(1, min(len(orders), most) + 1) if np.ptp(within[-count:]) < SAME), default=1)
