@@ -8,7 +8,8 @@ converged motion of the finest model at hand, over the largest motion and over t
 says of it. ``resolved`` is how far the reference itself is converged, over tol: beyond 1 the error says nothing.
 ``ms`` is the CPU time of the integration, ``cheapest`` that of the cheapest model that keeps tol, found by brute force
 over elements, laws, meshes and integrators, both measured in turns. ``choice`` is the CPU time of the choice over that
-of the run, set-up included. References and brute force are computed once and kept in the cache; the choice is made anew.
+of the run, set-up included. References and brute force are computed once and kept in the cache; the choice is made
+anew.
 
 ``--full-length`` runs the bundled scenes over the durations of their files. Their errors are against a run on twice as
 fine a mesh with a tenth of the time tolerance.
