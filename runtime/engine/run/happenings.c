@@ -38,7 +38,7 @@ static int cross(fu_run *run, const fu_coupling *coupling, int side)
     if (status) return status;
     now->piece[coupling->coordinate] = piece;
     ++run->statistics.crossings;
-    fu_watch_now(run, fu_no_event, INFINITY);
+    fu_watch_now(run, fu_no_event, 0.0);
     return fu_start_scheme(run, !run->integrator->keeps_energy);
 }
 
