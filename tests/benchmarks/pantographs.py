@@ -159,7 +159,7 @@ def line55_rows() -> list[dict]:
         for longest in (USUAL, FINE):
             for starts in ((220.0,), (220.0, 20.0)):
                 pantographs = {f"p{k + 1}": (THREE_MASSES, start) for k, start in enumerate(starts)}
-                run = passage(line55(12), pantographs, kmh, longest, absolute_tol=5e-2)
+                run = passage(line55(12), pantographs, kmh, longest, absolute_tol=TOL)
                 for name in pantographs:
                     what = f"{name} of {len(starts)}, {longest[0]} m"
                     rows.append(row(kmh, what, figures(run, [(330.0, 440.0)], name), run))
