@@ -53,7 +53,7 @@ class Limb(Part):
 class JointedPantograph(Part):
     """A pantograph of two arms: rigid bodies with hinges, on a base that the train moves.
 
-    Points are (x, y) in m as drawn, at the height where the collector meets the contact wire at the outer droppers: x
+    Points are (x, y) in m as drawn, at the height where it touches the contact wire at the outer droppers: x
     along the track, y up, from the pivot of the lower arm on the base. knee: of lower and upper arm. rod_base and
     rod_top: the ends of the thrust rod, on the base and on the upper arm. head: on the end of the upper arm, about
     which the carrier of the collector turns. guide: the ends of the rod without mass that keeps it level, on the lower
@@ -190,7 +190,7 @@ class JointedPantograph(Part):
     def equivalent(self, gravity: float = 9.81) -> Pantograph:
         """Return the pantograph of two masses that moves as this one does in small motions about where it is drawn.
 
-        Its uplift is such that it presses as much on a wire at rest at the height drawn, with its suspension compressed.
+        Its uplift is such that it presses as much at rest on a wire at the height drawn, its suspension compressed.
         The lower mass is what moves with the carrier, by kinetic energy over the square of its vertical speed, with the
         collector's motion along the track; its spring is the decrease of the static force with the height, its damper
         has the same power. Raises SceneError where the static force grows with the height.

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..errors import SceneError
 from ..parts.cable import Cable
 from ..parts.settings import overridden
 from ..scene import Scene
-from .base import RADIUS
+from .base import COLLECTOR, RADIUS
 from .jointed import JointedPantograph
 from .jointed_bodies import add_jointed
 from .local_sag import mean_missing_compliance
@@ -22,6 +24,9 @@ to less than 1 %, see tests/benchmarks/README.md, and tol adds nothing to it."""
 
 ERROR_RATE = 1.2e-3
 """m/s: what absolute_tol is at the most for the duration of a run, all of which shares in it."""
+
+TOUCH = 1e-9
+"""m: by which a collector is drawn into the wire whose arms nothing else holds up: the search for rest begins there."""
 
 LEFT = 20.0
 """m: what a run leaves of the line before its end, at the most."""
@@ -47,13 +52,15 @@ def add_pantograph(scene: Scene, pantograph: Pantograph | JointedPantograph, at:
         raise SceneError("pantograph", f"at {at:.6g} m with {speed:.6g} m/s is not on its way along the line",
                          f"begin between {begin:.6g} and {end - LEFT:.6g} m, with a speed that is not negative")
     _set_runs(scene, (end - LEFT - at) / speed if speed else 1.0)
-    place = at, float(level) - RADIUS
+    stiffness = 1 / (1 / pantograph.contact_stiffness + _missing(wire))
+    height = float(level) - RADIUS
     if isinstance(pantograph, JointedPantograph):
-        add_jointed(scene, pantograph, place, speed, name)
+        add_jointed(scene, pantograph, (at, height + TOUCH), speed, name)
     else:
-        add_masses(scene, pantograph, place, speed, name)
-    scene.crossing("contact", f"{name}_1", radius=RADIUS, side=(0, 1, 0), name=f"{name}_contact",
-                   stiffness=1 / (1 / pantograph.contact_stiffness + _missing(wire)))
+        add_masses(scene, pantograph, (at, height), speed, name)
+    bar: dict[str, Any] = {} if wire.dim == 2 else {"axis": (0, 0, 1), "length": COLLECTOR[2] / 2}
+    scene.crossing("contact", f"{name}_1", radius=RADIUS, side=(0, 1, 0), name=f"{name}_contact", stiffness=stiffness,
+                   **bar)
 
 
 def _set_runs(scene: Scene, duration: float) -> None:
@@ -67,7 +74,7 @@ def _set_runs(scene: Scene, duration: float) -> None:
 
 def _missing(wire: Cable) -> float:
     """Return by how much less the elements of the contact wire give way to a collector than the wire does, in m/N."""
-    modulus, length = wire.material.youngs_modulus, wire.drawn_through[-1][0] - wire.drawn_through[0][0]
+    modulus, length = wire.material.youngs_modulus, wire.drawn_length
     tension = modulus * wire.section.area * (length / wire.length - 1)
     if tension <= 0:
         return 0.0
