@@ -312,7 +312,7 @@ def test_the_latex_compiles(name, tmp_path):
 @pytest.mark.parametrize("text", [r"\frac{1}{2} e^{2} \boldsymbol{\kappa}", r"\frac{e^{2}}{2} \boldsymbol{\kappa}",
                                   r"\frac{1}{2} \boldsymbol{\kappa} e^{2}", r"e \frac{1}{2} e \boldsymbol{\kappa}"])
 def test_powers_in_products(text, e):
-    """A power is that of the letter before it, wherever it stands, read from the text and from what is printed of it."""
+    """A power is that of the letter before it, wherever it stands, in the text and in what is printed of it."""
     kappa = np.array([[2.0], [-3.0]], dtype=object)
     tree = parse(text)
     for each in (tree, parse(latex(tree)), parse(to_latex(mathml(tree)))):
