@@ -16,7 +16,7 @@ HINGES = (("base", "lower", "pivot"), ("lower", "upper", "knee"), ("base", "rod"
 RADII = {"lower": 0.04, "upper": 0.03, "rod": 0.02, "carrier": 0.02}
 """m: of arms and rods as they are drawn."""
 
-LEVER = 0.5
+LEVER = 0.25
 """m: the suspension's spring as it is drawn reaches so far below the head: its length does not vanish."""
 
 
