@@ -306,3 +306,29 @@ def test_the_latex_compiles(name, tmp_path):
                               capture_output=True, text=True, errors="replace", check=False)
         assert done.returncode == 0, done.stdout[-2000:]
     assert (tmp_path / f"{name}.pdf").stat().st_size > 100_000
+
+
+@pytest.mark.parametrize("e", [0.3, np.float64(0.3), np.array([[0.3]]), np.array([[0.3]], dtype=object)])
+@pytest.mark.parametrize("text", [r"\frac{1}{2} e^{2} \boldsymbol{\kappa}", r"\frac{e^{2}}{2} \boldsymbol{\kappa}",
+                                  r"\frac{1}{2} \boldsymbol{\kappa} e^{2}", r"e \frac{1}{2} e \boldsymbol{\kappa}"])
+def test_powers_in_products(text, e):
+    """A power is that of the letter before it, wherever it stands, in the text and in what is printed of it."""
+    kappa = np.array([[2.0], [-3.0]], dtype=object)
+    tree = parse(text)
+    for each in (tree, parse(latex(tree)), parse(to_latex(mathml(tree)))):
+        found = Evaluation(Definitions(), {"e": e, "!kappa": kappa})(each)
+        assert found.ravel().tolist() == pytest.approx([0.09, -0.135], rel=1e-15)
+    slope = parse(rf"\frac{{\partial \left( {text} \right)}}{{\partial e}}")
+    moved = Evaluation(Definitions(), {"e": 0.3, "!kappa": kappa})(slope)
+    assert moved.ravel().tolist() == pytest.approx([0.6, -0.9], rel=1e-15)
+
+
+@pytest.mark.parametrize(("text", "says"), [(r"\mathbf{A}^{2}", "no power 2 of a matrix of 2 by 2"),
+                                            (r"\mathbf{v}^{2}", "no power 2 of a matrix of 2 by 1"),
+                                            (r"\mathbf{v}^{-1}", "no power -1 of a matrix of 2 by 1")])
+def test_powers_of_matrices_are_inverses_or_none(text, says):
+    values = {"!A": np.array([[2.0, 1.0], [0.0, 4.0]]), "!v": np.array([[1.0], [2.0]])}
+    with pytest.raises(TypeError, match=says):
+        Evaluation(Definitions(), values)(parse(text))
+    inverse = Evaluation(Definitions(), values)(parse(r"\mathbf{A}^{-1}"))
+    assert inverse.astype(float) == pytest.approx(np.linalg.inv(values["!A"]))

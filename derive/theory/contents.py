@@ -42,7 +42,9 @@ def theory() -> Document:
     composer.add("couplings/drag", MAIN)
     composer.add("couplings/added_mass", MAIN)
     composer.add("couplings/surface", MAIN)
+    composer.add("couplings/hard_contact", MAIN)
     composer.add("couplings/crossing", MAIN)
+    composer.add("theory/catenary", MAIN)
     return composer.document
 
 

@@ -2,11 +2,14 @@
 
 from .assessment import assess, losses, low_pass, uplift
 from .form import Form, form
+from .jointed import JointedPantograph, Limb
 from .line import Line
-from .pantograph import Pantograph, add_pantograph
+from .pantograph import Pantograph
+from .passing import add_pantograph
 from .pictures import plot_droppers, plot_force, plot_uplift
 from .scenes import scene
 from .wires import Droppers, SteadyArm, Wire, mass_damping
 
-__all__ = ["Droppers", "Form", "Line", "Pantograph", "SteadyArm", "Wire", "add_pantograph", "assess", "form", "losses",
-           "low_pass", "mass_damping", "plot_droppers", "plot_force", "plot_uplift", "scene", "uplift"]
+__all__ = ["Droppers", "Form", "JointedPantograph", "Limb", "Line", "Pantograph", "SteadyArm", "Wire", "add_pantograph",
+           "assess", "form", "losses", "low_pass", "mass_damping", "plot_droppers", "plot_force", "plot_uplift",
+           "scene", "uplift"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from .wires import MODULUS, Wire
 
 if TYPE_CHECKING:
     from ..results.equilibrium import Equilibrium
+
+PIECES = 16
+"""Of a span with staggers, as it is drawn."""
 
 LONGEST = 1.0, 1.0
 """Of an element of the contact wire and of the messenger, in m, where nothing else is said."""
@@ -52,16 +55,33 @@ def mesh(line: Line, longest: float) -> np.ndarray:
     return np.append(np.concatenate(pieces), line.span) / line.span
 
 
-def add_wire(scene: Scene, name: str, wire: Wire, start: float, end: float, height: float, nodes: np.ndarray) -> None:
-    """Add a wire along x at a height (m), whose nodes have these arc-lengths, undeformed."""
-    section = GeneralSection(area=wire.axial_stiffness / MODULUS,
-                             second_moment_about_z=wire.bending_stiffness / MODULUS)
+def add_wire(scene: Scene, name: str, wire: Wire, start: float, end: float, height: float, nodes: np.ndarray,
+             sides: tuple[float, ...] | None = None) -> None:
+    """Add a wire along x at a height (m), whose nodes have these arc-lengths, undeformed.
+
+    sides: where it is across the track (z), in m, at equal distances from start to end: a wire in space, along the
+    track there as drawn; without them it is planar.
+    """
+    section = {"area": wire.axial_stiffness / MODULUS, "second_moment_about_z": wire.bending_stiffness / MODULUS}
     density = wire.mass * (1 + wire.tension / wire.axial_stiffness) * MODULUS / wire.axial_stiffness
-    scene.cable(name, start=(start, height, 0), end=(end, height, 0), nodes=nodes, rest_length=float(nodes[-1]),
-                element="cable8p", strain="engineering", curvature="linear", membrane="reduced",
-                section=section,
+    drawn: dict[str, Any] = {"start": (start, height, 0), "end": (end, height, 0), "element": "cable8p"}
+    if sides is not None:
+        section["second_moment_about_y"] = section["second_moment_about_z"]
+        drawn = {"points": _snake(start, end, height, sides), "rest": "straight", "element": "cable12"}
+    scene.cable(name, nodes=nodes, rest_length=float(nodes[-1]), strain="engineering", curvature="linear",
+                membrane="reduced", section=GeneralSection(**section),
                 material=Material(youngs_modulus=MODULUS, poisson_ratio=0.3, density=density,
-                                  mass_damping=wire.mass_damping, damping_time=wire.damping_time))
+                                  mass_damping=wire.mass_damping, damping_time=wire.damping_time), **drawn)
+
+
+def _snake(start: float, end: float, height: float, sides: tuple[float, ...]) -> list[tuple[float, float, float]]:
+    """Return points from side to side across the track, at equal distances from start to end, in m."""
+    spans = len(sides) - 1
+    u = np.linspace(0, spans, PIECES * spans + 1)
+    before = np.minimum(u.astype(int), spans - 1)
+    swing = (1 - np.cos(np.pi * (u - before))) / 2
+    z = np.array(sides)[before] * (1 - swing) + np.array(sides)[before + 1] * swing
+    return [(start + float(at) / spans * (end - start), height, float(side)) for at, side in zip(u, z, strict=True)]
 
 
 def missing_at_droppers(line: Line, longest: tuple[float, float]) -> np.ndarray:
@@ -73,7 +93,7 @@ def missing_at_droppers(line: Line, longest: tuple[float, float]) -> np.ndarray:
 
 
 def hold_ends(scene: Scene) -> None:
-    """Hold the ends of the contact wire, which is free to rise and is level there."""
+    """Hold the ends of the contact wire, which is free to rise, and is level and along the track there."""
     for s in (0.0, scene.cables["contact"].length):
         scene.motion("contact", s=s, displacement=(0, "free", 0), rotation=((0, 0, 1), 0))
 
@@ -101,11 +121,11 @@ def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
     """
     droppers, strings = line.droppers, line.strings
     scene = Scene(gravity=(0, -line.gravity, 0))
-    for name, wire, length, height, each in (
-            ("contact", line.contact, strings.contact_length, 0.0, longest[0]),
-            ("messenger", line.messenger, strings.messenger_length, line.height, longest[1])):
-        nodes = mesh(line, each) * length / (1 + wire.tension / wire.axial_stiffness)
-        add_wire(scene, name, wire, 0.0, line.span, height, nodes)
+    for name, wire, length, height, each, side in (
+            ("contact", line.contact, strings.contact_length, 0.0, longest[0], line.staggers[0]),
+            ("messenger", line.messenger, strings.messenger_length, line.height, longest[1], line.staggers[1])):
+        nodes = mesh(line, each) * np.hypot(length, 2 * side) / (1 + wire.tension / wire.axial_stiffness)
+        add_wire(scene, name, wire, 0.0, line.span, height, nodes, None if line.planar else (side, -side))
     lengths = {name: cable.length for name, cable in scene.cables.items()}
     for s in (0.0, lengths["messenger"]):
         scene.pin("messenger", s=s)
@@ -114,7 +134,8 @@ def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
     missing = missing_at_droppers(line, longest)
     for k, x in enumerate(droppers.at):
         upper, lower = (x / line.span * lengths[name] for name in ("messenger", "contact"))
-        distance, force = float(strings.distances[k]), float(strings.forces[k])
+        aside = (line.staggers[1] - line.staggers[0]) * (1 - 2 * x / line.span)
+        distance, force = float(np.hypot(strings.distances[k], aside)), float(strings.forces[k])
         stiffness = 1 / (1 / droppers.stiffness_of(distance) + float(missing[k]))
         add_dropper(scene, f"dropper_{k + 1}", "messenger", (upper, lower), (line.hanging[k], droppers.contact_clamp),
                     stiffness=stiffness, length=distance - force / stiffness)

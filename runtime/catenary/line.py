@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import model_validator
 
 from ..parts.part import Part
-from ..parts.validation import Count, positive, show
+from ..parts.validation import Count, finite, positive, show
 from .strings import AtRest, at_rest
 from .wires import Droppers, SteadyArm, Wire
 
@@ -18,11 +18,13 @@ EVEN = 1e-9
 
 
 class Line(Part):
-    """A catenary: equal spans of a contact wire that hangs by droppers from a messenger, in the plane.
+    """A catenary: equal spans of a contact wire that hangs by droppers from a messenger.
 
     spans: how many; span: the length of each, in m; height: from the contact wire at the outer droppers up to the
-    messenger at the masts, at rest, in m; support: the vertical stiffness of the messenger's supports, in N/m.
-    Staggers are left out.
+    messenger at the masts, at rest, in m; support: the vertical stiffness of the messenger's supports, in N/m. stagger:
+    where the contact wire is held across the track (z) at the first mast, in m, and on the other side at every second
+    one; messenger_stagger: the messenger likewise, as the contact wire if not given. Without staggers the line is
+    planar.
     """
 
     spans: Count
@@ -33,6 +35,8 @@ class Line(Part):
     droppers: Droppers
     support: Annotated[float, positive("N/m")]
     steady_arm: SteadyArm = SteadyArm()
+    stagger: Annotated[float, finite("m")] = 0.0
+    messenger_stagger: Annotated[float, finite("m")] | None = None
     gravity: Annotated[float, positive("m/s²")] = 9.81
 
     @model_validator(mode="after")
@@ -75,6 +79,16 @@ class Line(Part):
     def hanging(self) -> tuple[float, ...]:
         """Return what hangs from the messenger at each dropper, in kg: the dropper and its clamp."""
         return tuple((self.droppers.messenger_clamp + self.droppers.mass * self.strings.distances).tolist())
+
+    @property
+    def staggers(self) -> tuple[float, float]:
+        """Return where contact wire and messenger are at the first mast across the track, in m."""
+        return self.stagger, self.stagger if self.messenger_stagger is None else self.messenger_stagger
+
+    @property
+    def planar(self) -> bool:
+        """Return whether the line lies in the plane of the track."""
+        return not any(self.staggers)
 
     @property
     def length(self) -> float:

@@ -7,42 +7,15 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import model_validator
 
-from ..errors import SceneError
-from ..parts.cable import Cable
 from ..parts.part import Part
 from ..parts.schemas import checked
-from ..parts.settings import overridden
 from ..parts.solids import Box
 from ..parts.validation import not_negative, positive, shown, vector
 from ..scene import Scene
-from .local_sag import mean_missing_compliance
-
-RUN = {"initial": "equilibrium", "integrator": "genalpha", "spectral_radius": 0.5, "tol": 1e-6, "absolute_tol": 5e-3,
-       "quantities": ["contact.position.y"], "output_step": 0.004}
-"""Settings of a run where no others are given. The droppers' stiffness makes vibrations that a larger radius would let
-grow from step to step; absolute_tol is such that the standard deviation of the contact force is converged in time
-to less than 1 %, see tests/benchmarks/README.md, and tol adds nothing to it."""
-
-ERROR_RATE = 1.2e-3
-"""m/s: what absolute_tol is at the most for the duration of a run, all of which shares in it."""
-
-LEFT = 20.0
-"""m: what a run leaves of the line before its end, at the most."""
+from .base import COLLECTOR, RADIUS, TURNING, add_base
 
 APART = 0.5
 """m: of the masses, one below the other, as they are drawn; their springs are free of force so."""
-
-BASE_MASS = 1.0
-"""kg: of the base, which moves as it is told."""
-
-RADIUS = 0.05
-"""m: from the wire's axis to the middle of the collector where they touch; more than any penetration."""
-
-NODES = 80
-"""Of the contact wire, from its start on: on so many the mean is taken of what its elements leave of the dent."""
-
-TURNING = 1.0
-"""kg m²: moments of inertia of the masses, which do not turn."""
 
 
 def _each(unit: str, above: bool) -> Any:
@@ -93,51 +66,18 @@ class Pantograph(Part):
         return self.uplift + self.aerodynamic * speed**2
 
 
-def add_pantograph(scene: Scene, pantograph: Pantograph, at: float, speed: float, name: str = "pantograph") -> None:
-    """Add a pantograph below the contact wire at x = `at` (m), which moves along x at a speed (m/s) from the start on.
-
-    Its bodies are name_1, the collector, to the lowest one, and name_base; its contact is name_contact. The scene's
-    runs have the settings `RUN`, and end before the first pantograph is at the end of the line, where no others are
-    given. Raises SceneError.
-    """
-    wire = scene.cables.get("contact")
-    if wire is None:
-        raise SceneError("pantograph", 'there is no cable "contact"', "make the scene with funicular.catenary.scene")
-    (begin, level, _), (end, *_) = wire.drawn_through[0], wire.drawn_through[-1]
-    if not begin < at < end - LEFT or not 0 <= speed < np.inf:
-        raise SceneError("pantograph", f"at {at:.6g} m with {speed:.6g} m/s is not on its way along the line",
-                         f"begin between {begin:.6g} and {end - LEFT:.6g} m, with a speed that is not negative")
-    duration = (end - LEFT - at) / speed if speed else 1.0
-    own = "absolute_tol" in scene.run_settings
-    scene.run_settings = settings = overridden(RUN, scene.run_settings)
-    settings["duration"] = min(duration, settings.get("duration", duration))
-    if "absolute_tol" in settings and not own:
-        settings["absolute_tol"] = min(settings["absolute_tol"], ERROR_RATE * settings["duration"])
-    height = float(level) - RADIUS
-    lowest = len(pantograph.masses) + 1
-    bodies = [f"{name}_{k}" for k in range(1, lowest)] + [f"{name}_base"]
+def add_masses(scene: Scene, pantograph: Pantograph, place: tuple[float, float], speed: float, name: str) -> None:
+    """Add the bodies of a pantograph to a scene, with its collector at (x, y) in m, at a speed (m/s) along x."""
+    at, height = place
+    bodies = [f"{name}_{k + 1}" for k in range(len(pantograph.masses))]
     for k, body in enumerate(bodies):
-        mass = BASE_MASS if k == lowest - 1 else pantograph.masses[k]
-        size = (0.3, 2 * RADIUS, 1.6) if k == 0 else (0.8, 2 * RADIUS, 0.8)
-        scene.rigid_body(body, mass=mass, inertia=(TURNING,) * 3, position=(at, height - k * APART, 0),
-                         velocity=(speed, 0, 0), shape=Box(size=size))
-    base, y = bodies[-1], height - (lowest - 1) * APART
-    scene.joint("prismatic", (at, y, 0), base, axis=(1, 0, 0), velocity=speed, name=f"{name}_drive")
-    for k, body in enumerate(bodies[:-1]):
+        scene.rigid_body(body, mass=pantograph.masses[k], inertia=(TURNING,) * 3,
+                         position=(at, height - k * APART, 0), velocity=(speed, 0, 0),
+                         shape=Box(size=(0.8, 2 * RADIUS, 0.8) if k else COLLECTOR))
+    base = add_base(scene, name, (at, height - len(bodies) * APART), speed)
+    for k, (body, below) in enumerate(zip(bodies, [*bodies[1:], base], strict=True)):
         scene.joint("prismatic", base, body, axis=(0, 1, 0), name=f"{name}_guide_{k + 1}")
-        lift = pantograph.lift(speed) if k == lowest - 2 else 0.0
+        lift = pantograph.lift(speed) if below == base else 0.0
         scene.force(body, value=(0, lift - pantograph.masses[k] * scene.gravity[1], 0), name=f"{name}_lift_{k + 1}")
-        scene.spring(body, bodies[k + 1], stiffness=pantograph.stiffness[k], damping=pantograph.damping[k],
-                     length=APART, name=f"{name}_spring_{k + 1}")
-    scene.crossing("contact", bodies[0], radius=RADIUS, side=(0, 1, 0), name=f"{name}_contact",
-                   stiffness=1 / (1 / pantograph.contact_stiffness + _missing(wire)))
-
-
-def _missing(wire: Cable) -> float:
-    """Return by how much less the elements of the contact wire give way to a collector than the wire does, in m/N."""
-    modulus, length = wire.material.youngs_modulus, wire.drawn_through[-1][0] - wire.drawn_through[0][0]
-    tension = modulus * wire.section.area * (length / wire.length - 1)
-    if tension <= 0:
-        return 0.0
-    nodes = wire.node_s[:NODES] * length / wire.length
-    return mean_missing_compliance(tension, modulus * wire.section.second_moment_about_z, nodes)
+        scene.spring(body, below, stiffness=pantograph.stiffness[k], damping=pantograph.damping[k], length=APART,
+                     name=f"{name}_spring_{k + 1}")

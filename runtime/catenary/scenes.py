@@ -32,11 +32,17 @@ def _wires(made: Scene, formed: Form) -> None:
     line = formed.line
     place, of_messenger = (mesh(line, each) for each in formed.longest)
     nodes = np.concatenate([place[:-1] + k for k in range(line.spans)] + [[line.spans]]) * formed.contact_length
-    add_wire(made, "contact", line.contact, 0.0, line.length, formed.height, nodes)
+    of_contact, of_upper = (None if line.planar else _sides(line, side) for side in line.staggers)
+    add_wire(made, "contact", line.contact, 0.0, line.length, formed.height, nodes, of_contact)
     hold_ends(made)
     for k in range(line.spans):
         add_wire(made, f"messenger_{k + 1}", line.messenger, k * line.span, (k + 1) * line.span, line.height,
-                 of_messenger * formed.messenger_length)
+                 of_messenger * formed.messenger_length, None if of_upper is None else of_upper[k:k + 2])
+
+
+def _sides(line: Line, first: float) -> tuple[float, ...]:
+    """Return where a wire is at the masts across the track, in m."""
+    return tuple((-1) ** mast * first for mast in range(line.spans + 1))
 
 
 def _droppers(made: Scene, formed: Form) -> None:
@@ -52,16 +58,27 @@ def _droppers(made: Scene, formed: Form) -> None:
 
 def _masts(made: Scene, formed: Form) -> None:
     line, arm = formed.line, formed.line.steady_arm
+    of_contact, of_messenger = (_sides(line, side) for side in line.staggers)
     made.pin("messenger_1", s=0.0)
     made.pin(f"messenger_{line.spans}", s=made.cables[f"messenger_{line.spans}"].length)
     for mast in range(1, line.spans):
-        x = mast * line.span
+        x, z = mast * line.span, of_messenger[mast]
         before = made.cables[f"messenger_{mast}"]
         made.tie(before, s=before.length, to=f"messenger_{mast + 1}", at=0.0, rotation="free")
-        made.spring((x, line.height + LEVER, 0), (before, before.length), name=f"support_{mast}",
+        made.spring((x, line.height + LEVER, z), (before, before.length), name=f"support_{mast}",
                     stiffness=line.support, length=LEVER - formed.mast_force / line.support)
+        if not line.planar:
+            made.motion(before, s=before.length, displacement=("free", "free", 0))
+            _add_arm(made, formed, mast, of_contact[mast])
     for mast in range(line.spans + 1):
         if arm.stiffness:
             s = mast * formed.contact_length
-            made.spring((mast * line.span, formed.height + LEVER, 0), ("contact", s), name=f"arm_{mast}",
+            made.spring((mast * line.span, formed.height + LEVER, of_contact[mast]), ("contact", s), name=f"arm_{mast}",
                         stiffness=arm.stiffness, length=LEVER)
+
+
+def _add_arm(made: Scene, formed: Form, mast: int, side: float) -> None:
+    """Add the rod that holds the contact wire on a side of the track, at z = side (m), and pulls it there."""
+    length = formed.line.steady_arm.length
+    hinge = mast * formed.line.span, formed.height, side + float(np.copysign(length, side))
+    made.joint("distance", hinge, ("contact", mast * formed.contact_length), length=length, name=f"steady_arm_{mast}")

@@ -110,10 +110,12 @@ class Droppers(Part):
 class SteadyArm(Part):
     """What keeps the contact wire in its place at a mast: in the plane a vertical spring without force at rest.
 
-    stiffness in N/m, vertical. Its mass is left out.
+    stiffness in N/m, vertical. Of a line with staggers it is also a rod without mass that pulls the wire to its side,
+    level at rest, of this length in m to the hinge on which it turns: as the wire rises, its pull has a part downwards.
     """
 
     stiffness: Annotated[float, not_negative("N/m")] = 0.0
+    length: Annotated[float, positive("m")] = 1.0
 
 
 def mass_damping(ratio: float, frequency: float) -> float:

@@ -12,7 +12,8 @@ wire?
 # --------
 #
 # Spans of 55 m with nine droppers each, data of a published study. The contact wire shall lie at the droppers on a
-# parabola of 55 mm, and pull with 22 kN. Droppers can only pull. The scene is planar: staggers are left out.
+# parabola of 55 mm, and pull with 22 kN. Droppers can only pull. The scene is planar: ``stagger=0.2``
+# would hold the contact wire to one side and the other of the track in turn.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -47,7 +48,8 @@ assert abs(form.tensions[0] / 191.35 - 1) < 0.02
 # -----------
 #
 # The pantograph is a chain of three masses over a base that the train moves: collector, upper and lower frame. The
-# uplift force acts on the lowest mass. Waves run along the contact wire at 460 km/h.
+# uplift force acts on the lowest mass. Waves run along the contact wire at 460 km/h. ``catenary.JointedPantograph`` has
+# arms and rods with hinges, and is put below the wire in the same way.
 #
 # By default elements are of 1 m, and steps are such that the standard deviation of the contact force is converged in
 # time to less than 1 %. The dents that elements leave out below droppers and collector are made up for. Here elements

@@ -35,6 +35,8 @@ AT_ONCE = 60
 """Unknowns, of the most growth, that are put late for the next factorisation."""
 WITHOUT = 1e-12
 """Of the largest entry in its row: with a smaller diagonal an unknown is no pivot before others are eliminated."""
+NUDGES = 0.0, WITHOUT, 10 * WITHOUT, 100 * WITHOUT
+"""Of the diagonal, which is about one: added where there are no pivots on it, to find which are too small."""
 MOST_FACTORISATIONS = 30
 MOST_LATE = 3000
 """Unknowns that may be left for the dense end of the factorisation: 72 MB."""
@@ -178,7 +180,7 @@ def _eliminated(K: csc_array, border: np.ndarray, growth: float) -> tuple[np.nda
     adds U_kj² / |D_k| to the diagonal entry j of what is left. The pivots are sound where none grows.
     """
     n = K.shape[0]
-    for nudge in (0.0, WITHOUT):  # where a pivot is exactly zero, which one it is: beside zero it is seen to grow
+    for nudge in NUDGES:  # where SuperLU takes no pivot that is zero or nearly so: a little above, it is seen to grow
         try:
             factor = splu(K + nudge * eye_array(n, format="csc") if nudge else K, permc_spec="MMD_AT_PLUS_A",
                           diag_pivot_thresh=0.0, options={"SymmetricMode": True})

@@ -300,8 +300,13 @@ def _block(rows: list[list[Value]]) -> np.ndarray:
 
 
 def _power(base: Value, exponent: int) -> Value:
-    """Return a power of a number; of a matrix the inverse, its only power in formulas."""
-    return _inverse(base) if isinstance(base, np.ndarray) else base**exponent
+    """Return a power of a number; of a matrix the inverse, its only power in formulas. Raises TypeError."""
+    base = _collapsed(base)
+    if not isinstance(base, np.ndarray):
+        return base**exponent
+    if exponent != -1 or base.shape[0] != base.shape[1]:
+        raise TypeError(f"no power {exponent} of a matrix of {base.shape[0]} by {base.shape[1]}")
+    return _inverse(base)
 
 
 def _transpose(value: Value) -> Value:
