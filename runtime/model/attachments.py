@@ -13,6 +13,7 @@ from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import largest_moment
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
+from .hulls import Hull, hull_of
 
 UP, CARRIED = -1, -2
 """What completes the frame of a tangent, as engine.h has it: a direction of the ground, or the slide's director."""
@@ -53,6 +54,15 @@ class AttachmentBuilder:
         self.scene, self.cables, self.bodies = scene, cables, bodies
         self.cable_index = {name: k for k, name in enumerate(scene.cables)}
         self.body_index = {name: k for k, name in enumerate(scene.bodies)}
+        self.hulls: dict[int, Hull] = {}
+
+    def hull(self, index: int) -> Hull:
+        """Return the hull of a cable's elements by the cable's number; the cable knows then how far its points move."""
+        if index not in self.hulls:
+            cable = self.cables[index]
+            self.hulls[index] = hull_of(cable.kernel("on_axis"), cable.mesh.lengths)
+            cable.share = self.hulls[index].share
+        return self.hulls[index]
 
     def element(self, cable: str, s: float) -> tuple[int, float]:
         """Return the element that s is in, and x in it."""

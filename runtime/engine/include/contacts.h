@@ -93,4 +93,8 @@ void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, co
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state);
 void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
+/* couplings/clearances.c */
+fu_clearance fu_contact_clearance(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+void fu_contact_between(const fu_model *model, const fu_coupling *coupling, int between[2]);
+
 #endif

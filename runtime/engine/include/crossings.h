@@ -100,4 +100,8 @@ void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state);
 void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out);
 int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const fu_crossing_contact *contact);
 
+/* clearances.c */
+fu_clearance fu_crossing_clearance(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+void fu_crossing_between(const fu_model *model, const fu_coupling *coupling, int between[2]);
+
 #endif

@@ -47,6 +47,7 @@
 #include "part_timing.h"
 #include "point_force.h"
 #include "projection.h"
+#include "proximity.h"
 #include "record.h"
 #include "resistances.h"
 #include "rotation.h"
