@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -17,6 +19,8 @@ from .hulls import Hull, hull_of
 
 UP, CARRIED = -1, -2
 """What completes the frame of a tangent, as engine.h has it: a direction of the ground, or the slide's director."""
+
+T = TypeVar("T")
 
 FRAMES = {2: "planar_frame", 3: "frame"}
 
@@ -55,6 +59,14 @@ class AttachmentBuilder:
         self.cable_index = {name: k for k, name in enumerate(scene.cables)}
         self.body_index = {name: k for k, name in enumerate(scene.bodies)}
         self.hulls: dict[int, Hull] = {}
+        self._made: dict[Hashable, Any] = {}
+
+    def once(self, key: Hashable, make: Callable[[], T]) -> T:
+        """Return what `make` makes, which is made once for a key: many pairs share their bodies and surfaces."""
+        if key not in self._made:
+            self._made[key] = make()
+        made: T = self._made[key]
+        return made
 
     def hull(self, index: int) -> Hull:
         """Return the hull of a cable's elements by the cable's number; the cable knows then how far its points move."""

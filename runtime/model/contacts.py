@@ -14,6 +14,7 @@ from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.surface import Surface
 from ..parts.surface_shapes import WIDE
+from ..parts.validation import Vector
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 
@@ -88,9 +89,10 @@ def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilde
     """Return the model of a contact of the scene."""
     assert part.stiffness is not None and part.radius is not None, f"{part.where} is not complete"
     surface = scene.surfaces[part.b]
+    entries = attachments.once(("surface", part.b), lambda: surface_entries(surface, scene, attachments))
     tangential = part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness
     model = ContactModel(
-        **surface_entries(surface, scene, attachments), type="contact", name=part.name or "",
+        **entries, type="contact", name=part.name or "",
         is_damped=part.damping > 0, stiffness=part.stiffness, damping=part.damping,
         friction=part.friction_coefficient, tangential=tangential, hertz=int(part.exponent == 1.5), cable=-1,
         radius=part.radius, n_points=0)
@@ -98,16 +100,25 @@ def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilde
         drawn = _along_cable(model, attachments.cable_index[part.a], scene, attachments)
     else:
         assert part.points is not None, f"{part.where} is not complete"
-        body = scene.bodies[part.a]
-        model.attachments = [attachments.model(Attachment(on=part.a, at=point)) for point in part.points]
-        model.n_points = len(part.points)
-        model.spread = np.array([np.inf if isinstance(body, ModalBody) else np.linalg.norm(part.points, axis=1).max()])
-        drawn = np.array([body.point(point) for point in part.points])
+        points = part.points
+        model.n_points = len(points)
+        model.attachments, model.spread, drawn = attachments.once(
+            (part.a, points), lambda: _on_body(part.a, points, scene, attachments))
     if part.friction_coefficient:
         on = scene.bodies.get(surface.on or "")
         model.anchors = surface.geometry.into(surface.in_axes(on, drawn))[:, : scene.dim].copy()
         model.n_numbers = model.anchors.size
     return model
+
+
+def _on_body(name: str, points: tuple[Vector, ...], scene: SceneData,
+             attachments: AttachmentBuilder) -> tuple[list[AttachmentModel], np.ndarray, np.ndarray]:
+    """Return points of a body, (1,) how far they are from its centre at most, and (n, 3) where they are drawn, in m."""
+    body = scene.bodies[name]
+    on = [attachments.model(Attachment(on=name, at=point)) for point in points]
+    assert not isinstance(body, ModalBody), f"{body.where} touches no surfaces"
+    farthest = np.linalg.norm([body.arm(point) for point in points], axis=1).max()
+    return on, np.array([farthest]), np.array([body.point(point) for point in points])
 
 
 def _along_cable(model: ContactModel, index: int, scene: SceneData, attachments: AttachmentBuilder) -> np.ndarray:
