@@ -24,8 +24,8 @@ class Crossing(Part):
     a: the cable; b: another cable, or the body or (None) the ground that carries a bar; or lists of them, or "all" for
     the cables in the scene: a crossing is added for each pair, and a name given gets a number. at: of a bar its middle,
     in m, in the body's axes; axis: its direction in these axes, length: how far it reaches to each side, in m. In a
-    planar scene the bar is square to the plane and has neither. Bar and cables are round: radius: in m, the distance of both
-    axes at which they touch, the sum of the radii of the cables' sections if not given, where a bar has none.
+    planar scene the bar is square to the plane and has neither. Bar and cables are round: radius: in m, the distance of
+    both axes at which they touch, the sum of the radii of the cables' sections if not given, where a bar has none.
     stiffness k (N/m, or N/m^1.5) and exponent e of the contact force ``k p^e`` at the penetration p: 1, or 1.5 after
     Hertz; damping in s/m: the force is ``k p^e (1 + damping p')``. friction: a coefficient, or a `Friction`; it acts
     along both lines, and is smooth in the speed of slip. With model "stick" what sticks is kept by a spring of

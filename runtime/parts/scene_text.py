@@ -144,6 +144,8 @@ class _Reader:
             try:
                 scene.add_pairs(kind, table)
             except SceneError as error:
+                if error.place != kind.kind:
+                    raise
                 raise _numbered(error, kind, number) from None
 
 
@@ -196,13 +198,13 @@ def _part(part: type[Part], table: dict, index: int) -> Part:
     try:
         return part(**table)
     except SceneError as error:
+        if isinstance(table.get("name"), str):
+            raise
         raise _numbered(error, part, index) from None
 
 
 def _numbered(error: SceneError, part: type[Part], index: int) -> SceneError:
-    """Return an error of a table of parts, with the number of the table where the part has no name."""
-    if error.place != part.kind:
-        return error
+    """Return an error of a table of parts without a name, with the number of the table."""
     unnamed = [SceneError(f"[[{part.kind}]] {index}", each.cause, each.remedy, each.entry) for each in error.errors]
     unnamed[0].errors = tuple(unnamed)
     return unnamed[0]
