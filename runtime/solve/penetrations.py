@@ -22,6 +22,8 @@ class Penetrations:
 
     def see(self, rows: dict[str, np.ndarray]) -> None:
         """Take further output rows, by name, time first."""
+        if not self.contacts:
+            return
         depths = rows["contact"][..., 6].max(axis=0, initial=0.0)
         for k in np.flatnonzero(depths):
             name = self.contacts[k][0].name
@@ -42,7 +44,7 @@ def _radii(model: Model) -> Iterator[tuple[Any, float]]:
 
 def penetrations(model: Model, outputs: np.ndarray) -> list[str]:
     """Return the notes on a state of rest; outputs: (contacts, 10), the engine's."""
-    return _notes(list(_radii(model)), outputs[:, 6])
+    return _notes(list(_radii(model)), outputs[:, 6]) if len(outputs) else []
 
 
 def _notes(contacts: list[tuple[Any, float]], depths: np.ndarray) -> list[str]:
