@@ -126,7 +126,7 @@ fu_watch_list fu_near_watches(const fu_run *run, const fu_state *state)
     return run->model->n_pairs && is_within(run->model, state->q) ? near_watches(run) : every_watch(run);
 }
 
-/* A gap g with rates g' at the ends of a step leads by its cubic to no less than its least end less 4/27 h (|g'| + |g'|). */
+/* A cubic goes no farther from its ends than a third of the step at their rates. */
 fu_watch_list fu_near_watches_within(const fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -138,8 +138,8 @@ fu_watch_list fu_near_watches_within(const fu_run *run, double h)
             double way, turn, speed, spin;
             gone_by(model, m, ends[end]->q, &way, &turn);
             speeds_of(model, m, ends[end]->v, &speed, &spin);
-            way += 0.3 * h * (speed + spin * p->movers[m].radius);
-            turn += 0.3 * h * spin;
+            way += 0.34 * h * (speed + spin * p->movers[m].radius);
+            turn += 0.34 * h * spin;
             if (!(way <= p->movers[m].way && turn <= p->movers[m].turn)) return every_watch(run);
         }
     return near_watches(run);
