@@ -1,13 +1,14 @@
 """Contacts of many pairs: lists of them, pairs that are far apart, and touches that are not to be missed."""
 
-import numpy as np
 import funicular as fu
+import numpy as np
 import pytest
 from expectations import refused
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 ROPE = {"section": fu.Circle(radius=0.01), "material": fu.Material(youngs_modulus=1e7, poisson_ratio=0, density=1000)}
+pytestmark = pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")  # of laws that are soft, and of tol
 INTEGRATORS = ["radau", "genalpha", "energy", "explicit"]
 
 
@@ -57,8 +58,8 @@ def test_all_stands_for_what_can_touch_and_does_not_yet():
 def test_crossings_of_all_cables_are_of_each_two_once():
     scene = fu.Scene()
     for name, z in (("a", 0.0), ("b", 0.3), ("c", 0.6)):
-        turn = np.array([np.cos(3 * z), np.sin(3 * z), 0])
-        scene.cable(name, start=tuple(-turn + (0, 0, z)), end=tuple(turn + (0, 0, z)), elements=2, element="cable12",
+        turn = np.cos(3 * z), np.sin(3 * z)
+        scene.cable(name, start=(-turn[0], -turn[1], z), end=(turn[0], turn[1], z), elements=2, element="cable12",
                     **ROPE)
     assert pairs(scene.crossing("all", "all", stiffness=1e3)) == [("a", "b"), ("a", "c"), ("b", "c")]
     assert pairs(scene.crossing(["a", "b"], None, at=(0, 1, 0), axis=(0, 0, 1), length=1.0, radius=0.02,
@@ -86,8 +87,7 @@ stiffness = 1e4
 def test_scene_files_have_lists():
     scene = fu.Scene.from_toml(LISTED % "all")
     assert pairs(scene.contacts.values()) == [("A", "ground")]
-    with refused('scene, line 12: contact "contact_1": there is no surface "floor"; did you mean "ground"?'.replace(
-            "line 12", "line 12")):
+    with refused('scene, line 12: contact "contact_1": there is no surface "floor"; known: ground'):
         fu.Scene.from_toml(LISTED % "floor")
 
 
@@ -155,8 +155,9 @@ SHAPES = {
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)
-@given(shape=st.sampled_from(sorted(SHAPES)), size=st.floats(0.02, 0.4), speed=st.floats(1, 100), aside=st.floats(-0.5, 0.5),
-       integrator=st.sampled_from(INTEGRATORS), hard=st.booleans(), moves=st.booleans(), outputs=st.sampled_from([1, 3]))
+@given(shape=st.sampled_from(sorted(SHAPES)), size=st.floats(0.02, 0.4), speed=st.floats(1, 100),
+       aside=st.floats(-0.5, 0.5), integrator=st.sampled_from(INTEGRATORS), hard=st.booleans(), moves=st.booleans(),
+       outputs=st.sampled_from([1, 3]))
 def test_no_touch_is_missed(shape, size, speed, aside, integrator, hard, moves, outputs):
     """A point flies straight on: its way is known, and on many places of it whether it is within the surface."""
     at, duration, radius = (5.0, aside * size, 0.0), 10 / speed, 0.02
@@ -183,10 +184,10 @@ def test_no_touch_is_missed(shape, size, speed, aside, integrator, hard, moves, 
 
 
 @settings(max_examples=12, deadline=None, derandomize=True)
-@given(speed=st.floats(1, 30), size=st.floats(0.05, 0.3), aside=st.floats(-0.6, 0.6), integrator=st.sampled_from(INTEGRATORS),
-       moves=st.booleans())
+@given(speed=st.floats(1, 30), size=st.floats(0.05, 0.3), aside=st.floats(-0.6, 0.6),
+       integrator=st.sampled_from(INTEGRATORS), moves=st.booleans())
 def test_no_cable_goes_through_a_surface(speed, size, aside, integrator, moves):
-    """What a rope may sink in by follows from its energy; and without a contact it would be behind the sphere."""
+    """It flies straight on until it touches, at a time that is known, within the way between points of quadrature."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("rope", start=(-1, aside * size, 0), end=(1, aside * size, 0), elements=8, element="cable12",
                 velocity=(0, 0, speed * (0.5 if moves else 1)), **ROPE)

@@ -88,8 +88,8 @@ class SceneData:
     def touching(self) -> Mapping[tuple[str, str], str]:
         """Return the names of contacts by what touches, those added since it was asked for the last time included."""
         known = self._touching
-        for _, part in zip(range(len(self.contacts) - len(known)), reversed(self.contacts.values()), strict=False):
-            known[part.a, part.b] = part.given_name or ""
+        added = [*islice(reversed(self.contacts.values()), len(self.contacts) - len(known))]
+        known.update(((part.a, part.b), part.given_name or "") for part in reversed(added))
         return known
 
     @property
