@@ -45,6 +45,7 @@
 #include "motions.h"
 #include "newton.h"
 #include "part_timing.h"
+#include "penalty_friction.h"
 #include "point_force.h"
 #include "projection.h"
 #include "proximity.h"
