@@ -101,14 +101,20 @@ static fu_couplings near_of(const fu_model *model)
     return (fu_couplings){model->proximity->near, model->proximity->n_near};
 }
 
+/* Returns whether evaluations pass over couplings that are far: those that are more than a contact take part in all. */
+static int has_lone_pairs(const fu_model *model)
+{
+    return model->n_others < model->n_couplings;
+}
+
 fu_couplings fu_acting(const fu_model *model, const fu_state *state)
 {
-    return model->n_pairs && is_within(model, state->q) ? near_of(model) : all_of(model);
+    return has_lone_pairs(model) && is_within(model, state->q) ? near_of(model) : all_of(model);
 }
 
 fu_couplings fu_acting_in_step(const fu_model *model, const fu_equations *at)
 {
-    return model->n_pairs && is_within(model, at->now->q) && is_within(model, at->next->q) ? near_of(model) : all_of(model);
+    return has_lone_pairs(model) && is_within(model, at->now->q) && is_within(model, at->next->q) ? near_of(model) : all_of(model);
 }
 
 static fu_watch_list every_watch(const fu_run *run)
