@@ -81,10 +81,9 @@ assert abs(-rough["line@0.force"][0] - (PULL - 0.3 * WEIGHT * LYING)) < 0.3 * WE
 # A ball that bounces
 # -------------------
 #
-# ``restitution`` makes the contact of a body hard. An impact is an instant and an event; the speed after it is e times
-# that before. So each bounce is e² as high as the last one, and they end after t (1 + e)/(1 - e), with the time t of
-# the first fall. With a ``stiffness`` and a ``damping`` c the ball sinks in, and an impact takes time. Then
-# v - ln(1 + c v)/c is the same after as before: slow impacts lose less, and the ball bounces for longer.
+# ``restitution`` makes the contact of a body hard. An impact is an event; the speed after it is e times that before. So
+# each bounce is e² as high as the last, and they end after t (1 + e)/(1 - e), with the time t of the first fall. With a
+# ``stiffness`` and a ``damping`` c an impact takes time, and v - ln(1 + c v)/c is the same after as before.
 
 E, DROP, DAMPING = 0.7, 0.5, 0.2027
 scene = fu.Scene(gravity=(0, -G, 0))
