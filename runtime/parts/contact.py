@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import model_validator
 
 from .friction import AnyFriction
-from .pairs import Listed
+from .listed import Listed
 from .part import Part
 from .penalty_law import Exponent
 from .plane import across

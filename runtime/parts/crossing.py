@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from .cable import Cable
 from .friction import AnyFriction
-from .pairs import Listed
+from .listed import Listed
 from .part import Part
 from .penalty_law import Exponent
 from .plane import across

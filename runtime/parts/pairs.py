@@ -4,31 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import product
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Any
 
 from ..errors import SceneError
 from .modal_body import ModalBody
-from .schemas import checked
+from .part import Part
+from .scene_data import SceneData
 from .validation import shown
-
-if TYPE_CHECKING:
-    from .part import Part
-    from .scene_data import SceneData
 
 ALL = "all"
 """Stands for all parts that there are in the scene, unless one has that name."""
-
-
-def _listed(value: Any) -> str:
-    name = getattr(value, "name", value)
-    if not isinstance(name, str):
-        raise ValueError(f"must be the name of a part, got {shown(value)}")
-    return name
-
-
-Listed = Annotated[str, checked(_listed, {"anyOf": [
-    {"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]})]
-"""The name of a part, given as that or as the part itself; where parts are added, a list of them or "all", too."""
 
 
 def _is_list(scene: SceneData, value: Any) -> bool:
