@@ -164,6 +164,7 @@ cdef class Engine(Report):
         run.passed_at = self._zeros(run.n_watches)
         run.passed = <const char **>self._memory(<double>run.n_watches * sizeof(char *))
         run.watch_work = self._zeros(self.model.n_dof + self.model.n_outputs)
+        fu_proximity_place(&self.model, run.n_watches, self._memory(fu_proximity_size(&self.model, run.n_watches)))
 
     def _knots(self, times, jumps):
         """Let steps end at these instants."""

@@ -21,6 +21,7 @@ from .errors import (
 )
 from .parts.laid import laid
 from .parts.modal_body import ModalBody
+from .parts.pairs import pairs_of
 from .parts.part import Part
 from .parts.scene_text import dumps, read
 from .parts.settings import EquilibriumSettings, ModeSettings, RelaxationSettings, RunSettings, overridden
@@ -84,6 +85,26 @@ class Scene(Viewable, SceneMethods):
         part = check_of(part)(self, part)
         self.put(part)
         return part
+
+    def add_pairs(self, kind: type[P], entries: Mapping[str, Any]) -> list[P]:
+        """Add parts of many pairs, such as contacts, by lists in the entries that `kind` is made with.
+
+        Returns the parts as they stand in the scene, the pairs of the first one's list first. Raises SceneError, and
+        then none of them is added.
+        """
+        from .checks.adding import check_all_of  # likewise
+        from .checks.planarity import check_plane  # likewise
+
+        pairs = pairs_of(self, kind, entries)
+        ends, given = kind.positional, entries.get("name")
+        one = kind(**{**entries, **dict(zip(ends, pairs[0], strict=True))})
+        names = self.free_names(kind, kind.kind if given is None else given, len(pairs))
+        parts = [one.model_copy(update={**dict(zip(ends, pair, strict=True)), "name": name})
+                 for pair, name in zip(pairs, names, strict=True)]
+        check_plane(self, one)
+        for part in (parts := check_all_of(one)(self, parts)):
+            self.put(part)
+        return parts
 
     def replace(self, part: Part | str, **changes: Any) -> Self:
         """Return a scene like this one with other values of one part, checked as any scene is; this one stays.

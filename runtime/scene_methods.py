@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from .parts.kinds import KINDS
+from .parts.pairs import are_lists
 from .parts.part import Part, parameters_of
 from .parts.scene_data import SceneData
 
@@ -28,12 +29,12 @@ def signature(kind: type[Part]) -> inspect.Signature:
     return inspect.Signature(parameters)
 
 
-def _method(kind: type[Part]) -> Callable[..., Part]:
+def _method(kind: type[Part]) -> Callable[..., Part | list[Part]]:
     """Return the method that makes a part of such a kind and adds it."""
     positional, made = kind.positional, signature(kind)
     optional = {parameter.name for parameter in made.parameters.values() if parameter.default is None}
 
-    def method(self: SceneMethods, *given: Any, **keywords: Any) -> Part:
+    def method(self: SceneMethods, *given: Any, **keywords: Any) -> Part | list[Part]:
         if len(given) > len(positional):
             arguments = f"{len(positional)} argument{'s' * (len(positional) > 1)}"
             raise TypeError(f"Scene.{kind.kind}() takes {arguments} without keyword ({', '.join(positional)}), "
@@ -42,13 +43,14 @@ def _method(kind: type[Part]) -> Callable[..., Part]:
             if name in keywords:
                 raise TypeError(f"Scene.{kind.kind}() got {name} twice")
             keywords[name] = value
-        return self.add(kind(**{name: value for name, value in keywords.items()
-                                if value is not None or name not in optional}))
+        entries = {name: value for name, value in keywords.items() if value is not None or name not in optional}
+        return self.add_pairs(kind, entries) if are_lists(self, kind, entries) else self.add(kind(**entries))
 
     method.__signature__ = made
     method.__name__, method.__qualname__ = kind.kind, f"Scene.{kind.kind}"
     method.__doc__ = (f"Add a {kind.__name__}: {inspect.cleandoc(kind.__doc__ or '')}\n\n"
-                      "Returns the part as it stands in the scene. Raises SceneError.")
+                      f"Returns the part as it stands in the scene{', or a list of them' * kind.takes_lists}. "
+                      "Raises SceneError.")
     return method
 
 

@@ -274,8 +274,8 @@ class SceneMethods(SceneData):
 
     def crossing(
         self,
-        a: Named,
-        b: Named | None = None,
+        a: Named | Sequence[Named],
+        b: Named | Sequence[Named] | None = None,
         *,
         stiffness: float,
         at: Numbers | None = None,
@@ -288,7 +288,7 @@ class SceneMethods(SceneData):
         tangential_stiffness: float | None = None,
         side: Numbers | None = None,
         name: str | None = None,
-    ) -> Crossing:
+    ) -> Crossing | list[Crossing]:
         """Add a Crossing, which see."""
 
     def surface(
@@ -303,8 +303,8 @@ class SceneMethods(SceneData):
 
     def contact(
         self,
-        a: Named,
-        b: Named,
+        a: Named | Sequence[Named],
+        b: Named | Sequence[Named],
         *,
         stiffness: float | None = None,
         exponent: float = 1.0,
@@ -316,7 +316,7 @@ class SceneMethods(SceneData):
         rest_velocity: float = 0.001,
         points: Points | None = None,
         name: str | None = None,
-    ) -> Contact:
+    ) -> Contact | list[Contact]:
         """Add a Contact, which see."""
 
     def event(

@@ -60,6 +60,7 @@ TYPES = {
     "added_mass": "float | Numbers | Points",
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
+    "Listed": "Named | Sequence[Named]",
     "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Exponent": "float",
     "Material": "Material", "AnyFriction": "Friction | float",
     "float": "float", "str": "str", "Callable": "Callable[..., Any]",
@@ -98,8 +99,9 @@ def method(kind: type[Part]) -> str:
         default = "" if needed else f" = {parameter.default!r}"
         arguments.append(f"{name}: {given_type(kind, name, not needed and parameter.default is None)}{default}")
     listed = "".join(f"        {each.replace(chr(39), chr(34))},\n" for each in arguments)
+    made = f"{kind.__name__} | list[{kind.__name__}]" if kind.takes_lists else kind.__name__
     documented = f'"""Add a {kind.__name__}, which see."""'
-    return f"    def {kind.kind}(\n{listed}    ) -> {kind.__name__}:\n        {documented}\n\n"
+    return f"    def {kind.kind}(\n{listed}    ) -> {made}:\n        {documented}\n\n"
 
 
 def imports() -> str:

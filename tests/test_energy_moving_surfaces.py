@@ -16,7 +16,7 @@ ROPE = {"section": fu.Circle(radius=0.01), "material": fu.Material(youngs_modulu
 INERTIA = {"A": (3e-4, 4e-4, 5e-4), "B": (1e-3, 2e-3, 3e-3)}
 MASS = {"A": 0.3, "B": 0.4}
 SHAPES = {"sphere": fu.Sphere(radius=0.06), "capsule": fu.Capsule(radius=0.05, length=0.1, axis=(1, 0, 0)),
-          "plane": fu.Plane(normal=(0.1, 1, 0.05)),
+          "plane": fu.Plane(normal=(0.1, 1, 0.05)), "box": fu.Box(size=(0.16, 0.1, 0.12)),
           "hills": fu.HeightField.of(lambda x, z: 0.05 + 0.003 * np.sin(9 * x) * np.cos(8 * z),
                                      np.linspace(-0.9, 0.9, 20), np.linspace(-0.9, 0.9, 20))}
 
@@ -107,8 +107,10 @@ def test_the_motion_is_that_of_another_integrator_to_order_two(make):
     assert errors[1] < 4e-6 and errors[1] < errors[0] / 8
 
 
-TOUCHING = {thrown: {"sphere": 0.066, "capsule": 0.058, "plane": 0.077, "hills": 0.059},
-            colliding: {"sphere": 0.11, "capsule": 0.09, "plane": 0.053, "hills": 0.09}}
+TOUCHING = {thrown: {"sphere": 0.066, "capsule": 0.058, "plane": 0.077, "hills": 0.059,
+                     "box": 0.058},
+            colliding: {"sphere": 0.11, "capsule": 0.09, "plane": 0.053, "hills": 0.09,
+                        "box": 0.105}}
 """Heights, in m, at which scenes are drawn that touch at the start."""
 
 

@@ -211,6 +211,17 @@ REASONS = "missing", "needs", "has neither", "must watch", "is for frame", "are 
 """Why a value cannot be left out."""
 
 
+@pytest.mark.parametrize("shape", [fu.Plane(normal=(0, 1, 0.1)), fu.Sphere(radius=0.2), fu.Box(size=(0.2, 0.4, 0.2)),
+                                   fu.Cylinder(radius=0.1, length=0.4, axis=(0, 0, 1)),
+                                   fu.Capsule(radius=0.1, length=0.4, axis=(1, 0, 0)),
+                                   fu.HeightField(x=(0, 1), heights=(0, 0.1))])
+def test_each_shape_of_a_surface_can_take_the_place_of_another(shape):
+    scene = everything().replace("bed", shape=shape, at=(0, -5, 0))
+    assert scene.surfaces["bed"].shape == shape
+    assert scene.contacts["landing"].b == "bed" and scene.replace("bed", on="B").surfaces["bed"].on == "B"
+    assert fu.Scene.from_toml(scene.to_toml()).surfaces["bed"] == scene.surfaces["bed"]
+
+
 def test_all_fields_are_tried():
     fields = {(kind, keyword) for kind, part in PARTS.items() for keyword in part.keywords()}
     tried = {(kind, keyword) for kind, values in OTHERS.items() for keyword in values}

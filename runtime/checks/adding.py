@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from ..parts.slide import Slide
 from ..parts.support import Support, Tie
 from ..parts.surface import Surface
 from ..parts.validation import show
-from .contact_placement import placed_contact, placed_surface
+from .contact_placement import placed_contact, placed_contacts, placed_surface
 from .crossing_placement import placed_crossing
 from .drag_placement import placed_drag
 from .event_placement import placed_event
@@ -74,4 +75,17 @@ def check_of(part: Part) -> Callable[[SceneData, Any], Any]:
 
     It is that of its class, else of the nearest base class. Others have their attachments completed.
     """
-    return next((_CHECKS[each] for each in type(part).__mro__ if each in _CHECKS), placed_between)
+    return _check_of(type(part))
+
+
+def check_all_of(part: Part) -> Callable[[SceneData, Any], Any]:
+    """Return the function that does so with a list of parts like this one."""
+    check = check_of(part)
+    if check is placed_contact:
+        return placed_contacts
+    return lambda scene, parts: [check(scene, each) for each in parts]
+
+
+@cache
+def _check_of(kind: type[Part]) -> Callable[[SceneData, Any], Any]:
+    return next((_CHECKS[each] for each in kind.__mro__ if each in _CHECKS), placed_between)

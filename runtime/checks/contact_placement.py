@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -49,34 +51,78 @@ def placed_contact(scene: SceneData, contact: Contact) -> Contact:
 
     Raises SceneError.
     """
+    return placed_contacts(scene, [contact])[0]
+
+
+def placed_contacts(scene: SceneData, contacts: list[Contact]) -> list[Contact]:
+    """Return contacts complete, each as `placed_contact` does, with one look at each surface. Raises SceneError."""
+    made: list[Contact] = []
+    starts: list[_Start] = []
+    own: dict[tuple[str, str], Contact] = {}
+    for contact in contacts:
+        contact = _of_surface(scene, contact, own)
+        made.append(_complete(scene, contact))
+        own[contact.a, contact.b] = contact
+        starts.append(_start_of(scene, made[-1], starts[-1] if starts else None))
+    n_hard = sum(len(start.drawn) for contact, start in zip(made, starts, strict=True) if contact.is_hard)
+    for contact in made:
+        if contact.is_hard:
+            _check_hard(scene, contact, n_hard)
+    _check_depths(scene, made, starts)
+    return made
+
+
+def _of_surface(scene: SceneData, contact: Contact, own: Mapping[tuple[str, str], Contact]) -> Contact:
+    """Return a contact with the surface second; own: contacts that are added with it, by what touches."""
     if contact.a in scene.surfaces and contact.b not in scene.surfaces:
         contact = contact.model_copy(update={"a": contact.b, "b": contact.a})
     if contact.b not in scene.surfaces:
         raise SceneError(contact.where, f'there is no surface "{contact.b}"',
                          near(contact.b, scene.surfaces) if scene.surfaces else
                          'add one before: scene.surface("ground", fu.Plane())')
-    if (other := scene.touching.get((contact.a, contact.b))) is not None:
-        where = scene.contacts[other].where
+    pair = (contact.a, contact.b)
+    if (other := scene.touching.get(pair)) is not None or pair in own:
+        where = (own[pair] if other is None else scene.contacts[other]).where
         raise SceneError(contact.where, f'"{contact.a}" and "{contact.b}" have the {where} already',
                          "leave one of them out")
-    surface = scene.surfaces[contact.b]
+    return contact
+
+
+def _complete(scene: SceneData, contact: Contact) -> Contact:
     if contact.a in scene.cables:
         contact = _of_cable(scene, contact, scene.cables[contact.a])
-        drawn = scene.cables[contact.a].points_at(scene.cables[contact.a].samples(SAMPLES))
     elif contact.a in scene.bodies:
-        contact = _of_body(scene, contact, scene.bodies[contact.a], surface)
-        drawn = np.array([scene.bodies[contact.a].point(point) for point in contact.points or ()])
+        contact = _of_body(scene, contact, scene.bodies[contact.a], scene.surfaces[contact.b])
     else:
         raise SceneError(contact.where, f'there is no cable or body "{contact.a}"',
                          near(contact.a, [*scene.cables, *scene.bodies]))
-    if contact.is_hard:
-        _check_hard_start(scene, contact, surface, drawn)
-        return contact
-    if contact.exponent != 1.0 and contact.friction_coefficient and contact.tangential_stiffness is None:
+    if not contact.is_hard and contact.exponent != 1.0 and contact.friction_coefficient and \
+            contact.tangential_stiffness is None:
         raise SceneError(contact.where, "tangential_stiffness is missing, which the stiffness of the exponent 1.5 is "
                          "not", "give it, in N/m (a length of a cable)")
-    _check_start(scene, contact, surface, drawn)
     return contact
+
+
+@dataclass
+class _Start:
+    """Where the points of what touches are drawn, (n, 3) in m; its weight, in N or N/m."""
+
+    of: tuple[str, Any]
+    drawn: np.ndarray
+    weight: float
+
+
+def _start_of(scene: SceneData, contact: Contact, last: _Start | None) -> _Start:
+    """Return the start of what has a contact, which is that of the last one where that is of the same points."""
+    key = contact.a, contact.points
+    if last is not None and last.of == key:
+        return last
+    if contact.a in scene.cables:
+        cable = scene.cables[contact.a]
+        drawn = cable.points_at(cable.samples(SAMPLES))
+    else:
+        drawn = np.array([scene.bodies[contact.a].point(point) for point in contact.points or ()])
+    return _Start(key, drawn, _weight(scene, contact))
 
 
 def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
@@ -100,8 +146,7 @@ def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, su
     points = contact.points if contact.points is not None else ((0.0, 0.0, 0.0),)
     if contact.is_hard:
         return contact.completed({"points": points, "radius": contact.radius or 0.0})
-    made = _with_stiffness(scene, contact, 0.0 if contact.radius is None else contact.radius)
-    return made.completed({"points": points})
+    return _with_stiffness(scene, contact, 0.0 if contact.radius is None else contact.radius, {"points": points})
 
 
 def _weight(scene: SceneData, contact: Contact) -> float:
@@ -111,9 +156,12 @@ def _weight(scene: SceneData, contact: Contact) -> float:
     return mass * float(np.linalg.norm(scene.gravity))
 
 
-def _with_stiffness(scene: SceneData, contact: Contact, radius: float) -> Contact:
-    """Return the contact with its radius and, where none is given, the stiffness that the weight asks for."""
-    found: dict[str, Any] = {"radius": radius}
+def _with_stiffness(scene: SceneData, contact: Contact, radius: float,
+                    others: Mapping[str, Any] | None = None) -> Contact:
+    """Return the contact with its radius, other values and, where none is given, the stiffness that the weight asks
+    for.
+    """
+    found: dict[str, Any] = {"radius": radius, **(others or {})}
     if contact.stiffness is None:
         weight = _weight(scene, contact)
         if not weight > 0 or not radius > 0:
@@ -124,25 +172,28 @@ def _with_stiffness(scene: SceneData, contact: Contact, radius: float) -> Contac
     return contact.completed(found)
 
 
-def _check_hard_start(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray) -> None:
-    """Raise SceneError where a point with a hard contact starts below the surface, or there are too many points."""
-    n = len(drawn) + sum(len(other.points or ()) for other in scene.contacts.values() if other.is_hard)
+def _check_hard(scene: SceneData, contact: Contact, added: int) -> None:
+    """Raise SceneError where there are too many points in hard contact, or one is of what has no distance.
+
+    added: points in hard contact that are being added.
+    """
+    n = added + sum(len(other.points or ()) for other in scene.contacts.values() if other.is_hard)
     if n > MOST_HARD:
         raise SceneError(contact.where, f"the scene has {n} points in hard contact, and {MOST_HARD} are the most",
                          "give some of the contacts stiffness in place of restitution")
-    if contact.radius and isinstance(surface.shape, HeightField):
+    if contact.radius and isinstance(scene.surfaces[contact.b].shape, HeightField):
         raise SceneError(contact.where, "a height field tells distances where they are nil: hard contact with it is of "
                          "points without radius", "leave radius out, or give stiffness in place of restitution")
-    _check_depth(scene, contact, surface, drawn, OVERLAP_HARD * (1 + np.abs(drawn).max()),
-                 ": a hard contact has no depth")
 
 
-def _check_start(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray) -> None:
-    """Raise SceneError where a start is too deep below the surface, by more than a radius allows, or what it sinks."""
+def _allowed(contact: Contact, start: _Start) -> tuple[float, str]:
+    """Return how deep below the surface a start may be, in m, and why, in words."""
+    if contact.is_hard:
+        return OVERLAP_HARD * (1 + np.abs(start.drawn).max()), ": a hard contact has no depth"
     assert contact.radius is not None and contact.stiffness is not None, f"{contact.where} is not complete"
-    sinks = (_weight(scene, contact) / contact.stiffness) ** (1 / contact.exponent)
+    sinks = (start.weight / contact.stiffness) ** (1 / contact.exponent)
     allowed = max(OVERLAP * contact.radius, 10 * sinks)
-    _check_depth(scene, contact, surface, drawn, allowed, f"; {show(float(allowed), 'm')} is allowed")
+    return allowed, f"; {show(float(allowed), 'm')} is allowed"
 
 
 def _normal(scene: SceneData) -> np.ndarray | None:
@@ -152,12 +203,36 @@ def _normal(scene: SceneData) -> np.ndarray | None:
     return np.array([0.0, 0.0, 1.0]) if scene.plane is None else scene.plane.normal
 
 
-def _check_depth(scene: SceneData, contact: Contact, surface: Surface, drawn: np.ndarray, allowed: float,
-                 why: str) -> None:
-    """Raise SceneError where one of the points drawn (n, 3) is deeper below the surface than is allowed, in m."""
-    depth = (contact.radius or 0.0) - surface.distance(scene.bodies.get(surface.on or ""), drawn, _normal(scene))
-    k = int(np.argmax(depth))
-    if depth[k] > allowed:
-        raise SceneError(
-            contact.where, f'"{contact.a}" starts {show(float(depth[k]), "m")} below the surface "{contact.b}", at '
-            f"{show(drawn[k], 'm')}", f"draw it higher, or the surface lower{why}")
+def _check_depths(scene: SceneData, contacts: list[Contact], starts: list[_Start]) -> None:
+    """Raise SceneError where one of the points of what has a contact is deeper below its surface than is allowed."""
+    of_surface: dict[str, list[int]] = {}
+    for k, contact in enumerate(contacts):
+        of_surface.setdefault(contact.b, []).append(k)
+    normal = _normal(scene)
+    found: list[tuple[int, SceneError]] = []
+    for name, numbers in of_surface.items():
+        surface = scene.surfaces[name]
+        drawn = np.concatenate([starts[k].drawn for k in numbers])
+        distance = surface.distance(scene.bodies.get(surface.on or ""), drawn, normal)
+        first = 0
+        for k in numbers:
+            n = len(starts[k].drawn)
+            error = _too_deep(contacts[k], starts[k], distance[first:first + n])
+            first += n
+            if error is not None:
+                found.append((k, error))
+                break
+    if found:
+        raise min(found, key=lambda each: each[0])[1]
+
+
+def _too_deep(contact: Contact, start: _Start, distance: np.ndarray) -> SceneError | None:
+    """Return what is wrong where a point is too deep; distance: of the points (n,) from the surface, in m."""
+    allowed, why = _allowed(contact, start)
+    k = int(distance.argmin())
+    depth = (contact.radius or 0.0) - distance[k]
+    if not depth > allowed:
+        return None
+    return SceneError(
+        contact.where, f'"{contact.a}" starts {show(float(depth), "m")} below the surface "{contact.b}", at '
+        f"{show(start.drawn[k], 'm')}", f"draw it higher, or the surface lower{why}")

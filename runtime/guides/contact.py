@@ -3,7 +3,8 @@ Contact: a sea bed, a ball, two ropes
 =====================================
 
 There are three kinds of contact. A cable touches a surface along its length. A body strikes a surface by points, which
-do not sink in. A cable crosses another one, or a bar, at one point. Each is compared here with a closed form.
+do not sink in. A cable crosses another one, or a bar, at one point. Each is compared here with a closed form. For many
+pairs give lists, or "all": ``scene.contact(["ball", "rope"], "all")``; those that are far apart cost next to nothing.
 """
 
 # %%
@@ -53,9 +54,9 @@ assert abs(end[1] - RADIUS - y[-1] - WEIGHT * LIFTED**2 / 2 / (MODULUS * pi * RA
 # How deep it sinks in
 # --------------------
 #
-# The bed is a spring, and ``penetration`` is the largest depth. Without a ``stiffness`` the weight sinks in by 1 % of
-# the radius, and a little more where the line bends up. With ten times that stiffness the depth is about a tenth, and
-# a run takes smaller steps. The bed is stiff enough when the results that you need no longer change with it.
+# The bed is a spring, and ``penetration`` the largest depth. Without a ``stiffness`` the weight sinks in by 1 % of the
+# radius, and a little more where the line bends up. With ten times that stiffness the depth is about a tenth, and steps
+# are smaller. The bed is stiff enough when results no longer change with it.
 
 stiff = mooring(stiffness=10 * WEIGHT / (0.01 * RADIUS))
 for state in (smooth, stiff):
@@ -80,10 +81,9 @@ assert abs(-rough["line@0.force"][0] - (PULL - 0.3 * WEIGHT * LYING)) < 0.3 * WE
 # A ball that bounces
 # -------------------
 #
-# ``restitution`` makes the contact of a body hard. An impact is an instant and an event; the speed after it is e times
-# that before. So each bounce is e² as high as the last one, and they end after t (1 + e)/(1 - e), with the time t of
-# the first fall. With a ``stiffness`` and a ``damping`` c the ball sinks in, and an impact takes time. Then
-# v - ln(1 + c v)/c is the same after as before: slow impacts lose less, and the ball bounces for longer.
+# ``restitution`` makes the contact of a body hard. An impact is an event; the speed after it is e times that before. So
+# each bounce is e² as high as the last, and they end after t (1 + e)/(1 - e), with the time t of the first fall. With a
+# ``stiffness`` and a ``damping`` c an impact takes time, and v - ln(1 + c v)/c is the same after as before.
 
 E, DROP, DAMPING = 0.7, 0.5, 0.2027
 scene = fu.Scene(gravity=(0, -G, 0))

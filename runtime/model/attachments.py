@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -13,9 +15,12 @@ from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import largest_moment
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
+from .hulls import Hull, hull_of
 
 UP, CARRIED = -1, -2
 """What completes the frame of a tangent, as engine.h has it: a direction of the ground, or the slide's director."""
+
+T = TypeVar("T")
 
 FRAMES = {2: "planar_frame", 3: "frame"}
 
@@ -53,6 +58,23 @@ class AttachmentBuilder:
         self.scene, self.cables, self.bodies = scene, cables, bodies
         self.cable_index = {name: k for k, name in enumerate(scene.cables)}
         self.body_index = {name: k for k, name in enumerate(scene.bodies)}
+        self.hulls: dict[int, Hull] = {}
+        self._made: dict[Hashable, Any] = {}
+
+    def once(self, key: Hashable, make: Callable[[], T]) -> T:
+        """Return what `make` makes, which is made once for a key: many pairs share their bodies and surfaces."""
+        if key not in self._made:
+            self._made[key] = make()
+        made: T = self._made[key]
+        return made
+
+    def hull(self, index: int) -> Hull:
+        """Return the hull of a cable's elements by the cable's number; the cable knows then how far its points move."""
+        if index not in self.hulls:
+            cable = self.cables[index]
+            self.hulls[index] = hull_of(cable.kernel("on_axis"), cable.mesh.lengths)
+            cable.share = self.hulls[index].share
+        return self.hulls[index]
 
     def element(self, cable: str, s: float) -> tuple[int, float]:
         """Return the element that s is in, and x in it."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import comb
 from typing import Any
 
 import numpy as np
@@ -15,13 +14,12 @@ from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.surface import Surface
 from ..parts.surface_shapes import WIDE
+from ..parts.validation import Vector
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 
 GAUSS = np.polynomial.legendre.leggauss(6)
 """Of an element: points enough for one that touches in part; see tests/benchmarks/contact.py."""
-DEGREES = range(3, 8)
-"""Of the curves that elements are: those between which the points of an element's hull are sought."""
 KERNELS = {2: "planar_surface", 3: "surface"}
 NONE = np.zeros(0)
 
@@ -91,9 +89,10 @@ def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilde
     """Return the model of a contact of the scene."""
     assert part.stiffness is not None and part.radius is not None, f"{part.where} is not complete"
     surface = scene.surfaces[part.b]
+    entries = attachments.once(("surface", part.b), lambda: surface_entries(surface, scene, attachments))
     tangential = part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness
     model = ContactModel(
-        **surface_entries(surface, scene, attachments), type="contact", name=part.name or "",
+        **entries, type="contact", name=part.name or "",
         is_damped=part.damping > 0, stiffness=part.stiffness, damping=part.damping,
         friction=part.friction_coefficient, tangential=tangential, hertz=int(part.exponent == 1.5), cable=-1,
         radius=part.radius, n_points=0)
@@ -101,11 +100,10 @@ def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilde
         drawn = _along_cable(model, attachments.cable_index[part.a], scene, attachments)
     else:
         assert part.points is not None, f"{part.where} is not complete"
-        body = scene.bodies[part.a]
-        model.attachments = [attachments.model(Attachment(on=part.a, at=point)) for point in part.points]
-        model.n_points = len(part.points)
-        model.spread = np.array([np.inf if isinstance(body, ModalBody) else np.linalg.norm(part.points, axis=1).max()])
-        drawn = np.array([body.point(point) for point in part.points])
+        points = part.points
+        model.n_points = len(points)
+        model.attachments, model.spread, drawn = attachments.once(
+            (part.a, points), lambda: _on_body(part.a, points, scene, attachments))
     if part.friction_coefficient:
         on = scene.bodies.get(surface.on or "")
         model.anchors = surface.geometry.into(surface.in_axes(on, drawn))[:, : scene.dim].copy()
@@ -113,18 +111,26 @@ def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilde
     return model
 
 
+def _on_body(name: str, points: tuple[Vector, ...], scene: SceneData,
+             attachments: AttachmentBuilder) -> tuple[list[AttachmentModel], np.ndarray, np.ndarray]:
+    """Return points of a body, (1,) how far they are from its centre at most, and (n, 3) where they are drawn, in m."""
+    body = scene.bodies[name]
+    on = [attachments.model(Attachment(on=name, at=point)) for point in points]
+    assert not isinstance(body, ModalBody), f"{body.where} touches no surfaces"
+    farthest = np.linalg.norm([body.arm(point) for point in points], axis=1).max()
+    return on, np.array([farthest]), np.array([body.point(point) for point in points])
+
+
 def _along_cable(model: ContactModel, index: int, scene: SceneData, attachments: AttachmentBuilder) -> np.ndarray:
     """Add the quadrature on a cable; return (n, 3): where its points are drawn."""
     cable = attachments.cables[index]
-    lengths = cable.mesh.lengths
     x, weights = GAUSS
+    hull = attachments.hull(index)
     model.cable, model.n_points, model.length = index, len(x), cable.mesh.total
     model.N = np.array([[cable.kernel("on_axis")(length, length * (1 + each) / 2)[0] for each in x]
-                        for length in lengths])
-    model.hull = np.array([_hull(cable.kernel("on_axis"), length) for length in lengths])
-    model.n_hull = model.hull.shape[1]
-    model.spread = np.array([_spread(hull) for hull in model.hull])
-    model.weights = np.outer(lengths, weights) / 2
+                        for length in cable.mesh.lengths])
+    model.hull, model.spread, model.n_hull = hull.points, hull.spread, hull.points.shape[1]
+    model.weights = np.outer(cable.mesh.lengths, weights) / 2
     model.stride = 0 if cable.mesh.is_even else model.n_points
     model.arc = _arc_lengths(cable.mesh, x)
     vectors = scene.cables[cable.name].nodal_vectors
@@ -137,24 +143,3 @@ def _arc_lengths(mesh: Mesh, x: np.ndarray) -> np.ndarray:
     """Return (elements points,): arc-lengths of points on all elements, in m."""
     starts = mesh.node_s[:-1, None]
     return (starts + np.diff(mesh.node_s)[:, None] * (1 + x) / 2).ravel()
-
-
-def _spread(hull: np.ndarray) -> np.ndarray:
-    """Return (vectors,): the largest share of each in a hull point; infinite where nodes do not begin with places."""
-    places = hull[:, 0] + hull[:, hull.shape[1] // 2]
-    spread: np.ndarray = np.abs(hull).max(axis=0)
-    return spread if np.abs(places - 1).max() < 1e-12 else np.full_like(spread, np.inf)
-
-
-def _hull(on_axis: Any, length: float) -> np.ndarray:
-    """Return (points, vectors): what makes Bézier points of an element's vectors, between which its axis lies."""
-    for degree in DEGREES:
-        at = np.linspace(0, 1, 2 * degree)
-        order = np.arange(degree + 1)
-        several = np.array([comb(degree, int(k)) for k in order])
-        basis = several * at[:, None] ** order * (1 - at[:, None]) ** (degree - order)
-        values = np.array([on_axis(length, length * t)[0] for t in at])
-        points, *_ = np.linalg.lstsq(basis, values, rcond=None)
-        if np.abs(basis @ points - values).max() < 1e-9:
-            return points
-    raise ValueError(f"the axis of the element is no polynomial of degree {DEGREES[-1]} or less")

@@ -51,6 +51,9 @@ def crossing_model(part: Crossing, scene: SceneData, attachments: AttachmentBuil
     dim, start = scene.dim, start_of(scene, part)
     numbers = (attachments.cable_index[part.a], attachments.cable_index.get(part.b or "", -1))
     of_lines = [attachments.cables[k] for k in numbers if k >= 0]
+    for k in numbers:
+        if k >= 0:
+            attachments.hull(k)
     ends: list[AttachmentModel] = []
     low, high = 0.0, 0.0
     axis = (0.0, 0.0, 0.0)

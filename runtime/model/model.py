@@ -43,7 +43,8 @@ class Kernel(Protocol):
 class CableModel:
     """One cable: constants of its elements and where its coordinates are.
 
-    m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements, constants).
+    m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements, constants). share: (vectors,) of
+    each vector of a node, by how much of it points of the cable move at most; None where nothing asks for it.
     """
 
     name: str
@@ -58,6 +59,7 @@ class CableModel:
     shape: tuple[int, int, int]
     vectors: tuple[str, ...]
     library: str | None
+    share: np.ndarray | None = None
 
     @property
     def n_elements(self) -> int:

@@ -8,12 +8,13 @@ from typing import Annotated, Any, ClassVar
 from pydantic import model_validator
 
 from .friction import AnyFriction
+from .listed import Listed
 from .part import Part
 from .penalty_law import Exponent
 from .plane import across
 from .quantity import Quantity, vector_of_time
 from .schemas import checked, list_schema
-from .validation import Name, Reference, Vector, not_negative, positive, shown, vector3, within
+from .validation import Name, Vector, not_negative, positive, shown, vector3, within
 
 MOST_POINTS = 16
 """Of a body: engine/include/contacts.h."""
@@ -31,7 +32,8 @@ class Contact(Part):
     """Contact of a cable along its length, or of points of a body, with a `Surface`: it presses and never pulls.
 
     By penalty, with ``stiffness``, or hard, with ``restitution``.
-    a: the cable or the body; b: the surface. The depth d by which it is below the surface gives the force
+    a: the cable or the body; b: the surface; or lists of them, or "all" of those in the scene: a contact is added for
+    each pair, and a name given gets a number. The depth d by which it is below the surface gives the force
     ``stiffness d^exponent (1 + damping d')`` a length of a cable, or on each point of a body, with the exponent 1 or
     1.5 (Hertz) and the damping in s/m (Hunt and Crossley). stiffness in N/m a length in m, or in N/m; if not given,
     that which the weight sinks by 1 % of the radius. radius in m: of the cable, that of its section if not given; of
@@ -46,6 +48,7 @@ class Contact(Part):
     kind: ClassVar[str] = "contact"
     group: ClassVar[str] = "contacts"
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
+    takes_lists: ClassVar[bool] = True
     results: ClassVar[dict[str, Quantity]] = {
         "force": vector_of_time("N", "force of the surface on the cable or body"),
         "friction_force": vector_of_time("N", "the part of it that is friction"),
@@ -56,8 +59,8 @@ class Contact(Part):
         "gap": Quantity(("time",), "m", "of a hard contact: least distance of its points from the surface, else NaN"),
     }
     name: Name | None = None
-    a: Reference
-    b: Reference
+    a: Listed
+    b: Listed
     stiffness: Annotated[float, positive("N/m")] | None = None
     exponent: Exponent = 1.0
     damping: Annotated[float, not_negative("s/m")] = 0.0

@@ -9,21 +9,23 @@ from pydantic import model_validator
 
 from .cable import Cable
 from .friction import AnyFriction
+from .listed import Listed
 from .part import Part
 from .penalty_law import Exponent
 from .plane import across
 from .quantity import Quantity, of_time, vector_of_time
 from .section import outer_radius_of
-from .validation import Name, Reference, Vector, direction, not_negative, positive, xyz
+from .validation import Name, Vector, direction, not_negative, positive, xyz
 
 
 class Crossing(Part):
     """Contact of the cable a with a line b that crosses it, at the points where both are closest.
 
-    a: the cable; b: another cable, or the body or (None) the ground that carries a bar. at: of a bar its middle, in m,
-    in the body's axes; axis: its direction in these axes, length: how far it reaches to each side, in m. In a planar
-    scene the bar is square to the plane and has neither. Bar and cables are round: radius: in m, the distance of both
-    axes at which they touch, the sum of the radii of the cables' sections if not given, where a bar has none.
+    a: the cable; b: another cable, or the body or (None) the ground that carries a bar; or lists of them, or "all" for
+    the cables in the scene: a crossing is added for each pair, and a name given gets a number. at: of a bar its middle,
+    in m, in the body's axes; axis: its direction in these axes, length: how far it reaches to each side, in m. In a
+    planar scene the bar is square to the plane and has neither. Bar and cables are round: radius: in m, the distance of
+    both axes at which they touch, the sum of the radii of the cables' sections if not given, where a bar has none.
     stiffness k (N/m, or N/m^1.5) and exponent e of the contact force ``k p^e`` at the penetration p: 1, or 1.5 after
     Hertz; damping in s/m: the force is ``k p^e (1 + damping p')``. friction: a coefficient, or a `Friction`; it acts
     along both lines, and is smooth in the speed of slip. With model "stick" what sticks is kept by a spring of
@@ -36,6 +38,7 @@ class Crossing(Part):
     kind: ClassVar[str] = "crossing"
     group: ClassVar[str] = "crossings"
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
+    takes_lists: ClassVar[bool] = True
     results: ClassVar[dict[str, Quantity]] = {
         "force": vector_of_time("N", "contact force on the cable a"),
         "friction_force": vector_of_time("N", "the part of it that is friction"),
@@ -47,8 +50,8 @@ class Crossing(Part):
         "position": vector_of_time("m", "closest point on the axis of the cable a"),
     }
     name: Name | None = None
-    a: Reference
-    b: Reference | None = None
+    a: Listed
+    b: Listed | None = None
     at: Annotated[Vector | None, xyz("m")] = None
     axis: Annotated[Vector | None, direction()] = None
     length: Annotated[float, positive("m")] | None = None

@@ -93,6 +93,9 @@ class Part(BaseModel, metaclass=_TranslatingType):
     positional: ClassVar[tuple[str, ...]] = ("name",)
     """Keywords that the scene's method for such parts takes without their names, too."""
 
+    takes_lists: ClassVar[bool] = False
+    """Whether it is of two, the positional ones, of which lists may be given where it is added (see `pairs`)."""
+
     results: ClassVar[dict[str, Quantity]] = {}
     """What results tell of such parts, beside the nodal vectors of cables and the modes of bodies."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from copy import copy
 from functools import cache
+from itertools import count, islice
 from typing import Any, Self
 
 from ..errors import SceneError, check_renamed
@@ -39,7 +40,7 @@ class SceneData:
     ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
     else a list. ``messages`` lists what was adjusted; ``run_settings``, ``equilibrium_settings`` and ``relax_settings``
     hold the settings that a scene file gives; ``title`` is what pictures are called, the name of its file without the
-    ending. ``touching`` has the names of contacts by what touches.
+    ending.
     """
 
     cables: dict[str, Cable]
@@ -71,7 +72,7 @@ class SceneData:
             raise SceneError("scene", f"gravity {error}") from None
         for kind in KINDS:
             setattr(self, kind.group, {} if kind.is_named() else [])
-        self.touching: dict[tuple[str, str], str] = {}
+        self._touching: dict[tuple[str, str], str] = {}
         self.messages: list[str] = []
         self.title = ""
         self.run_settings: dict[str, Any] = {}
@@ -82,6 +83,14 @@ class SceneData:
         """Refuse an attribute that there is not; of an older version's, say what it is called now."""
         check_renamed(f"{type(self).__name__!r} object", name, dir(self))
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    @property
+    def touching(self) -> Mapping[tuple[str, str], str]:
+        """Return the names of contacts by what touches, those added since it was asked for the last time included."""
+        known = self._touching
+        added = [*islice(reversed(self.contacts.values()), len(self.contacts) - len(known))]
+        known.update(((part.a, part.b), part.given_name or "") for part in reversed(added))
+        return known
 
     @property
     def dim(self) -> int:
@@ -126,8 +135,6 @@ class SceneData:
     def put(self, part: Part) -> None:
         """Store a part in its group, as it is."""
         group = getattr(self, part.group)
-        if isinstance(part, Contact):
-            self.touching[part.a, part.b] = part.given_name or ""
         if isinstance(group, dict):
             group[part.given_name] = part
         else:
@@ -138,12 +145,19 @@ class SceneData:
 
         Results are addressed by name, so that all but events share one space of names.
         """
+        return next((parts[name] for parts in self._names_beside(group) if name in parts), None)
+
+    def _names_beside(self, group: str) -> list[dict[str, Part]]:
+        """Return the groups that share one space of names with this one."""
         groups = ("events",) if group == "events" else [each for each in _groups() if each != "events"]
-        named = (getattr(self, each) for each in groups)
-        return next((parts[name] for parts in named if isinstance(parts, dict) and name in parts), None)
+        return [parts for each in groups if isinstance(parts := getattr(self, each), dict) and parts]
 
     def add(self, part: Part) -> Part:
         """Add a part; `funicular.Scene` says how."""
+        raise NotImplementedError
+
+    def add_pairs(self, kind: type[Part], entries: Mapping[str, Any]) -> list[Part]:
+        """Add the parts of many pairs, see `pairs`; `funicular.Scene` says how."""
         raise NotImplementedError
 
     def with_parts(self, parts: Iterable[Part], gravity: Any = None) -> Self:
@@ -211,16 +225,27 @@ class SceneData:
 
         Found by doubling and bisection, so that a thousand unnamed parts do not cost a million look-ups.
         """
+        return self.free_names(part, part.kind, 1)[0]
+
+    def free_names(self, part: type[Part], stem: str, n: int) -> list[str]:
+        """Return n free names for parts, the stem with numbers from the least such one on."""
+        groups = self._names_beside(part.group)
+
+        def is_taken(number: int) -> bool:
+            name = f"{stem}_{number}"
+            return any(name in parts for parts in groups)
+
         taken, free = 0, 1
-        while self.part_named(f"{part.kind}_{free}", part.group) is not None:
+        while is_taken(free):
             taken, free = free, 2 * free
         while free - taken > 1:
             middle = (taken + free) // 2
-            if self.part_named(f"{part.kind}_{middle}", part.group) is None:
-                free = middle
-            else:
+            if is_taken(middle):
                 taken = middle
-        return f"{part.kind}_{free}"
+            else:
+                free = middle
+        numbers = (number for number in count(free) if not is_taken(number))
+        return [f"{stem}_{number}" for number in islice(numbers, n)]
 
 
 @cache

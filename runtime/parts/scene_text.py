@@ -10,7 +10,7 @@ import json
 import os
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Protocol, TypeVar
 
 from ..errors import SceneError, SceneFileError, near
@@ -19,6 +19,7 @@ from .end_stops import Stop
 from .event import Event
 from .flow_profile import Profile
 from .kinds import PARTS
+from .pairs import are_lists
 from .part import Part
 from .scene_data import SceneData
 from .scene_lines import line_of
@@ -47,6 +48,9 @@ class Addable(Protocol):
 
     def add(self, part: Part) -> Part:
         """Add a part. Raises SceneError."""
+
+    def add_pairs(self, kind: type[Part], entries: Mapping[str, Any]) -> list[Part]:
+        """Add the parts of many pairs. Raises SceneError."""
 
 
 S = TypeVar("S", bound=Addable)
@@ -122,13 +126,27 @@ class _Reader:
 
     def _add(self, scene: Addable, kind: str, index: int, table: dict) -> None:
         try:
-            part = _part(PARTS[kind], _placed(table, self.directory), index + 1)
-            if not self.refused & set(_words(table)):
-                scene.add(part)
+            self._add_parts(scene, PARTS[kind], _placed(table, self.directory), index + 1)
         except SceneError as error:
             self.note(error, kind, index)
             if isinstance(table.get("name"), str):
                 self.refused.add(table["name"])
+
+
+    def _add_parts(self, scene: Any, kind: type[Part], table: dict, number: int) -> None:
+        """Add what a table describes, unless it refers to what is not in the scene."""
+        refers = not self.refused & set(_words(table))
+        if not are_lists(scene, kind, table):
+            part = _part(kind, table, number)
+            if refers:
+                scene.add(part)
+        elif refers:
+            try:
+                scene.add_pairs(kind, table)
+            except SceneError as error:
+                if error.place != kind.kind:
+                    raise
+                raise _numbered(error, kind, number) from None
 
 
 def _words(value: Any) -> Iterator[str]:
@@ -182,9 +200,14 @@ def _part(part: type[Part], table: dict, index: int) -> Part:
     except SceneError as error:
         if isinstance(table.get("name"), str):
             raise
-        unnamed = [SceneError(f"[[{part.kind}]] {index}", each.cause, each.remedy, each.entry) for each in error.errors]
-        unnamed[0].errors = tuple(unnamed)
-        raise unnamed[0] from None
+        raise _numbered(error, part, index) from None
+
+
+def _numbered(error: SceneError, part: type[Part], index: int) -> SceneError:
+    """Return an error of a table of parts without a name, with the number of the table."""
+    unnamed = [SceneError(f"[[{part.kind}]] {index}", each.cause, each.remedy, each.entry) for each in error.errors]
+    unnamed[0].errors = tuple(unnamed)
+    return unnamed[0]
 
 
 def _settings(name: str, table: Any) -> dict:

@@ -37,7 +37,7 @@ class RowNotes:
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
             "sensitivity": self.sensitivity, "meeting points": MeetingPoints(scene, model),
-            "fast turns": self.turns, "penetrations": Penetrations(scene, model),
+            "fast turns": self.turns, "penetrations": Penetrations(model),
             "folds": Folds(scene, model)}
 
     def see(self, rows: dict[str, np.ndarray]) -> None:

@@ -217,29 +217,50 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
-/* Makes the gap of a point, and its rate. */
+/* Makes the gap of a point, and its rate; where it is and how it moves along the shape's axes, unless that is null. */
 static double gap_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
-                     int number, double *rate)
+                     int number, double *rate, fu_surface_end *end)
 {
     fu_touch_point point;
-    double w[3];
+    double w[3] = {0.0};
     fu_contact_place(model, contact, state, element, number, &point);
     fu_surface_distance(model->dim, &contact->surface, on, point.r, &point.distance);
     fu_surface_past(model->dim, on, point.r, point.v, w);
     *rate = fu_dot(model->dim, point.distance.n, w);
+    if (end) {
+        memcpy(end->y, point.distance.y, sizeof end->y);
+        fu_surface_into(model->dim, on, w, end->rate);
+        end->gap = point.distance.g - contact->radius;
+    }
     return point.distance.g - contact->radius;
 }
 
-/* Returns how far a point that is near may have moved over a step, m. */
-static double reach_of(const fu_model *model, const fu_contact *contact, const fu_state *state, double h)
+/* Returns how far a point that is near may have moved over a step past the surface, m, by the velocities at one end of it. */
+static double reach_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double h)
 {
-    double fastest = 0.0;
+    double fastest = 0.0, farthest = 0.0;
     if (contact->cable < 0) return INFINITY;
     const fu_cable *cable = &model->cables[contact->cable];
     const int n = cable->coordinates + (cable->n_elements - 1) * cable->per_node;
     for (int i = cable->first; i < cable->first + n; i += cable->per_node)
         fastest = fmax(fastest, sqrt(fu_dot(model->dim, state->v + i, state->v + i)));
-    return h * fastest;
+    if (!on->n) return h * fastest;
+    for (int i = cable->first; i < cable->first + n; i += cable->per_node)
+        for (int d = 0; d < model->dim; ++d) farthest = fmax(farthest, fabs(state->q[i + d] - on->p[d]));
+    return h * (fastest + sqrt(fu_dot(model->dim, on->v, on->v)) + 2.0 * farthest * sqrt(fu_dot(model->dim == 3 ? 3 : 1, on->omega, on->omega)));
+}
+
+double fu_contact_pass(const fu_run *run, const fu_contact *contact, double h)
+{
+    const fu_model *model = run->model;
+    fu_attachment_state on, on_next;
+    fu_surface_end ends[2];
+    double rate;
+    fu_surface_at(model, &contact->surface, &run->now, &on);
+    fu_surface_at(model, &contact->surface, &run->next, &on_next);
+    gap_of(model, contact, &on, &run->now, 0, 0, &rate, &ends[0]);
+    gap_of(model, contact, &on_next, &run->next, 0, 0, &rate, &ends[1]);
+    return fu_surface_pass(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
 }
 
 #define RESOLVED 0.25 /* of an impact's time over pi: what steps in it stay below */
@@ -255,7 +276,7 @@ static double step_of_impact(const fu_run *run, const fu_contact *contact, doubl
     fu_surface_at(model, &contact->surface, &run->now, &on);
     for (int k = 0; k < contact->n_points; ++k) {
         double rate;
-        const double depth = -gap_of(model, contact, &on, &run->now, 0, k, &rate);
+        const double depth = -gap_of(model, contact, &on, &run->now, 0, k, &rate, 0);
         if (depth < -h * fabs(rate)) continue;
         fastest = fmax(fastest, fabs(rate));
         deepest_now = fmax(deepest_now, depth);
@@ -277,16 +298,18 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     fu_attachment_state on, on_next;
     (void)which;
     if (run->now.flags[coupling->flags]) return step_of_impact(run, contact, h);
-    const double reach = reach_of(model, contact, &run->next, h);
     fu_surface_at(model, &contact->surface, &run->now, &on);
     fu_surface_at(model, &contact->surface, &run->next, &on_next);
+    const double reach = fmax(reach_of(model, contact, &on, &run->now, h), reach_of(model, contact, &on_next, &run->next, h));
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
         if (!fu_contact_may_touch(model, contact, &on_next, &run->next, e, reach)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             double rate, rate_next;
-            const double gap = gap_of(model, contact, &on, &run->now, e, k, &rate);
-            const double gap_next = gap_of(model, contact, &on_next, &run->next, e, k, &rate_next);
-            const double found = fu_dip((fu_course){gap, rate}, (fu_course){gap_next, rate_next}, 1, h, run->round_off);
+            fu_surface_end ends[2];
+            const double gap = gap_of(model, contact, &on, &run->now, e, k, &rate, &ends[0]);
+            const double gap_next = gap_of(model, contact, &on_next, &run->next, e, k, &rate_next, &ends[1]);
+            double found = fu_dip((fu_course){gap, rate}, (fu_course){gap_next, rate_next}, 1, h, run->round_off);
+            if (found == 0.0) found = fu_surface_pass(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
             if (found > 0.0 && (first == 0.0 || found < first)) first = found;
         }
     }

@@ -16,10 +16,31 @@ const fu_field fu_coupling_fields[] = {
     {0},
 };
 
-void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
+int fu_acts_alone(const fu_coupling_type *type)
+{
+    const fu_coupling_events *events = type->events;
+    const int asked = type->inertia || type->rows || type->external_force || type->external_power || type->react || type->kink ||
+                      type->take_forces || type->gaps || type->rates || type->step_work || type->may_start_open || type->follow ||
+                      type->touch || type->is_possible || (events && (events->path || events->pass || events->take_velocities));
+    return type->clearance && !asked;
+}
+
+/* Puts a coupling into the lists that it is in. */
+static void list_coupling(fu_model *model, const fu_coupling *c)
+{
+    const int alone = fu_acts_alone(c->type);
+    model->n_pairs += c->type->clearance != 0;
+    if (!alone) model->others[model->n_others++] = c;
+    if (c->type->carry && (!alone || c->n_numbers)) model->carrying[model->n_carrying++] = c;
+}
+
+void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model)
 {
     model->couplings = (const fu_coupling *const *)couplings;
     model->n_couplings = n;
+    model->others = lists;
+    model->carrying = lists + n;
+    model->n_others = model->n_carrying = model->n_pairs = 0;
     model->slides = 0;
     model->n_coordinates = model->n_forces = model->n_rows = model->n_outputs = 0;
     model->n_numbers = model->n_flags = model->n_scratch = 0;
@@ -47,53 +68,58 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
         model->n_damped += c->is_damped;
         model->n_passing += fu_can_pass(c);
         model->n_inertial += c->has_inertia;
+        list_coupling(model, c);
     }
 }
 
 void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *own)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    const fu_couplings near = fu_acting(model, at->next);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
         if (c->type->residual) c->type->residual(model, c, at, f, own);
     }
 }
 
 void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *own)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    const fu_couplings near = fu_acting_in_step(model, at);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
         if (c->type->step_residual) c->type->step_residual(model, c, at, f, own);
     }
 }
 
 void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    const fu_couplings near = fu_acting(model, at->next);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
         if (c->type->tangent) c->type->tangent(model, c, at, system);
     }
 }
 
 void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu_system *system)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    const fu_couplings near = fu_acting_in_step(model, at);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
         if (c->type->step_tangent) c->type->step_tangent(model, c, at, system);
     }
 }
 
 void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f)
 {
-    for (int k = 0; k < model->n_couplings && model->n_inertial; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->has_inertia) c->type->inertia(model, c, q, a, f);
     }
 }
 
 void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system)
 {
-    for (int k = 0; k < model->n_couplings && model->n_inertial; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->has_inertia) c->type->mass(model, c, q, scale, system);
     }
 }
@@ -101,8 +127,8 @@ void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu
 double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_couplings && model->n_inertial; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->has_inertia) total += c->type->kinetic_energy(model, c, t, q, v, past_fluid);
     }
     return total;
@@ -110,16 +136,17 @@ double fu_coupling_kinetic_energy(const fu_model *model, double t, const double 
 
 void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    const fu_couplings near = fu_acting(model, state);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
         if (c->type->force) c->type->force(model, c, state, f);
     }
 }
 
 void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->type->external_force) c->type->external_force(model, c, t, q, f);
     }
 }
@@ -127,8 +154,8 @@ void fu_coupling_external_forces(const fu_model *model, double t, const double *
 double fu_coupling_external_power(const fu_model *model, const fu_state *state)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->type->external_power) total += c->type->external_power(model, c, state);
     }
     return total;
@@ -136,9 +163,10 @@ double fu_coupling_external_power(const fu_model *model, const fu_state *state)
 
 double fu_coupling_energy(const fu_model *model, const fu_state *state)
 {
+    const fu_couplings near = fu_acting(model, state);
     double total = 0.0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
         if (c->type->energy) total += c->type->energy(model, c, state);
     }
     return total;
@@ -146,9 +174,10 @@ double fu_coupling_energy(const fu_model *model, const fu_state *state)
 
 double fu_coupling_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
 {
+    const fu_couplings near = fu_acting(model, state);
     double total = 0.0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
         if (c->type->dissipation) total += c->type->dissipation(model, c, state, work);
     }
     return total;
@@ -156,9 +185,11 @@ double fu_coupling_dissipation(const fu_model *model, const fu_state *state, con
 
 double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to)
 {
+    const fu_equations step = {.now = from, .next = to};
+    const fu_couplings near = fu_acting_in_step(model, &step);
     double total = 0.0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
         if (c->type->lost_in_step) total += c->type->lost_in_step(model, c, from, to);
     }
     return total;
@@ -166,8 +197,8 @@ double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_sta
 
 void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state *state)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->type->take_forces) c->type->take_forces(model, c, work, state);
     }
 }
@@ -189,16 +220,16 @@ void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, cons
 
 void fu_gaps(const fu_model *model, const fu_state *state, double *gaps)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->type->gaps) c->type->gaps(model, c, state, gaps + c->force);
     }
 }
 
 void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, double *rates)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->type->rates) c->type->rates(model, c, work, rates + c->coordinate);
     }
 }
@@ -213,16 +244,16 @@ void fu_reset(const fu_model *model, fu_state *state)
 
 void fu_carry(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
-        if (c->type->carry) c->type->carry(model, c, state);
+    for (int k = 0; k < model->n_carrying; ++k) {
+        const fu_coupling *c = model->carrying[k];
+        c->type->carry(model, c, state);
     }
 }
 
 void fu_touch(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->type->touch) c->type->touch(model, c, state);
     }
 }
@@ -230,8 +261,8 @@ void fu_touch(const fu_model *model, fu_state *state)
 /* Finds own coordinates that follow from the others; returns null, or the first coupling of which none were found. */
 const fu_coupling *fu_follow(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->type->follow && c->type->follow(model, c, state)) return c;
     }
     return 0;
@@ -240,8 +271,8 @@ const fu_coupling *fu_follow(const fu_model *model, fu_state *state)
 int fu_may_start_open(const fu_model *model, const fu_state *state)
 {
     int open = 0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->type->may_start_open) open |= c->type->may_start_open(model, c, state);
     }
     return open;
@@ -249,8 +280,8 @@ int fu_may_start_open(const fu_model *model, const fu_state *state)
 
 int fu_is_possible(const fu_model *model, const fu_state *state)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->type->is_possible && !c->type->is_possible(model, c, state)) return 0;
     }
     return 1;
@@ -263,8 +294,8 @@ double fu_row_unit(double inertia, double mass)
 
 void fu_add_own(const fu_model *model, fu_state *state, const double *own, double inertia, double scale)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         const double *of = own + c->unknown;
         for (int i = 0; i < c->n_coordinates; ++i) state->s[c->coordinate + i] += of[i];
         for (int i = 0; i < c->n_forces; ++i)
@@ -274,8 +305,8 @@ void fu_add_own(const fu_model *model, fu_state *state, const double *own, doubl
 
 const fu_coupling *fu_owner(const fu_model *model, int unknown)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->unknown <= unknown && unknown < c->unknown + c->n_coordinates + c->n_forces) return c;
     }
     return 0;

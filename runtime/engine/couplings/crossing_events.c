@@ -58,12 +58,16 @@ static int watches(const fu_coupling *coupling, fu_watch *out)
     return 1;
 }
 
-/* The value is negative while contact stays as it is. */
+/* The value is negative while contact stays as it is. In motion lines that are apart from end to end do not touch: they may become
+ * parallel, or pass round each other's ends. */
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const double margin = fu_crossing_margin(run->model, crossing_of(coupling), state);
     (void)which;
-    return run->now.flags[coupling->flags] ? -margin : margin;
+    if (run->now.flags[coupling->flags]) return -margin;
+    if (margin < 0.0) return margin;
+    const double gap = fu_crossing_clearance(run->model, coupling, state).gap;
+    return gap > 0.0 ? -gap : margin;
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)

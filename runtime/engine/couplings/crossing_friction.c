@@ -6,14 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
-{
-    const double size = stiffness * sqrt(fu_dot(dim, stretch, stretch));
-    if (!(size > most)) return 0;
-    for (int d = 0; d < dim; ++d) stretch[d] *= most / size;
-    return 1;
-}
-
 /* What a state keeps of the last step: the closest points, the way between them, the stretch along and across the last line; not zero
  * where it has slid, as then the stretch is just what friction allows. */
 typedef struct {

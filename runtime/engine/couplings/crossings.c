@@ -298,6 +298,6 @@ static const fu_field fields[] = {
 
 const fu_coupling_type fu_crossing_type = {
     .name = "crossing", .size = sizeof(fu_crossing), .fields = fields, .n_outputs = 14, .n_numbers = FU_CROSSING_NUMBERS,
-    .n_flags = 1, .events = &fu_crossing_events, .residual = residual, .tangent = tangent, .force = own_force,
+    .n_flags = 1, .clearance = fu_crossing_clearance, .between = fu_crossing_between, .events = &fu_crossing_events, .residual = residual, .tangent = tangent, .force = own_force,
     .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step,
     .carry = carry, .reset = reset, .touch = touch};

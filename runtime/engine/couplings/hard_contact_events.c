@@ -62,7 +62,9 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     if (which == OF_FRICTION || fu_hard_flags_of(coupling, &run->now)->mode != FU_APART) return 0.0;
     fu_hard_row_at(run->model, contact_of(coupling), &run->now, &from);
     fu_hard_row_at(run->model, contact_of(coupling), &run->next, &to);
-    return fu_dip((fu_course){from.g, from.rate}, (fu_course){to.g, to.rate}, 1, h, run->round_off);
+    const double found = fu_dip((fu_course){from.g, from.rate}, (fu_course){to.g, to.rate}, 1, h, run->round_off);
+    if (found > 0.0 || !(from.g > run->round_off && to.g > run->round_off)) return found;
+    return fu_contact_pass(run, &contact_of(coupling)->contact, h);
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)

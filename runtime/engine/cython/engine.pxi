@@ -48,6 +48,7 @@ cdef extern from "engine.h" nogil:
         const fu_law_kernels *law
         const fu_law_blocks *blocks
         int n_elements, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state, gives_way
+        const double *share
         double length, tau, mass_damping
         const double *lengths
         const double *nodes
@@ -338,7 +339,9 @@ cdef extern from "engine.h" nogil:
     void fu_matrix_of_weights(fu_run *run, fu_weights weights)
     void fu_spread(const fu_model *model, const double *x, double *dofs)
     void fu_prescribe(const fu_model *model, fu_state *state)
-    void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
+    void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model)
+    size_t fu_proximity_size(const fu_model *model, int n_watches)
+    void fu_proximity_place(fu_model *model, int n_watches, void *memory)
     int fu_coupling_watches(const fu_model *model, fu_watch *out)
     double fu_elastic_energy(const fu_model *model, const fu_state *state)
     void fu_reset(const fu_model *model, fu_state *state)

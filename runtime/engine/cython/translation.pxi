@@ -77,6 +77,7 @@ cdef class Translation(Arrays):
             c.n_elements, c.first, c.length = mesh.n_elements, cable.first, mesh.mean
             c.lengths, c.l_stride = self._doubles(mesh.lengths), 0 if mesh.is_even else 1
             c.nodes = NULL if mesh.is_even else self._doubles(mesh.node_s)
+            c.share = NULL if cable.share is None else self._doubles(cable.share)
             c.gives_way = cable.law.endswith("tension_only")
             c.tau, c.mass_damping = cable.tau, cable.mass_damping
             c.per_node = c.kernel.vectors * c.kernel.dim
@@ -183,7 +184,7 @@ cdef class Translation(Arrays):
                 raise ValueError(f"{given.type} {given.name!r}: more {coupling.type.excess(coupling).decode()} than the "
                                  "engine has room for")
             at += coupling.type.size
-        fu_number_couplings(self.couplings, n, &self.model)
+        fu_number_couplings(self.couplings, n, <const fu_coupling **>self._memory(2.0 * n * sizeof(fu_coupling *)), &self.model)
 
     cdef str _kind(self, const fu_coupling *coupling):
         """Return the name of a coupling's type, such as "load", "slide", "joint" or "point_force"."""

@@ -22,6 +22,7 @@ typedef struct {
     int m_stride;     /* from one element's mass matrix to the next's: zero where they are equal */
     const double *A;  /* constants of the law, of the first element */
     int A_stride;     /* from one element's to the next's: zero where they are equal */
+    const double *share; /* of each vector of a node: what it moves points of its elements by at most; null where that is not known */
     int gives_way;    /* not zero where its law gives way in compression */
     int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;

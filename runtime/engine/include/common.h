@@ -32,6 +32,7 @@ typedef struct {
 typedef struct fu_model fu_model;
 typedef struct fu_state fu_state;
 typedef struct fu_run fu_run;
+typedef struct fu_proximity fu_proximity;
 
 /* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
 typedef struct {

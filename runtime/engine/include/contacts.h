@@ -93,4 +93,11 @@ void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, co
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state);
 void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
+/* Returns when the first point is below the surface in a step of h at both ends of which it is off it, s, else 0. */
+double fu_contact_pass(const fu_run *run, const fu_contact *contact, double h);
+
+/* couplings/clearances.c */
+fu_clearance fu_contact_clearance(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+void fu_contact_between(const fu_model *model, const fu_coupling *coupling, int between[2]);
+
 #endif

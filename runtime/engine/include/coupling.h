@@ -49,6 +49,12 @@ typedef struct {
     fu_weights weights;
 } fu_equations;
 
+/* How far what a coupling acts between is from acting, m, at least; what turns of the second of it are to be multiplied by to be ways of
+ * the first, m; how far points of the first are from its origin, if it is a body, m. */
+typedef struct {
+    double gap, lever, radius;
+} fu_clearance;
+
 /* What a coupling can do. A null operation: it does nothing of that.
  * f: generalised forces on the dofs, as they stand on the left of the equations of motion; own: minus the scaled residual of the
  * unknowns beyond the dofs.
@@ -72,6 +78,12 @@ struct fu_coupling_type {
     void (*mass)(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
     double (*kinetic_energy)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
                              int past_fluid);
+
+    /* Where nothing comes of a coupling while what it acts between is apart: its clearance at a state, and what it is between: the
+     * number of a cable, n_cables and that of a body, -1 for the ground. Ways of these, and turns of the second by the lever, are
+     * the most that the gap can shrink by. While it is not used up, operations may be passed over (couplings/proximity.c). */
+    fu_clearance (*clearance)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    void (*between)(const fu_model *model, const fu_coupling *coupling, int between[2]);
 
     /* What of a coupling as the model gives it is more than the engine has room for, in words; null where nothing is. */
     const char *(*excess)(const fu_coupling *coupling);

@@ -6,8 +6,20 @@
 #include "coupling.h"
 #include "model.h"
 
-/* Number the couplings of model->couplings: `index` and `unknown` and the like are given, offsets follow; sums go to model. */
-void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model);
+/* Number the couplings of model->couplings: `index` and `unknown` and the like are given, offsets follow; sums go to model; `lists` has
+ * room for 2 n. */
+void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model);
+/* Whether couplings of a type do nothing but act, by themselves, while what they are between is near: nothing else asks for them. */
+int fu_acts_alone(const fu_coupling_type *type);
+
+/* Couplings over which to loop. */
+typedef struct {
+    const fu_coupling *const *list;
+    int n;
+} fu_couplings;
+/* Those that may act at a state, or over a step (couplings/proximity.c). */
+fu_couplings fu_acting(const fu_model *model, const fu_state *state);
+fu_couplings fu_acting_in_step(const fu_model *model, const fu_equations *at);
 
 /* The type of this name, null where there is none. */
 const fu_coupling_type *fu_coupling_type_of(const char *name);

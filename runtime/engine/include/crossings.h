@@ -82,8 +82,7 @@ void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int li
  * the closest, though the lines may touch. */
 double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state);
 
-/* crossing_friction.c. Limits a stretch to what friction allows, in N; returns whether that slides. */
-int fu_limit_stretch(int dim, double stiffness, double most, double *stretch);
+/* crossing_friction.c */
 void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
                          fu_crossing_grip *out);
 void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
@@ -99,5 +98,9 @@ void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state);
 /* crossings.c; the second: whether the normal has swung round since the last state, as where the lines have been parallel. */
 void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out);
 int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const fu_crossing_contact *contact);
+
+/* clearances.c */
+fu_clearance fu_crossing_clearance(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+void fu_crossing_between(const fu_model *model, const fu_coupling *coupling, int between[2]);
 
 #endif

@@ -35,6 +35,7 @@ double fu_locate(fu_run *run, fu_event event, double h);
 int fu_has_lost_a_watch(fu_run *run);
 void fu_watch_now(fu_run *run, fu_event event, double h);
 void fu_watch_anew(fu_run *run, int coupling);
+void fu_watch_far(fu_run *run);
 
 /* run/dips.c: what is watched, and its rate; when it is farthest beyond zero in a step of h, s after the start, where it leaves the
  * side (1 or -1) on which it is at both ends; 0 where it is not predicted to, or not by more than `least`. */

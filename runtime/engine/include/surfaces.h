@@ -46,6 +46,14 @@ void fu_surface_motion(int dim, const fu_attachment_state *at, const double *r, 
 void fu_surface_out(int dim, const fu_attachment_state *at, const double *own, double *out);
 void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *own);
 
+/* A point at an end of a step, along the shape's axes: its place, m, its velocity past the surface, m/s, how far it is off it, m. */
+typedef struct {
+    double y[3], rate[3], gap;
+} fu_surface_end;
+/* Returns when a point that is off the surface at both ends of a step of h is below it by more than `least`, as its way is predicted to
+ * be, s after the first; 0 where it is not: couplings/surface_passes.c. */
+double fu_surface_pass(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, double least);
+
 /* Fields of a structure's member `surface` (include/fields.h), which has the words of its shapes in fu_surface_shapes. */
 extern const char *const fu_surface_shapes[], *const fu_surface_role[];
 #define FU_SURFACE_FIELD(structure, member, kind, words) \

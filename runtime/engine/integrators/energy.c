@@ -196,8 +196,9 @@ static void account(fu_run *run, double h)
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof; /* gyroscopic moments do no work */
     for (int i = 0; i < n_flexible; ++i) run->dissipated += m.force[i] * run->psi[i];
     run->dissipated += fu_algorithmic_account(run, m.q);
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    const fu_couplings near = fu_acting_in_step(model, &at);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
         if (c->type->step_dissipation) run->dissipated += c->type->step_dissipation(model, c, &at);
         if (c->type->step_work) run->external += c->type->step_work(model, c, &at);
     }

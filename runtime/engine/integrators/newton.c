@@ -81,8 +81,8 @@ static int blame(fu_run *run)
     const double *own = fu_own(run);
     double largest = fu_size(model, run->work);
     int coupling = -1;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         for (int i = 0; c->n_coordinates && i < c->n_coordinates + c->n_forces; ++i) {
             const double size = fabs(own[c->unknown + i]);
             if (!(size > largest)) continue;
@@ -108,8 +108,8 @@ static double largest_gap(fu_run *run)
     const fu_model *model = run->model;
     const double *own = fu_own(run);
     double gap = 0.0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         for (int i = 0; i < c->n_forces; ++i)
             gap = fmax(gap, fabs(own[c->unknown + c->n_coordinates + i]) / c->scale[i]);
     }

@@ -24,8 +24,8 @@ static double kink(fu_run *run, fu_radau_workspace *w, double h)
     if (fu_accelerations(model, &run->now, &run->accelerator, run->work, 0)) return INFINITY;
     fu_radau_keep_multipliers(run, w, 0);
     ++run->statistics.evaluations;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *coupling = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *coupling = model->others[k];
         if (!coupling->type->kink) continue;
         worst = fmax(worst, coupling->type->kink(model, coupling, &run->next, STAGES + 1, weight, w->multipliers, h * left));
     }

@@ -114,8 +114,8 @@ void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
     fu_gather(model, run->psi, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
     keep_rows(run, unknowns);
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         const int first = c->unknown + c->n_coordinates;
         for (int i = first; i < first + c->n_forces && c->row >= 0; ++i)
             run->rhs[beyond + i] = fu_radau_space(run)->kept[model->n_border_dof + i];

@@ -12,8 +12,8 @@
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     ++work->evaluated;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->row < 0) continue;
         fu_rows *rows = &work->rows[c->row];
         rows->first = c->multiplier;
@@ -121,8 +121,8 @@ static double minus_H(const fu_rows *rows, int c, const double *x)
 static double react(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
     double largest = 0.0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (!c->type->react) continue;
         const double size = c->type->react(model, c, state, lambda, work);
         if (size == 0.0 || size <= largest) continue;
@@ -134,8 +134,8 @@ static double react(const fu_model *model, const fu_state *state, fu_accelerator
 
 static void reacted(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->type->reacted) c->type->reacted(model, c, state, lambda, work);
     }
 }

@@ -47,8 +47,8 @@ double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_s
 /* Returns whether steps must end where a coupling passes a boundary, whatever the integrator. */
 int fu_stop_at_boundaries(const fu_model *model)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         const fu_coupling_events *events = c->type->events;
         if (events && events->stops_at_boundaries && events->stops_at_boundaries(model, c)) return 1;
     }
@@ -61,8 +61,8 @@ void fu_choose_pieces(fu_run *run)
 {
     const fu_model *model = run->model;
     if (run->keep_pieces) return;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         const fu_path path = fu_path_of(model, c, &run->next);
         int side, *piece = &run->next.piece[c->coordinate];
         if (!path.n || !(fu_outside(model, c, &run->next, &side) > fu_boundary_tolerance(path))) continue;
@@ -76,8 +76,8 @@ void fu_choose_pieces(fu_run *run)
 /* Puts the couplings of a state on the pieces that hold their coordinates, but those that are on one of these, at its ends too. */
 void fu_find_pieces(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         const fu_path path = fu_path_of(model, c, state);
         const double s = path.n ? coordinate_of(c, state) : 0.0;
         int *piece = &state->piece[c->coordinate];
@@ -106,8 +106,8 @@ void fu_keep_pieces(fu_run *run)
 double fu_time_to_boundary(const fu_run *run)
 {
     double least = INFINITY;
-    for (int k = 0; k < run->model->n_couplings; ++k) {
-        const fu_coupling *c = run->model->couplings[k];
+    for (int k = 0; k < run->model->n_others; ++k) {
+        const fu_coupling *c = run->model->others[k];
         const fu_path path = fu_path_of(run->model, c, &run->now);
         if (!path.n) continue;
         const double rate = c->type->events->rate(run->model, c, &run->now);
@@ -136,8 +136,8 @@ static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path
 /* Returns how long after `now` the first coupling that turns so does, s; 0 where none does. */
 double fu_time_of_turn(const fu_run *run, double h)
 {
-    for (int k = 0; k < run->model->n_couplings; ++k) {
-        const fu_coupling *c = run->model->couplings[k];
+    for (int k = 0; k < run->model->n_others; ++k) {
+        const fu_coupling *c = run->model->others[k];
         const fu_path path = fu_path_of(run->model, c, &run->now);
         const double part = path.n ? part_to_turn(run, c, path, h) : 0.0;
         if (part > 0.0) return part * h;
@@ -158,8 +158,8 @@ int fu_stands_on_boundary(const fu_run *run, fu_event event)
 /* Returns whether no coupling is farther from its piece than this part of a piece. */
 int fu_are_on_pieces(const fu_model *model, const fu_state *state, double aside)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         const fu_path path = fu_path_of(model, c, state);
         if (!path.n) continue;
         const double x = coordinate_of(c, state) - fu_boundary(path, piece_of(c, state));

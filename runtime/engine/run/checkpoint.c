@@ -59,13 +59,14 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, (char *)run + numbers, sizeof *run - numbers);
 }
 
-/* Drops what a checkpoint does not hold. Done at each pause whether a checkpoint is taken or not, so that results do
+/* Drops what a checkpoint does not hold, and takes the values of all watches, as it does not hold which are passed over. Done at each pause whether a checkpoint is taken or not, so that results do
  * not depend on it. */
 void fu_pause(fu_run *run)
 {
     run->factored = 0;
     run->h_factored = 0.0;
     if (run->integrator->forget) run->integrator->forget(run);
+    fu_watch_far(run);
 }
 
 /* Copies what the steps to come depend on to `bytes`, unless it is null; returns the number of bytes. */
@@ -154,6 +155,7 @@ int fu_restore(fu_run *run, const char *bytes, int rows)
     copier c = {(char *)bytes, 0, RESTORE};
     copy_all(&c, run);
     run->record.first = run->record.n;
+    if (run->model->proximity) run->model->proximity->is_known = 0;
     return !(is_paused(run, rows) && fu_is_possible(run->model, &run->now) && fu_is_possible(run->model, &run->next) &&
              finite_state(run->model, &run->now) && fu_are_on_pieces(run->model, &run->now, ASIDE) &&
              possible_counts(run) && possible_indices(run) && possible_numbers(run));

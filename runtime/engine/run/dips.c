@@ -53,8 +53,8 @@ static fu_course course_of(const fu_model *model, const fu_watch *watch, const f
     if (watch->kind == FU_WATCH_Q)
         return (fu_course){state->q[watch->index] - watch->value, rate_of_q(model, state, watch->index)};
     if (watch->kind == FU_WATCH_V) return (fu_course){state->v[watch->index] - watch->value, state->acceleration[watch->index]};
-    for (int k = 0; k < model->n_couplings && watch->kind == FU_WATCH_S; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others && watch->kind == FU_WATCH_S; ++k) {
+        const fu_coupling *c = model->others[k];
         if (c->n_coordinates && c->coordinate == watch->index)
             return (fu_course){state->s[watch->index] - watch->value, c->type->events->rate(model, c, state)};
     }
@@ -89,8 +89,9 @@ static double dip_of(const fu_run *run, int k, double h)
 double fu_time_of_dip(const fu_run *run, double h)
 {
     double first = 0.0;
-    for (int k = 0; k < run->n_watches; ++k) {
-        const double dip = dip_of(run, k, h);
+    const fu_watch_list near = fu_near_watches_within(run, h);
+    for (int i = 0; i < near.n; ++i) {
+        const double dip = dip_of(run, fu_watch_of(near, i), h);
         if (dip > 0.0 && (first == 0.0 || dip < first)) first = dip;
     }
     return first;

@@ -84,21 +84,26 @@ static fu_event passes(const fu_run *run, int k, double after)
 fu_event fu_find_event(fu_run *run, fu_event but)
 {
     fu_event found = fu_no_event;
+    const fu_watch_list near = fu_near_watches(run, &run->next);
     double worst = 0.0;
-    for (int k = 0; k < run->model->n_couplings; ++k) {
-        const fu_coupling *c = run->model->couplings[k];
+    for (int k = 0; k < run->model->n_others; ++k) {
+        const fu_coupling *c = run->model->others[k];
         const fu_path path = fu_path_of(run->model, c, &run->next);
         int side;
         if (!path.n) continue;
         const double d = fu_outside(run->model, c, &run->next, &side) - fu_boundary_tolerance(path);
-        if (d > worst && (but.kind != FU_CROSSING || but.which != k)) {
+        if (d > worst && (but.kind != FU_CROSSING || but.which != c->number)) {
             worst = d;
-            found = (fu_event){FU_CROSSING, k, side, 0};
+            found = (fu_event){FU_CROSSING, c->number, side, 0};
         }
     }
     run->watch_solution = FU_SOLVE_ONCE;
-    for (int k = 0; k < run->n_watches && !found.kind; ++k)
-        if (but.kind != FU_WATCHED || but.which != k) found = passes(run, k, watched(run, &run->next, k));
+    for (int i = 0; i < near.n && !found.kind; ++i) {
+        const int k = fu_watch_of(near, i);
+        if (but.kind == FU_WATCHED && but.which == k) continue;
+        found = passes(run, k, watched(run, &run->next, k));
+        if (found.kind && fu_is_far_watch(run, k)) run->watched[k] = watched(run, &run->now, k); /* which was passed over */
+    }
     run->watch_solution = FU_SOLVE_ANEW;
     return found;
 }
@@ -254,8 +259,10 @@ double fu_locate(fu_run *run, fu_event event, double h)
 void fu_watch_now(fu_run *run, fu_event event, double h)
 {
     const int moved = h > FU_AT_ONCE * run->duration;
+    const fu_watch_list near = fu_near_watches(run, &run->now);
     run->watch_solution = FU_SOLVE_ONCE;
-    for (int k = 0; k < run->n_watches; ++k) {
+    for (int i = 0; i < near.n; ++i) {
+        const int k = fu_watch_of(near, i);
         const int expected = event.kind == FU_WATCHED && event.which == k;
         const double value = expected ? 0.0 : watched(run, &run->now, k);
         const fu_event late = passes(run, k, value);
@@ -266,10 +273,19 @@ void fu_watch_now(fu_run *run, fu_event event, double h)
     run->watch_solution = FU_SOLVE_ANEW;
 }
 
+/* Takes the values at `now` of what is far (couplings/proximity.c), which are not kept up. */
+void fu_watch_far(fu_run *run)
+{
+    for (int k = 0; k < run->n_watches; ++k)
+        if (fu_is_far_watch(run, k)) run->watched[k] = watched(run, &run->now, k);
+}
+
 /* Returns whether a coupling's watch is not a number: then it can go on no more, and the cause is noted. */
 int fu_has_lost_a_watch(fu_run *run)
 {
-    for (int k = 0; k < run->n_watches; ++k) {
+    const fu_watch_list near = fu_near_watches(run, &run->now);
+    for (int i = 0; i < near.n; ++i) {
+        const int k = fu_watch_of(near, i);
         const fu_coupling *c = fu_own_coupling(run, k);
         if (c && isnan(run->watched[k])) return fu_fail(run, FU_NOT_KNOWN, run->now.v, c->number);
     }
@@ -280,8 +296,10 @@ int fu_has_lost_a_watch(fu_run *run)
  * value of one of them zero. */
 void fu_watch_anew(fu_run *run, int coupling)
 {
+    const fu_watch_list near = fu_near_watches(run, &run->now);
     run->watch_solution = FU_SOLVE_ONCE;
-    for (int k = 0; k < run->n_watches; ++k) {
+    for (int i = 0; i < near.n; ++i) {
+        const int k = fu_watch_of(near, i);
         const fu_coupling *c = fu_own_coupling(run, k);
         if (!c) continue;
         if (c->number == coupling) run->late[k] = 0;

@@ -37,8 +37,8 @@ int fu_choose_passages(fu_run *run, int first)
     const fu_model *model = run->model;
     int changed = 0;
     if (run->keep_forces) return 0;
-    for (int k = 0; k < model->n_couplings && model->n_passing; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others && model->n_passing; ++k) {
+        const fu_coupling *c = model->others[k];
         changed |= fu_can_pass(c) && c->type->events->pass(model, c, &run->now, &run->next);
     }
     const int count = model->n_passing ? fu_count_passages(run) : 0;
@@ -56,7 +56,7 @@ int fu_strayed(const fu_run *run)
 int fu_count_passages(const fu_run *run)
 {
     int count = 0;
-    for (int k = 0; k < run->model->n_couplings && run->model->n_passing; ++k) count += has_passed(run, run->model->couplings[k]);
+    for (int k = 0; k < run->model->n_others && run->model->n_passing; ++k) count += has_passed(run, run->model->others[k]);
     return count;
 }
 
@@ -64,8 +64,8 @@ int fu_count_passages(const fu_run *run)
 void fu_undo_passages(fu_run *run)
 {
     run->keep_forces = 1;
-    for (int k = 0; k < run->model->n_couplings && run->model->n_passing; ++k) {
-        const fu_coupling *c = run->model->couplings[k];
+    for (int k = 0; k < run->model->n_others && run->model->n_passing; ++k) {
+        const fu_coupling *c = run->model->others[k];
         if (!has_passed(run, c)) continue;
         memcpy(run->next.flags + c->flags, run->now.flags + c->flags, sizeof(int) * (size_t)c->type->n_flags);
         run->factored = 0;
@@ -128,8 +128,8 @@ double fu_passage_error(fu_run *run, double h)
     const fu_model *model = run->model;
     if (!run->integrator->quadrature || !fu_count_passages(run)) return 0.0;
     memset(run->before, 0, sizeof(double) * (size_t)model->n_dof);
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
         const char *unused;
         if (!has_passed(run, c)) continue;
         const double x = c->type->events->passed(model, c, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);

@@ -48,6 +48,7 @@ int fu_start(fu_run *run)
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     run->ceiling = run->duration;
+    if (model->proximity) model->proximity->is_known = 0;
     if (fu_prepare(run)) return FU_SINGULAR;
     if (fu_may_start_open(model, now) && fu_close(run)) return FU_SINGULAR;
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
@@ -75,5 +76,6 @@ int fu_start(fu_run *run)
     }
     fu_watch_now(run, fu_no_event, INFINITY);
     fu_watch_anew(run, -1);
+    fu_look_around(run, 0.0, 1);
     return FU_RUNNING;
 }

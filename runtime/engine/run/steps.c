@@ -26,6 +26,7 @@ static void accept(fu_run *run, double h, fu_event event)
     run->now = run->next;
     run->next = state;
     fu_carry(model, &run->now);
+    fu_look_around(run, h, 0);
     const double moved = fu_largest_motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
     run->controlled_motion = run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
