@@ -14,8 +14,8 @@ typedef struct {
     double products[FU_BENDS + 1][FU_BENDS + 1], sums[FU_BENDS + 1][FU_BENDS + 1], factors[FU_BENDS];
 } fu_known_steps;
 
-/* Arrays in the work space of an integrator; each holds n values: accelerations, couplings' forces, and what the slopes of couplings'
- * own coordinates change by in a step. */
+/* Arrays in the work space of an integrator; each holds n values: accelerations, couplings' forces, and what the slopes of
+ * couplings' own coordinates change by in a step. */
 typedef struct {
     int n;
     double *last, *before;          /* of the last step and of the one before */

@@ -158,8 +158,8 @@ static residual_size size_of_residual(fu_run *run)
     return size;
 }
 
-/* Returns whether going on with a matrix of an earlier step takes so many iterations that a new one is worth its cost in the middle of
- * a step: a first increment of this size has made the residual what it is of the one before. */
+/* Returns whether going on with a matrix of an earlier step takes so many iterations that a new one is worth its cost in the
+ * middle of a step: a first increment of this size has made the residual what it is of the one before. */
 static int is_outdated(const fu_run *run, double size, residual_size before, residual_size after)
 {
     const double enough = fmax(run->newton_tolerance, run->round_off);
