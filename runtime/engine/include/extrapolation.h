@@ -6,10 +6,10 @@
 #include "linear_prediction.h"
 
 /* Of the last steps: sizes of the last one and of the one before, s; how many are known; the degree of the polynomial that would
- * have predicted the last one best, -1: none; whether linear prediction would have been better. Whole numbers are real ones
- * here, as work spaces have. */
+ * have predicted the last one best, -1: none; whether linear prediction would have been better, and for how many steps, in vain,
+ * it would not. Whole numbers are real ones here, as work spaces have. */
 typedef struct {
-    double h, h_before, steps, degree, is_linear;
+    double h, h_before, steps, degree, is_linear, vain;
 } fu_last_steps;
 
 /* What an integrator keeps of the last steps, in its work space. */

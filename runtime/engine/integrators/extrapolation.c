@@ -2,7 +2,7 @@
  * through the last steps predicts, and of vibrations that it does not, which no polynomial predicts. So the next step is predicted
  * by the polynomial, of degree 0 to 2, that would have predicted the last one best; or, where velocities alone would have
  * been better, by `rest` times the last acceleration, with which the integrator goes on with its velocities. Linear prediction
- * from steps of one size (linear_prediction.c) predicts a few such vibrations, too, and takes its place where it would have.
+ * (linear_prediction.c) predicts a few such vibrations, too, and takes its place where steps are fixed and it would have.
  *
  * A prediction goes over unknowns alone: dofs that are tied to them follow, those that are prescribed have `rest` times the
  * last. Newton's method does not mend what a prediction has besides, and rounding in that, continued by polynomials, would
@@ -17,7 +17,9 @@
 #include <math.h>
 #include <string.h>
 
-#define USEFUL 4.0 /* times smaller a sum of squares that linear prediction is worth while for: less saves no iteration */
+#define USEFUL 4.0    /* times smaller a sum of squares that linear prediction is worth while for: less saves no iteration */
+#define PATIENCE 30.0 /* steps one after the other for which it was not, before it is left out */
+#define PAUSE 500.0   /* steps for which it is left out: what else it would cost a run that has no use for it */
 
 enum { BY_VELOCITIES = -1, MOST_DEGREE = 2, SUMS = 4 };
 
@@ -124,6 +126,23 @@ static double miss(const fu_extrapolation *past, const fu_run *run, factors f)
     return sum[0] + sum[1] + (sum[2] + sum[3]);
 }
 
+/* Takes the step just made for linear prediction, where steps are fixed; returns whether that is worth while, where polynomials
+ * were off by `least`. After some steps in which it was not, it is left out for a while. */
+static int try_linear(const fu_extrapolation *past, const fu_run *run, double least, double h)
+{
+    double *vain = &past->last->vain;
+    if (run->fixed_step <= 0.0) return 0;
+    if (*vain >= PATIENCE) {
+        *vain = *vain < PATIENCE + PAUSE ? *vain + 1.0 : 0.0;
+        if (*vain == 0.0) fu_linear_prediction_start(&past->linear, run->model);
+        return 0;
+    }
+    fu_linear_prediction_accept(&past->linear, run, past->slope, h);
+    const int is_useful = USEFUL * past->linear.known->missed < least;
+    *vain = is_useful ? 0.0 : *vain + 1.0;
+    return is_useful;
+}
+
 /* Takes the step just made from `now` to `next`, and chooses how the one to come is predicted. */
 void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, double rest, double h)
 {
@@ -139,12 +158,12 @@ void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, do
         least = sum;
         best = degree;
     }
-    fu_linear_prediction_accept(&past->linear, run, past->slope, h);
+    const int is_linear = try_linear(past, run, least, h);
     memcpy(past->earlier, past->before, dofs);
     memcpy(past->before, run->now.a, dofs);
     memcpy(past->force_earlier, past->force_before, forces);
     memcpy(past->force_before, run->now.forces, forces);
     memcpy(past->slope_before, past->slope, coordinates);
     memcpy(past->slope, run->s_slope, coordinates);
-    *last = (fu_last_steps){h, last->h, last->steps + 1, best, USEFUL * past->linear.known->missed < least};
+    *last = (fu_last_steps){h, last->h, last->steps + 1, best, is_linear, last->vain};
 }
