@@ -26,7 +26,8 @@ def strung(element, axes, joined=False):
     scene.cable("wire", start=at(0, 0), end=at(4, 0.3), elements=8, rest_length=4.1, **given)
     scene.motion("wire", s=0, displacement=at(0.05, 0.02))
     if element.endswith("p"):
-        scene.motion("wire", s=4.1, displacement=[fu.Harmonic(amplitude=0.1, frequency=1.0) if k else 0 for k in at(1, 0)])
+        wave = fu.Harmonic(amplitude=0.1, frequency=1.0)
+        scene.motion("wire", s=4.1, displacement=[wave if k else 0 for k in at(1, 0)])
     else:
         scene.motion("wire", s=4.1, displacement=at(0.0, 0.03), rotation=(axes[:, 2], 0.1))
     scene.spring(at(1, 1), ("wire", 4.1 / 4), name="up", stiffness=300.0, length=0.8)

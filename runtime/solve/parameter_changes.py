@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import singledispatchmethod
+from typing import Any, cast
 
 import numpy as np
 from scipy.sparse import csc_array, csr_array
@@ -27,14 +28,15 @@ from ..model.model import Model
 from ..model.numbering import as_drawn
 from ..parts.cable import Cable
 from ..parts.laid import turned
-from ..parts.load import Load
+from ..parts.load import DistributedForce, Force, Moment
 from ..parts.part import Part
 from ..parts.paths import COMPONENTS, Path
 from ..parts.plane import aligned
 from ..parts.rigid_body import RigidBody
-from ..parts.scene_data import SceneData
 from ..parts.support import Motion
 from .static_problem import StaticProblem
+
+AnyLoad = Force | DistributedForce | Moment
 
 
 @dataclass
@@ -60,10 +62,10 @@ class Changes:
         self.problem, self.scene, self.model, self.of_sections = problem, problem.scene, problem.model, of_sections
         self.found: dict[int, Change] = {}
         parts = list(self.scene.as_drawn.parts())
-        loads: dict[int, Load] = {}
+        loads: dict[int, AnyLoad] = {}
         for k, path in paths.items():
             part = None if path.part is None else parts[path.part]
-            if isinstance(part, Load):
+            if isinstance(part, Force | DistributedForce | Moment):
                 if (unit := self._unit(part, path.entries)) is not None:
                     loads[k] = unit
             elif (change := self._gravity(path) if part is None else self._of(part, path.entries)) is not None:
@@ -143,16 +145,16 @@ class Changes:
             c[motion.dof] += motion.linear * signals.get(motion.signal, 0.0)
         return Change(c=c)
 
-    def _unit(self, part: Load, entries: tuple[str, ...]) -> Load | None:
+    def _unit(self, part: AnyLoad, entries: tuple[str, ...]) -> AnyLoad | None:
         """Return a load whose value is a unit along one axis, None where the entry is of something else."""
         if len(entries) != 2 or entries[0] != "value" or self.of_sections:
             return None
         unit = part.model_copy(update={"value": _axis(entries[1])})
         if self.scene.plane_axes is not None:
-            unit = turned(unit, self.scene.plane_axes, self.scene.as_drawn)
+            unit = cast(AnyLoad, turned(unit, self.scene.plane_axes, self.scene.as_drawn))
         return unit if any(unit.value) and not (self.model.dim == 2 and any(unit.off_plane())) else None
 
-    def _of_loads(self, units: Mapping[int, Load]) -> dict[int, Change]:
+    def _of_loads(self, units: Mapping[int, AnyLoad]) -> dict[int, Change]:
         """Return what loads of unit values change, by the numbers of their parameters."""
         if not units:
             return {}
@@ -196,7 +198,7 @@ def _axis(component: str) -> tuple[float, ...]:
     return tuple(float(component in (name, str(k))) for name, k in COMPONENTS.items())
 
 
-def _with(model: Model, **changes: object) -> Model:
+def _with(model: Model, **changes: Any) -> Model:
     """Return a model with some arrays or couplings of other values, and the border as it is."""
     made = replace(model, **changes)
     made.newton, made.accelerations = model.newton, model.accelerations

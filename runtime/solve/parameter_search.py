@@ -146,7 +146,7 @@ class ParameterSearch(Generic[S]):
                 if end is None or along is None:
                     continue
                 name, moved = end[0], along * (h if end[1] else -h)
-                laws = [forces[name]] * 2
+                laws: list[ForceLaw] = [forces[name], forces[name]]
             else:
                 laws = [ForceLaw.of(self.parameters.force_with(at.problem.scene.as_drawn, k, at.p[k] + change),
                                     model.dim) for change in (-h, h)]
