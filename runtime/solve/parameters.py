@@ -107,8 +107,8 @@ class Parameters(Generic[S]):
         if not isinstance(part, PointForce) or path.entries[0] not in ENDS or len(path.entries) != 2:
             return None
         end = ENDS.index(path.entries[0])
-        on_ground = (part.a, part.b)[end].on is None and part.name is not None and part.as_made() is part
-        return (part.name, end, path.entries[1]) if on_ground else None
+        on_ground = (part.a, part.b)[end].on is None and part.as_made() is part
+        return (part.name, end, path.entries[1]) if on_ground and part.name is not None else None
 
     def force_with(self, scene: S, k: int, value: float) -> PointForce:
         """Return the force between two points, in a scene of these parameters, with another value of parameter k, of
