@@ -118,7 +118,9 @@ def reader(state: Equilibrium, names: Sequence[str]) -> Reader:
     targets = [target_of(state, name) for name in names]
     of_supports = any(target.support is not None or target.part in state.scene.ties for target in targets)
     return Reader(lambda problem, at: _Values(problem, at).of(targets),
-                  np.array([target.unit == "m" for target in targets]), of_supports)
+                  np.array([target.unit == "m" for target in targets]), of_supports,
+                  frozenset(target.part for target in targets),
+                  any(target.cable is not None and not target.is_place for target in targets))
 
 
 def target_of(state: Equilibrium, name: str) -> Target:

@@ -4,21 +4,23 @@ At rest R(x, p) = 0 with the state x and the parameters p. The values asked for 
 
     dx/dp = -K^-1 dR/dp,    dg/dp = dg/dx dx/dp + dg/dp,
 
-with the factorised tangent K = dR/dx of the state at rest. dR/dp is the central difference of the residual at a fixed
-state, and dg/dp is that of g along (dx/dp, 1): no other equilibria are sought for it. What a law of a force between two
-points changes is the equation of that force alone, which is differenced by itself: the forces are unknowns.
+with the factorised tangent K = dR/dx of the state at rest; dg/dp is the central difference of g along (dx/dp, 1). No
+other equilibria are sought. dR/dp of loads, weights and what motions prescribe is that of their columns
+(solve/parameter_changes.py). What a law of a force between two points changes, or its end on the ground, is the
+equation of that force alone, which is differenced by itself: the forces are unknowns. dR/dp of what else a scene has is
+the central difference of the residual at a fixed state.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import numpy as np
 
 from ..errors import SceneError
-from ..model.loads import ForceLaw, PointForceModel
+from ..model.loads import ForceLaw
 from ..model.model import Model
 from ..model.states import attachment_points
 from ..parts.laid import laid
@@ -26,6 +28,7 @@ from ..parts.plane import called
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from ..parts.spring import Spring
+from .parameter_changes import Change, Changes
 from .parameters import Parameters
 from .rest_state import RestState
 from .snapshots import Reader, Snapshots
@@ -33,7 +36,7 @@ from .stability import Stability
 from .static_problem import StaticProblem, StaticState, fitted
 
 STEP = 1e-6
-"""Of a parameter, to either side: where the residual is differenced."""
+"""Of a parameter, to either side: where the residual is differenced; of the scene's size: where values are."""
 AT_ONCE = 1_000_000
 """Numbers of the snapshots that are read together."""
 
@@ -47,6 +50,31 @@ class AtRest:
     problem: StaticProblem
     p: np.ndarray
     g: np.ndarray
+
+
+@dataclass(frozen=True)
+class Way:
+    """A way along which values are differenced: by this step of a parameter to either side, dx/dp (unknowns,), and what
+    else the parameter changes.
+    """
+
+    step: float
+    rates: np.ndarray
+    change: Change
+
+    @classmethod
+    def of(cls, problem: StaticProblem, rates: np.ndarray, change: Change) -> Way:
+        """Return the way of a parameter: as far as the state moves by a part of the scene's size."""
+        moves = np.hypot(problem.length(rates), 0.0 if change.c is None else np.linalg.norm(change.c))
+        return cls(STEP * problem.size / moves if moves > 0 else 1.0, rates, change)
+
+    def begin(self, kept: dict, step: float) -> dict:
+        """Return a state with what is prescribed moved by a step of the parameter."""
+        if self.change.c is None:
+            return kept
+        q = kept["q"].copy()
+        q[: len(self.change.c)] += step * self.change.c
+        return kept | {"q": q}
 
 
 class ParameterSearch(Generic[S]):
@@ -81,20 +109,16 @@ class ParameterSearch(Generic[S]):
         """Return dx/dp (unknowns, n) and dg/dp (targets, n) at a state of rest."""
         problem, p = at.problem, at.p
         steps = STEP * np.maximum(np.abs(p), 1e-3 * self.parameters.sizes(problem.size))
-        kept, forces = problem.keep(), {force.name: force for force in problem.model.point_forces}
-        laws = np.array([self.parameters.law_of(k) is not None for k in range(len(p))])
+        kept, changes = problem.keep(), Changes(problem, dict(enumerate(self.parameters.paths)), self.reader.sections)
+        here = {**changes.columns(), **self.by_forces(at, kept["q"], steps, changes)}
         ends = {k: [self.beside(at, k, change, kept) for change in (-steps[k], steps[k])]
-                for k in np.flatnonzero(~laws).tolist()}
-        changes = np.zeros((len(problem.weight), len(p)))
-        for k, h in enumerate(steps.tolist()):
-            if (name := self.parameters.law_of(k)) is not None:
-                rows, change = self.by_law(at, kept["q"], forces[name], k, h)
-                changes[rows, k] = change / (2 * h)
-            else:
-                changes[:, k] = (ends[k][1].residual() - ends[k][0].residual()) / (2 * h)
-        rates = -problem.solver()(changes)
+                for k in range(len(p)) if k not in here}
+        columns = here | {k: (above.residual() - below.residual()) / (2 * steps[k])
+                          for k, (below, above) in ends.items()}
+        rates = -problem.solver()(np.stack([columns[k] for k in range(len(p))], axis=1))
         G = np.zeros((len(at.g), len(p)))
-        G[:, laws] = self.along(problem, kept, rates[:, laws], steps[laws])
+        G[:, list(here)] = self.along(problem, kept, [
+            Way.of(problem, rates[:, k], changes.found.get(k, Change())) for k in here])
         for k, (below, above) in ends.items():
             below.move(-steps[k] * rates[:, k])
             above.move(steps[k] * rates[:, k])
@@ -108,34 +132,52 @@ class ParameterSearch(Generic[S]):
                  if isinstance(part, Spring) and part.tension_only and not force.any()}
         return sum(self.parameters.law_of(k) in slack for k in range(len(at.p)))
 
-    def by_law(self, at: AtRest, q: np.ndarray, between: PointForceModel, k: int, h: float) -> tuple[slice, np.ndarray]:
-        """Return the rows in the residual of the force whose law parameter k is of, and by how much they change at a
-        configuration q (n_q,) from the parameter less h to the parameter plus h.
+    def by_forces(self, at: AtRest, q: np.ndarray, steps: np.ndarray, changes: Changes) -> dict[int, np.ndarray]:
+        """Return dR/dp (unknowns,) by those parameters that are of forces between two points alone, at a configuration
+        q (n_q,); steps (n,): how far to either side their laws are looked at.
         """
-        model = at.problem.model
-        a, b = (attachment_points(model, end, q[None])[0, : model.dim] for end in between.attachments)
-        laws = [ForceLaw.of(self.parameters.force_with(at.problem.scene.as_drawn, k, at.p[k] + change), model.dim)
-                for change in (-h, h)]
-        first = model.n_band + model.n_border_dof + between.unknown
-        return slice(first, first + model.dim), laws[0].at_rest(b - a) - laws[1].at_rest(b - a)
+        model, found = at.problem.model, {}
+        forces = {force.name: force for force in model.point_forces}
+        for k, h in enumerate(steps.tolist()):
+            name, moved = self.parameters.law_of(k), np.zeros(model.dim)
+            if name is None:
+                end = self.parameters.end_of(k)
+                along = None if end is None or end[0] in self.reader.parts else changes.along(end[2])
+                if end is None or along is None:
+                    continue
+                name, moved = end[0], along * (h if end[1] else -h)
+                laws: list[ForceLaw] = [forces[name], forces[name]]
+            else:
+                laws = [ForceLaw.of(self.parameters.force_with(at.problem.scene.as_drawn, k, at.p[k] + change),
+                                    model.dim) for change in (-h, h)]
+            a, b = (attachment_points(model, end, q[None])[0, : model.dim] for end in forces[name].attachments)
+            first = model.n_band + model.n_border_dof + forces[name].unknown
+            found[k] = np.zeros(len(at.problem.weight))
+            found[k][first : first + model.dim] = (laws[0].at_rest(b - a - moved) - laws[1].at_rest(b - a + moved)) / (
+                2 * h)
+        return found
 
-    def along(self, problem: StaticState, kept: dict, rates: np.ndarray, steps: np.ndarray) -> np.ndarray:
-        """Return (targets, n): derivatives of the values along n changes of a state `kept` (unknowns, n), which the
-        state is in again afterwards; steps (n,): how far along them.
+    def along(self, problem: StaticState, kept: dict, ways: Sequence[Way]) -> np.ndarray:
+        """Return (targets, n): derivatives of the values along n ways from a state `kept`, which the state is in again
+        afterwards.
         """
-        def ends(some: range) -> Iterator[StaticState]:
-            for k in some:
-                for change in (-steps[k], steps[k]):
-                    problem.restore(kept)
-                    problem.move(change * rates[:, k])
+        def ends(some: Sequence[Way]) -> Iterator[StaticState]:
+            for way in some:
+                for step in (-way.step, way.step):
+                    problem.restore(way.begin(kept, step), prescribe=way.change.c is None)
+                    problem.move(step * way.rates)
                     yield problem
 
-        n, found = len(steps), []
+        found = []
         together = max(1, AT_ONCE // max(1, problem.model.n_q))
-        for first in range(0, n, together):
-            some = range(first, min(first + together, n))
-            values = self.reader.read(problem, Snapshots.of(ends(some), self.reader.reactions))
-            found.append((values[1::2] - values[::2]) / (2 * steps[some])[:, None])
+        for first in range(0, len(ways), together):
+            some = ways[first : first + together]
+            snapshots = Snapshots.of(ends(some), self.reader.reactions)
+            for k, way in enumerate(some):
+                if way.change.f is not None:
+                    snapshots.reaction[2 * k : 2 * k + 2] += np.outer((-way.step, way.step), way.change.f)
+            values = self.reader.read(problem, snapshots)
+            found.append((values[1::2] - values[::2]) / (2 * np.array([way.step for way in some]))[:, None])
         problem.restore(kept)
         return np.concatenate(found).T if found else np.zeros((len(self.reader.in_metres), 0))
 

@@ -18,6 +18,8 @@ from ..parts.settings import Limits
 from ..parts.validation import shown
 
 ADJUST = "adjust"
+ENDS = "a", "b"
+"""Of forces between two points."""
 LEAST = 1e-6
 """Of its first value: the least value of a parameter that has to be positive."""
 
@@ -94,7 +96,19 @@ class Parameters(Generic[S]):
         """Return the name of the force between two points whose law parameter k is of, None where it is of none."""
         path = self.paths[k]
         part = None if path.part is None else self.parts[path.part]
-        return part.name if isinstance(part, PointForce) and path.entries[0] not in ("a", "b") else None
+        return part.name if isinstance(part, PointForce) and path.entries[0] not in ENDS else None
+
+    def end_of(self, k: int) -> tuple[str, int, str] | None:
+        """Return of what force between two points, which end and which component on the ground parameter k is; None
+        where it is of none, or of one whose law depends on where it is drawn.
+        """
+        path = self.paths[k]
+        part = None if path.part is None else self.parts[path.part]
+        if not isinstance(part, PointForce) or path.entries[0] not in ENDS or len(path.entries) != 2:
+            return None
+        end = ENDS.index(path.entries[0])
+        on_ground = (part.a, part.b)[end].on is None and part.as_made() is part
+        return (part.name, end, path.entries[1]) if on_ground and part.name is not None else None
 
     def force_with(self, scene: S, k: int, value: float) -> PointForce:
         """Return the force between two points, in a scene of these parameters, with another value of parameter k, of

@@ -57,12 +57,15 @@ class Reader:
     """What reads values of states.
 
     read: returns values (T, targets) of snapshots of a scene's states; in_metres (targets,): which are in m; reactions:
-    whether snapshots must have what supports give.
+    whether snapshots must have what supports give; parts: names of the parts whose results are read; sections: whether
+    forces in sections of cables are.
     """
 
     read: Callable[[StaticState, Snapshots], np.ndarray]
     in_metres: np.ndarray
     reactions: bool
+    parts: frozenset[str] = frozenset()
+    sections: bool = False
 
     def values(self, state: StaticState) -> np.ndarray:
         """Return (targets,): the values of a state."""

@@ -61,15 +61,15 @@ class StaticState:
         """Return the static state, as `restore` takes it."""
         return self.engine.state()
 
-    def restore(self, kept: dict) -> None:
-        """Go back to a state that `keep` returned."""
-        self.engine.set_state(0.0, **kept)
+    def restore(self, kept: dict, prescribe: bool = True) -> None:
+        """Go back to a state that `keep` returned; prescribe: with what motions prescribe, else as it is."""
+        self.engine.set_state(0.0, **kept, prescribe=prescribe)
 
     def move(self, change: np.ndarray) -> None:
         """Move the state; slides that leave their element enter the next."""
         self.engine.move(change)
         if self.model.slides:
-            self.engine.set_state(0.0, **self.engine.state())
+            self.engine.set_state(0.0, **self.engine.state(), prescribe=False)
 
 
 class StaticProblem(StaticState):

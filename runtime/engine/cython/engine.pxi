@@ -113,6 +113,7 @@ cdef extern from "engine.h" nogil:
         const fu_field *fields
         int n_outputs
         const char *(*excess)(const fu_coupling *coupling)
+        void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
         void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                         const double *acceleration, const void *work, double *out)
     ctypedef struct fu_coupling:

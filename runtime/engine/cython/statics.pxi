@@ -71,18 +71,20 @@ cdef class Statics(Translation):
         how = "symmetric" if self.run.newton.definite else "unpivoted" if self.run.newton.unpivoted else "pivoted"
         return np.array([self.run.rhs[i] for i in range(total)]), how
 
-    def set_state(self, double t=0.0, q=None, s=None, force=None, multipliers=None, point_force=None, hard_contact=None):
+    def set_state(self, double t=0.0, q=None, s=None, force=None, multipliers=None, point_force=None, hard_contact=None,
+                  prescribe=True):
         """Set the static state: time, configuration (n_q,), arc-lengths, forces of slides (n, 3), multipliers of joints
         (n, 6), forces between points (n, 3), of hard contacts (n, 3); None: as built.
 
-        Prescribed dofs take their values at t.
+        prescribe: whether prescribed dofs take their values at t, and else those of q.
         """
         cdef fu_state *state = &self.run.next
         cdef int i
         state.t = t
         self._view(state, "q")[:] = self._view(&self.run.now, "q") if q is None else q
         self._rest(state)
-        fu_prescribe(&self.model, state)
+        if prescribe:
+            fu_prescribe(&self.model, state)
         self._rest(state)
         self._view(state, "s")[:] = self._view(&self.run.now, "s") if s is None else s
         fu_find_pieces(&self.model, state)
@@ -158,6 +160,18 @@ cdef class Statics(Translation):
         cdef int total = self.run.newton.n + self.run.newton.m
         fu_static_residual(&self.run)
         return -np.asarray(<double[:total]>self.run.rhs) if total else np.zeros(0)
+
+    def external_forces(self, int first, int stop):
+        """(stop - first, n_dof): what loads first..stop add at the static state to the left side of equilibrium."""
+        out = np.zeros((stop - first, self.model.n_dof))
+        cdef double[:, ::1] view = out
+        cdef double[::1] q = self._view(&self.run.next, "q")
+        cdef fu_coupling *c
+        cdef int k
+        for k in range(first, stop if self.model.n_dof else first):
+            c = self.couplings[k]
+            c.type.external_force(&self.model, c, self.run.next.t, &q[0], &view[k - first, 0])
+        return out
 
     def reaction(self):
         """(n_dof,): after `static_residual`, what supports give to each dof, the residual where it is free."""
