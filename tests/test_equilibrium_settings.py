@@ -18,7 +18,7 @@ class State(Equilibrium):
     def __init__(self):
         pass
 
-    def check_fits(self, scene):
+    def check_fits(self, scene, any_mesh=False):
         pass
 
 
