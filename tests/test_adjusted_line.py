@@ -4,6 +4,7 @@ A span of a published line: lengths of its droppers, and their forces in the lim
 between the outer droppers. Beside its masts the wire is free to rise, as a steady arm leaves it.
 """
 
+import adjusting
 import funicular as fu
 import numpy as np
 import pytest
@@ -79,3 +80,10 @@ def test_forces_near_the_string_limit_as_bending_goes():
     assert forces[[0, 8]] == pytest.approx(191.35, rel=5e-3)
     assert forces[1:8] == pytest.approx(51.46, rel=1.5e-2)  # the kinks are rounded off over an element
     assert forces.sum() == pytest.approx(742.9, rel=2e-3)
+
+
+def test_a_dropper_on_a_node_may_pass_to_the_next_element():
+    """As the wire is made longer or shorter; its chain is cut elsewhere then, and its unknowns have other numbers."""
+    _, rest = adjusting.adjusted("droppers", 3, "z = 0")
+    assert rest.adjustment.iterations <= 4
+    assert rest.adjustment.misfits[-1] < 1e-9

@@ -43,7 +43,7 @@ def test_an_adjusted_scene_is_the_same_in_every_plane(nodes, given):
     for turn, up in (("y", "z"), ("oblique", "y")):
         rest = adjusted(hung(turn, nodes, **given), up)
         assert rest.adjusted == pytest.approx(flat.adjusted, rel=1e-10)
-        # an entry is nil; values are differenced along a state moved by 1e-6 of the scene, which leaves 2e-10 of rounding
+        # an entry is nil; values are differenced along a state moved by 1e-6 of the scene: rounding is 2e-10
         assert rest.adjustment.jacobian == pytest.approx(flat.adjustment.jacobian, rel=1e-6, abs=1e-9)
         assert rest["A.position"] == pytest.approx(TURNS[turn] @ flat["A.position"], abs=1e-9)
 

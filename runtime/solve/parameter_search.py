@@ -77,6 +77,24 @@ class Way:
         return kept | {"q": q}
 
 
+@dataclass
+class Beside:
+    """A state with a parameter changed; order (unknowns,): which unknown there is each of the first state's."""
+
+    state: StaticState
+    order: np.ndarray
+
+    def residual(self) -> np.ndarray:
+        """Return the residual (unknowns,), in the first state's order."""
+        return self.state.residual()[self.order]
+
+    def move(self, change: np.ndarray) -> None:
+        """Move the state by a change of the unknowns, in the first state's order."""
+        there = np.empty_like(change)
+        there[self.order] = change
+        self.state.move(there)
+
+
 class ParameterSearch(Generic[S]):
     """Newton's method on the parameters; misfits are over the scales of the targets."""
 
@@ -122,7 +140,7 @@ class ParameterSearch(Generic[S]):
         for k, (below, above) in ends.items():
             below.move(-steps[k] * rates[:, k])
             above.move(steps[k] * rates[:, k])
-            G[:, k] = (self.reader.values(above) - self.reader.values(below)) / (2 * steps[k])
+            G[:, k] = (self.reader.values(above.state) - self.reader.values(below.state)) / (2 * steps[k])
         return rates, G
 
     def without_effect(self, at: AtRest) -> int:
@@ -181,20 +199,29 @@ class ParameterSearch(Generic[S]):
         problem.restore(kept)
         return np.concatenate(found).T if found else np.zeros((len(self.reader.in_metres), 0))
 
-    def beside(self, at: AtRest, k: int, change: float, kept: dict) -> StaticState:
+    def beside(self, at: AtRest, k: int, change: float, kept: dict) -> Beside:
         """Return the fixed state `kept` with parameter k changed."""
         p = at.p.copy()
         p[k] += change
         other = StaticState(self.laid(self.parameters.scene_at(p)), self.settings)
-        self.check_same(at.problem.model, other.model, k)
+        order = self.order(at.problem.model, other.model, k)
         other.restore(fitted(kept, other.model))
-        return other
+        return Beside(other, order)
 
-    def check_same(self, model: Model, other: Model, k: int) -> None:
-        """Raise SceneError where parameter k changes which unknowns there are."""
-        if not np.array_equal(model.unknown_of_dof, other.unknown_of_dof):
+    def order(self, model: Model, other: Model, k: int) -> np.ndarray:
+        """Return (unknowns,): which unknown of the other model is each of the model's, where parameter k is changed.
+
+        The same dofs are free; but a spring whose end passes from one element to the next cuts its cable elsewhere.
+        Raises SceneError where other dofs are free.
+        """
+        here, there = model.unknown_of_dof, other.unknown_of_dof
+        free = here >= 0
+        if not np.array_equal(free, there >= 0):
             raise SceneError(f'adjust of "{self.parameters.names[k]}"', "changes which coordinates are free, so that "
                              "there are no derivatives by it", "adjust something else")
+        found = np.arange(model.n_band + model.n_border_dof + model.n_extra)
+        found[here[free]] = there[free]
+        return found
 
     def moved(self, at: AtRest, step: np.ndarray, rates: np.ndarray) -> AtRest | str:
         """Return the state of rest beside another one, or why there is none, in words."""

@@ -1,5 +1,6 @@
-"""Seconds that `equilibrium(adjust=, to=)` takes of an overhead line by its number of spans: lengths of droppers by the
-heights of the contact wire, and the wire's length by its pull; in the plane z = 0 and in another one.
+"""Seconds that `equilibrium(adjust=, to=)` takes of an overhead line by its number of spans, in the plane z = 0 and in
+another one. Adjusted are lengths of droppers to the heights of the contact wire, and the wire's length to its pull;
+heights of supports to those of the messenger; loads on the contact wire to its heights.
 """
 
 from __future__ import annotations
@@ -58,25 +59,53 @@ def places(spans: int) -> dict[str, float]:
     return {f"dropper_{span}_{k}": (span + x / SPAN) / spans for span in range(spans) for k, x in enumerate(X)}
 
 
-def adjusted(spans: int, plane: str) -> tuple[float, fu.Equilibrium]:
-    """Return the CPU seconds, and the state in which heights and pull are as given."""
-    scene = line(spans, PLANES[plane])
+def droppers(scene: fu.Scene, spans: int, up: str) -> tuple[dict, dict]:
+    """Return what is adjusted and to what: droppers by heights of the contact wire, and its length by its pull."""
+    return ({**{f"{name}.length": (0.3, 1.5) for name in places(spans)}, "contact.rest_length": "free"},
+            {**heights(scene, spans, up), "contact@0.force.x": -CONTACT["tension"]})
+
+
+def supports(scene: fu.Scene, spans: int, up: str) -> tuple[dict, dict]:
+    """Heights of the supports, by those of the messenger there."""
+    length = scene.cables["messenger"].length
+    return ({f"support_{k}.a.{up}": "free" for k in range(1, spans)},
+            {f"messenger@{k / spans * length:.12g}.position.{up}": 1.2 + 0.02 * np.sin(k) for k in range(1, spans)})
+
+
+def loads(scene: fu.Scene, spans: int, up: str) -> tuple[dict, dict]:
+    """Forces on the contact wire below the droppers, by its heights there."""
     length = scene.cables["contact"].length
-    up = "xyz"[int(np.argmax(np.abs(PLANES[plane][:, 1])))]
-    heights = {f"contact@{at * length:.12g}.position.{up}": -sag
-               for at, sag in zip(places(spans).values(), np.tile(SAG, spans).tolist(), strict=True)}
+    down = [-float(axis == up) for axis in "xyz"]
+    for name, at in places(spans).items():
+        scene.force("contact", s=at * length, value=down, name=f"load_{name}")
+    return ({f"load_{name}.value.{up}": "free" for name in places(spans)},
+            {name: value - 0.02 for name, value in heights(scene, spans, up).items()})
+
+
+CASES = {"droppers": droppers, "supports": supports, "loads": loads}
+
+
+def heights(scene: fu.Scene, spans: int, up: str) -> dict[str, float]:
+    """Return the heights of the contact wire at the droppers, by their names."""
+    length = scene.cables["contact"].length
+    return {f"contact@{at * length:.12g}.position.{up}": -sag
+            for at, sag in zip(places(spans).values(), np.tile(SAG, spans).tolist(), strict=True)}
+
+
+def adjusted(case: str, spans: int, plane: str) -> tuple[float, fu.Equilibrium]:
+    """Return the CPU seconds, and the state in which values are as given."""
+    scene = line(spans, PLANES[plane])
+    adjust, to = CASES[case](scene, spans, "xyz"[int(np.argmax(np.abs(PLANES[plane][:, 1])))])
     begin = time.process_time()
-    rest = scene.equilibrium(adjust={**{f"{name}.length": (0.3, 1.5) for name in places(spans)},
-                                     "contact.rest_length": "free"},
-                             to={**heights, "contact@0.force.x": -CONTACT["tension"]})
+    rest = scene.equilibrium(adjust=adjust, to=to)
     return time.process_time() - begin, rest
 
 
-def row(spans: int) -> dict:
+def row(case: str, spans: int) -> dict:
     """Return what is measured of a line of so many spans."""
-    found = {plane: adjusted(spans, plane) for plane in PLANES}
+    found = {plane: adjusted(case, spans, plane) for plane in PLANES}
     last = found["z = 0"][1].adjustment
-    return {"spans": spans, "parameters": len(last.values),
+    return {"adjusted": case, "spans": spans, "parameters": len(last.values),
             **{f"seconds, {plane}": seconds for plane, (seconds, _) in found.items()},
             "iterations": last.iterations, "misfit": last.misfits[-1]}
 
@@ -84,8 +113,9 @@ def row(spans: int) -> dict:
 def main() -> None:
     """Measure and print."""
     options = arguments(__doc__, most=(30, "spans"))
-    adjusted(1, "z = 0")  # imports
-    show([row(spans) for spans in (1, 3, 10, 30, 100) if spans <= options.most], options.out)
+    adjusted("droppers", 1, "z = 0")  # imports
+    show([row(case, spans) for case in CASES for spans in (1, 3, 10, 30, 100)
+          if spans <= options.most and (spans > 1 or case != "supports")], options.out)
 
 
 if __name__ == "__main__":
