@@ -5,7 +5,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -23,10 +22,9 @@ from operation_ceilings import CEILINGS, POINT_LAW
 
 @dataclass
 class Derivation:
-    """Generated files from the specs, processor seconds that they took, and hashes of another process's."""
+    """Generated files from the specs, and hashes of another process's."""
 
     files: dict[str, str]
-    seconds: float
     other: str
 
 
@@ -39,9 +37,7 @@ def derivation() -> Derivation:
     script = "from funicular.derive import pipeline; from test_derive import hashes; print(hashes(pipeline.generate()))"
     other = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True,
                              cwd=Path(__file__).parent, env={**os.environ, "PYTHONHASHSEED": "4242"})
-    start = time.process_time()
-    files = pipeline.generate()
-    return Derivation(files, time.process_time() - start, other.communicate()[0].strip())
+    return Derivation(pipeline.generate(), other.communicate()[0].strip())
 
 
 @pytest.fixture(scope="module")
@@ -65,10 +61,6 @@ def remembered(monkeypatch, derived):
 
 def test_checked_in_files_agree_with_the_specs(remembered, capsys):
     assert pipeline.main([], check=True) == 0, capsys.readouterr().out
-
-
-def test_everything_is_derived_within_a_minute_of_one_core(derivation):
-    assert derivation.seconds < 60
 
 
 def test_another_process_and_hash_seed_give_the_same_bytes(derivation):
