@@ -3,13 +3,11 @@
 #define FUNICULAR_EXTRAPOLATION_H
 
 #include "common.h"
-#include "linear_prediction.h"
 
 /* Of the last steps: sizes of the last one and of the one before, s; how many are known; the degree of the polynomial that would
- * have predicted the last one best, -1: none; whether linear prediction would have been better, and for how many steps, in vain,
- * it would not. Whole numbers are real ones here, as work spaces have. */
+ * have predicted the last one best, -1: none. Whole numbers are real ones here, as work spaces have. */
 typedef struct {
-    double h, h_before, steps, degree, is_linear, vain;
+    double h, h_before, steps, degree;
 } fu_last_steps;
 
 /* What an integrator keeps of the last steps, in its work space. */
@@ -18,11 +16,10 @@ typedef struct {
     double *slope, *slope_before; /* of the couplings' own coordinates in the last step, and in the one before */
     double *force_before, *force_earlier; /* of the couplings, one and two steps before `now` */
     fu_last_steps *last;
-    fu_linear_prediction linear;
 } fu_extrapolation;
 
 void fu_extrapolation_take(fu_extrapolation *past, const fu_model *model, double *scratch, long *taken);
-void fu_extrapolation_start(const fu_extrapolation *past, const fu_model *model);
+void fu_extrapolation_start(const fu_extrapolation *past);
 void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, double h);
 void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, double rest, double h);
 

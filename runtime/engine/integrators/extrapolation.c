@@ -1,10 +1,9 @@
 /* Prediction of a step from the steps before. Accelerations are those of what a step resolves, which a polynomial
- * through the last steps predicts, and of vibrations that it does not, which no polynomial predicts. So the next step is predicted
+ * through the last steps predicts, and of vibrations that it does not, which none predicts. So the next step is predicted
  * by the polynomial, of degree 0 to 2, that would have predicted the last one best; or, where velocities alone would have
- * been better, by `rest` times the last acceleration, with which the integrator goes on with its velocities. Linear prediction
- * (linear_prediction.c) predicts a few such vibrations, too, and takes its place where steps are fixed and it would have.
+ * been better, by `rest` times the last acceleration, with which the integrator goes on with its velocities.
  *
- * A prediction goes over unknowns alone: dofs that are tied to them follow, those that are prescribed have `rest` times the
+ * A polynomial goes over unknowns alone: dofs that are tied to them follow, those that are prescribed have `rest` times the
  * last. Newton's method does not mend what a prediction has besides, and rounding in that, continued by polynomials, would
  * grow without bounds.
  */
@@ -17,11 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-#define USEFUL 4.0    /* times smaller a sum of squares that linear prediction is worth while for: less saves no iteration */
-#define PATIENCE 30.0 /* steps one after the other for which it was not, before it is left out */
-#define PAUSE 500.0   /* steps for which it is left out: what else it would cost a run that has no use for it */
-
-enum { BY_VELOCITIES = -1, MOST_DEGREE = 2, SUMS = 4 };
+enum { BY_VELOCITIES = -1, MOST_DEGREE = 2 };
 
 /* Places the arrays in a work space; only counts them where it is null. */
 void fu_extrapolation_take(fu_extrapolation *past, const fu_model *model, double *scratch, long *taken)
@@ -33,14 +28,12 @@ void fu_extrapolation_take(fu_extrapolation *past, const fu_model *model, double
     past->force_before = fu_take(scratch, taken, model->n_forces);
     past->force_earlier = fu_take(scratch, taken, model->n_forces);
     past->last = (fu_last_steps *)fu_take(scratch, taken, FU_DOUBLES(1, fu_last_steps));
-    fu_linear_prediction_take(&past->linear, model, scratch, taken);
 }
 
 /* Begins where nothing is known of the past. */
-void fu_extrapolation_start(const fu_extrapolation *past, const fu_model *model)
+void fu_extrapolation_start(const fu_extrapolation *past)
 {
-    *past->last = (fu_last_steps){.degree = BY_VELOCITIES};
-    fu_linear_prediction_start(&past->linear, model);
+    *past->last = (fu_last_steps){0.0, 0.0, 0.0, BY_VELOCITIES};
 }
 
 /* Factors by which a prediction has the accelerations at `now` and of the two steps before. */
@@ -63,29 +56,15 @@ static double predicted(const fu_extrapolation *past, factors f, const double *a
     return f.now * a[i] + f.before * past->before[i] + f.earlier * past->earlier[i];
 }
 
-/* Makes the polynomial's values of a step of size h, where linear prediction has its own. */
-static void predict_by_polynomial(const fu_extrapolation *past, const fu_run *run, factors f, double h)
-{
-    const fu_model *model = run->model;
-    const fu_last_steps *last = past->last;
-    const double *now = run->now.forces;
-    double *next = past->linear.next, *forces = next + model->n_dof, *changes = forces + model->n_forces;
-    for (int i = 0; i < model->n_dof; ++i) next[i] = predicted(past, f, run->now.a, i);
-    for (int i = 0; i < model->n_forces; ++i)
-        forces[i] = f.now * now[i] + f.before * past->force_before[i] + f.earlier * past->force_earlier[i];
-    const double bend = last->steps < 2 ? 0.0 : (h + last->h) / (last->h + last->h_before);
-    for (int i = 0; i < model->n_coordinates; ++i) changes[i] = bend * (past->slope[i] - past->slope_before[i]);
-}
-
 /* Makes the accelerations of a first `next`: `rest` times those at `now`, and what unknowns change by beyond that. */
-static void predict_accelerations(const fu_extrapolation *past, fu_run *run, double rest)
+static void predict_accelerations(const fu_extrapolation *past, fu_run *run, factors f, double rest)
 {
     const fu_model *model = run->model;
-    const double *a = run->now.a, *next = past->linear.next;
+    const double *a = run->now.a;
     memset(run->rhs, 0, sizeof(double) * (size_t)(model->n_band + model->n_border_dof));
     for (int i = 0; i < model->n_dof; ++i) {
         const int unknown = model->unknown_of_dof[i];
-        if (unknown >= 0) run->rhs[unknown] = next[i] - rest * a[i];
+        if (unknown >= 0) run->rhs[unknown] = predicted(past, f, a, i) - rest * a[i];
     }
     fu_spread(model, run->rhs, run->work);
     for (int i = 0; i < model->n_dof; ++i) run->next.a[i] = rest * a[i] + run->work[i];
@@ -93,54 +72,39 @@ static void predict_accelerations(const fu_extrapolation *past, fu_run *run, dou
 
 /* Makes the forces of a first `next`, which go with accelerations. Those that have not changed stay as they are, as those of
  * redundant rows do. Steps that the error chooses gain nothing by it: they are as large as Newton's method takes them. */
-static void predict_forces(const fu_extrapolation *past, fu_run *run)
+static void predict_forces(const fu_extrapolation *past, fu_run *run, factors f)
 {
-    const double *now = run->now.forces, *next = past->linear.next + run->model->n_dof;
+    const double *now = run->now.forces;
     for (int i = 0; i < run->model->n_forces; ++i)
-        if (now[i] != past->force_before[i]) run->next.forces[i] = next[i];
+        if (now[i] != past->force_before[i])
+            run->next.forces[i] = f.now * now[i] + f.before * past->force_before[i] + f.earlier * past->force_earlier[i];
 }
 
-/* Makes a first `next`: its accelerations, and the couplings' own coordinates and forces. */
+/* Makes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola, and forces. */
 void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, double h)
 {
     const fu_last_steps *last = past->last;
-    const fu_model *model = run->model;
-    const int linear = last->is_linear != 0.0 && fu_linear_prediction_make(&past->linear, h);
-    if (!linear) predict_by_polynomial(past, run, factors_of(last, (int)last->degree, rest, h), h);
-    predict_accelerations(past, run, rest);
+    const factors f = factors_of(last, (int)last->degree, rest, h);
+    predict_accelerations(past, run, f, rest);
     fu_predict_own(run, h);
-    if ((linear || last->degree > 0) && run->fixed_step > 0.0) predict_forces(past, run);
-    const double *changes = past->linear.next + model->n_dof + model->n_forces;
-    for (int i = 0; i < model->n_coordinates; ++i) run->next.s[i] += h * changes[i];
+    if (last->degree > 0 && run->fixed_step > 0.0) predict_forces(past, run, f);
+    if (last->steps < 2) return;
+    const double bend = h * (h + last->h) / (last->h + last->h_before);
+    for (int i = 0; i < run->model->n_coordinates; ++i)
+        run->next.s[i] += bend * (past->slope[i] - past->slope_before[i]);
 }
 
 /* Returns the sum of squares of what the prediction of the unknowns' `next` was off by. */
 static double miss(const fu_extrapolation *past, const fu_run *run, factors f)
 {
-    const double *weight = past->linear.weight, *now = run->now.a, *before = past->before, *earlier = past->earlier;
-    const double *next = run->next.a;
-    double *restrict off = run->work, sum[SUMS] = {0.0};
-    const int n = run->model->n_dof;
-    for (int i = 0; i < n; ++i) off[i] = next[i] - (f.now * now[i] + f.before * before[i] + f.earlier * earlier[i]);
-    for (int i = 0; i < n; ++i) sum[i % SUMS] += weight[i] * (off[i] * off[i]);
-    return sum[0] + sum[1] + (sum[2] + sum[3]);
-}
-
-/* Takes the step just made for linear prediction, where steps are fixed; returns whether that is worth while, where polynomials
- * were off by `least`. After some steps in which it was not, it is left out for a while. */
-static int try_linear(const fu_extrapolation *past, const fu_run *run, double least, double h)
-{
-    double *vain = &past->last->vain;
-    if (run->fixed_step <= 0.0) return 0;
-    if (*vain >= PATIENCE) {
-        *vain = *vain < PATIENCE + PAUSE ? *vain + 1.0 : 0.0;
-        if (*vain == 0.0) fu_linear_prediction_start(&past->linear, run->model);
-        return 0;
+    const double *weight = run->model->weight;
+    double sum = 0.0;
+    for (int i = 0; i < run->model->n_dof; ++i) {
+        if (run->model->unknown_of_dof[i] < 0) continue;
+        const double d = weight[i] * (run->next.a[i] - predicted(past, f, run->now.a, i));
+        sum += d * d;
     }
-    fu_linear_prediction_accept(&past->linear, run, past->slope, h);
-    const int is_useful = USEFUL * past->linear.known->missed < least;
-    *vain = is_useful ? 0.0 : *vain + 1.0;
-    return is_useful;
+    return sum;
 }
 
 /* Takes the step just made from `now` to `next`, and chooses how the one to come is predicted. */
@@ -158,12 +122,11 @@ void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, do
         least = sum;
         best = degree;
     }
-    const int is_linear = try_linear(past, run, least, h);
     memcpy(past->earlier, past->before, dofs);
     memcpy(past->before, run->now.a, dofs);
     memcpy(past->force_earlier, past->force_before, forces);
     memcpy(past->force_before, run->now.forces, forces);
     memcpy(past->slope_before, past->slope, coordinates);
     memcpy(past->slope, run->s_slope, coordinates);
-    *last = (fu_last_steps){h, last->h, last->steps + 1, best, is_linear, last->vain};
+    *last = (fu_last_steps){h, last->h, last->steps + 1, best};
 }

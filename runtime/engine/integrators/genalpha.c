@@ -207,7 +207,7 @@ static void account(fu_run *run, double h)
     const workspace w = space(run);
     fu_carried_residual_accept(&w.carried, run->model, h);
     if (fu_goes_on(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
-    else fu_extrapolation_start(&w.past, run->model);
+    else fu_extrapolation_start(&w.past);
     fu_account_trapezoid(run, h);
 }
 
@@ -215,7 +215,7 @@ static int start(fu_run *run)
 {
     const workspace w = space(run);
     if (run->statistics.steps == 0) fu_carried_residual_start(&w.carried, run->model);
-    fu_extrapolation_start(&w.past, run->model);
+    fu_extrapolation_start(&w.past);
     memcpy(run->now.a, run->now.acceleration, sizeof(double) * (size_t)run->model->n_dof);
     run->factored = 0;
     return FU_RUNNING;

@@ -14,7 +14,6 @@
 #define MATRIX_COST 2.0       /* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
 #define UNDERESTIMATE 10.0    /* how many times more an increment may shrink less than its residual, which counts stiffness more */
 #define COARSE 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
-#define TOO_MANY 6            /* iterations still to come, from which on a new matrix is worth its cost in the middle of a step */
 #define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
 
 double fu_clock(void)
@@ -140,44 +139,13 @@ static int leaves_nothing(const fu_run *run, const fu_newton *method, double siz
     return size <= run->round_off || (ratio >= 1.0 && size <= BEYOND_ROUNDING * run->round_off);
 }
 
-/* Largest residuals in run->rhs: root of the sum of squares over the equations of motion; of the couplings' own equations;
- * and gaps of constraints, m. */
-typedef struct {
-    double motion, own, gap;
-} residual_size;
-
-static residual_size size_of_residual(fu_run *run)
-{
-    const fu_model *model = run->model;
-    const double *own = fu_own(run);
-    residual_size size = {0.0, 0.0, 0.0};
-    for (int i = 0; i < model->n_band + model->n_border_dof; ++i) size.motion += run->rhs[i] * run->rhs[i];
-    size.motion = sqrt(size.motion);
-    for (int i = 0; i < model->n_extra; ++i) size.own = fmax(size.own, fabs(own[i]));
-    size.gap = largest_gap(run);
-    return size;
-}
-
-/* Returns whether going on with a matrix of an earlier step takes so many iterations that a new one is worth its cost in the
- * middle of a step: a first increment of this size has made the residual what it is of the one before. */
-static int is_outdated(const fu_run *run, double size, residual_size before, residual_size after)
-{
-    const double enough = fmax(run->newton_tolerance, run->round_off);
-    const double contraction = before.motion > 0.0 ? after.motion / before.motion : 0.0;
-    return size * pow(fmin(1.0, contraction), TOO_MANY) > enough;
-}
-
 /* Iterates from the prediction with the matrix at hand; returns 0 where that converged. */
 static int iterate(fu_run *run, const fu_newton *method, double h)
 {
     double last = 0.0, ratio = 0.0;
-    residual_size before = {0.0, 0.0, 0.0};
-    const int stale = run->factored && method->note_rest;
     method->kinematics(run, h);
     for (int i = 0; i < method->most_iterations; ++i) {
         method->residual(run, h);
-        if (stale && i == 0) before = size_of_residual(run);
-        if (stale && i == 1 && is_outdated(run, last, before, size_of_residual(run))) run->factored = 0;
         if (!run->factored && factor(run, method, h)) return 1;
         const double begin = fu_clock();
         fu_system_solve(&run->newton, run->model->lapack, run->rhs);
@@ -205,6 +173,24 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
     return 0;
 }
 
+/* Largest residuals in run->rhs: root of the sum of squares over the equations of motion; of the couplings' own equations;
+ * and gaps of constraints, m. */
+typedef struct {
+    double motion, own, gap;
+} residual_size;
+
+static residual_size size_of_residual(fu_run *run)
+{
+    const fu_model *model = run->model;
+    const double *own = fu_own(run);
+    residual_size size = {0.0, 0.0, 0.0};
+    for (int i = 0; i < model->n_band + model->n_border_dof; ++i) size.motion += run->rhs[i] * run->rhs[i];
+    size.motion = sqrt(size.motion);
+    for (int i = 0; i < model->n_extra; ++i) size.own = fmax(size.own, fabs(own[i]));
+    size.gap = largest_gap(run);
+    return size;
+}
+
 /* Returns what the next increment is of the last, at most, by what the residual has become of the one before. */
 static double contraction_of_residual(residual_size before, residual_size after)
 {
@@ -224,7 +210,6 @@ static int leaves_little(const fu_run *run, double size, double contraction, dou
 static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
 {
     double last = INFINITY;
-    const int stale = run->factored;
     method->kinematics(run, h);
     method->residual(run, h);
     residual_size before = size_of_residual(run);
@@ -247,7 +232,6 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
             count_for_matrix(run, i + 1, method->most_iterations / MANY);
             return 0;
         }
-        if (stale && i == 0 && is_outdated(run, size, before, after)) run->factored = 0;
         last = size;
         before = after;
     }
