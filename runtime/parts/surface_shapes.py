@@ -78,6 +78,8 @@ class HeightField(SurfaceShape):
     x: places in m along the direction ``along``; heights: one for each of them, or, with ``across``, places across in
     m, a list for each of them. Across is square to ``along`` and ``up``, on the side of the axis that it is nearest to.
     Without ``across`` heights do not change that way. `HeightField.of` makes the table of a function.
+    A fast point can go through a narrow and steep ridge without a touch, where steps are long. A shorter
+    ``output_step`` of the run finds it.
     """
 
     kind: ClassVar[str] = "height_field"

@@ -2,7 +2,9 @@
  *
  * Between the ends a point is taken along the cubic of its places and velocities there, in the axes of the shape (Hermite). As the
  * distance from a surface changes by no more than the way, the point can go as far as it is off without touching; so it is led on
- * from one such place to the next (conservative advancement; Mirtich 1996).
+ * from one such place to the next (conservative advancement; Mirtich 1996). That holds for all shapes but height fields: what is
+ * taken for the distance there is the vertical one over the root of 1 + slope^2, which it is at the surface alone. Beside a ridge that
+ * is narrow and steep a point is led on too far, and can miss it.
  */
 #include "engine.h"
 
