@@ -9,18 +9,19 @@
  * that brings both sums back in one step: r_n+1 = e_n+1 - 2 e_n + e_n-1 of what is left in each step, e, so that the motion
  * is off by e alone, however many steps are made. (The same is done to the noise of quantisation: Schreier & Temes 2005.)
  * Equations of motion are those of the dofs and of couplings' own coordinates: of a slide, the balance along the cable. What is
- * left of a constraint is a gap of `next` alone. T is not shorter than half of the one before, or a short step to an event would
- * make up for a long one with a large force; for T > h the sums go to zero in some steps, for any T. Steps that are solved to
- * rounding make up for those before as well: without the force c, the impulse would go on moving positions.
+ * left of a constraint is a gap of `next` alone. After a step of T, T does not end sooner than that step would have been made up
+ * for: each step takes no more than its own h from T. Otherwise one short step to an event would make up for a long one with a
+ * large force, and many, each shorter than the last, with forces that grow without bounds. For T > h the sums go to zero in some
+ * steps, for any T. Steps that are solved to rounding make up for those before as well: without the force c, the impulse would go
+ * on moving positions.
  */
 #include "engine.h"
 
 #include "carried_residual.h"
 #include "workspace.h"
 
+#include <math.h>
 #include <string.h>
-
-#define SHORTER 0.5 /* of the last span: the next one at least */
 
 /* Returns how many equations there are: those of constraints have their places too, but nothing to carry. */
 static int size(const fu_model *model)
@@ -47,7 +48,7 @@ void fu_carried_residual_start(const fu_carried_residual *carried, const fu_mode
 
 static double span(const fu_carried_residual *carried, double h)
 {
-    return fmax(h, SHORTER * *carried->span);
+    return fmax(h, *carried->span - h);
 }
 
 /* Makes the force by which a step of size h makes up for the steps before: its residual, unless Newton leaves something. */
