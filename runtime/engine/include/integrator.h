@@ -22,6 +22,9 @@ typedef struct {
     long (*n_dissipation_state)(const fu_run *run);
     /* Begins at `now`, which has consistent velocities, accelerations and forces; returns a status. */
     int (*start)(fu_run *run);
+    /* Notes what it goes on with beside accelerations, which are about to jump: the next start keeps it. Returns 0, or not 0 where
+     * that is not possible. Null: it goes on with nothing. */
+    int (*before_jump)(fu_run *run);
     /* Makes `next` from `now`; returns 0, or not 0 where that failed. */
     int (*step)(fu_run *run, double h);
     /* Returns the local error of positions of the step just made, m. */
@@ -34,6 +37,7 @@ typedef struct {
     void (*forget)(fu_run *run);
     int keeps_scratch;      /* checkpoints hold its work space, which is real numbers alone */
     int keeps_energy;       /* velocities stay as they are where it starts anew: to project them would cost energy */
+    int coasts;             /* nothing of a very short step is in what it goes on with: it is not started anew after one */
     int has_matrix;         /* run->newton has the mass and the stiffness of a step, times its square */
     int crosses_boundaries; /* it finds the slides' elements within a step, which may go over boundaries of elements */
     const fu_newton *newton; /* of implicit steps with constraints on positions; null where eq 38 gives accelerations */

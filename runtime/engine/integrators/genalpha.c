@@ -9,6 +9,11 @@
  * the force is f = f~ mass/sigma with sigma = beta h^2 (1 - alpha_f)/(1 - alpha_m). Rows of equilibrium are multiplied
  * by sigma, constraint rows by the mass: the matrix is M + sigma K bordered by mass C_q, of one scale for any h
  * (Bottasso, Dopico & Trainelli 2008). What Newton leaves of a step, the next ones make up for (carried_residual.c).
+ *
+ * Of vibrations that steps do not resolve, h a_n is as large as velocities are, however long h is. Where a step is much shorter than
+ * the next one, as what is left between an event and an output time can be, its a_n+1 would push the next one by that times the ratio
+ * of both, and vibrations would grow from event to event, the more so the stiffer a cable is. After such a step the a_n that it began
+ * with goes on.
  */
 #include "engine.h"
 
@@ -18,6 +23,7 @@
 
 #include <string.h>
 
+#define BRIEF 0.1 /* of the usual step: a shorter one leaves a_n as it was, which is off by less than the usual step's error */
 #define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
 
 
@@ -41,6 +47,7 @@ static long n_parameters(const double *given)
 typedef struct {
     fu_carried_residual carried;
     fu_extrapolation past;
+    double *distance; /* n_dof: of a_n from the accelerations that are about to jump, until the scheme starts anew; else 0 */
 } workspace;
 
 /* Places its arrays in the scratch; returns how many doubles it takes, which is all that is done where it is null. */
@@ -49,6 +56,7 @@ static long lay_out(const fu_run *run, double *scratch, workspace *w)
     long taken = 0;
     fu_carried_residual_take(&w->carried, run->model, scratch, &taken);
     fu_extrapolation_take(&w->past, run->model, scratch, &taken);
+    w->distance = fu_take(scratch, &taken, run->model->n_dof);
     return taken;
 }
 
@@ -206,17 +214,36 @@ static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_accept(&w.carried, run->model, h);
-    if (fu_goes_on(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
+    if (h < BRIEF * run->usual) memcpy(run->next.a, run->now.a, sizeof(double) * (size_t)run->model->n_dof);
+    else if (fu_goes_on(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
     else fu_extrapolation_start(&w.past);
     fu_account_trapezoid(run, h);
+}
+
+/* Keeps the distance of a_n from q''_n where that is about to jump: both have the same vibrations that steps do not resolve. The part
+ * that constraints do not allow is no vibration: event by event it would grow, which a spectral radius of 1 never lets decay. */
+static int before_jump(fu_run *run)
+{
+    const fu_model *model = run->model;
+    const workspace w = space(run);
+    fu_set_difference(model->threads, model->n_dof, 1.0, run->now.a, run->now.acceleration, w.distance);
+    if (!model->n_multipliers) return 0;
+    if (fu_prepare_response(model, &run->now, &run->accelerator)) return 1;
+    fu_mass_times(model, run->now.q, w.distance, run->work);
+    fu_response(model, &run->accelerator, run->work, w.distance);
+    return 0;
 }
 
 static int start(fu_run *run)
 {
     const workspace w = space(run);
-    if (run->statistics.steps == 0) fu_carried_residual_start(&w.carried, run->model);
+    if (run->statistics.steps == 0) {
+        fu_carried_residual_start(&w.carried, run->model);
+        memset(w.distance, 0, sizeof(double) * (size_t)run->model->n_dof);
+    }
     fu_extrapolation_start(&w.past);
-    memcpy(run->now.a, run->now.acceleration, sizeof(double) * (size_t)run->model->n_dof);
+    for (int i = 0; i < run->model->n_dof; ++i) run->now.a[i] = run->now.acceleration[i] + w.distance[i];
+    memset(w.distance, 0, sizeof(double) * (size_t)run->model->n_dof);
     run->factored = 0;
     return FU_RUNNING;
 }
@@ -225,6 +252,7 @@ const fu_integrator fu_genalpha = {.name = "genalpha",
                                    .n_parameters = n_parameters,
                                    .n_scratch = n_scratch,
                                    .start = start,
+                                   .before_jump = before_jump,
                                    .step = step,
                                    .error = error,
                                    .quadrature = quadrature,
@@ -232,4 +260,5 @@ const fu_integrator fu_genalpha = {.name = "genalpha",
                                    .has_matrix = 1,
                                    .crosses_boundaries = 1,
                                    .keeps_scratch = 1,
+                                   .coasts = 1,
                                    .newton = &newton};

@@ -116,8 +116,8 @@ int fu_is_short(const fu_run *run, double h)
     return h < SHORT_STEP * run->usual;
 }
 
-/* Makes such a step, of any length: `next` from `now` by its accelerations, and back onto the joints; returns 0 where that
- * converged. */
+/* Makes such a step, of any length: `next` from `now` by its accelerations, and back onto the joints, but for what the scheme has
+ * beside them; returns 0 where that converged. */
 int fu_coast(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -133,6 +133,5 @@ int fu_coast(fu_run *run, double h)
     if (model->n_motions) fu_prescribe(model, next);
     if (fu_find_own(run) || fu_return_to_joints(run, next)) return 1;
     if (fu_complete(run, next)) return fu_fail_eq38(run);
-    memcpy(next->a, next->acceleration, sizeof(double) * (size_t)model->n_dof);
     return 0;
 }

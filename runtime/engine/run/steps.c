@@ -38,12 +38,12 @@ static void accept(fu_run *run, double h, fu_event event)
     if (h > s->h_max) s->h_max = h;
 }
 
-/* Starts the scheme anew after a very short step; returns a status. What is left between an event and an output time can be so
- * short that the rounding of psi, over h^2, is all there is in its accelerations: they must not go on. */
+/* Starts a scheme anew after a very short step that would be in what it goes on with; returns a status. What is left between an
+ * event and an output time can be so short that rounding, over h^2, is all there is in accelerations that are made of it. */
 static int refresh(fu_run *run, double h)
 {
     run->usual = run->fixed_step > 0.0 ? run->fixed_step : run->h;
-    return fu_is_short(run, h) ? fu_start_scheme(run, !run->integrator->keeps_energy) : FU_RUNNING;
+    return fu_is_short(run, h) && !run->integrator->coasts ? fu_start_scheme(run, !run->integrator->keeps_energy) : FU_RUNNING;
 }
 
 /* Returns whether the error chooses the size of steps. */
