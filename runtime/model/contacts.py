@@ -40,6 +40,8 @@ class SurfaceModel:
     second: np.ndarray
     heights: np.ndarray
     highest: float
+    steepest: float
+    bend: float
     on: list[AttachmentModel]
 
 
@@ -82,7 +84,8 @@ def surface_entries(surface: Surface, scene: SceneData, attachments: AttachmentB
     return {"kernel": KERNELS[dim], "shape": shape.word, "direction": shape.direction[:dim],
             "round_radius": shape.radius, "half_length": shape.half_length,
             "half_size": shape.half_size[:dim], "n_first": len(first), "n_second": len(second), "first": first,
-            "second": second, "heights": cells, "highest": shape.highest, "on": [on]}
+            "second": second, "heights": cells, "highest": shape.highest,
+            "steepest": shape.steepest, "bend": shape.bend, "on": [on]}
 
 
 def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilder) -> ContactModel:
