@@ -1397,6 +1397,9 @@ void drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_real *w,
  * 3[m/s]; w_rate 3[m/s^2] -> p 3[kg m/s]; p_rate 3[N]; moment 3[N m]; M 3x3[kg]; p_turn 3x3[SI]; p_rate_turn
  * 3x3[SI]; moment_turn 3x3[SI]; p_rate_omega 3x3[kg m/s]; p_rate_w 3x3[kg/s]; moment_w 3x3[kg m/s] */
 void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
+/* impulse of the fluid at a body over a step, and its moment: A 3x3[1]; A_next 3x3[1]; C 3x3[kg]; w 3[m/s]; w_next
+ * 3[m/s]; theta 3[1]; turning 3[m/s] -> dp 3[kg m/s]; p 3[kg m/s]; moment 3[N m]; more 3[m/s] */
+void drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
 
 /* planar_drag: drag of a fluid in the plane */
 /* drag a length of a cable, and its derivatives: t 2[1]; w 2[m/s]; c 3[N s^2/m^3, N s^2/m^3, m/s] -> f 2[N/m]; f_t
@@ -1422,6 +1425,9 @@ void planar_drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_r
  * 2[m/s]; w_rate 2[m/s^2] -> p 2[kg m/s]; p_rate 2[N]; moment 1[N m]; M 2x2[kg]; p_turn 2x1[SI]; p_rate_turn
  * 2x1[SI]; moment_turn 1x1[SI]; p_rate_omega 2x1[kg m/s]; p_rate_w 2x2[kg/s]; moment_w 1x2[kg m/s] */
 void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
+/* impulse of the fluid at a body over a step, and its moment: A 2x2[1]; A_next 2x2[1]; C 2x2[kg]; w 2[m/s]; w_next
+ * 2[m/s]; theta 1[1]; turning 2[m/s] -> dp 2[kg m/s]; p 2[kg m/s]; moment 1[N m]; more 2[m/s] */
+void planar_drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
 
 /* crossing: lines that touch at their closest points in space */
 /* a step of Newton's method to the closest points: d 3[m]; t 2x3[1]; k 2x3[1/m] -> step 2[m] */
@@ -1732,6 +1738,7 @@ typedef struct {
     void (*inertia_step)(const fu_real *t, const fu_real *t_next, const fu_real *w, const fu_real *w_next, const fu_real *m, fu_real *dp, fu_real *g);
     void (*impulse_of_point)(const fu_real *A, const fu_real *C, const fu_real *w, fu_real *p, fu_real *M);
     void (*inertia_of_point)(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
+    void (*inertia_of_point_step)(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
 } fu_drag_kernels;
 
 /* What the engine needs of a crossing. */
