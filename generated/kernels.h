@@ -1449,6 +1449,9 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
  * c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 2[m]; before 3[m]; x 2[m] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N];
  * F_u 3x3[N s/m] */
 void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
+/* forces over a step that balance energy: n 3[1]; way 3[m]; turn 2x3[1]; size 2[m]; p [m]; p_next [m]; h [s]; c 8[m,
+ * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 3[N]; M 2x3[N m]; lost 1[J] */
+void crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
 
 /* planar_crossing: lines that touch at their closest points in the plane */
 /* a step of Newton's method to the closest points: d 2[m]; t 1x2[1]; k 1x2[1/m] -> step 1[m] */
@@ -1470,6 +1473,9 @@ void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real 
  * c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 1[m]; before 2[m]; x 1[m] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N];
  * F_u 2x2[N s/m] */
 void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
+/* forces over a step that balance energy: n 2[1]; way 2[m]; turn 1x2[1]; size 1[m]; p [m]; p_next [m]; h [s]; c 8[m,
+ * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 2[N]; M 1x2[N m]; lost 1[J] */
+void planar_crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
 
 /* surface: surfaces and contact with them in space */
 /* distance from a plane, and its gradient: y 3[m]; normal 3[1] -> g 1[m]; g_y 3[1] */
@@ -1751,6 +1757,7 @@ typedef struct {
     void (*stretch)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *now, fu_real *old, fu_real *along);
     void (*sticking)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, fu_real k_t, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t);
     void (*sliding)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
+    void (*step)(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
 } fu_crossing_kernels;
 
 /* What the engine needs of a surface. */

@@ -195,8 +195,9 @@ def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine
             raise SceneError(slide.where, f"{who} knows neither friction nor ends of cables",
                              _take_another("takes_friction_and_stops"))
     for crossing in scene.crossings.values():
-        if integrator.needs_discrete_gradient:
-            raise SceneError(crossing.where, f"{who} has no discrete gradient of it", "take another integrator")
+        if integrator.needs_discrete_gradient and crossing.friction is not None and crossing.friction.sticks:
+            raise SceneError(crossing.where, f"{who} does not know friction of crossings that sticks",
+                             "take model=\"regularised\", or another integrator")
     for contact in scene.contacts.values():
         if contact.is_hard and contact.friction_coefficient and not integrator.takes_friction_and_stops:
             raise SceneError(contact.where, f"{who} does not know friction of hard contacts",
