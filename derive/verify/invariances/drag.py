@@ -46,3 +46,5 @@ def _added_mass(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invari
     energies = [p @ w / 2 for p, (_, w) in zip(impulses, ends, strict=True)]
     given = step["dp"] @ (s["w"] + s["w_next"]) / 2 - step["g"] @ (s["t_next"] - s["t"])
     yield "energy over a step", relative(energies[1] - energies[0] - given, energies), 64 * EPS
+    sphere = k("inertia_of_point_step", {**s, "C": np.eye(family.dim), "turning": 0 * s["w"]})
+    yield "a sphere gets no moment over a step", relative(sphere["moment"], sphere["p"] @ sphere["p"]), 64 * EPS

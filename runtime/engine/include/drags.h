@@ -68,10 +68,15 @@ void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_
 /* table_events.c */
 extern const fu_coupling_events fu_table_edges;
 
+/* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is minus the flow's gradient. */
+typedef struct {
+    fu_flow_state flow;
+    double w[3], w_rate[3], material[3];
+} fu_fluid_past;
+
 /* fluid_inertia.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or without, null. */
 void fu_fluid_inertia_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                              const fu_drag_sums *sums);
-void fu_fluid_inertia_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums);
 void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                               const double *psi, fu_weights weights, fu_system *system);
 void fu_fluid_inertia(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
@@ -82,5 +87,16 @@ void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const dou
 void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 double fu_fluid_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
                                int past_fluid);
+fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v, const double *a);
+/* Makes the force with the particles, of an impulse p and its rate, as it stands on the left of the equations of motion, and adds
+ * the power. */
+void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_fluid_past *at, const double *p, const double *p_rate,
+                           const double *v, double part, double left[3], fu_drag_powers *power);
+/* Adds a force with the particles and one on the slope, at a point of quadrature, to those on an element's dofs. */
+void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point, const double *left,
+                         const double *on_slope, const fu_drag_sums *sums);
+
+/* fluid_inertia_steps.c */
+void fu_fluid_inertia_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums);
 
 #endif
