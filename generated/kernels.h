@@ -1377,6 +1377,9 @@ void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_r
 /* lift a length of a cable, and its derivatives: t 3[1]; w 3[m/s]; c_lift 2[N s^2/m^3, m/s] -> f 3[N/m]; f_t
  * 3x3[N/m]; f_w 3x3[N s/m^2] */
 void drag_lift_along_cable(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w);
+/* drag, lift and moment a length of a beam by the angle of attack of its section: t 3[1]; d 3[1]; w 3[m/s];
+ * c_section 3[N s^2/m^3, m, m/s]; polar 6[1, 1/rad] -> f 3x3[N/m, N, N]; K 9x9[SI] */
+void drag_on_section(const fu_real *t, const fu_real *d, const fu_real *w, const fu_real *c_section, const fu_real *polar, fu_real *f, fu_real *K);
 /* drag on a point, and its derivatives: w 3[m/s]; c_point 2[N s^2/m^2, m/s] -> f 3[N]; f_w 3x3[N s/m] */
 void drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
 /* drag and lift on a body with a span, and their derivatives: w 3[m/s]; s 3[1]; c_foil 2[N s^2/m^2, m/s];
@@ -1737,6 +1740,7 @@ typedef struct {
     int dim;
     void (*along_cable)(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
     void (*lift_along_cable)(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w);
+    void (*on_section)(const fu_real *t, const fu_real *d, const fu_real *w, const fu_real *c_section, const fu_real *polar, fu_real *f, fu_real *K);
     void (*on_point)(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
     void (*on_foil)(const fu_real *w, const fu_real *s, const fu_real *c_foil, const fu_real *coefficients, fu_real *f, fu_real *f_w);
     void (*impulse_of_cable)(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M);

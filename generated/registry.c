@@ -237,10 +237,10 @@ static const fu_resistance_kernels resistances[] = {
 };
 
 static const fu_drag_kernels drags[] = {
-    {"drag", 3, drag_along_cable, drag_lift_along_cable, drag_on_point, drag_on_foil, drag_impulse_of_cable,
-     drag_inertia_of_cable, drag_inertia_step, drag_impulse_of_point, drag_inertia_of_point,
+    {"drag", 3, drag_along_cable, drag_lift_along_cable, drag_on_section, drag_on_point, drag_on_foil,
+     drag_impulse_of_cable, drag_inertia_of_cable, drag_inertia_step, drag_impulse_of_point, drag_inertia_of_point,
      drag_inertia_of_point_step},
-    {"planar_drag", 2, planar_drag_along_cable, 0, planar_drag_on_point, planar_drag_on_foil,
+    {"planar_drag", 2, planar_drag_along_cable, 0, 0, planar_drag_on_point, planar_drag_on_foil,
      planar_drag_impulse_of_cable, planar_drag_inertia_of_cable, planar_drag_inertia_step, planar_drag_impulse_of_point,
      planar_drag_inertia_of_point, planar_drag_inertia_of_point_step},
 };
@@ -713,6 +713,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
     X(drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(drag_lift_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(drag_on_section, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
     X(drag_on_point, a[0], a[1], out[0], out[1]) \
     X(drag_on_foil, a[0], a[1], a[2], a[3], out[0], out[1]) \
     X(drag_impulse_of_cable, a[0], a[1], a[2], out[0], out[1]) \
