@@ -17,6 +17,7 @@ from ..parts.velocity_table import AXES
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 from .loads import GAUSS, LoadBuilder
+from .quadrature import along_elements
 
 LEAST_SPEED = 1e-30
 """m/s: what sizes of velocities are not below in the kernels, lest derivatives at rest be 0/0."""
@@ -110,14 +111,13 @@ def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loa
         width = part.width(scene.cables[part.on]) if has_width else 0.0
         model.lift = (pressure * width * part.lift, LEAST_SPEED)
         model.coefficients = (pressure * width * part.normal, pressure * np.pi * width * part.tangential, LEAST_SPEED)
+        model.n_points = len(GAUSS[0])
         lengths = cable.mesh.lengths
-        shapes = [[cable.kernel("on_axis")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
-        model.N, model.N_x = (np.array([[shape[k] for shape in each] for each in shapes]) for k in range(2))
+        model.N, model.N_x, model.weights = along_elements(cable.kernel("on_axis"), lengths, GAUSS)
         if part.polar is not None:
             model.is_foil, model.section = True, (pressure * width, width, LEAST_SPEED)
             slopes = [[cable.kernel("slopes")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
             model.N_chord = np.einsum("c,egck->egk", part.foil_axes[1], np.array(slopes)[..., 0, :])
-        model.n_points, model.weights = len(GAUSS[0]), np.outer(lengths, GAUSS[1]) / 2
         model.stride = 0 if cable.mesh.is_even else model.n_points
     else:
         of_drag = part.coefficient if part.polar is None else 0.0

@@ -204,12 +204,7 @@ class CableLoads:
         cable, value = self.model.cables[number], np.array(load.value)
         assert load.start is not None and load.stop is not None, f"{load.where} is not complete"
         is_r = positions(cable)
-        for element in range(cable.n_elements):
-            begin = cable.mesh.start(element)
-            start = max(load.start - begin, 0.0)
-            stop = min(load.stop - begin, cable.mesh.length(element))
-            if stop <= start:
-                continue
+        for element, start, stop in cable.mesh.covered(load.start, load.stop):
             half = (stop - start) / 2
             places = (start + stop) / 2 + half * GAUSS[0]
             each = [scale[:, None, None] * self._force(cable, element, x, value, load.follower) for x in places]

@@ -21,7 +21,8 @@ import numpy as np
 from ..model.element_coordinates import positions
 from ..model.model import CableModel
 from ..model.states import spatial
-from ..parts.cable import EXACT, Cable
+from ..parts.cable import Cable
+from ..parts.validation import EXACT
 from .cable_loads import CableLoads, Spread, lengths_of_rows, rows, shape_on_axis
 from .nodal_forces import ElementForces
 

@@ -190,9 +190,9 @@ static int step(fu_run *run, double h)
     return fu_coast(run, h);
 }
 
-/* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has changed its
- * element the accelerations have jumped at some instant of the step, and velocities are wrong by the part of h that lies
- * between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. */
+/* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has
+ * changed its element the accelerations have jumped at some instant of the step, and velocities are wrong by the part of h
+ * that lies between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. */
 static double error(fu_run *run, double h)
 {
     const parameters *g = scheme_of(run);

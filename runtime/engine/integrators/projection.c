@@ -77,9 +77,9 @@ int fu_return_to_joints(fu_run *run, fu_state *state)
     return 0;
 }
 
-/* Goes from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints. `left` is what
- * is left of the couplings' equations then, redundant ones too, in the places of their forces. Returns not zero where there is no
- * way back. */
+/* Goes from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints. `left` is
+ * what is left of the couplings' equations then, redundant ones too, in the places of their forces. Returns not zero where
+ * there is no way back. */
 int fu_probe_mechanism(fu_run *run, const double *along, double *left)
 {
     const fu_model *model = run->model;
@@ -109,8 +109,8 @@ int fu_complete(fu_run *run, fu_state *state)
     return info;
 }
 
-/* Returns whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding of positions
- * would rule a velocity or an acceleration that is made of them. */
+/* Returns whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding of
+ * positions would rule a velocity or an acceleration that is made of them. */
 int fu_is_short(const fu_run *run, double h)
 {
     return h < SHORT_STEP * run->usual;

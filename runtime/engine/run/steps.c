@@ -153,8 +153,8 @@ static int attempt(fu_run *run, trial *t)
     return 1;
 }
 
-/* Returns whether the step, which was made as if there were no passage, is to be made anew and go over those that it leads to. This comes
- * first where the last passage was not gone over: iterations and stages beyond one cost more than without. */
+/* Returns whether the step, which was made as if there were no passage, is to be made anew and go over those that it leads to.
+ * This comes first where the last passage was not gone over: iterations and stages beyond one cost more than without. */
 static int shall_go_over(fu_run *run, trial *t)
 {
     if (!is_adaptive(run) || !run->integrator->quadrature || !run->keep_forces || t->refused || !run->model->n_passing) return 0;
