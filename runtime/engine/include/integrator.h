@@ -22,9 +22,6 @@ typedef struct {
     long (*n_dissipation_state)(const fu_run *run);
     /* Begins at `now`, which has consistent velocities, accelerations and forces; returns a status. */
     int (*start)(fu_run *run);
-    /* Notes what it goes on with beside accelerations, which are about to jump: the next start keeps it. Returns 0, or not 0 where
-     * that is not possible. Null: it goes on with nothing. */
-    int (*before_jump)(fu_run *run);
     /* Makes `next` from `now`; returns 0, or not 0 where that failed. */
     int (*step)(fu_run *run, double h);
     /* Returns the local error of positions of the step just made, m. */

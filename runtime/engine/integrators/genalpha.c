@@ -13,7 +13,7 @@
  * Of vibrations that steps do not resolve, h a_n is as large as velocities are, however long h is. Where a step is much shorter than
  * the next one, as what is left between an event and an output time can be, its a_n+1 would push the next one by that times the ratio
  * of both, and vibrations would grow from event to event, the more so the stiffer a cable is. After such a step the a_n that it began
- * with goes on.
+ * with goes on, nor is the scheme started anew with a_n = q''_n, which holds their acceleration in full.
  */
 #include "engine.h"
 
@@ -47,7 +47,6 @@ static long n_parameters(const double *given)
 typedef struct {
     fu_carried_residual carried;
     fu_extrapolation past;
-    double *distance; /* n_dof: of a_n from the accelerations that are about to jump, until the scheme starts anew; else 0 */
 } workspace;
 
 /* Places its arrays in the scratch; returns how many doubles it takes, which is all that is done where it is null. */
@@ -56,7 +55,6 @@ static long lay_out(const fu_run *run, double *scratch, workspace *w)
     long taken = 0;
     fu_carried_residual_take(&w->carried, run->model, scratch, &taken);
     fu_extrapolation_take(&w->past, run->model, scratch, &taken);
-    w->distance = fu_take(scratch, &taken, run->model->n_dof);
     return taken;
 }
 
@@ -220,30 +218,12 @@ static void account(fu_run *run, double h)
     fu_account_trapezoid(run, h);
 }
 
-/* Keeps the distance of a_n from q''_n where that is about to jump: both have the same vibrations that steps do not resolve. The part
- * that constraints do not allow is no vibration: event by event it would grow, which a spectral radius of 1 never lets decay. */
-static int before_jump(fu_run *run)
-{
-    const fu_model *model = run->model;
-    const workspace w = space(run);
-    fu_set_difference(model->threads, model->n_dof, 1.0, run->now.a, run->now.acceleration, w.distance);
-    if (!model->n_multipliers) return 0;
-    if (fu_prepare_response(model, &run->now, &run->accelerator)) return 1;
-    fu_mass_times(model, run->now.q, w.distance, run->work);
-    fu_response(model, &run->accelerator, run->work, w.distance);
-    return 0;
-}
-
 static int start(fu_run *run)
 {
     const workspace w = space(run);
-    if (run->statistics.steps == 0) {
-        fu_carried_residual_start(&w.carried, run->model);
-        memset(w.distance, 0, sizeof(double) * (size_t)run->model->n_dof);
-    }
+    if (run->statistics.steps == 0) fu_carried_residual_start(&w.carried, run->model);
     fu_extrapolation_start(&w.past);
-    for (int i = 0; i < run->model->n_dof; ++i) run->now.a[i] = run->now.acceleration[i] + w.distance[i];
-    memset(w.distance, 0, sizeof(double) * (size_t)run->model->n_dof);
+    memcpy(run->now.a, run->now.acceleration, sizeof(double) * (size_t)run->model->n_dof);
     run->factored = 0;
     return FU_RUNNING;
 }
@@ -252,7 +232,6 @@ const fu_integrator fu_genalpha = {.name = "genalpha",
                                    .n_parameters = n_parameters,
                                    .n_scratch = n_scratch,
                                    .start = start,
-                                   .before_jump = before_jump,
                                    .step = step,
                                    .error = error,
                                    .quadrature = quadrature,

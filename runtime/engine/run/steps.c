@@ -38,12 +38,17 @@ static void accept(fu_run *run, double h, fu_event event)
     if (h > s->h_max) s->h_max = h;
 }
 
-/* Starts a scheme anew after a very short step that would be in what it goes on with; returns a status. What is left between an
- * event and an output time can be so short that rounding, over h^2, is all there is in accelerations that are made of it. */
+/* Starts the scheme anew after a very short step, unless the scheme went over it as one that leaves what it goes on with; returns a
+ * status. What is left between an event and an output time can be so short that rounding, over h^2, is all there is in accelerations
+ * that are made of it. */
 static int refresh(fu_run *run, double h)
 {
+    const int coasted = run->integrator->coasts && fu_is_short(run, h);
     run->usual = run->fixed_step > 0.0 ? run->fixed_step : run->h;
-    return fu_is_short(run, h) && !run->integrator->coasts ? fu_start_scheme(run, !run->integrator->keeps_energy) : FU_RUNNING;
+    if (!fu_is_short(run, h)) return FU_RUNNING;
+    if (!coasted) return fu_start_scheme(run, !run->integrator->keeps_energy);
+    fu_coordinate_rates(run->model, &run->accelerator, run->s_slope);
+    return FU_RUNNING;
 }
 
 /* Returns whether the error chooses the size of steps. */
