@@ -185,6 +185,7 @@ static int step(fu_run *run, double h)
     if (!fu_is_short(run, h)) return fu_newton_step(run, &newton, h);
     const workspace w = space(run);
     fu_carried_residual_note_none(&w.carried, run->model);
+    memcpy(run->next.a, run->now.a, sizeof(double) * (size_t)run->model->n_dof);
     return fu_coast(run, h);
 }
 
@@ -212,7 +213,7 @@ static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_accept(&w.carried, run->model, h);
-    if (h < BRIEF * run->usual) memcpy(run->next.a, run->now.a, sizeof(double) * (size_t)run->model->n_dof);
+    if (run->is_remainder && h < BRIEF * run->usual) memcpy(run->next.a, run->now.a, sizeof(double) * (size_t)run->model->n_dof);
     else if (fu_goes_on(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
     else fu_extrapolation_start(&w.past);
     fu_account_trapezoid(run, h);
