@@ -9,7 +9,7 @@ import numpy as np
 
 from ..kernels.mesh import Mesh
 from ..parts.attachment import Attachment
-from ..parts.contact import Contact
+from ..parts.contact import GAUSS_POINTS, Contact
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.surface import Surface
@@ -19,8 +19,7 @@ from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 from .quadrature import along_elements
 
-GAUSS = np.polynomial.legendre.leggauss(6)
-"""Of an element: points enough for one that touches in part; see tests/benchmarks/contact.py."""
+GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 KERNELS = {2: "planar_surface", 3: "surface"}
 NONE = np.zeros(0)
 
