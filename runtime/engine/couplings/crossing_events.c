@@ -42,13 +42,17 @@ static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_s
     return points.found;
 }
 
+/* The gap dips where the points are closest within the ends of both lines. Lines that are apart may touch on their way past an end, or
+ * be through and away. */
 static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_crossing *crossing = crossing_of(coupling);
+    const int touch = run->now.flags[coupling->flags];
     fu_course from, to;
     (void)which;
-    if (!gap_of(run->model, crossing, &run->now, &from) || !gap_of(run->model, crossing, &run->next, &to)) return 0.0;
-    return fu_dip(from, to, run->now.flags[coupling->flags] ? -1 : 1, h, run->round_off);
+    const int within = gap_of(run->model, crossing, &run->now, &from) && gap_of(run->model, crossing, &run->next, &to);
+    if (touch || (within && !(to.value < 0.0))) return within ? fu_dip(from, to, touch ? -1 : 1, h, run->round_off) : 0.0;
+    return fu_crossing_pass(run->model, crossing, &run->now, &run->next, h, run->round_off);
 }
 
 static int watches(const fu_coupling *coupling, fu_watch *out)

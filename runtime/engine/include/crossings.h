@@ -1,5 +1,5 @@
 /* Two lines that touch at their closest points, a cable and another one or a bar: couplings/crossings.c, crossing_points.c,
- * crossing_friction.c, crossing_events.c. */
+ * crossing_passes.c, crossing_friction.c, crossing_events.c. */
 #ifndef FUNICULAR_CROSSINGS_H
 #define FUNICULAR_CROSSINGS_H
 
@@ -83,6 +83,11 @@ void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int li
 /* crossing_events.c: how far the lines are in contact, m, negative where they are not; not a number where no points are
  * the closest, though the lines may touch. */
 double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state);
+
+/* crossing_passes.c: when lines that do not touch at the ends of a step of h do within it, by more than `least`, m: half-way from the
+ * touch to where they part or their axes meet, s after the start of the step; 0 where they are not predicted to touch. */
+double fu_crossing_pass(const fu_model *model, const fu_crossing *crossing, const fu_state *now, const fu_state *next, double h,
+                        double least);
 
 /* crossing_friction.c */
 void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
