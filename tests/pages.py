@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 from markdown_it import MarkdownIt
@@ -52,6 +53,7 @@ class Page:
         return self.text.split(f"\n## {name}\n")[1].split("\n## ")[0]
 
 
+@cache
 def page(path: str) -> Page:
     """A page of the repository, by its path from the top."""
     found, section, heading = Page(path), "", 0

@@ -16,6 +16,9 @@ from funicular.model.build import build
 from scipy.integrate import quad, solve_ivp
 
 INTEGRATORS = ("genalpha", "energy", "explicit", "radau")
+SMALL_STEPS = {("genalpha", 3), ("energy", 3)}  # of second order, where tol is 1e-6: for seconds
+IN_WATER = [pytest.param(*each, marks=[pytest.mark.slow] * (each in SMALL_STEPS))
+            for each in product(INTEGRATORS, (2, 3))]
 FOR_JOINTS_AND_MODES = ("genalpha", "explicit", "radau")
 ELEMENTS = ("cable12", "cable8p", "cable18", "beam24", "beam12p")
 G, WATER, RADIUS, STEEL = 9.81, 1000.0, 0.01, 7800.0
@@ -234,8 +237,7 @@ def accurate(dim):
     return swimming(dim).run(0.2, tol=1e-9, integrator="explicit", output_step=0.05)
 
 
-@pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize(("integrator", "dim"), IN_WATER)
 def test_the_energy_of_the_water_is_in_the_balance(integrator, dim):
     run = swimming(dim).run(0.2, tol=1e-6, integrator=integrator, output_step=0.05)
     assert abs(run["energy.external"][-1] - run["energy.external"][0]) > 0.1

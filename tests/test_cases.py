@@ -98,6 +98,8 @@ ORDERS = {
 
 SLOW = {
     "B8": {"poisson_split", "continuum"},
+    "B11 level": {"beam24"},
+    "B11 drop": {"beam24"},
     "S1, 12 elements": {"cable12", "cable18", "cable8p"},
     "D0 mesh": {"cable12", "cable18", "beam24", "beam12p"},
     "D1": {"cable18", "beam24"},

@@ -1,6 +1,7 @@
 """Wind and water: closed forms, a boundary value problem, derivatives, energy balance, refusals."""
 
 from functools import cache
+from itertools import product
 from math import acos, pi, sin, sqrt
 
 import funicular as fu
@@ -11,6 +12,9 @@ from expectations import unaccounted
 from scipy.integrate import solve_bvp
 
 INTEGRATORS = ("genalpha", "energy", "explicit", "radau")
+SMALL_STEPS = {("genalpha", 3), ("energy", 3)}  # of second order, where tol is 1e-6: for seconds
+IN_WATER = [pytest.param(*each, marks=[pytest.mark.slow] * (each in SMALL_STEPS))
+            for each in product(INTEGRATORS, (2, 3))]
 ELEMENTS = ("cable12", "cable8p", "cable18", "beam24", "beam12p")
 G, WATER = 9.81, 1000.0
 ROPE = {"section": fu.Circle(radius=0.01), "material": fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=2000)}
@@ -180,8 +184,7 @@ def accurate(dim):
     return swimming(dim).run(0.6, tol=1e-9, integrator="explicit", output_step=0.05)
 
 
-@pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize(("integrator", "dim"), IN_WATER)
 def test_what_the_flow_gives_and_drag_takes_is_in_the_energy_balance(integrator, dim):
     run = swimming(dim).run(0.6, tol=1e-6, integrator=integrator, output_step=0.05)
     assert run["energy.dissipated"][-1] > 0.5 and abs(run["energy.external"][-1]) > 0.5

@@ -35,7 +35,7 @@ def test_the_wire_lies_as_given(of_messenger):
     assert float(rest["support_1.tension"]) == pytest.approx(form.mast_force, rel=1e-6)
 
 
-@pytest.mark.parametrize("of_messenger", [SIDE, 0.0])
+@pytest.mark.parametrize("of_messenger", [SIDE, pytest.param(0.0, marks=pytest.mark.slow)])
 def test_supports_bear_the_tension_times_its_change_of_direction(of_messenger):
     """Moments about the height of all on a span: droppers pull one wire as much as the other, wherever they lean.
 
