@@ -163,7 +163,11 @@ double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachm
 {
     double y[3] = {0.0, 0.0, 0.0}, along;
     local(dim, at, r, y);
-    if (surface->shape == FU_TERRAIN) return y[1] - reach - surface->highest;
+    if (surface->shape == FU_TERRAIN) {
+        /* the distance is that of the tangent plane: a height over the square root of 1 + slope^2 */
+        const double above = y[1] - reach - surface->highest;
+        return above > 0.0 ? above / sqrt(1.0 + surface->steepest * surface->steepest) : above;
+    }
     if (surface->shape == FU_BOX) return from_box(dim, surface->half_size, y) - reach;
     along = fu_dot(dim, surface->direction, y);
     if (surface->shape == FU_FLAT) return along - reach;
