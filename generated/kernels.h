@@ -1377,6 +1377,9 @@ void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_r
 /* lift a length of a cable, and its derivatives: t 3[1]; w 3[m/s]; c_lift 2[N s^2/m^3, m/s] -> f 3[N/m]; f_t
  * 3x3[N/m]; f_w 3x3[N s/m^2] */
 void drag_lift_along_cable(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w);
+/* drag, lift and moment a length of a beam by the angle of attack of its section: t 3[1]; d 3[1]; w 3[m/s];
+ * c_section 3[N s^2/m^3, m, m/s]; polar 6[1, 1/rad] -> f 3x3[N/m, N, N]; K 9x9[SI] */
+void drag_on_section(const fu_real *t, const fu_real *d, const fu_real *w, const fu_real *c_section, const fu_real *polar, fu_real *f, fu_real *K);
 /* drag on a point, and its derivatives: w 3[m/s]; c_point 2[N s^2/m^2, m/s] -> f 3[N]; f_w 3x3[N s/m] */
 void drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
 /* drag and lift on a body with a span, and their derivatives: w 3[m/s]; s 3[1]; c_foil 2[N s^2/m^2, m/s];
@@ -1397,6 +1400,9 @@ void drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_real *w,
  * 3[m/s]; w_rate 3[m/s^2] -> p 3[kg m/s]; p_rate 3[N]; moment 3[N m]; M 3x3[kg]; p_turn 3x3[SI]; p_rate_turn
  * 3x3[SI]; moment_turn 3x3[SI]; p_rate_omega 3x3[kg m/s]; p_rate_w 3x3[kg/s]; moment_w 3x3[kg m/s] */
 void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
+/* impulse of the fluid at a body over a step, and its moment: A 3x3[1]; A_next 3x3[1]; C 3x3[kg]; w 3[m/s]; w_next
+ * 3[m/s]; theta 3[1]; turning 3[m/s] -> dp 3[kg m/s]; p 3[kg m/s]; moment 3[N m]; more 3[m/s] */
+void drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
 
 /* planar_drag: drag of a fluid in the plane */
 /* drag a length of a cable, and its derivatives: t 2[1]; w 2[m/s]; c 3[N s^2/m^3, N s^2/m^3, m/s] -> f 2[N/m]; f_t
@@ -1422,6 +1428,9 @@ void planar_drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_r
  * 2[m/s]; w_rate 2[m/s^2] -> p 2[kg m/s]; p_rate 2[N]; moment 1[N m]; M 2x2[kg]; p_turn 2x1[SI]; p_rate_turn
  * 2x1[SI]; moment_turn 1x1[SI]; p_rate_omega 2x1[kg m/s]; p_rate_w 2x2[kg/s]; moment_w 1x2[kg m/s] */
 void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
+/* impulse of the fluid at a body over a step, and its moment: A 2x2[1]; A_next 2x2[1]; C 2x2[kg]; w 2[m/s]; w_next
+ * 2[m/s]; theta 1[1]; turning 2[m/s] -> dp 2[kg m/s]; p 2[kg m/s]; moment 1[N m]; more 2[m/s] */
+void planar_drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
 
 /* crossing: lines that touch at their closest points in space */
 /* a step of Newton's method to the closest points: d 3[m]; t 2x3[1]; k 2x3[1/m] -> step 2[m] */
@@ -1443,6 +1452,9 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
  * c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 2[m]; before 3[m]; x 2[m] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N];
  * F_u 3x3[N s/m] */
 void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
+/* forces over a step that balance energy: n 3[1]; way 3[m]; turn 2x3[1]; size 2[m]; p [m]; p_next [m]; h [s]; c 8[m,
+ * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 3[N]; M 2x3[N m]; lost 1[J] */
+void crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
 
 /* planar_crossing: lines that touch at their closest points in the plane */
 /* a step of Newton's method to the closest points: d 2[m]; t 1x2[1]; k 1x2[1/m] -> step 1[m] */
@@ -1464,6 +1476,9 @@ void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real 
  * c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 1[m]; before 2[m]; x 1[m] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N];
  * F_u 2x2[N s/m] */
 void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
+/* forces over a step that balance energy: n 2[1]; way 2[m]; turn 1x2[1]; size 1[m]; p [m]; p_next [m]; h [s]; c 8[m,
+ * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 2[N]; M 1x2[N m]; lost 1[J] */
+void planar_crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
 
 /* surface: surfaces and contact with them in space */
 /* distance from a plane, and its gradient: y 3[m]; normal 3[1] -> g 1[m]; g_y 3[1] */
@@ -1725,6 +1740,7 @@ typedef struct {
     int dim;
     void (*along_cable)(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
     void (*lift_along_cable)(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w);
+    void (*on_section)(const fu_real *t, const fu_real *d, const fu_real *w, const fu_real *c_section, const fu_real *polar, fu_real *f, fu_real *K);
     void (*on_point)(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w);
     void (*on_foil)(const fu_real *w, const fu_real *s, const fu_real *c_foil, const fu_real *coefficients, fu_real *f, fu_real *f_w);
     void (*impulse_of_cable)(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M);
@@ -1732,6 +1748,7 @@ typedef struct {
     void (*inertia_step)(const fu_real *t, const fu_real *t_next, const fu_real *w, const fu_real *w_next, const fu_real *m, fu_real *dp, fu_real *g);
     void (*impulse_of_point)(const fu_real *A, const fu_real *C, const fu_real *w, fu_real *p, fu_real *M);
     void (*inertia_of_point)(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
+    void (*inertia_of_point_step)(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
 } fu_drag_kernels;
 
 /* What the engine needs of a crossing. */
@@ -1744,6 +1761,7 @@ typedef struct {
     void (*stretch)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *now, fu_real *old, fu_real *along);
     void (*sticking)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, fu_real k_t, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t);
     void (*sliding)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
+    void (*step)(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
 } fu_crossing_kernels;
 
 /* What the engine needs of a surface. */

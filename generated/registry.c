@@ -237,18 +237,19 @@ static const fu_resistance_kernels resistances[] = {
 };
 
 static const fu_drag_kernels drags[] = {
-    {"drag", 3, drag_along_cable, drag_lift_along_cable, drag_on_point, drag_on_foil, drag_impulse_of_cable,
-     drag_inertia_of_cable, drag_inertia_step, drag_impulse_of_point, drag_inertia_of_point},
-    {"planar_drag", 2, planar_drag_along_cable, 0, planar_drag_on_point, planar_drag_on_foil,
+    {"drag", 3, drag_along_cable, drag_lift_along_cable, drag_on_section, drag_on_point, drag_on_foil,
+     drag_impulse_of_cable, drag_inertia_of_cable, drag_inertia_step, drag_impulse_of_point, drag_inertia_of_point,
+     drag_inertia_of_point_step},
+    {"planar_drag", 2, planar_drag_along_cable, 0, 0, planar_drag_on_point, planar_drag_on_foil,
      planar_drag_impulse_of_cable, planar_drag_inertia_of_cable, planar_drag_inertia_step, planar_drag_impulse_of_point,
-     planar_drag_inertia_of_point},
+     planar_drag_inertia_of_point, planar_drag_inertia_of_point_step},
 };
 
 static const fu_crossing_kernels crossings[] = {
     {"crossing", 3, crossing_closest, crossing_contact, crossing_force, crossing_stretch, crossing_sticking,
-     crossing_sliding},
+     crossing_sliding, crossing_step},
     {"planar_crossing", 2, planar_crossing_closest, planar_crossing_contact, planar_crossing_force,
-     planar_crossing_stretch, planar_crossing_sticking, planar_crossing_sliding},
+     planar_crossing_stretch, planar_crossing_sticking, planar_crossing_sliding, planar_crossing_step},
 };
 
 static const fu_surface_kernels surfaces[] = {
@@ -712,6 +713,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
     X(drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(drag_lift_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(drag_on_section, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
     X(drag_on_point, a[0], a[1], out[0], out[1]) \
     X(drag_on_foil, a[0], a[1], a[2], a[3], out[0], out[1]) \
     X(drag_impulse_of_cable, a[0], a[1], a[2], out[0], out[1]) \
@@ -719,6 +721,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(drag_inertia_step, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
     X(drag_impulse_of_point, a[0], a[1], a[2], out[0], out[1]) \
     X(drag_inertia_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
+    X(drag_inertia_of_point_step, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]) \
     X(planar_drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(planar_drag_on_point, a[0], a[1], out[0], out[1]) \
     X(planar_drag_on_foil, a[0], a[1], a[2], a[3], out[0], out[1]) \
@@ -727,18 +730,21 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_drag_inertia_step, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
     X(planar_drag_impulse_of_point, a[0], a[1], a[2], out[0], out[1]) \
     X(planar_drag_inertia_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
+    X(planar_drag_inertia_of_point_step, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]) \
     X(crossing_closest, a[0], a[1], a[2], out[0]) \
     X(crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(crossing_stretch, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2]) \
     X(crossing_sticking, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], out[0], out[1], out[2]) \
     X(crossing_sliding, a[0], a[1], a[2], a[3], a[4], a[5], *a[6], a[7], a[8], a[9], out[0], out[1], out[2], out[3]) \
+    X(crossing_step, a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], a[7], out[0], out[1], out[2]) \
     X(planar_crossing_closest, a[0], a[1], a[2], out[0]) \
     X(planar_crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(planar_crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(planar_crossing_stretch, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2]) \
     X(planar_crossing_sticking, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], out[0], out[1], out[2]) \
     X(planar_crossing_sliding, a[0], a[1], a[2], a[3], a[4], a[5], *a[6], a[7], a[8], a[9], out[0], out[1], out[2], out[3]) \
+    X(planar_crossing_step, a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], a[7], out[0], out[1], out[2]) \
     X(surface_flat, a[0], a[1], out[0], out[1]) \
     X(surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
     X(surface_terrain, a[0], a[1], out[0], out[1], out[2]) \

@@ -1,7 +1,10 @@
-"""The command line. What a command needs is imported when it is called, so that all of them start at once."""
+"""The command line. What one command needs beside `import funicular` is imported when it is called, so that all of them
+start at once.
+"""
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import warnings
@@ -11,6 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TextIO
 
 import typer
+
+from .errors import ConvergenceError, EndOfCableError, FunicularError, FunicularWarning
+from .scene_file import bundled_scenes, load_scene
 
 if TYPE_CHECKING:
     from .results.run import Run
@@ -24,8 +30,6 @@ Libraries = Annotated[list[Path] | None, typer.Option(
 
 def _bundled(incomplete: str) -> list[str]:
     """Return names of bundled scenes that begin so, for completion; where there is none, the shell completes paths."""
-    from funicular.scene_file import bundled_scenes
-
     return [name for name in bundled_scenes() if name.startswith(incomplete)]
 
 
@@ -54,8 +58,6 @@ def _options(
 @contextmanager
 def _reported_without_traceback() -> Iterator[None]:
     """Print errors and warnings of funicular as a line on stderr each; an error ends the command with 1."""
-    from .errors import FunicularError, FunicularWarning
-
     def tell(message: Warning | str, category: type[Warning], filename: str, lineno: int,
              file: TextIO | None = None, line: str | None = None) -> None:
         if not issubclass(category, FunicularWarning):
@@ -110,9 +112,7 @@ def run(
     What was computed is in the file also when the run stops early, and --resume goes on from there. Exit code: 1 for an
     error, 130 after Ctrl-C.
     """
-    from .errors import ConvergenceError, EndOfCableError
     from .results.files import check_writable
-    from .scene_file import load_scene
 
     with _reported_without_traceback():
         described = load_scene(scene, library or ())
@@ -148,8 +148,6 @@ def choose(
     library: Libraries = None,
 ) -> None:
     """Choose element, law and mesh of each cable, and the integrator, for a tolerance, and say why."""
-    from .scene_file import load_scene
-
     with _reported_without_traceback():
         described = load_scene(scene, library or ())
         chosen = described.choose(tol, duration=duration, quantities=quantities.split(",") if quantities else (),
@@ -288,7 +286,6 @@ def bench(
     from .bench.bench import bench, grid
     from .bench.report import print_table, save
     from .results.files import check_writable
-    from .scene_file import load_scene
 
     with _reported_without_traceback():
         described, name = load_scene(scene, library or ()), f"{Path(scene).stem}-bench"
@@ -317,8 +314,6 @@ def _numbers(text: str) -> list[float]:
 @app.command()
 def scenes() -> None:
     """List the bundled scenes."""
-    from .scene_file import bundled_scenes
-
     for name, path in bundled_scenes().items():
         print(f"{name}\t{path}")
 
@@ -331,8 +326,6 @@ def schema(
 
     In the first line of a scene file, editors that know Taplo look for: #:schema ./funicular.schema.json
     """
-    import json
-
     from .scene_schema import scene_schema
 
     text = json.dumps(scene_schema(), indent=1, ensure_ascii=False) + "\n"

@@ -1,4 +1,4 @@
-"""The scene: what the user describes, and how it is run."""
+"""The scene: what the user describes (described_scene.py), and how it is run."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from functools import partial
-from typing import TYPE_CHECKING, Any, Never, Self, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Never, Self, cast
 
+from .described_scene import DescribedScene
 from .errors import (
     ConvergenceError,
     EndOfCableError,
@@ -20,15 +21,10 @@ from .errors import (
     near,
 )
 from .parts.laid import laid
-from .parts.modal_body import ModalBody
-from .parts.pairs import pairs_of
-from .parts.part import Part
-from .parts.scene_text import dumps, read
 from .parts.settings import EquilibriumSettings, ModeSettings, RelaxationSettings, RunSettings, overridden
 from .parts.validation import show, shown
 from .results.run import Run
 from .results.viewable import Viewable
-from .scene_methods import SceneMethods
 from .solve.progress import progress_bar
 from .solve.threads import one_blas_thread
 
@@ -38,14 +34,11 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from .choice.choice import Choice
-    from .parts.body_shape import Shape
     from .results.equilibrium import Equilibrium
     from .results.modes import Modes
     from .solve.run import Start
     from .solve.shared_trials import SharedTrials
     from .view.animation import Animation
-
-P = TypeVar("P", bound=Part)
 
 SYNONYMS = {"dt": "step", "time_step": "step", "timestep": "step", "h": "step", "t_end": "duration", "tend": "duration",
             "end_time": "duration", "time": "duration", "rtol": "tol", "tolerance": "tol", "solver": "integrator",
@@ -58,7 +51,7 @@ MOST_NAMED = 12
 """Parts of a kind that a notebook names."""
 
 
-class Scene(Viewable, SceneMethods):
+class Scene(Viewable, DescribedScene):
     """Cables, bodies, and what joins, holds and loads them.
 
     ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``point_forces``,
@@ -66,90 +59,6 @@ class Scene(Viewable, SceneMethods):
     ``run_settings``, ``equilibrium_settings`` and ``relax_settings`` hold the settings that a scene file gives;
     ``title`` is what pictures are called: the name of the scene's file without the ending, or what you set.
     """
-
-    def add(self, part: P) -> P:
-        """Add a part, completed with what the scene knows, and return it; the methods for each kind end here.
-
-        Returns the part as it stands in the scene. Raises SceneError.
-        """
-        from .checks.adding import check_of  # not needed where saved runs are read alone
-        from .checks.planarity import check_plane  # likewise
-
-        if part.is_named():
-            if part.given_name is None:
-                part = part.model_copy(update={"name": self.free_name(type(part))})
-            self.check_name(part)
-        if isinstance(part, ModalBody):
-            part = part.with_modes_by(_modes_of_mesh)
-        check_plane(self, part)
-        part = check_of(part)(self, part)
-        self.put(part)
-        return part
-
-    def add_pairs(self, kind: type[P], entries: Mapping[str, Any]) -> list[P]:
-        """Add parts of many pairs, such as contacts, by lists in the entries that `kind` is made with.
-
-        Returns the parts as they stand in the scene, the pairs of the first one's list first. Raises SceneError, and
-        then none of them is added.
-        """
-        from .checks.adding import check_all_of  # likewise
-        from .checks.planarity import check_plane  # likewise
-
-        pairs = pairs_of(self, kind, entries)
-        ends, given = kind.positional, entries.get("name")
-        one = kind(**{**entries, **dict(zip(ends, pairs[0], strict=True))})
-        names = self.free_names(kind, kind.kind if given is None else given, len(pairs))
-        parts = [one.model_copy(update={**dict(zip(ends, pair, strict=True)), "name": name})
-                 for pair, name in zip(pairs, names, strict=True)]
-        check_plane(self, one)
-        for part in (parts := check_all_of(one)(self, parts)):
-            self.put(part)
-        return parts
-
-    def replace(self, part: Part | str, **changes: Any) -> Self:
-        """Return a scene like this one with other values of one part, checked as any scene is; this one stays.
-
-        part: its name, or the part itself; changes: by the keywords that such a part is made with, such as
-        ``scene.replace("trolley", friction=fu.Friction(coefficient=0.1))``; None leaves out what was given. Raises
-        SceneError.
-
-        >>> import funicular as fu
-        >>> scene = fu.load_scene("paper51")
-        >>> scene.replace("A", mass=2.0).bodies["A"].mass, scene.bodies["A"].mass
-        (2.0, 1.0)
-        """
-        return self.changed([(self._part(part), changes)])
-
-    def _part(self, part: Part | str) -> Part:
-        """Return the part of a name, or this part where it is the scene's. Raises SceneError."""
-        parts = list(self.parts())
-        for each in parts:
-            if each is part or (isinstance(part, str) and each.given_name == part):
-                return each
-        names = [each.given_name for each in parts if each.given_name is not None]
-        if isinstance(part, str):
-            raise SceneError("scene", f'there is no part "{part}"', near(part, names))
-        raise SceneError("scene", f"has no such part: {shown(part)}", "give its name, or a part that the scene holds")
-
-    @classmethod
-    def from_toml(cls, text: str, origin: str = "scene", directory: str | os.PathLike = "",
-                  libraries: Iterable[str | os.PathLike] = ()) -> Scene:
-        """Return a scene from the text of a scene file; ``origin`` is what error messages call it.
-
-        directory: where paths in the text start from, by default the working directory; libraries: directories of
-        elements that the text may load. Raises SceneError.
-        """
-        return read(text, origin, cls, directory, libraries)
-
-    def to_toml(self) -> str:
-        """Return the scene as the text of a scene file."""
-        return dumps(self)
-
-    def check(self) -> None:
-        """Check the scene as a whole, as `run` does first. Raises SceneError."""
-        from .checks.whole_scene import check_scene  # likewise
-
-        check_scene(self)
 
     def _check_for(self, settings: RunSettings) -> None:
         """Check the scene for a run of these settings. Raises SceneError."""
@@ -433,32 +342,6 @@ class Scene(Viewable, SceneMethods):
             more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
             found.append((kind, ", ".join(names[:MOST_NAMED]) + more))
         return found + [("note", message) for message in self.messages]
-
-    def __repr__(self) -> str:
-        """Return how many parts of which kind there are, in a line."""
-        counts = ", ".join(_counted(len(names), kind.replace("_", " ")) for kind, names in self._names().items())
-        return f"<funicular.Scene: {counts or 'empty'}>"
-
-    def _names(self) -> dict[str, list[str]]:
-        """Return the names of the parts by their kind; those of supports are the names in results."""
-        found: dict[str, list[str]] = {}
-        for part in self.parts():
-            name = part.given_name or getattr(part, "label", part.kind)
-            found.setdefault(part.kind, []).append(str(name))
-        return found
-
-
-def _counted(number: int, thing: str) -> str:
-    """Return a number of things in words."""
-    plural = thing[:-1] + "ies" if thing.endswith("y") else thing + "s"
-    return f"{number} {thing if number == 1 else plural}"
-
-
-def _modes_of_mesh(body: ModalBody) -> Shape:
-    """Make the modes of a modal body that is described by a beam."""
-    from .solve.body_modes import of_mesh  # brings SciPy
-
-    return of_mesh(body)
 
 
 def _refuse_unknown(method: str, unknown: Iterable[str], known: Collection[str]) -> None:

@@ -183,6 +183,38 @@ def test_no_touch_is_missed(shape, size, speed, aside, integrator, hard, moves, 
         assert touches and abs(touches[0]["time"] / duration - first) < 2e-5
 
 
+def ridges(width: float, across: bool) -> fu.HeightField:
+    """Return the ground with two ridges of 2 m, the second of twice the width; without `across`, from side to side."""
+    places = np.concatenate([at + width * size * np.linspace(-4, 4, 33) for at, size in ((-1, 1), (2, 2))])
+    x = np.unique(np.concatenate([np.linspace(-5, 5, 41), places]).round(9))
+
+    def height(a: float, b: float = 0.0) -> float:
+        return 2 * (np.exp(-((a + 1) / width)**2) + np.exp(-((a - 2) / width / 2)**2)) * np.exp(-b * b)
+
+    return fu.HeightField.of(height, x, *([np.linspace(-1, 1, 9)] if across else []))
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("width", [0.03, 0.12])
+@pytest.mark.parametrize("speed", [5, 50, 300])
+def test_no_narrow_and_steep_ridge_is_flown_through(integrator, width, speed):
+    """Beside a ridge the vertical gap, and it over the root of 1 + slope^2 there, say little of the distance."""
+    far = 8.0
+    for k, height in enumerate(np.linspace(0.1, 1.9, 5)):
+        radius = 0.0 if k % 2 else 0.02  # hard contact with heights is of points
+        scene = fu.Scene(gravity=(0, 0, 0))
+        ball(scene, "A", (-4, height, 0.05), (speed, 0, 0))
+        ground = scene.surface("s", ridges(width, across=k == 2))
+        scene.contact("A", "s", radius=radius, **({"restitution": 0.5} if k % 2 else {"stiffness": 1e4}))
+        way = np.tile([0, height, 0.05], (50_001, 1))
+        way[:, 0] = np.linspace(-4, 4, len(way))
+        below = ground.distance(None, way) < radius
+        run = scene.run(far / speed, output_step=far / speed, integrator=integrator, tol=1e-3)
+        touches = [event for event in run.report["events"] if event["what"] in ("came into contact", "struck")]
+        first = np.argmax(below) / (len(way) - 1)
+        assert touches and abs(touches[0]["time"] * speed / far - first) < 4e-5, (height, first)
+
+
 @settings(max_examples=12, deadline=None, derandomize=True)
 @given(speed=st.floats(1, 30), size=st.floats(0.05, 0.3), aside=st.floats(-0.6, 0.6),
        integrator=st.sampled_from(INTEGRATORS), moves=st.booleans())

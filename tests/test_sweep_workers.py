@@ -74,6 +74,23 @@ def test_a_cluster_that_lost_its_workers_is_said(monkeypatch):
                      progress=lambda done, failed: own.scale(0))
 
 
+def test_a_batch_whose_result_is_lost_is_computed_again(cluster, monkeypatch):
+    """A future that was lost with the last worker stays so: its batch was asked for again and again, for ever."""
+    losses = []
+
+    def finished_but_one(self, finished=module.DaskWorkers._finished):
+        found = finished(self)
+        if not losses:
+            losses.append(found[0])
+            found[0]._state.lose()
+        return found
+
+    monkeypatch.setattr(module.DaskWorkers, "_finished", finished_but_one)
+    alone = fu.sweep(square, {"x": [1], "y": [*range(30)]}, workers=0, progress=False)
+    found = fu.sweep(square, {"x": [1], "y": [*range(30)]}, cluster=cluster, batch=4, progress=False)
+    assert losses and found.drop_vars("seconds").identical(alone.drop_vars("seconds"))
+
+
 def test_the_cost_counts_the_workers_of_the_cluster(cluster):
     told = []
     fu.sweep(square, {"x": [1], "y": [*range(30)]}, cluster=cluster, progress=False, on_cost=told.append)

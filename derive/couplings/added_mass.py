@@ -28,7 +28,7 @@ POINT = "Lamb, Hydrodynamics, art. 124; Taylor 1928"
 def build(name: str, dim: int) -> list[Program]:
     """Return the kernels in space or in the plane, of the family `name`."""
     return [impulse_of_cable(name, dim), of_cable(name, dim), of_cable_step(name, dim), impulse_of_point(name, dim),
-            of_point(name, dim)]
+            of_point(name, dim), of_point_step(name, dim)]
 
 
 def _input_masses(p: Program) -> tuple[sp.Symbol, sp.Expr]:
@@ -113,13 +113,18 @@ def of_cable_step(name: str, dim: int) -> Program:
     return p
 
 
+def _turned_mass(p: Program, name: str, A: np.ndarray, C: np.ndarray) -> np.ndarray:
+    """Return A C A', its entries named."""
+    half = np.array([p.vector(f"C{name}{k + 1}", row) for k, row in enumerate(C.dot(A.T))])
+    return np.array([p.vector(f"{name}{k + 1}", row) for k, row in enumerate(A.dot(half))])
+
+
 def _mass_of_point(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the axes A of a body and its added mass A C A' in global axes."""
     A = p.input("A", (dim, dim), "1", "axes of the body by columns")
     C = p.input("C", (dim, dim), "kg", "added mass in body axes, symmetric")
     p.stage("added mass")
-    half = np.array([p.vector(f"CA{k + 1}", row) for k, row in enumerate(C.dot(A.T))])
-    return A, np.array([p.vector(f"M{k + 1}", row) for k, row in enumerate(A.dot(half))])
+    return A, _turned_mass(p, "M", A, C)
 
 
 def impulse_of_point(name: str, dim: int) -> Program:
@@ -158,6 +163,42 @@ def of_point(name: str, dim: int) -> Program:
     p.output("p_rate_omega", jacobian(p, impulse_rate, omega), "kg m/s", "derivatives of p_rate by omega")
     p.output("p_rate_w", jacobian(p, impulse_rate, w), "kg/s", "derivatives of p_rate by w")
     p.output("moment_w", jacobian(p, moment, w), "kg m/s", "derivatives of moment by w")
+    return p
+
+
+def of_point_step(name: str, dim: int) -> Program:
+    """Return the kernel of the impulse at a point of a body over a step, and the moment that conserves energy.
+
+    A_next - A = theta~ (A + A_next)/2. With a and b, the half sum and half difference of w at the ends, and M = A C A',
+    T_next - T = dp . a - (D_next - D) for D = (a . M a - b . M b)/2. D_next - D is -theta . m(a) + theta . m(b),
+    with m(x) = x x M_mean x - y x N y/4, y = theta x x, and N that of the mean axes: of a sphere m is nil. The mean
+    velocity of the point is its way over the step's length and theta x turning/4; `moment` has the work of that, too.
+    """
+    turns = 3 if dim == 3 else 1
+    p = Program(f"{name}_inertia_of_point_step", "impulse of the fluid at a body over a step, and its moment",
+                f"{POINT}; Simo & Wong 1991; Gonzalez 1996")
+    A, A_next = (p.input(key, (dim, dim), "1", f"axes of the body by columns{at}")
+                 for key, at in (("A", ""), ("A_next", " at the end of the step")))
+    C = p.input("C", (dim, dim), "kg", "added mass in body axes, symmetric")
+    w, w_next = p.input("w", dim, "m/s", PAST), p.input("w_next", dim, "m/s", "w at the end of the step")
+    theta = p.input("theta", turns, "1", "Cayley vector of the turn in global axes")
+    turning = p.input("turning", dim, "m/s", "change over the step of the velocity by which the point turns about the "
+                                            "mass centre, in axes of the body, turned by the mean of A")
+    p.stage("added mass at both ends, and that of the mean axes")
+    M, M_next, N = (_turned_mass(p, key, axes, C)
+                    for key, axes in (("M", A), ("L", A_next), ("N", (A + A_next) / 2)))
+    p.stage("impulse")
+    P, P_next = p.vector("P", M.dot(w)), p.vector("Q", M_next.dot(w_next))
+    dp = p.vector("dp", P_next - P)
+    p.stage("moment")
+    moment = _moment(turning, dp) / 4
+    for sign, at in ((1, p.vector("a", (w + w_next) / 2)), (-1, p.vector("b", (w_next - w) / 2))):
+        y = p.vector(f"y_{'ab'[sign < 0]}", cross(theta, at))
+        moment = moment + sign * (_moment(at, (M + M_next).dot(at)) / 2 - _moment(y, N.dot(y)) / 4)
+    p.output("dp", dp, "kg m/s", "change of the impulse A C A' w")
+    p.output("p", (P + P_next) / 2, "kg m/s", "its mean")
+    p.output("moment", moment, "N m", "that does the work of w x p over the step")
+    p.output("more", cross(theta, turning) / 4, "m/s", "mean velocity at both ends, less way over step")
     return p
 
 

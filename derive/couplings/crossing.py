@@ -30,6 +30,7 @@ from .stretch import sliding_force, sticking_force
 
 CROSSINGS = {3: "crossing", 2: "planar_crossing"}
 PENALTY = ("radii", "side", "linear", "root", "damping", "least", "friction", "v0")
+NEGLIGIBLE = sp.Rational(1, 10**16)  # of the square of a line's size: ways of which rounding is all
 SOURCE = "Hunt & Crossley 1975; closest points by the implicit function theorem"
 NONE = np.zeros(0, dtype=object)
 
@@ -49,7 +50,7 @@ class _Lines(NamedTuple):
 
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
-    return [closest(dim), contact(dim), force(dim), stretch(dim), sticking(dim), sliding(dim)]
+    return [closest(dim), contact(dim), force(dim), stretch(dim), sticking(dim), sliding(dim), step(dim)]
 
 
 def _lines(p: Program, dim: int, with_curvature: bool = True) -> _Lines:
@@ -261,3 +262,46 @@ def sliding(dim: int) -> Program:
     normal = _law(p, n, lines.d, u, c)["normal"]
     found = _stretch(p, lines, n)
     return _with_points_moving(p, lines, sliding_force(p, found.now, mu * normal), w, u, found.e)
+
+
+def step(dim: int) -> Program:
+    """Return the kernel of the forces over a step that balance energy.
+
+    The points are those that are closest in the middle of the step, of which the way and the changes of the slopes over
+    the step are known. The law's mean force N = (U_next - U)/(p_next - p) acts along a discrete gradient of the gap
+    n.d = radii - p (Gonzalez 1996): its gradient half-way is n, by the way. What that leaves of p - p_next is made up
+    for along the way and the changes of the slopes: it is of third order in them, and zero where they are.
+    """
+    p = Program(f"{CROSSINGS[dim]}_step", "forces over a step that balance energy", f"{SOURCE}; Gonzalez 1996")
+    n = p.input("n", dim, "1", "normal half-way")
+    way = p.input("way", dim, "m", "change of d over the step, of the points that are closest half-way")
+    turn = p.input("turn", (dim - 1, dim), "1", "changes of the slopes there")
+    sizes = p.input("size", dim - 1, "m", "of the lines, with which changes of slopes count")
+    depth, after = p.input("p", (), "m", "penetration"), p.input("p_next", (), "m", "that at the end of the step")
+    h = p.input("h", (), "s", "length of the step")
+    c = _penalty(p)
+    _, _, linear, root, damping, least, friction, v0 = c
+    p.stage("discrete gradient of the gap")
+    squares = [p.define(f"square_{i}", size * size) for i, size in enumerate(sizes)]
+    measure = p.define("measure", way.dot(way) + sum(
+        square * (each.dot(each) + NEGLIGIBLE) for square, each in zip(squares, turn, strict=True)))
+    along = p.define("along", n.dot(way))
+    left = p.define("left", (depth - after - along) / measure)
+    p.stage("law")
+    sunk = p.define("sunk", after - depth)
+    roots = [p.define(f"root_{i}", sp.sqrt(p.define(f"size_{i}", sp.sqrt(at * at + least * least))))
+             for i, at in enumerate((depth, after))]
+    half = p.define("half", (depth * depth + after * after) / 2)
+    mean = p.define("mean_root", (roots[0] + roots[1]) / 2 + half / (
+        (roots[0] + roots[1]) * (roots[0] * roots[0] + roots[1] * roots[1])))
+    elastic = p.define("elastic", (depth + after) / 2 * (linear + sp.Rational(4, 5) * root * mean))
+    normal = p.define("N_law", elastic * (1 + damping * sunk / h))
+    p.stage("friction")
+    slip = p.vector("slip", (way - along * n) / h)
+    rub = p.define("rub", friction * normal / p.define("speed", sp.sqrt(slip.dot(slip) + v0 * v0)))
+    p.output("F", normal * (n + left * way) - rub * slip, "N",
+             "force on the first line; its opposite acts on the second")
+    p.output("M", np.array([normal * left * square * each for square, each in zip(squares, turn, strict=True)]), "N m",
+             "what acts on the slopes")
+    p.output("lost", [(normal - elastic) * sunk + rub * slip.dot(way)], "J", "what goes to heat")
+    return p

@@ -357,6 +357,10 @@ def drag_scope(name: str) -> Scope:
                                     *(Symbol(s, "c_foil", entry(k)) for k, s in enumerate(("c_{f}", "w_{f}"))),
                                     *(Symbol(s, "coefficients", entry(k)) for k, s in enumerate(
                                         ("C_{D}", "C_{D,1}", "C_{L}", "C_{L,1}"))),
+                                    Symbol(r"\mathbf{d}", "d", column),
+                                    *(Symbol(s, "c_section", entry(k)) for k, s in enumerate(("c_{b}", "b", "w_{b}"))),
+                                    *(Symbol(s, "polar", entry(k)) for k, s in enumerate(
+                                        ("C_{d}", "C_{d,1}", "C_{l}", "C_{l,1}", "C_{m}", "C_{m,1}"))),
                                     Symbol(r"\dot{\mathbf{t}}", "t_rate", column),
                                     Symbol(r"\dot{\mathbf{w}}", "w_rate", column),
                                     *(Symbol(s, "m", entry(k)) for k, s in enumerate(("m_{n}", "m_{t}"))),

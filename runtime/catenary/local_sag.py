@@ -10,18 +10,18 @@ the frequencies that the elements resolve, and the force on the wire alone decid
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from numpy.polynomial.polynomial import polyder, polyval
+
+from ..kernels.libraries import kernels_of
 
 SAMPLES = 8
 """Of an element, over which the mean is taken."""
 
-ENDS = np.array([[polyval(end, polyder(np.eye(4), order)) for order in (0, 1)] for end in (0.0, 1.0)]).reshape(4, 4)
-"""Position and slope at both ends, 0 and 1, of the powers 0 to 3."""
-SHAPES = np.linalg.inv(ENDS)
-"""(4, 4): by power, the cubics of which one of these is one, and the others are zero."""
+CUBIC = "cable8p"
+"""The element whose shape functions are taken: position and slope at two nodes."""
 
 
 def missing_compliance(tension: float, bending: float, nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
@@ -50,13 +50,11 @@ def _stiffness(tension: float, bending: float, nodes: np.ndarray) -> np.ndarray:
     """Return the stiffness matrix of position and slope at all nodes; both ends do not move."""
     size = 2 * len(nodes)
     total = np.zeros((size, size))
-    points, weights = leggauss(3)  # exact for products of slopes, of the fourth degree
-    points, weights = (1 + points) / 2, weights / 2
-    slopes, bends = (polyval(points, polyder(SHAPES, order)) for order in (1, 2))
-    string, beam = (np.einsum("g,ig,jg->ij", weights, each, each) for each in (slopes, bends))
+    places, weights = leggauss(3)  # exact for products of slopes, of the fourth degree
     for k, h in enumerate(np.diff(nodes)):
-        scale = np.outer(_units(h), _units(h))
-        total[2 * k:2 * k + 4, 2 * k:2 * k + 4] += scale * (tension / h * string + bending / h**3 * beam)
+        slopes, bends = np.moveaxis(_kernel("slopes").rows(3, h, h * (1 + places) / 2)[:, 0, :2], 1, 0)
+        string, beam = (np.einsum("g,gi,gj->ij", h * weights / 2, each, each) for each in (slopes, bends))
+        total[2 * k:2 * k + 4, 2 * k:2 * k + 4] += tension * string + bending * beam
     for end in (0, size - 2):
         total[end], total[:, end], total[end, end] = 0.0, 0.0, 1.0
     return total
@@ -66,15 +64,13 @@ def _shapes(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Return (at, 2 nodes): the cubic shape functions at these places; none of both ends' positions."""
     shapes = np.zeros((len(at), 2 * len(nodes)))
     element = np.clip(np.searchsorted(nodes, at, "right") - 1, 0, len(nodes) - 2)
-    h = np.diff(nodes)[element]
-    values = polyval((at - nodes[element]) / h, SHAPES) * _units(h)
-    for j, value in enumerate(values):
-        shapes[np.arange(len(at)), 2 * element + j] = value
+    values = _kernel("on_axis").rows(len(at), np.diff(nodes)[element], at - nodes[element])[0]
+    for j in range(4):
+        shapes[np.arange(len(at)), 2 * element + j] = values[:, j]
     shapes[:, [0, -2]] = 0.0
     return shapes
 
 
-def _units(h: float | np.ndarray) -> np.ndarray:
-    """Return (4,), or (4, n) of h (n,), in m: by what shape functions of the length 1 are multiplied for the length h.
-    """
-    return np.array([np.ones_like(h), h, np.ones_like(h), h])
+def _kernel(name: str) -> Any:
+    """Return a kernel of the cubic element."""
+    return getattr(kernels_of(None), f"{CUBIC}_{name}")

@@ -8,12 +8,11 @@ import numpy as np
 
 from ..errors import SceneError
 from ..parts.attachment import Attachment
-from ..parts.cable import EXACT
 from ..parts.joint import DRIVEN, LINES, POINTS, Joint
 from ..parts.locations import Node, joined, point_of, support_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Motion, Support
-from ..parts.validation import show
+from ..parts.validation import EXACT, show
 from .placement import SUPPORTED
 
 

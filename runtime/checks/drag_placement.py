@@ -8,9 +8,11 @@ import numpy as np
 
 from ..errors import SceneError, near
 from ..parts.attachment import Attachment
+from ..parts.cable import Cable
 from ..parts.drag import OF_BODY, OF_CABLE, Drag
 from ..parts.scene_data import SceneData
 from ..parts.validation import EXACT, show
+from .frames import draws_section
 from .placement import placed_attachment
 
 PLACES = 65
@@ -77,7 +79,8 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
     if drag.lift != 0 and cable.dim == 2:
         raise SceneError(drag.where, f'lift of cable "{drag.on}" leaves the plane of its element {cable.element}',
                          "take a spatial element, or leave lift out")
-    if drag.normal == 0 and drag.tangential == 0 and drag.lift == 0:
+    _check_section(drag, cable)
+    if drag.normal == 0 and drag.tangential == 0 and drag.lift == 0 and drag.polar is None:
         if drag.displaced(cable) == 0:
             raise SceneError(drag.where, "has neither drag nor buoyancy", "give normal, tangential or displaced_area")
         return
@@ -87,11 +90,39 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
         raise SceneError(drag.where, str(error), "give diameter, in m: the width across the flow") from None
 
 
+def _check_section(drag: Drag, cable: Cable) -> None:
+    """Raise SceneError where a polar does not suit the sections of its cable, or has two coefficients."""
+    if drag.polar is None:
+        _refuse_chord(drag)
+        return
+    if cable.dim == 2:
+        raise SceneError(drag.where, f'has a polar, and cable "{drag.on}" is of the planar element {cable.element}, '
+                         "past whose sections nothing flows but along their height", "take the element beam24")
+    if not draws_section(cable):
+        raise SceneError(drag.where, f'has a polar, and cable "{drag.on}" is of the element {cable.element}, which '
+                         "knows no turn of its section", "take the element beam24, or normal and lift")
+    for name in ("normal", "lift"):
+        if getattr(drag, name) != 0:
+            raise SceneError(drag.where, f"has a polar and {name}", "leave it out: the polar has all coefficients but "
+                             "tangential")
+    if drag.chord is None:
+        raise SceneError(drag.where, "chord is missing, from which the polar counts its angle",
+                         "give chord, a direction across the axis in local axes: (0, 1, 0) is the section's height")
+    if abs(drag.foil_axes[1][0]) > 1e-6:
+        raise SceneError(drag.where, f"chord must be square to the axis of the cable, x, got {show(drag.chord)}",
+                         "give a direction in local axes: y is the section's height, z its width")
+
+
+def _refuse_chord(drag: Drag) -> None:
+    """Raise SceneError where a chord is given, which only a polar counts from."""
+    if drag.chord is not None:
+        raise SceneError(drag.where, "chord is given without a polar", "give polar, or leave chord out")
+
+
 def _check_foil(scene: SceneData, drag: Drag) -> None:
     """Raise SceneError where lift of a body lacks its axes, or has two coefficients."""
     if drag.polar is None:
-        if drag.chord is not None:
-            raise SceneError(drag.where, "chord is given without a polar", "give polar, or leave chord out")
+        _refuse_chord(drag)
         if drag.lift == 0 and drag.span is not None:
             raise SceneError(drag.where, "span is given without lift or a polar", "give one of them, or leave span out")
     elif drag.lift != 0 or drag.coefficient != Drag.model_fields["coefficient"].default:
@@ -102,6 +133,9 @@ def _check_foil(scene: SceneData, drag: Drag) -> None:
                          "give chord, a direction in body axes")
     if drag.polar is None and drag.lift == 0:
         return
+    if drag.polar is not None and drag.polar.moment is not None:
+        raise SceneError(drag.where, f'acts on body "{drag.on}", and its polar has a moment, which beams alone take',
+                         "leave it out, and put the centre of pressure at the place where the moment is nil")
     if drag.area == 0:
         raise SceneError(drag.where, "has lift without an area", "give area, in m²")
     if drag.span is None and not any(cable.dim == 2 for cable in scene.cables.values()):

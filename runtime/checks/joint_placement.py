@@ -8,11 +8,10 @@ import numpy as np
 
 from ..errors import FunicularWarning, SceneError
 from ..kernels.elements import built_in
-from ..parts.cable import EXACT
 from ..parts.joint import DRIVEN, LINES, POINTS, UNITS, Joint
 from ..parts.locations import point_of
 from ..parts.scene_data import SceneData
-from ..parts.validation import show
+from ..parts.validation import EXACT, show
 from ..rotations import cross
 from .conflicts import called, check_other_joints, check_supports, move_as_one
 from .frames import cable_frame, has_section

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import FunicularWarning, SceneError, near
 from ..kernels.elements import built_in
 from ..parts.attachment import Attachment
-from ..parts.cable import EXACT, Cable
+from ..parts.cable import Cable
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.locations import Node, joined, node_of, point_of, support_of
 from ..parts.modal_body import ModalBody
@@ -18,7 +18,7 @@ from ..parts.part import Part
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
-from ..parts.validation import show
+from ..parts.validation import EXACT, show
 
 P = TypeVar("P", bound=Part)
 

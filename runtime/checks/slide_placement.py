@@ -7,13 +7,13 @@ import warnings
 import numpy as np
 
 from ..errors import FunicularWarning, SceneError
-from ..parts.cable import EXACT, Cable
+from ..parts.cable import Cable
 from ..parts.end_stops import Buffer
 from ..parts.locations import point_of
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
-from ..parts.validation import show
+from ..parts.validation import EXACT, show
 from .frames import cable_frame, has_section
 from .joint_placement import check_up, elements_with_sections
 from .placement import cable_at, placed_attachment

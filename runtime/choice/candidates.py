@@ -111,6 +111,9 @@ def _torsion(scene: SceneData, cable: Cable) -> str | None:
         return "it is curved without stress, and cable elements resist in the plane of their curve alone"
     if any(isinstance(load, Moment) and load.on == cable.name for load in scene.loads.values()):
         return "a moment acts on it, which may twist it"
+    for drag in scene.drags.values():
+        if drag.on == cable.name and drag.polar is not None:
+            return f'the flow of "{drag.name}" meets its section at an angle, which its twist changes'
     for slide in scene.slides.values():
         if slide.frame == "section" and cable.name in (slide.along, getattr(slide.body, "on", slide.body)):
             return f'the slide "{slide.name}" turns with its section'

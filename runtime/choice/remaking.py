@@ -12,10 +12,11 @@ from typing import TypeVar
 import numpy as np
 
 from ..errors import FunicularWarning
-from ..parts.cable import EXACT, Cable
+from ..parts.cable import Cable
 from ..parts.event import Event
 from ..parts.load import Force, Moment
 from ..parts.scene_data import SceneData
+from ..parts.validation import EXACT
 from ..scene_methods import SceneMethods
 
 S = TypeVar("S", bound=SceneMethods)

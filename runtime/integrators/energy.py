@@ -20,7 +20,7 @@ class EnergyMomentum(Integrator):
     spectral_radius: float = 1.0
     name, order = "energy", 2
     default_spectral_radius = 1.0
-    takes_modal_bodies = takes_friction_and_stops = takes_added_mass_of_bodies = False
+    takes_modal_bodies = takes_friction_and_stops = False
     needs_discrete_gradient = True
 
     @classmethod

@@ -58,7 +58,6 @@ class Integrator(ABC):
     loses_energy_by_spectral_radius: ClassVar[bool] = False
     takes_modal_bodies: ClassVar[bool] = True
     takes_friction_and_stops: ClassVar[bool] = True
-    takes_added_mass_of_bodies: ClassVar[bool] = True
     needs_discrete_gradient: ClassVar[bool] = False
 
     @property

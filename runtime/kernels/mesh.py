@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -86,6 +87,14 @@ class Mesh:
         """Return the elements (...) that arc-lengths s (...) are in, and x in them, in m."""
         element = self.element_at(s)
         return element, np.asarray(s, dtype=float) - self.each_start(element)
+
+    def covered(self, start: float, stop: float) -> Iterator[tuple[int, float, float]]:
+        """Yield the elements that lie between two arc-lengths, with where that begins and ends in each, x in m."""
+        for element in range(self.n_elements):
+            begin = self.start(element)
+            first, last = max(start - begin, 0.0), min(stop - begin, self.length(element))
+            if last > first:
+                yield element, first, last
 
     def divided(self, parts: int) -> np.ndarray:
         """Return (parts elements + 1,): arc-lengths of the nodes and of points that divide each element alike, in m."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..kernels.mesh import Mesh
 from ..parts.attachment import Attachment
-from ..parts.contact import Contact
+from ..parts.contact import GAUSS_POINTS, Contact
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.surface import Surface
@@ -17,9 +17,9 @@ from ..parts.surface_shapes import WIDE
 from ..parts.validation import Vector
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
+from .quadrature import along_elements
 
-GAUSS = np.polynomial.legendre.leggauss(6)
-"""Of an element: points enough for one that touches in part; see tests/benchmarks/contact.py."""
+GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 KERNELS = {2: "planar_surface", 3: "surface"}
 NONE = np.zeros(0)
 
@@ -40,6 +40,8 @@ class SurfaceModel:
     second: np.ndarray
     heights: np.ndarray
     highest: float
+    steepest: float
+    bend: float
     on: list[AttachmentModel]
 
 
@@ -82,7 +84,8 @@ def surface_entries(surface: Surface, scene: SceneData, attachments: AttachmentB
     return {"kernel": KERNELS[dim], "shape": shape.word, "direction": shape.direction[:dim],
             "round_radius": shape.radius, "half_length": shape.half_length,
             "half_size": shape.half_size[:dim], "n_first": len(first), "n_second": len(second), "first": first,
-            "second": second, "heights": cells, "highest": shape.highest, "on": [on]}
+            "second": second, "heights": cells, "highest": shape.highest,
+            "steepest": shape.steepest, "bend": shape.bend, "on": [on]}
 
 
 def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilder) -> ContactModel:
@@ -124,15 +127,12 @@ def _on_body(name: str, points: tuple[Vector, ...], scene: SceneData,
 def _along_cable(model: ContactModel, index: int, scene: SceneData, attachments: AttachmentBuilder) -> np.ndarray:
     """Add the quadrature on a cable; return (n, 3): where its points are drawn."""
     cable = attachments.cables[index]
-    x, weights = GAUSS
     hull = attachments.hull(index)
-    model.cable, model.n_points, model.length = index, len(x), cable.mesh.total
-    model.N = np.array([[cable.kernel("on_axis")(length, length * (1 + each) / 2)[0] for each in x]
-                        for length in cable.mesh.lengths])
+    model.cable, model.n_points, model.length = index, len(GAUSS[0]), cable.mesh.total
+    model.N, _, model.weights = along_elements(cable.kernel("on_axis"), cable.mesh.lengths, GAUSS)
     model.hull, model.spread, model.n_hull = hull.points, hull.spread, hull.points.shape[1]
-    model.weights = np.outer(cable.mesh.lengths, weights) / 2
     model.stride = 0 if cable.mesh.is_even else model.n_points
-    model.arc = _arc_lengths(cable.mesh, x)
+    model.arc = _arc_lengths(cable.mesh, GAUSS[0])
     vectors = scene.cables[cable.name].nodal_vectors
     both = np.concatenate([vectors[:-1], vectors[1:]], axis=1)
     N = np.broadcast_to(model.N, (cable.n_elements, *model.N.shape[1:]))

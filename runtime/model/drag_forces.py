@@ -2,34 +2,76 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..kernels.libraries import kernels_of
+from ..parts.polar import Polar
 from ..parts.validation import EXACT
 from .drags import DragModel
 from .element_coordinates import element_coordinates, positions
-from .model import Model
+from .model import CableModel, Model
 from .states import attachment_points, spatial
 
 
-def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return (T, elements, points, 3): drag and buoyancy on a cable at its points of quadrature, N/m undeformed.
+@dataclass
+class Turning:
+    """What a fluid turns the sections of a beam by, at T instants at the points of quadrature (T, elements, points, 3).
+
+    on_slope, on_chord: generalised forces on r_x and on the director along the chord, N; couple: their moment, N.
+    """
+
+    on_slope: np.ndarray
+    on_chord: np.ndarray
+    couple: np.ndarray
+
+
+def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v: np.ndarray
+              ) -> tuple[np.ndarray, Turning | None]:
+    """Return (T, elements, points, 3): drag and buoyancy on a cable at its points of quadrature, N/m undeformed; and
+    what it turns sections by, where it does.
 
     time (T,) in s, q (T, n_q), v (T, n_dof).
     """
     cable, dim = model.cables[drag.cable], model.dim
     e, rates = (element_coordinates(cable, values) for values in (q, v))
     local = e - np.where(positions(cable)[:, None], e[:, :, :1], 0.0)
-    r, slope, velocity = (np.einsum("egk,tekd->tegd", np.broadcast_to(shape, (cable.n_elements, *shape.shape[1:])), of)
+    r, slope, velocity = (_at_points(cable, shape, of)
                           for shape, of in ((drag.N, e), (drag.N_x, local), (drag.N, rates)))
     flow = _velocity(drag, time[:, None, None], r)
     kernel = getattr(kernels_of(None), f"{drag.kernel}_along_cable")
     n = r[..., 0].size
-    f = kernel.rows(n, slope.reshape(n, dim), (flow - velocity).reshape(n, dim), np.array(drag.coefficients))[0]
+    t, w = slope.reshape(n, dim), (flow - velocity).reshape(n, dim)
+    f, turning = kernel.rows(n, t, w, np.array(drag.coefficients))[0], None
     if drag.lift[0] != 0:
         lift = getattr(kernels_of(None), f"{drag.kernel}_lift_along_cable")
-        f = f + lift.rows(n, slope.reshape(n, dim), (flow - velocity).reshape(n, dim), np.array(drag.lift))[0]
-    return spatial(f.reshape(r.shape) + drag.buoyancy)
+        f = f + lift.rows(n, t, w, np.array(drag.lift))[0]
+    if drag.polar is not None:
+        d = _at_points(cable, drag.N_chord, local).reshape(n, dim)
+        forces = _on_sections(drag, drag.polar, t, d, w)
+        f = f + forces[:, 0]
+        couple = np.cross(t, forces[:, 1]) + np.cross(d, forces[:, 2])
+        turning = Turning(*(values.reshape(r.shape) for values in (forces[:, 1], forces[:, 2], couple)))
+    return spatial(f.reshape(r.shape) + drag.buoyancy), turning
+
+
+def _at_points(cable: CableModel, shape: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return (T, elements, points, dim) from shape functions (1 or elements, points, vectors) and vectors (T, elements,
+    vectors, dim).
+    """
+    return np.einsum("egk,tekd->tegd", np.broadcast_to(shape, (cable.n_elements, *shape.shape[1:])), values)
+
+
+def _on_sections(drag: DragModel, polar: Polar, t: np.ndarray, d: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """Return (n, 3, 3): forces on r, r_x and chord at slopes t, chords d and flows w past them (n, 3)."""
+    i = t / np.linalg.norm(t, axis=1, keepdims=True)
+    normal = np.cross(i, d)
+    angle = np.arctan2(np.sum(normal * w, axis=1), np.sum(np.cross(normal, i) * w, axis=1))
+    values = np.zeros((len(t), 6))  # derivatives by the angle are of no interest
+    values[:, ::2] = polar.coefficients(angle).T
+    kernel = getattr(kernels_of(None), f"{drag.kernel}_on_section")
+    return kernel.rows(len(t), t, d, w, np.array(drag.section), values)[0].reshape(-1, 3, 3)
 
 
 def _velocity(drag: DragModel, time: np.ndarray, r: np.ndarray) -> np.ndarray:

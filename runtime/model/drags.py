@@ -11,11 +11,13 @@ from ..parts.attachment import Attachment
 from ..parts.drag import Drag
 from ..parts.flow_profile import PowerProfile, TableProfile
 from ..parts.fluid import Fluid
+from ..parts.polar import Polar
 from ..parts.scene_data import SceneData
 from ..parts.velocity_table import AXES
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 from .loads import GAUSS, LoadBuilder
+from .quadrature import along_elements
 
 LEAST_SPEED = 1e-30
 """m/s: what sizes of velocities are not below in the kernels, lest derivatives at rest be 0/0."""
@@ -29,13 +31,13 @@ class DragModel(CouplingModel):
 
     velocity (dim), in m/s, times the signal of that number (-1: one) and the profile, as engine/include/drags.h has it,
     at the height base + up . r. coefficients: as the kernel takes them. buoyancy (dim): N/m of a cable, N of a body.
-    lift, foil: likewise, is_foil: a body with a span; n_angles, angles, polar_drag, polar_lift: its polar, see
-    `Polar.pieces`.
+    lift, foil, section: likewise, is_foil: a body with a span, or a beam with a chord; n_angles, angles, polar_drag,
+    polar_lift, polar_moment: its polar, see `Polar.pieces`.
     displaced: mass of the fluid displaced, added: that it adds, as engine/include/drags.h has them, where has_inertia.
-    weights (1 or elements, n_points), in m, N and N_x (1 or elements, n_points, vectors): of the quadrature on the
-    elements of the cable, once where they are equal; stride: points from one element's to the next's. degree,
-    n_splines (4), knots, table: of splines in time and space, degree 0 without; origin (3,), axes (9): those of the
-    model, of the ground. fluid: the scene's, of which the engine takes nothing.
+    weights (1 or elements, n_points), in m, N, N_x and N_chord, of a beam's chord (1 or elements, n_points, vectors):
+    of the quadrature on the elements of the cable, once where they are equal; stride: points from one element's to the
+    next's. degree, n_splines (4), knots, table: of splines in time and space, degree 0 without; origin (3,), axes (9):
+    those of the model, of the ground. fluid, polar: the scene's, of which the engine takes nothing.
     """
 
     kernel: str
@@ -64,10 +66,12 @@ class DragModel(CouplingModel):
     span: tuple[float, ...]
     chord: tuple[float, ...]
     foil_lift: float
+    section: tuple[float, ...]
     n_angles: int
     angles: np.ndarray
     polar_drag: np.ndarray
     polar_lift: np.ndarray
+    polar_moment: np.ndarray
     buoyancy: np.ndarray
     displaced: float
     added: tuple[float, ...]
@@ -76,8 +80,10 @@ class DragModel(CouplingModel):
     weights: np.ndarray
     N: np.ndarray
     N_x: np.ndarray
+    N_chord: np.ndarray
     attachments: list[AttachmentModel]
     fluid: Fluid
+    polar: Polar | None
 
 
 def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> DragModel:
@@ -93,7 +99,7 @@ def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loa
         **_profile(fluid), **_foil(part, fluid, dim, part.on in scene.bodies), **_table(fluid, scene), cable=-1,
         coefficients=(), buoyancy=-fluid.density * displaced * gravity, displaced=fluid.density * displaced, added=(),
         has_inertia=part.added_mass is not None, n_points=0, stride=0, weights=none, N=none, N_x=none,
-        attachments=[], fluid=fluid, type="drag", name=part.name or "", is_damped=True)
+        N_chord=none, attachments=[], fluid=fluid, polar=part.polar, type="drag", name=part.name or "", is_damped=True)
     if model.has_inertia:
         added = part.added_of_cable() if part.on in attachments.cable_index else part.added_of_body(dim)
         model.added = tuple((model.displaced * added).ravel().tolist())
@@ -101,13 +107,17 @@ def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loa
     if part.on in attachments.cable_index:
         model.cable = attachments.cable_index[part.on]
         cable = attachments.cables[model.cable]
-        width = part.width(scene.cables[part.on]) if part.normal or part.tangential or part.lift else 0.0
+        has_width = part.normal or part.tangential or part.lift or part.polar
+        width = part.width(scene.cables[part.on]) if has_width else 0.0
         model.lift = (pressure * width * part.lift, LEAST_SPEED)
         model.coefficients = (pressure * width * part.normal, pressure * np.pi * width * part.tangential, LEAST_SPEED)
+        model.n_points = len(GAUSS[0])
         lengths = cable.mesh.lengths
-        shapes = [[cable.kernel("on_axis")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
-        model.N, model.N_x = (np.array([[shape[k] for shape in each] for each in shapes]) for k in range(2))
-        model.n_points, model.weights = len(GAUSS[0]), np.outer(lengths, GAUSS[1]) / 2
+        model.N, model.N_x, model.weights = along_elements(cable.kernel("on_axis"), lengths, GAUSS)
+        if part.polar is not None:
+            model.is_foil, model.section = True, (pressure * width, width, LEAST_SPEED)
+            slopes = [[cable.kernel("slopes")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
+            model.N_chord = np.einsum("c,egck->egk", part.foil_axes[1], np.array(slopes)[..., 0, :])
         model.stride = 0 if cable.mesh.is_even else model.n_points
     else:
         of_drag = part.coefficient if part.polar is None else 0.0
@@ -118,12 +128,13 @@ def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loa
 
 def _foil(part: Drag, fluid: Fluid, dim: int, on_body: bool) -> dict[str, Any]:
     """Return what a model has of lift."""
-    breaks, drag, lift = (np.zeros(0),) * 3 if part.polar is None else part.polar.pieces()
+    breaks, drag, lift, moment = (np.zeros(0),) * 4 if part.polar is None else part.polar.pieces()
     span, chord = part.foil_axes
     is_foil = on_body and (part.lift != 0 or part.polar is not None)
     return {"lift": (0.0, LEAST_SPEED), "is_foil": is_foil, "foil": (fluid.density / 2 * part.area, LEAST_SPEED),
             "span": tuple(span) if dim == 3 else (float(np.sign(span[2])),), "chord": tuple(chord[:dim]),
-            "foil_lift": part.lift, "n_angles": len(drag), "angles": breaks, "polar_drag": drag, "polar_lift": lift}
+            "foil_lift": part.lift, "section": (0.0, 0.0, LEAST_SPEED), "n_angles": len(drag), "angles": breaks,
+            "polar_drag": drag, "polar_lift": lift, "polar_moment": moment}
 
 
 def up_of(scene: SceneData) -> np.ndarray:

@@ -171,14 +171,9 @@ class LoadBuilder:
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
         model = self.cables[self.cable_index[load.cable]]
-        points = []
-        for element in range(model.n_elements):
-            begin = model.mesh.start(element)
-            start = max(load.start - begin, 0.0)
-            stop = min(load.stop - begin, model.mesh.length(element))
-            if stop > start:
-                points += [(element, (start + stop) / 2 + (stop - start) / 2 * x, (stop - start) / 2 * w)
-                           for x, w in zip(*GAUSS, strict=True)]
+        points = [(element, (start + stop) / 2 + (stop - start) / 2 * x, (stop - start) / 2 * w)
+                  for element, start, stop in model.mesh.covered(load.start, load.stop)
+                  for x, w in zip(*GAUSS, strict=True)]
         self._along_cable(load.cable, number, points, value, load.follower)
 
     def _along_cable(self, cable: str, number: int, points: Iterable[tuple[int, float, float]], value: np.ndarray,

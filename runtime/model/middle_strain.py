@@ -1,10 +1,15 @@
-"""Slopes of centrelines, and the axial strain in the middle of elements, by which they are slack or taut."""
+"""Slopes of centrelines, how long they make elements, and the axial strain in the middle, by which they are slack."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from .model import CableModel
+
+Rule = tuple[Sequence[float], Sequence[float]]
+"""Of quadrature over an element: parts of its length, and weights, whose sum is 1."""
 
 
 def slopes(cable: CableModel, part: float) -> np.ndarray:
@@ -13,6 +18,20 @@ def slopes(cable: CableModel, part: float) -> np.ndarray:
     """
     lengths = cable.mesh.lengths
     return cable.kernel("on_axis").rows(len(lengths), lengths, part * lengths)[1]
+
+
+def stretches(cable: CableModel, first: np.ndarray, last: np.ndarray, element: np.ndarray,
+              rule: Rule) -> np.ndarray:
+    """Return (..., n): lengths of the centrelines of elements (n,) over those at rest.
+
+    first, last: the vectors of their nodes, (..., n, vectors, dim); rule: of quadrature.
+    """
+    e = np.concatenate([first, last], axis=-2)
+    found = np.zeros(e.shape[:-2])
+    for part, weight in zip(*rule, strict=True):
+        N = np.broadcast_to(slopes(cable, part), (cable.n_elements, e.shape[-2]))[element]
+        found += weight * np.linalg.norm(np.einsum("nk,...nkd->...nd", N, e), axis=-1)
+    return found
 
 
 def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:

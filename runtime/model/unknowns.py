@@ -76,6 +76,19 @@ def as_supports_leave(asked: np.ndarray, unknown_of_dof: np.ndarray, combination
     return given
 
 
+def by_unknowns(unknown_of_dof: np.ndarray, combinations: csr_array, n: int) -> csr_array:
+    """Return T (dofs, n unknowns), sparse: dofs = T unknowns + what motions prescribe.
+
+    unknown_of_dof (dofs,): of all or of some; combinations: as in `Reduction`.
+    """
+    free, tied = np.flatnonzero(unknown_of_dof >= 0), np.flatnonzero(unknown_of_dof < -1)
+    part = combinations[-2 - unknown_of_dof[tied]].tocoo()
+    rows = np.concatenate([free, tied[part.row]])
+    columns = np.concatenate([unknown_of_dof[free], part.col])
+    values = np.concatenate([np.ones(len(free)), part.data])
+    return csr_array((values, (rows, columns)), shape=(len(unknown_of_dof), n))
+
+
 @dataclass
 class Node:
     """A cable's node: its dofs by nodal vector and the vectors as drawn, in the dimension of the element."""

@@ -1,35 +1,26 @@
-"""Cables: how they are drawn, their stress-free shape, and which elements and elastic laws suit which sections."""
+"""Cables: what they are made with, and which elements and elastic laws suit which sections."""
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from ..errors import SceneError, near
-from ..kernels.element_line import ElementLine
 from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.libraries import of_library, resolved
 from ..kernels.mesh import Mesh
-from ..rotations import cross
 from . import cable_drawing, cable_laws, cable_mesh, curves
+from .drawn_cable import DrawnCable
 from .hanging import catenary
 from .material import Material
 from .part import Part
-from .plane import Plane
 from .schemas import ONLY_PYTHON, GivenAs, checked, list_of_lists
 from .section import AnySection, outer_radius_of
-from .validation import EXACT, Count, Name, Vector, one_of, positive, show, shown, xyz
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
-
-OPEN = 257
-"""Places at which a cable is looked at whose elements are still to be chosen."""
+from .validation import Count, Name, Vector, one_of, positive, show, shown, xyz
 
 
 def _library(value: Any) -> str | None:
@@ -59,7 +50,7 @@ def _points(value: Any) -> tuple[tuple[float, ...], ...]:
     return curves.points(value)
 
 
-class Cable(Part):
+class Cable(DrawnCable, Part):
     """A cable of elements, drawn straight, through points or along a curve.
 
     It has ``elements`` of equal lengths, or ``nodes`` at given arc-lengths in m, from 0 to its length: close where it
@@ -213,14 +204,6 @@ class Cable(Part):
         """Return whether all directions across its axis are alike: a round section, or elements that have none."""
         return outer_radius_of(self.section) is not None or not self.kind_of_element.director
 
-    @property
-    def height_direction(self) -> Vector:
-        """Return ``up``; where that lies along the axis of a round section, the ground's axis most nearly across it."""
-        if curves.has_height(self.drawn_through, self.up):
-            return self.up
-        least = int(np.argmin(np.abs(self._shape.tangent(0.0))))
-        return float(least == 0), float(least == 1), float(least == 2)
-
     @model_validator(mode="after")
     def _law_suits(self) -> Cable:
         if not self.is_open or "element" in self.model_fields_set:
@@ -296,22 +279,6 @@ class Cable(Part):
         return self.kind_of_element.dim
 
     @property
-    def plane(self) -> Plane | None:
-        """Return the plane that planar elements lie in; None of z = 0, and of spatial elements."""
-        return cable_drawing.plane_of(self.drawn_through, self.up) if self.dim == 2 else None
-
-    @property
-    def normal(self) -> np.ndarray:
-        """Return (3,): the unit normal of the plane that planar elements lie in; their height is normal x tangent."""
-        plane = self.plane
-        return np.array([0.0, 0.0, 1.0]) if plane is None else plane.normal
-
-    def in_plane(self, vectors: np.ndarray) -> np.ndarray:
-        """Return directions (..., 3) along the ground's axes as (..., dim), along those of its plane."""
-        plane = self.plane
-        return (vectors if plane is None else plane.into(vectors))[..., : self.dim]
-
-    @property
     def kernel_law(self) -> str:
         """Return the name of the law among the element's kernels."""
         return cable_laws.name_of_kernels(self.kind_of_element, self.law, self.is_curved)
@@ -337,201 +304,3 @@ class Cable(Part):
         if self.start is not None and self.end is not None:
             return self.start, self.end
         return tuple(end for end in (self.start, self.end) if end is not None)
-
-    @property
-    def _shape(self) -> curves.Line | curves.Spline:
-        return curves.shape_through(self.drawn_through)
-
-    @property
-    def drawn_length(self) -> float:
-        """Return the length in m of the cable as it is drawn."""
-        return self._shape.length
-
-    @property
-    def length(self) -> float:
-        """Return the undeformed length in m."""
-        return self.drawn_length if self.rest_length is None else self.rest_length
-
-    @property
-    def stretch(self) -> float:
-        """Return the length as drawn over undeformed length."""
-        return 1.0 if self.rest_length is None else self.drawn_length / self.rest_length
-
-    @property
-    def is_curved(self) -> bool:
-        """Return whether the undeformed shape is."""
-        return self.rest == "drawn" and not self._shape.straight
-
-    @property
-    def node_s(self) -> np.ndarray:
-        """Return (nodes,): arc-length of the nodes in m."""
-        mesh = self.mesh
-        return self.length * np.arange(self.elements + 1) / self.elements if mesh.is_even else mesh.node_s
-
-    def divided(self, parts: int) -> np.ndarray:
-        """Return (parts elements + 1,): arc-lengths of its nodes and of points that divide each element alike, in m."""
-        mesh = self.mesh
-        return np.linspace(0.0, self.length, parts * self.elements + 1) if mesh.is_even else mesh.divided(parts)
-
-    def samples(self, parts: int) -> np.ndarray:
-        """Return (n,): arc-lengths at which its drawn shape is looked at, in m: `divided`, or evenly apart where its
-        elements are still to be chosen.
-        """
-        return np.linspace(0.0, self.length, OPEN) if self.is_open else self.divided(parts)
-
-    def point(self, s: float) -> np.ndarray:
-        """Return (3,): the point of the centreline at arc-length ``s``, in m, as the elements draw it.
-
-        Between nodes that is not quite the curve that they are drawn along; a rider has to start on the elements.
-        """
-        if self._shape.straight or self.is_open:
-            return self._shape.point(s * self.stretch)
-        return self._as_drawn_point(s)
-
-    def points_at(self, s: np.ndarray) -> np.ndarray:
-        """Return (n, 3): the points of the centreline at arc-lengths ``s`` (n,), in m, see `point`."""
-        if self._shape.straight or self.is_open:
-            return self._shape.point(s * self.stretch)
-        line, plane = self._as_drawn, self.plane
-        points = np.array([line.point(float(each)) for each in s])
-        return points if plane is None else plane.points_out(points)
-
-    def slope(self, s: float) -> np.ndarray:
-        """Return (3,): r_x at arc-length ``s``, as the elements draw it."""
-        if self._shape.straight or self.is_open:
-            return self.stretch * self._shape.tangent(s * self.stretch)
-        slope, plane = self._as_drawn.slope(s), self.plane
-        return slope if plane is None else plane.out(slope)
-
-    def height(self, s: float) -> np.ndarray:
-        """Return (3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have
-        none.
-        """
-        if self._shape.straight or self.is_open or not self.kind_of_element.director:
-            return self.axes_at(s)[1]
-        return self._as_drawn_point(s, y=1.0) - self._as_drawn_point(s)
-
-    def width(self, s: float) -> np.ndarray:
-        """Return (3,): along the section's width at ``s``: r_z as the elements draw it, the axis there if they have
-        none.
-        """
-        if self._shape.straight or self.is_open or "r_z" not in self.kind_of_element.nodal_vectors:
-            return self.axes_at(s)[2]
-        return self._as_drawn_point(s, z=1.0) - self._as_drawn_point(s)
-
-    def _as_drawn_point(self, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
-        """Return (3,) in m: the point at arc-length s, height y and width z of the section, as the elements draw it."""
-        return self.point_between(self.nodal_vectors, s, y, z)
-
-    def point_between(self, nodal_vectors: np.ndarray, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
-        """Return (3,) in m: the point at arc-length s, height y and width z of the section, as its elements have it
-        between nodes with these vectors (nodes, vectors, 3), along the ground's axes.
-        """
-        point, plane = self._line(nodal_vectors).point(s, y, z), self.plane
-        return point if plane is None else plane.points_out(point)
-
-    @property
-    def _as_drawn(self) -> ElementLine:
-        """Return the elements at the start, which interpolate between the nodes, in the axes of its plane."""
-        return self._line(self.nodal_vectors)
-
-    def _line(self, nodal_vectors: np.ndarray) -> ElementLine:
-        """Return its elements between nodes with these vectors (nodes, vectors, 3), in the axes of its plane."""
-        vectors, plane = nodal_vectors, self.plane
-        if plane is not None:
-            vectors = vectors.copy()
-            vectors[:, self.kind_of_element.nodal_vectors.index("r")] -= plane.origin
-        return ElementLine(self.library, self.element, self.mesh, self.in_plane(vectors))
-
-    def axes_at(self, s: ArrayLike) -> np.ndarray:
-        """Return (..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
-        s = np.asarray(s, dtype=float)
-        if self._shape.straight:  # they are the same everywhere
-            axes = self._axes_along(np.array([0.0, self.drawn_length]))[0]
-            return np.tile(axes, (*s.shape, 1, 1))
-        places, which = np.unique(np.append(s.ravel() * self.stretch, [0.0, self.drawn_length]), return_inverse=True)
-        return self._axes_along(places)[which[: s.size]].reshape(*s.shape, 3, 3)
-
-    def _axes_along(self, places: np.ndarray) -> np.ndarray:
-        """Return (places, 3, 3): `axes_at` increasing arc-lengths as drawn, the first of them 0."""
-        if self.dim == 2:
-            i, k = self._shape.tangent(places), self.normal
-            return np.stack([i, cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
-        return curves.transported(self.drawn_through, self.height_direction, tuple(places.tolist()))
-
-    @property
-    def axes(self) -> np.ndarray:
-        """Return (3, 3): the axes at the start, see `axes_at`."""
-        return self.axes_at(0.0)
-
-    @property
-    def nodal_vectors(self) -> np.ndarray:
-        """Return (nodes, vectors, 3): as drawn; r in m, its gradients by the undeformed cable, r_xx in 1/m."""
-        drawn, stretch = self.node_s * self.stretch, self.stretch
-        bent = "r_xx" in self.kind_of_element.nodal_vectors
-        return self._vectors(self._shape.point(drawn), self.axes_at(self.node_s), stretch,
-                             stretch**2 * self._shape.curvature(drawn) if bent else None)
-
-    @property
-    def nodal_rates(self) -> np.ndarray:
-        """Return (nodes, vectors, 3): rates of `nodal_vectors` at the start, of a rigid motion."""
-        names = self.kind_of_element.nodal_vectors
-        if not any((*self.velocity, *self.angular_velocity)):
-            return np.zeros((self.elements + 1, len(names), 3))
-        vectors, place = self.nodal_vectors, names.index("r")
-        vectors[:, place] -= vectors[0, place]
-        rates = cross(self.angular_velocity, vectors)
-        rates[:, place] += self.velocity
-        return rates
-
-    @property
-    def reference(self) -> np.ndarray | None:
-        """Return (elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law takes none.
-        """
-        if not self.traits.takes_shape:
-            return None
-        rest = self.in_plane(self.rest_nodal_vectors)
-        return np.concatenate([rest[:-1], rest[1:]], axis=1)
-
-    @property
-    def rest_nodal_vectors(self) -> np.ndarray:
-        """Return (nodes, vectors, 3): those of the stress-free cable, with the drawn one's start and direction there.
-        """
-        start = self._shape.point(0.0)
-        if self.rest == "straight":
-            axes = np.broadcast_to(self.axes, (self.elements + 1, 3, 3))
-            return self._vectors(start + self.node_s[:, None] * axes[:, 0], axes, 1.0, np.zeros((self.elements + 1, 3)))
-        drawn = self.node_s * self.stretch
-        return self._vectors(start + (self._shape.point(drawn) - start) / self.stretch, self.axes_at(self.node_s), 1.0,
-                             self.stretch * self._shape.curvature(drawn))
-
-    def _vectors(self, r: np.ndarray, axes: np.ndarray, stretch: float, r_xx: np.ndarray | None) -> np.ndarray:
-        known: dict[str, Any] = {"r": r, "r_x": stretch * axes[:, 0], "r_y": axes[:, 1], "r_z": axes[:, 2],
-                                 "r_xx": r_xx}
-        return np.stack([known[name] for name in self.kind_of_element.nodal_vectors], axis=1)
-
-    def nearest_s(self, point: np.ndarray) -> float:
-        """Return the arc-length of the point of the drawn cable nearest to ``point``, in m."""
-        return self._shape.nearest(point) / self.stretch
-
-    def node(self, s: float) -> int:
-        """Return the number of the node at arc-length ``s`` in m; a check has found that there is one."""
-        node = self.node_at(s)
-        assert node is not None, f"{self.where} has no node at {s}"
-        return node
-
-    def node_at(self, s: float) -> int | None:
-        """Return the node at arc-length ``s``, None if there is none; an open cable will have one wherever one is
-        asked for.
-        """
-        if self.is_open:
-            return round(s / (EXACT * self.length))
-        mesh, node_s = self.mesh, self.node_s
-        node = round(s / self.length * self.elements) if mesh.is_even else int(mesh.nearest_node(s))
-        on_node = 0 <= node <= self.elements and abs(node_s[node] - s) <= EXACT * self.length
-        return node if on_node else None
-
-    def element_at(self, s: float) -> int:
-        """Return the number of the element that holds ``s``."""
-        mesh = self.mesh
-        return math.floor(s / self.length * self.elements) if mesh.is_even else int(mesh.element_at(s))

@@ -18,6 +18,8 @@ from .validation import Name, Vector, not_negative, positive, shown, vector3, wi
 
 MOST_POINTS = 16
 """Of a body: engine/include/contacts.h."""
+GAUSS_POINTS = 6
+"""Of an element of a cable: enough for one that touches in part; see tests/benchmarks/contact.py."""
 
 
 def _points(value: Any) -> tuple[Vector, ...]:

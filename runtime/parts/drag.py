@@ -31,7 +31,8 @@ from .validation import (
     xyz,
 )
 
-OF_CABLE = ("normal", "tangential", "lift", "diameter", "displaced_area", "added_mass", "added_mass_tangential")
+OF_CABLE = ("normal", "tangential", "lift", "polar", "chord", "diameter", "displaced_area", "added_mass",
+            "added_mass_tangential")
 OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "added_mass")
 
 
@@ -63,7 +64,9 @@ class Drag(Part):
     ``lift`` C_L adds a force across the flow: of a cable ``ρ/2 d C_L |w_n| i × w_n``, i along it from its start; of a
     body ``ρ/2 area C_L |w_p| s × w_p`` with its ``span`` s (a direction in body axes; in the plane z), w_p across s.
     Of a body ``polar``, a `Polar` of coefficients by the angle from its ``chord`` (body axes, square to the span) to
-    the flow, about the span, stands in place of coefficient and lift; drag is then along w_p.
+    the flow, about the span, stands in place of coefficient and lift; drag is then along w_p. Of a spatial beam it
+    stands in place of normal and lift, with the angle from the ``chord`` of its section (a direction across, in local
+    axes: y the height, z the width) about i, and with the moment ``ρ/2 d² C_M |w_n|²`` a length.
     ``added_mass`` C adds the inertia of the fluid: mass of C times that of the fluid displaced, of a cable with the
     motion across it, and with that along it times ``added_mass_tangential``; of a body at ``at``, the same in all
     directions, or three along its axes, or 3x3 in these. With it the fluid also acts by its own acceleration, as a

@@ -19,8 +19,9 @@ TURN = 1e-6
 class Polar(Part):
     """Coefficients of ``drag`` and ``lift`` at given angles of attack, in rad, through a full turn from -π to π.
 
-    Between them straight lines, or with interpolation="cubic" a spline. The angle is that of the flow past the body
-    from its chord, about its span.
+    Between them straight lines, or with interpolation="cubic" a spline. The angle is that of the flow past a body from
+    its chord, about its span; of a beam from the chord of its section, about the axis. ``moment``, of a beam alone, is
+    positive where it makes the angle larger: nose up, with a chord from the nose to the tail.
 
     >>> import funicular as fu
     >>> plate = fu.Polar(angle=[-3.141593, -1.570796, 0, 1.570796, 3.141593], drag=[0, 2, 0, 2, 0], lift=[0] * 5)
@@ -31,12 +32,15 @@ class Polar(Part):
     angle: Annotated[tuple[float, ...], list_of("rad", least=2)]
     drag: Annotated[tuple[float, ...], list_of("", least=2)]
     lift: Annotated[tuple[float, ...], list_of("", least=2)]
+    moment: Annotated[tuple[float, ...], list_of("", least=2)] | None = None
     interpolation: Annotated[str, one_of(("linear", "cubic"))] = "linear"
 
     @model_validator(mode="after")
     def _is_a_turn(self) -> Polar:
-        for name in ("drag", "lift"):
+        for name in ("drag", "lift", "moment"):
             values = getattr(self, name)
+            if values is None:
+                continue
             check_function(self.angle, "angle", "rad", values, name)
             if values[0] != values[-1]:
                 raise ValueError(f"{name} must be the same at both ends, -π and π, got {show(values[0])} and "
@@ -53,11 +57,23 @@ class Polar(Part):
     def _table(self, values: tuple[float, ...]) -> TableSignal:
         return TableSignal(time=self.angle, value=values, interpolation=self.interpolation)
 
-    def pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return breaks (n + 1,) in rad, and polynomials (n, 7) of drag and of lift, see `Signal.pieces`."""
-        drag, lift = (self._table(values).pieces() for values in (self.drag, self.lift))
-        return drag[0], drag[1], lift[1]
+    def pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return breaks (n + 1,) in rad, and polynomials (n, 7) of drag, of lift and of the moment, see
+        `Signal.pieces`.
+        """
+        drag, lift, moment = (self._table(values).pieces() for values in self._columns)
+        return drag[0], drag[1], lift[1], moment[1]
+
+    @property
+    def _columns(self) -> tuple[tuple[float, ...], ...]:
+        """Return the values of drag, lift and moment."""
+        return self.drag, self.lift, (0.0,) * len(self.angle) if self.moment is None else self.moment
 
     def at(self, angle: float) -> tuple[float, float]:
         """Return the coefficients of drag and lift at an angle in rad."""
-        return float(self._table(self.drag).value(angle)), float(self._table(self.lift).value(angle))
+        drag, lift, _ = self.coefficients(np.array(angle))
+        return float(drag), float(lift)
+
+    def coefficients(self, angle: np.ndarray) -> np.ndarray:
+        """Return (3, ...): the coefficients of drag, lift and moment at angles (...) in rad."""
+        return np.array([self._table(values).value(angle) for values in self._columns])

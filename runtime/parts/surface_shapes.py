@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -15,6 +14,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import model_validator
 
+from .height_bounds import height_bounds
 from .part import Part, part_of_table
 from .plane import FLAT, across, aligned
 from .schemas import checked, list_schema, tagged
@@ -23,9 +23,6 @@ from .validation import Vector, check_function, check_square, direction, list_of
 
 WIDE = 1e6
 """m: half the width of a height field that does not change across."""
-
-AT_ONCE = 100_000
-"""Places of a height field that are looked at together: the coefficients about each take 128 bytes."""
 
 
 class SurfaceShape(Part):
@@ -78,8 +75,6 @@ class HeightField(SurfaceShape):
     x: places in m along the direction ``along``; heights: one for each of them, or, with ``across``, places across in
     m, a list for each of them. Across is square to ``along`` and ``up``, on the side of the axis that it is nearest to.
     Without ``across`` heights do not change that way. `HeightField.of` makes the table of a function.
-    A fast point can go through a narrow and steep ridge without a touch, where steps are long. A shorter
-    ``output_step`` of the run finds it.
     """
 
     kind: ClassVar[str] = "height_field"
@@ -144,7 +139,8 @@ class Geometry:
 
     word: the kind of shape; direction (3,): a normal or an axis; radius, half_length in m; half_size (3,): of a box
     along its axes, in m; first, second: knots of a height field, and cells (first, second, 4, 4) of its coefficients,
-    or (first, 4) where there is no second.
+    or (first, 4) where there is no second; highest, steepest, bend: bounds of its height in m, of its slope, and of
+    what that changes by along it, in 1/m.
     """
 
     word: str
@@ -158,6 +154,8 @@ class Geometry:
     second: np.ndarray | None = None
     cells: np.ndarray | None = None
     highest: float = 0.0
+    steepest: float = 0.0
+    bend: float = 0.0
 
     def moved(self, by: Any) -> Geometry:
         """Return it with its origin farther by (3,), in m."""
@@ -262,16 +260,6 @@ def _fitted(x: tuple[float, ...], heights: tuple[Any, ...], across: tuple[float,
         made.second.flags.writeable = False
     for array in (made.origin, made.axes, made.direction, first, made.cells):
         array.flags.writeable = False
-    made.highest = _highest(made)
+    made.highest, made.steepest, made.bend = height_bounds(first, made.second, made.cells)
     return made
 
-
-def _highest(field: Geometry) -> float:
-    """Return a height that a height field stays below, in m: the largest of 9 x 9 places of each cell, and more."""
-    assert field.first is not None, "only of height fields"
-    x, across = (np.concatenate([np.linspace(a, b, 9) for a, b in itertools.pairwise(knots)])
-                 for knots in (field.first, np.zeros(2) if field.second is None else field.second))
-    blocks = np.array_split(x, min(1 + x.size * across.size // AT_ONCE, x.size))
-    found = [field.heights(block[:, None], across[None, :])[0] for block in blocks]
-    highest, lowest = (extreme([extreme(each) for each in found]) for extreme in (np.max, np.min))
-    return float(highest + 0.05 * (highest - lowest))

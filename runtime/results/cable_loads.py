@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,7 @@ from ..kernels.libraries import kernels_of
 from ..kernels.mesh import Mesh
 from ..model.attachments import CARRIED, UP, AttachmentModel
 from ..model.contacts import ContactModel
-from ..model.drag_forces import densities
+from ..model.drag_forces import Turning, densities
 from ..model.drags import DragModel
 from ..model.element_coordinates import element_coordinates, positions
 from ..model.loads import GAUSS
@@ -58,7 +58,8 @@ class Spread:
     """A force a length along an element from x = start to stop (m).
 
     x (n,): places in between; density (T, n, 3) there, in N/m, a polynomial between them; f (T, vectors, dim).
-    on_slope (T, n, 3), in N: what does work with the change of r_x, likewise a polynomial; None: nothing.
+    on_slope (T, n, 3), in N: what does work with the change of r_x, likewise a polynomial; None: nothing. couple
+    (T, n, 3), in N: a moment a length, likewise.
     """
 
     element: int
@@ -68,6 +69,7 @@ class Spread:
     density: np.ndarray
     f: np.ndarray
     on_slope: np.ndarray | None = None
+    couple: np.ndarray | None = None
 
 
 @dataclass
@@ -91,7 +93,7 @@ class AddedMass:
 
 
 def spread_along(cable: CableModel, of: DragModel | ContactModel, density: np.ndarray,
-                 on_slope: np.ndarray | None = None) -> Iterator[Spread]:
+                 on_slope: np.ndarray | None = None, turning: Turning | None = None) -> Iterator[Spread]:
     """Yield what acts at the points of quadrature of a drag or contact on a cable, (T, elements, points, 3)."""
     for element in range(cable.n_elements):
         k, length = 0 if cable.mesh.is_even else element, cable.mesh.length(element)
@@ -104,7 +106,11 @@ def spread_along(cable: CableModel, of: DragModel | ContactModel, density: np.nd
         slope = None if on_slope is None else on_slope[:, element]
         if slope is not None and isinstance(of, DragModel):
             f = f + np.einsum("g,gk,tgd->tkd", of.weights[k], of.N_x[k], slope[..., : cable.shape[2]])
-        yield Spread(element, 0.0, length, places, density[:, element], f, slope)
+        if turning is not None and isinstance(of, DragModel):
+            for shape, forces in ((of.N_x, turning.on_slope), (of.N_chord, turning.on_chord)):
+                f = f + np.einsum("g,gk,tgd->tkd", of.weights[k], shape[k], forces[:, element])
+        couple = None if turning is None else turning.couple[:, element]
+        yield Spread(element, 0.0, length, places, density[:, element], f, slope, couple)
 
 
 def at_element(cable: CableModel, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
@@ -198,12 +204,7 @@ class CableLoads:
         cable, value = self.model.cables[number], np.array(load.value)
         assert load.start is not None and load.stop is not None, f"{load.where} is not complete"
         is_r = positions(cable)
-        for element in range(cable.n_elements):
-            begin = cable.mesh.start(element)
-            start = max(load.start - begin, 0.0)
-            stop = min(load.stop - begin, cable.mesh.length(element))
-            if stop <= start:
-                continue
+        for element, start, stop in cable.mesh.covered(load.start, load.stop):
             half = (stop - start) / 2
             places = (start + stop) / 2 + half * GAUSS[0]
             each = [scale[:, None, None] * self._force(cable, element, x, value, load.follower) for x in places]
@@ -226,14 +227,17 @@ class CableLoads:
             if drag.cable not in self.cables:
                 continue
             cable = self.model.cables[drag.cable]
-            density, on_slope = self.at.load * densities(self.model, drag, self.at.time, self.at.q, self.at.v), None
+            density, turning = densities(self.model, drag, self.at.time, self.at.q, self.at.v)
+            density, on_slope = self.at.load * density, None
+            if turning is not None:
+                turning = Turning(*(self.at.load * getattr(turning, field.name) for field in fields(turning)))
             if drag.has_inertia:
                 shape = self.times, cable.n_elements, drag.n_points
                 found = self._at_points(shape[1] * shape[2], partial(self._engine.fluid_inertia_densities, number))
                 force, on_slope, M = (values.reshape(*shape, *values.shape[2:]) for values in found)
                 density, on_slope = density + self.at.load * force, self.at.load * on_slope
                 self.added[drag.cable] = AddedMass(M, drag)
-            self.spreads.setdefault(drag.cable, []).extend(spread_along(cable, drag, density, on_slope))
+            self.spreads.setdefault(drag.cable, []).extend(spread_along(cable, drag, density, on_slope, turning))
 
     def _contacts(self) -> None:
         """Add what surfaces press on cables with, of which `out_of_balance` tells that it is known."""

@@ -10,6 +10,7 @@ from scipy.sparse.linalg import splu
 
 from ..model.element_coordinates import element_coordinates
 from ..model.model import CableModel, Model
+from ..model.unknowns import by_unknowns
 from .cable_loads import CableLoads, Instants, Spread, rows
 
 
@@ -153,15 +154,8 @@ def _assembled(cable: CableModel, matrices: np.ndarray, per_node: int) -> csr_ar
 
 def _reduction(model: Model, dofs: np.ndarray) -> csr_array:
     """Return T (dofs, unknowns that they have), sparse: dofs = T unknowns + what is prescribed."""
-    unknown, combinations = model.unknown_of_dof[dofs], model.combinations.tocsr()
-    free, combined = np.flatnonzero(unknown >= 0), np.flatnonzero(unknown < -1)
-    n = max(combinations.shape[1], int(unknown.max(initial=-1)) + 1)
-    T = coo_array((np.ones(len(free)), (free, unknown[free])), shape=(len(dofs), n)).tocsr()
-    if len(combined):
-        part = combinations[-2 - unknown[combined]].tocoo()
-        T = T + coo_array((part.data, (combined[part.row], part.col)), shape=T.shape).tocsr()
-    used = np.flatnonzero(np.diff(T.tocsc().indptr))
-    return T.tocsc()[:, used].tocsr()
+    T = by_unknowns(model.unknown_of_dof[dofs], model.combinations, model.n_band + model.n_border_dof).tocsc()
+    return T[:, np.flatnonzero(np.diff(T.indptr))].tocsr()
 
 
 def _prescribed(model: Model, time: np.ndarray) -> np.ndarray:

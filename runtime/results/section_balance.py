@@ -21,7 +21,8 @@ import numpy as np
 from ..model.element_coordinates import positions
 from ..model.model import CableModel
 from ..model.states import spatial
-from ..parts.cable import EXACT, Cable
+from ..parts.cable import Cable
+from ..parts.validation import EXACT
 from .cable_loads import CableLoads, Spread, lengths_of_rows, rows, shape_on_axis
 from .nodal_forces import ElementForces
 
@@ -153,6 +154,8 @@ def _of_spread(model: CableModel, spread: Spread, x: np.ndarray, e: np.ndarray) 
         if spread.on_slope is not None:
             pull = _through(_lagrange(spread.x, at)[0], spread.on_slope) * (weight * length)[..., None]
             moment = moment + np.cross(_at(_slope_on_axis(model, spread.element, at), e), pull)
+        if spread.couple is not None:
+            moment = moment + _through(_lagrange(spread.x, at)[0], spread.couple) * (weight * length)[..., None]
     return force, moment, _density(spread, x)
 
 

@@ -10,13 +10,13 @@ import numpy as np
 from ..errors import FunicularError, UnknownResultError, near
 from ..kernels.libraries import kernels_of
 from ..model.model import Model
-from ..parts.cable import EXACT, Cable
+from ..parts.cable import Cable
 from ..parts.laid import laid
 from ..parts.load import DistributedForce
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
 from ..parts.slide import Slide
-from ..parts.validation import show
+from ..parts.validation import EXACT, show
 from ..solve.rest_state import RestState
 from .balance_limits import balanced_cables, out_of_balance
 from .cable_loads import CableLoads, Instants, lengths_of_rows, rows

@@ -14,8 +14,8 @@ import numpy as np
 
 from ..errors import SceneError, near
 from ..model.states import connection_states, free_states, spatial
-from ..parts.cable import EXACT
 from ..parts.paths import COMPONENTS
+from ..parts.validation import EXACT
 from ..solve.adjustment import Reader
 from ..solve.snapshots import Snapshots
 from ..solve.static_problem import StaticState

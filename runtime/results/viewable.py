@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..errors import FunicularError
 from ..notebook import in_notebook
 from ..parts.scene_data import SceneData
 
@@ -111,7 +112,6 @@ class Viewable:
         return table_tag(self.overview()) + self._picture()
 
     def _picture(self) -> str:
-        from ..errors import FunicularError
         from ..view.files import image_tag, text_tag
         from ..view.plot import shape_figure
 

@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from ..model.middle_strain import slopes
+from ..model.middle_strain import stretches
 from ..model.model import CableModel, Model
 from ..parts.scene_data import SceneData
 
 FOLDED = 0.8
 """Of the length of the centreline: elements whose nodes are nearer to each other are folded: an arc of 130 degrees."""
-GAUSS = np.polynomial.legendre.leggauss(8)
+PLACES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+GAUSS = (0.5 * (1 + PLACES)).tolist(), (0.5 * WEIGHTS).tolist()
 """Of the length of a centreline, whose slope turns round in a folded element."""
 
 
@@ -89,8 +90,5 @@ def _distances(r: np.ndarray) -> np.ndarray:
 
 def _arc_lengths(cable: CableModel, first: np.ndarray, last: np.ndarray, element: np.ndarray) -> np.ndarray:
     """Return (n,): lengths in m of the centrelines of elements (n,) with these vectors of nodes, (n, vectors, dim)."""
-    e, stretch = np.concatenate([first, last], axis=1), np.zeros(len(element))
-    for place, weight in zip(*GAUSS, strict=True):
-        N = np.broadcast_to(slopes(cable, 0.5 * (1 + place)), (cable.n_elements, e.shape[1]))[element]
-        stretch += 0.5 * weight * np.linalg.norm(np.einsum("nk,nkd->nd", N, e), axis=1)
+    stretch = stretches(cable, first, last, element, GAUSS)
     return np.maximum(stretch, np.finfo(float).tiny) * cable.mesh.each_length(element)

@@ -194,13 +194,10 @@ def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine
         if slide.friction is not None or (slide.at_start, slide.at_end) != ("error", "error"):
             raise SceneError(slide.where, f"{who} knows neither friction nor ends of cables",
                              _take_another("takes_friction_and_stops"))
-    for drag in scene.drags.values():
-        if drag.on in scene.bodies and drag.added_mass is not None and not integrator.takes_added_mass_of_bodies:
-            raise SceneError(drag.where, f"{who} knows no added mass of bodies",
-                             _take_another("takes_added_mass_of_bodies"))
     for crossing in scene.crossings.values():
-        if integrator.needs_discrete_gradient:
-            raise SceneError(crossing.where, f"{who} has no discrete gradient of it", "take another integrator")
+        if integrator.needs_discrete_gradient and crossing.friction is not None and crossing.friction.sticks:
+            raise SceneError(crossing.where, f"{who} does not know friction of crossings that sticks",
+                             "take model=\"regularised\", or another integrator")
     for contact in scene.contacts.values():
         if contact.is_hard and contact.friction_coefficient and not integrator.takes_friction_and_stops:
             raise SceneError(contact.where, f"{who} does not know friction of hard contacts",

@@ -128,9 +128,9 @@ def _rounded_shape(engine: Engine, model: Model, K: csc_array) -> csc_array:
     stretched = undeformed["q"].copy()
     for cable in model.cables:
         stretched[cable.coordinates] *= 1 + STRAIN
-    engine.set_state(0.0, **undeformed | {"q": stretched})
+    engine.set_state(0.0, **undeformed | {"q": stretched}, prescribe=True)
     change = condensed(engine.matrix(0.0, 0.0, 1.0), model)[0] - K
-    engine.set_state(0.0, **undeformed)
+    engine.set_state(0.0, **undeformed, prescribe=True)
     return ROUNDING / STRAIN * change
 
 

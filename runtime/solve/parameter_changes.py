@@ -29,6 +29,7 @@ from ..model.loads import LoadBuilder
 from ..model.model import CableModel, Model
 from ..model.numbering import as_drawn
 from ..model.states import attachment_points
+from ..model.unknowns import by_unknowns
 from ..parts.arc_lengths import on_cables
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
@@ -412,11 +413,6 @@ def _with(model: Model, **changes: Any) -> Model:
 
 def _by_unknowns(model: Model) -> csr_array:
     """Return T (n_dof + own of couplings, unknowns): of what unknowns the dofs are made."""
-    n, of_dof = model.n_band + model.n_border_dof, model.unknown_of_dof
-    free, tied = np.flatnonzero(of_dof >= 0), np.flatnonzero(of_dof < -1)
-    own = np.arange(model.n_extra)
-    part = model.combinations[-2 - of_dof[tied]].tocoo()
-    rows = np.concatenate([free, tied[part.row], model.n_dof + own])
-    columns = np.concatenate([of_dof[free], part.col, n + own])
-    values = np.concatenate([np.ones(len(free)), part.data, np.ones(len(own))])
-    return csr_array((values, (rows, columns)), shape=(model.n_dof + model.n_extra, n + model.n_extra))
+    n = model.n_band + model.n_border_dof
+    own = n + np.arange(model.n_extra)
+    return by_unknowns(np.append(model.unknown_of_dof, own), model.combinations, n + model.n_extra)

@@ -16,6 +16,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from ..checks.contact_resolution import unseen_contact
 from ..checks.plausibility import implausible
 from ..engine import Engine
 from ..errors import EquilibriumError, FunicularWarning
@@ -27,6 +28,7 @@ from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings, RelaxationSettings
 from .diagnosis import describe_dof
 from .folds import folds
+from .penetrations import penetrations
 from .rest_state import Relaxation, RestState
 from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem
@@ -338,7 +340,8 @@ def _told(problem: StaticProblem, motion: _Motion, found: Stability, made: type[
     """Return the problem's state with what is to be said of it; what a user must know is a warning, too."""
     state = made.of(problem, found)
     state.relaxation = motion.report
-    problem.messages += folds(problem.scene, problem.model, state.static_state["q"])
+    problem.messages += [*folds(problem.scene, problem.model, state.static_state["q"]),
+                         *penetrations(problem.model, state.couplings["contact"]), *unseen_contact(problem.scene)]
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=5)
     LOG.info("relaxation: %d steps, %d resets, %.3g N left over", motion.report.steps, motion.report.resets,

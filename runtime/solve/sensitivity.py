@@ -18,6 +18,7 @@ import numpy as np
 from ..engine import Engine
 from ..model.joints import JointModel
 from ..model.loops import joints_in_loops
+from ..model.middle_strain import stretches
 from ..model.model import BodyModel, CableModel, Model
 from ..model.states import attachment_points, body_rates, body_state, joint_state
 from ..parts.cable import Cable
@@ -27,6 +28,8 @@ from ..parts.section_stiffness import RESIDUAL_STIFFNESS
 from ..parts.settings import RunSettings
 from ..rotations import rotate
 
+SIMPSON = (0.0, 0.5, 1.0), (1 / 6, 4 / 6, 1 / 6)
+"""Of the lengths of elements: the exponents that count, below, are measured with it."""
 OF_CABLES, OF_BODIES = 0.115, 1.0
 """Of the exponents: what counts, see above."""
 BEGUN = 0.7
@@ -93,10 +96,7 @@ class Sensitivity:
         """Return (times, elements): the rates at which elements of a cable buckle, 1/s."""
         part = self._scene.cables[cable.name]
         vectors = q[:, cable.coordinates].reshape(-1, *cable.shape)
-        r, r_x = (vectors[:, :, cable.vectors.index(name)] for name in ("r", "r_x"))
-        middle = 1.5 * np.diff(r, axis=1) / cable.mesh.lengths[:, None] - 0.25 * (r_x[:, 1:] + r_x[:, :-1])
-        slopes, middle = np.linalg.norm(r_x, axis=-1), np.linalg.norm(middle, axis=-1)
-        strain = (slopes[:, 1:] + 4 * middle + slopes[:, :-1]) / 6 - 1  # by Simpson's rule
+        strain = stretches(cable, vectors[:, :-1], vectors[:, 1:], np.arange(cable.n_elements), SIMPSON) - 1
         E, moments = part.material.youngs_modulus, part.section.moments()
         EA, EI = E * moments[0], E * (moments[1] if self._model.dim == 2 else min(moments[1:3]))
         if part.traits.membrane == "tension_only":

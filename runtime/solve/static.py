@@ -11,6 +11,7 @@ import logging
 import warnings
 from typing import Generic, TypeVar
 
+from ..checks.contact_resolution import unseen_contact
 from ..checks.plausibility import implausible
 from ..errors import EquilibriumError, FunicularWarning
 from ..model.drag_forces import outside_tables
@@ -78,7 +79,7 @@ def note(problem: StaticProblem, state: RestState) -> None:
         problem.messages.append(f"the state is {state.stability}{leaves}")
     LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
              state.iterations, state.residual)
-    problem.messages += penetrations(problem.model, state.couplings["contact"])
+    problem.messages += [*penetrations(problem.model, state.couplings["contact"]), *unseen_contact(problem.scene)]
     state.messages = problem.messages + implausible(problem.scene)
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=4)

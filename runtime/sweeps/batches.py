@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from importlib.metadata import version
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -59,8 +60,6 @@ class Task:
 @cache
 def versions() -> str:
     """Return the versions of what computes a point, in words."""
-    from importlib.metadata import version  # for sweeps alone
-
     return ", ".join(f"{name} {version(name)}" for name in ("funicular", "numpy", "scipy"))
 
 

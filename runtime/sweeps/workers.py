@@ -196,13 +196,17 @@ class DaskWorkers:
                 ended = self._finished()
                 results = self._results(ended)
                 for future in ended:
-                    if future.status != "error" and future not in results:  # computed anew: its worker died with it
+                    status = "fetched" if future in results else future.status
+                    if status in ("pending", "finished"):  # its worker died with it: is computed anew, or was
                         future.add_done_callback(self._ended.put)
                         continue
-                    batch = pending[future]
-                    came += ([(batch, results[future])] if future in results
-                             else self._dead(future, batch, batches, lost))
-                    del pending[future]
+                    batch = pending.pop(future)
+                    if status == "fetched":
+                        came.append((batch, results[future]))
+                    elif status == "error":
+                        came += self._dead(future, batch, batches, lost)
+                    else:  # lost or cancelled, and stays so where no worker is left
+                        batches.give_back([batch])
             except (OSError, TimeoutError, RuntimeError, self._distributed.comm.CommClosedError,
                     self._distributed.CancelledError) as error:
                 LOG.warning("sweep: lost the scheduler, and connect anew: %s", error or type(error).__name__)

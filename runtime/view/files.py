@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import ResultFileError, shown_path
 from ..notebook import in_notebook
+from .plot import STYLE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,8 +34,6 @@ def new_figure() -> Figure:
     """Return an empty figure that a notebook shows where it is returned, and pyplot.show() in a script."""
     from matplotlib import pyplot, rc_context
 
-    from .plot import STYLE
-
     with rc_context(STYLE):
         figure = pyplot.figure()
     if in_notebook():
@@ -45,8 +44,6 @@ def new_figure() -> Figure:
 def save_figure(figure: Figure, path: str | os.PathLike) -> Path:
     """Write a figure to a file of the kind that its name ends in, and return its path. Raises ResultFileError."""
     from matplotlib import rc_context
-
-    from .plot import STYLE
 
     try:
         with rc_context(STYLE):

@@ -18,6 +18,7 @@ from .animation import Animation, Clip
 from .extras import extra
 from .files import unwritable
 from .film import Film, period
+from .plot import STYLE
 
 RATE = 25
 """Pictures a second."""
@@ -36,8 +37,6 @@ def write_video(animation: Animation, path: str | os.PathLike, speed: float | No
     The clips of a menu, such as modes, follow one another. Raises ResultFileError; FunicularError.
     """
     from matplotlib import rc_context
-
-    from .plot import STYLE
 
     path = Path(path)
     if path.suffix.lower() not in KINDS:

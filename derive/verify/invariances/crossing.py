@@ -40,3 +40,9 @@ def crossing(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invarianc
                                                           sliding @ sliding), 256 * EPS
     yield "what slides is against the stretch", relative(sliding @ now + np.sqrt((sliding @ sliding) * (now @ now)),
                                                          sliding @ now), 64 * EPS
+    step = k("step", s)
+    before, after = (k("contact", {**s, "d": (s["c"][0] - s[key]) * n})["U"][0] for key in ("p", "p_next"))
+    work = step["F"] @ s["way"] + np.sum(step["M"] * s["turn"])
+    scale = np.abs([before, after, *step["lost"], *step["F"] * s["way"], *np.ravel(step["M"] * s["turn"])])
+    left = relative(work - before + after + step["lost"], scale)
+    yield "work over a step is what is stored less, and lost", left, 512 * EPS

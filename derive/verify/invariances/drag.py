@@ -30,7 +30,32 @@ def drag(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
         float(np.max(np.abs(at_rest[name]))) for name in ("f", "f_t", "f_w")), 64 * EPS
     on_point = k("on_point", {**s, "w": 0 * w})
     yield "so do those on a point", max(float(np.max(np.abs(on_point[name]))) for name in ("f", "f_w")), 64 * EPS
+    if family.dim == 3:
+        yield from _on_section(k, s)
     yield from _added_mass(family, k, s)
+
+
+def _on_section(k: Numbers, s: State) -> Iterator[Invariance]:
+    """Yield that forces on a section turn with the scene, have the moment C_M, and what they do to the flow."""
+    out = k("on_section", s)
+    f, vectors = out["f"], [s[name] for name in "tdw"]
+    for spin in spins(3):
+        turned = out["K"] @ np.concatenate([spin @ v for v in vectors])
+        yield "a section's forces turn with the scene", relative(turned - (f @ spin.T).ravel(), f), 64 * EPS
+    t, d, w = vectors
+    i = t / np.linalg.norm(t)
+    n, (scale, width, _) = w - (i @ w) * i, s["c_section"]
+    moment = s["polar"][4] * scale * width * np.linalg.norm(t) * (n @ n)
+    yield "a section's moment is about its axis", relative(
+        np.cross(t, f[1]) + np.cross(d, f[2]) + moment * i, moment), 64 * EPS
+    power = s["polar"][0] * scale * np.linalg.norm(t) * np.linalg.norm(n) ** 3
+    yield "lift of a section takes no power from the flow", relative(f[0] @ w - power, power), 64 * EPS
+    by_chord, by_slope = (out["K"][:, a : a + 3] @ v for a, v in ((3, d), (3, t)))
+    yield "length and shear of the chord do not matter to the force", max(
+        relative(each[:3], f[0]) for each in (by_chord, by_slope)), 64 * EPS
+    at_rest = k("on_section", {**s, "w": 0 * w})
+    yield "a section's forces vanish without flow", max(
+        float(np.max(np.abs(at_rest[name]))) for name in ("f", "K")), 64 * EPS
 
 
 def _added_mass(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
@@ -46,3 +71,5 @@ def _added_mass(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invari
     energies = [p @ w / 2 for p, (_, w) in zip(impulses, ends, strict=True)]
     given = step["dp"] @ (s["w"] + s["w_next"]) / 2 - step["g"] @ (s["t_next"] - s["t"])
     yield "energy over a step", relative(energies[1] - energies[0] - given, energies), 64 * EPS
+    sphere = k("inertia_of_point_step", {**s, "C": np.eye(family.dim), "turning": 0 * s["w"]})
+    yield "a sphere gets no moment over a step", relative(sphere["moment"], sphere["p"] @ sphere["p"]), 64 * EPS

@@ -77,5 +77,42 @@ def added_mass(family: CouplingFamily) -> list[Relation]:
         Relation(point, "moment", "minus the derivative of w . A C A' w/2 by a turn", 1, minus_moment, turns),
         *(Relation(point, f"{output}_turn", f"d {output} by a turn", 1, turned(output), turns)
           for output in ("p", "p_rate", "moment")),
-        *by(point, "p_rate", "omega", "w"), *by(point, "moment", "w"),
+        *by(point, "p_rate", "omega", "w"), *by(point, "moment", "w"), *_body_over_step(),
+    ]
+
+
+def _body_over_step() -> list[Relation]:
+    """Return the relations of a body's impulse over a step, of axes whose mean is the sample's A."""
+    kernel = "inertia_of_point_step"
+
+    def ends(s):
+        half = swung_axes(s["theta"], s["A"]) / 2
+        return s["A"] - half, s["A"] + half
+
+    def step(k, s):
+        before, after = ends(s)
+        return k(kernel, {**s, "A": before, "A_next": after, "turning": s["A"].dot(s["turning"])})
+
+    def impulses(k, s):
+        return [k("impulse_of_point", s, A=A, w=s[w])["p"] for A, w in zip(ends(s), ("w", "w_next"), strict=True)]
+
+    def work(k, s):
+        """Return what the kinetic energy changes by, less the work of dp on the way of the point."""
+        before, after = impulses(k, s)
+        energy = (after.dot(s["w_next"]) - before.dot(s["w"])) / 2
+        return energy - (after - before).dot((s["w"] + s["w_next"]) / 2 - more(k, s, 0, 0))
+
+    def more(k, s, t, j):
+        before, after = ends(s)
+        return (after - before).dot(s["turning"]) / 4
+
+    return [
+        Relation(kernel, "dp", "p at the end of the step less that before", 0,
+                 lambda k, s, t, j: impulses(k, s)[1] - impulses(k, s)[0], of=lambda k, s: step(k, s)["dp"]),
+        Relation(kernel, "p", "its mean", 0, lambda k, s, t, j: sum(impulses(k, s)) / 2,
+                 of=lambda k, s: step(k, s)["p"]),
+        Relation(kernel, "moment", "moment . theta = change of T less dp . way/h", 0, lambda k, s, t, j: work(k, s),
+                 of=lambda k, s: step(k, s)["moment"].dot(s["theta"])),
+        Relation(kernel, "more", "mean of A y over both ends less A y of the means", 0, more,
+                 of=lambda k, s: step(k, s)["more"]),
     ]

@@ -12,6 +12,8 @@ from ..methods import Relation
 from ..numbers import Numbers, State
 from .paths import entry, root
 
+NEGLIGIBLE = 1e-16
+"""Of the square of a line's size, as the kernel of a step has it."""
 TRIALS = 12
 """Steps of Newton's method to the closest points: the conditions hold nearly, and digits double."""
 
@@ -86,7 +88,7 @@ def crossing(family: CouplingFamily) -> list[Relation]:
               for name, n in numbers.items()),
             Relation("force", "F", "-dU by d without damping", 1, energy, dim,
                      of=lambda k, s: k("force", {**s, "u": 0 * s["u"]})["F"]),
-            *_contact(),
+            *_contact(), *_step(),
             Relation("closest", "step", "closest points of lines without curvature", 0,
                      root(lambda s: np.array(lines.points(off(s)))), of=lambda k, s: k("closest", off(s))["step"])]
 
@@ -162,3 +164,47 @@ def _contact() -> list[Relation]:
             "f": ("N n - mu N v/sqrt(v.v + v0^2)", whole),
             "P": ("k p^e damping p'^2 + mu N v.v/sqrt(v.v + v0^2)", dissipated)}
     return [Relation("contact", name, text, 0, root(function)) for name, (text, function) in told.items()]
+
+
+def _step() -> list[Relation]:
+    """Return the relations over a step: energy, and friction along the slip."""
+    def stored(k: Numbers, s: State, depth: str) -> Any:
+        return k("contact", {**s, "d": (s["c"][0] - s[depth]) * across(s)})["U"][0]
+
+    def slip(s: State) -> Any:
+        return s["way"] - s["n"] * s["n"].dot(s["way"])
+
+    def law(k: Numbers, s: State) -> tuple[Any, Any]:
+        """Return the mean force without damping, and with it."""
+        sunk = s["p_next"] - s["p"]
+        elastic = (stored(k, s, "p_next") - stored(k, s, "p")) / sunk
+        return elastic, elastic * (1 + s["c"][4] * sunk / s["h"])
+
+    def friction(k: Numbers, s: State) -> Any:
+        rate = slip(s) / s["h"]
+        return -s["c"][6] * law(k, s)[1] / (rate.dot(rate) + s["c"][7] ** 2) ** 0.5 * rate
+
+    def lost(k: Numbers, s: State) -> Any:
+        elastic, normal = law(k, s)
+        return np.array([(normal - elastic) * (s["p_next"] - s["p"]) - friction(k, s).dot(slip(s))])
+
+    def makes_up(s: State) -> Any:
+        """Return what the gap changes by, less what its gradient half-way has, over the square of all that moves."""
+        way, gap = s["way"], s["p"] - s["p_next"]
+        turns = sum(size * size * (turn.dot(turn) + NEGLIGIBLE)
+                    for turn, size in zip(s["turn"], s["size"], strict=True))
+        return (gap - s["n"].dot(way)) / (way.dot(way) + turns)
+
+    def force(k: Numbers, s: State) -> Any:
+        return law(k, s)[1] * (s["n"] + makes_up(s) * s["way"]) + friction(k, s)
+
+    def on_slopes(k: Numbers, s: State) -> Any:
+        factor = law(k, s)[1] * makes_up(s)
+        return np.array([factor * size * size * turn for turn, size in zip(s["turn"], s["size"], strict=True)])
+
+    def equal(of: Callable) -> Callable:
+        return lambda k, s, t, j: of(k, s)
+
+    return [Relation("step", name, text, 0, equal(of)) for name, text, of in (
+        ("F", "N (n + its correction along the way) and friction", force),
+        ("M", "N times the correction along the turns", on_slopes), ("lost", "damping and friction", lost))]

@@ -11,6 +11,7 @@ from ..methods import Relation
 from ..motion import cross
 from .added_mass import added_mass
 from .paths import entry, from_kernel, unit
+from .section_flow import section_flow
 
 
 def _cube(vector: Any) -> Any:
@@ -62,7 +63,7 @@ def drag(family: CouplingFamily) -> list[Relation]:
                 s["t"], s["w"]) * (_normal(s).dot(_normal(s))) ** 0.5),
             *(Relation("lift_along_cable", f"f_{name}", f"df by {name}", 1,
                        from_kernel("lift_along_cable", "f", **{name: entry(name)}), dim) for name in "tw")]
-    return [*(lift if dim == 3 else []),
+    return [*([*lift, *section_flow()] if dim == 3 else []),
             Relation("on_foil", "f", "c |w_p| (C_D w_p + C_L s x w_p)", 0, lambda k, s, t, j: of_foil(k, s, 0, 0)),
             Relation("on_foil", "f_w", "df by w, coefficients with the angle", 1, of_foil, dim),
             Relation("along_cable", "f", "derivative by w of |t| (c_n |w_n|^3 + c_t |w_t|^3)/3", 1, potential, dim),

@@ -5,22 +5,33 @@ from __future__ import annotations
 import numpy as np
 
 from ...codegen.family import CouplingFamily
+from ..motion import swung_axes
 from ..numbers import Numbers, State
 
 
 def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
     """Return the slope of a cable, the velocity of the fluid past it, with rates and at the end of a step; axes of a
-    body and its turn; coefficients of drag, added masses along and across.
+    body and its turn, over a step by a Cayley vector; coefficients of drag, added masses along and across.
     """
     dim = family.dim
     moving = {name: random.normal(size=dim) for name in ("t", "w", "t_rate", "w_rate", "t_next", "w_next")}
     axes, half = np.linalg.qr(random.normal(size=(dim, dim)))[0], random.normal(size=(dim, dim))
-    return moving | {"A": axes, "omega": random.normal(size=3 if dim == 3 else 1), "C": half @ half.T,
+    sampled = moving | {"A": axes, "omega": random.normal(size=3 if dim == 3 else 1), "C": half @ half.T,
                      "m": np.array([1.3, 0.2]),
                      "s": _unit(random.normal(size=3)) if dim == 3 else -np.ones(1),
                      "c_lift": np.array([0.6, 1e-30]), "c_foil": np.array([0.9, 1e-30]),
                      "coefficients": np.array([0.5, 0.3, 0.8, -1.2]), "c": np.array([0.8, 0.3, 1e-30]),
-                     "c_point": np.array([0.7, 1e-30])}
+                     "c_point": np.array([0.7, 1e-30]), **(_section(random) if dim == 3 else {})}
+    theta = random.normal(size=3 if dim == 3 else 1)
+    one, across = np.eye(dim), swung_axes(theta / 2, np.eye(dim))
+    return sampled | {"theta": theta, "A_next": np.linalg.solve(one - across, (one + across) @ axes),
+                      "turning": random.normal(size=dim)}
+
+
+def _section(random: np.random.Generator) -> State:
+    """Return the chord of a section that is sheared, and its coefficients by the angle of attack."""
+    return {"d": random.normal(size=3), "c_section": np.array([0.8, 1.4, 1e-30]),
+            "polar": np.array([0.5, 0.3, 0.8, -1.2, 0.4, 0.9])}
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:

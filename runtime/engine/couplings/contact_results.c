@@ -230,6 +230,7 @@ static double gap_of(const fu_model *model, const fu_contact *contact, const fu_
     if (end) {
         memcpy(end->y, point.distance.y, sizeof end->y);
         fu_surface_into(model->dim, on, w, end->rate);
+        fu_surface_into(model->dim, on, point.distance.n, end->n);
         end->gap = point.distance.g - contact->radius;
     }
     return point.distance.g - contact->radius;

@@ -98,8 +98,7 @@ static void put_together(const fu_model *model, const fu_crossing *crossing, con
     }
 }
 
-/* Returns the size of a line's pieces, m. */
-static double size_of(const fu_model *model, const fu_crossing *crossing, int line)
+double fu_line_size(const fu_model *model, const fu_crossing *crossing, int line)
 {
     const int cable = crossing->cables[line];
     return cable >= 0 ? model->cables[cable].length : 0.5 * (crossing->high[line] - crossing->low[line]);
@@ -110,7 +109,7 @@ static int converge(const fu_model *model, const fu_crossing *crossing, const fu
 {
     const int lines = model->dim - 1;
     double step[FU_LINES] = {0.0, 0.0}, size[FU_LINES] = {1.0, 1.0};
-    for (int line = 0; line < lines; ++line) size[line] = size_of(model, crossing, line);
+    for (int line = 0; line < lines; ++line) size[line] = fu_line_size(model, crossing, line);
     for (int i = 0; i < MOST_ITERATIONS; ++i) {
         double part = 1.0, left = 0.0;
         put_together(model, crossing, state, out);
@@ -176,7 +175,7 @@ void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const f
     for (int line = 0; line < FU_LINES; ++line) out->s[line] = state->numbers[crossing->base.numbers + FU_CROSSING_S + line];
     out->found = converge(model, crossing, state, out);
     if (out->found) return;
-    const double apart = search(model, crossing, state, out->s), reach = size_of(model, crossing, 0) / SAMPLES;
+    const double apart = search(model, crossing, state, out->s), reach = fu_line_size(model, crossing, 0) / SAMPLES;
     out->found = converge(model, crossing, state, out);
     out->apart = fmax(apart - reach - crossing->law[0], 0.0);
 }
@@ -188,7 +187,7 @@ void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, co
     int moved = 0;
     fu_find_closest(model, crossing, state, out);
     for (int line = 0; line < model->dim - 1; ++line)
-        moved |= fabs(out->s[line] - kept[line]) > size_of(model, crossing, line);
+        moved |= fabs(out->s[line] - kept[line]) > fu_line_size(model, crossing, line);
     if (!moved) return;
     other = *out;
     search(model, crossing, state, other.s);

@@ -178,6 +178,16 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     }
 }
 
+/* The middle moves by half of psi, which weights.stiffness has; the law's mean force is taken as that of the middle. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    const fu_state middle = fu_crossing_middle(at);
+    fu_equations halfway = *at;
+    halfway.next = &middle;
+    halfway.psi = 0;
+    tangent(model, coupling, &halfway, system);
+}
+
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
 {
     (void)model, (void)work;
@@ -298,6 +308,7 @@ static const fu_field fields[] = {
 
 const fu_coupling_type fu_crossing_type = {
     .name = "crossing", .size = sizeof(fu_crossing), .fields = fields, .n_outputs = 14, .n_numbers = FU_CROSSING_NUMBERS,
-    .n_flags = 1, .clearance = fu_crossing_clearance, .between = fu_crossing_between, .events = &fu_crossing_events, .residual = residual, .tangent = tangent, .force = own_force,
+    .n_flags = 1, .clearance = fu_crossing_clearance, .between = fu_crossing_between, .events = &fu_crossing_events, .residual = residual, .tangent = tangent,
+    .step_residual = fu_crossing_step_residual, .step_tangent = step_tangent, .step_dissipation = fu_crossing_step_dissipation, .force = own_force,
     .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step,
     .carry = carry, .reset = reset, .touch = touch};

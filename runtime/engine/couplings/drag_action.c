@@ -3,6 +3,7 @@
 #include "engine.h"
 
 #include <math.h>
+#include <string.h>
 
 static void add_to(int n, const double *x, double *sum)
 {
@@ -20,20 +21,22 @@ static void cross(int dim, const double *a, const double *b, double out[3])
     fu_cross(a, b, out);
 }
 
-/* Makes coefficients of drag and lift, each with its derivative by the angle of attack, of the flow w past axes by rows of A. */
-static void coefficients_of(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w,
-                            double coefficients[4])
+/* Makes n coefficients, of drag, lift and moment, each with its derivative by the angle of attack: that of the flow w from the chord,
+ * across the span, about it. */
+static void coefficients_of(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w, int n,
+                            double *coefficients)
 {
-    coefficients[0] = coefficients[1] = coefficients[3] = 0.0;
+    const double *of[3] = {drag->polar_drag, drag->polar_lift, drag->polar_moment};
+    memset(coefficients, 0, sizeof(double) * 2 * (size_t)n);
     coefficients[2] = drag->foil_lift;
     if (!drag->n_angles) return;
     double normal[3];
     cross(dim, span, chord, normal);
     const double angle = atan2(fu_dot(dim, w, normal), fu_dot(dim, w, chord));
-    const fu_signal of_drag = {drag->n_angles, drag->angles, drag->polar_drag, 0.0, 0.0, 0.0};
-    const fu_signal of_lift = {drag->n_angles, drag->angles, drag->polar_lift, 0.0, 0.0, 0.0};
-    coefficients[0] = fu_signal_at(&of_drag, angle, &coefficients[1], 0);
-    coefficients[2] = fu_signal_at(&of_lift, angle, &coefficients[3], 0);
+    for (int k = 0; k < n; ++k) {
+        const fu_signal polar = {drag->n_angles, drag->angles, of[k], 0.0, 0.0, 0.0};
+        coefficients[2 * k] = fu_signal_at(&polar, angle, &coefficients[2 * k + 1], 0);
+    }
 }
 
 /* Adds drag and lift on a body with a span, of axes A. */
@@ -45,7 +48,7 @@ static void add_foil(int dim, const fu_drag *drag, const double *A, fu_drag_acti
         chord[d] = fu_dot(dim, A + d * dim, drag->chord);
         if (dim == 3) span[d] = fu_dot(dim, A + d * dim, drag->span);
     }
-    coefficients_of(dim, drag, chord, span, out->w, coefficients);
+    coefficients_of(dim, drag, chord, span, out->w, 2, coefficients);
     drag->kernel->on_foil(out->w, span, drag->foil, coefficients, f, by_w);
     add_to(dim, f, out->f);
     add_to(dim * dim, by_w, out->by_w);
@@ -67,6 +70,23 @@ static void add_lift(const fu_drag *drag, const fu_drag_place *at, fu_drag_actio
     add_to(9, by_w, out->by_w);
 }
 
+/* Adds drag, lift and moment on a beam's section. */
+static void add_section(const fu_drag *drag, const fu_drag_place *at, fu_drag_action *out)
+{
+    const double inverse = 1.0 / sqrt(fu_dot(3, at->r_x, at->r_x));
+    double i[3], chord[3], polar[6];
+    for (int d = 0; d < 3; ++d) i[d] = inverse * at->r_x[d];
+    const double along = fu_dot(3, i, at->chord);
+    for (int d = 0; d < 3; ++d) chord[d] = at->chord[d] - along * i[d];
+    coefficients_of(3, drag, chord, i, out->w, 3, polar);
+    drag->kernel->on_section(at->r_x, at->chord, out->w, drag->section, polar, out->of_section, out->section_by);
+    add_to(3, out->of_section, out->f);
+    for (int d = 0; d < 3; ++d) {
+        add_to(3, out->section_by + 9 * d, out->by_slope + 3 * d);
+        add_to(3, out->section_by + 9 * d + 6, out->by_w + 3 * d);
+    }
+}
+
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A, fu_drag_action *out)
 {
     fu_flow_at(model, &drag->flow, t, at->r, &out->flow);
@@ -76,5 +96,6 @@ void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_
     else
         drag->kernel->on_point(out->w, drag->coefficients, out->f, out->by_w);
     if (drag->lift[0] != 0.0) add_lift(drag, at, out);
-    if (drag->is_foil) add_foil(model->dim, drag, A, out);
+    if (fu_drag_on_section(drag)) add_section(drag, at, out);
+    else if (drag->is_foil) add_foil(model->dim, drag, A, out);
 }

@@ -38,7 +38,8 @@ static void add_powers(const fu_model *model, const fu_drag *drag, const fu_drag
 fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point)
 {
     const long k = (long)element * drag->stride + point;
-    return (fu_quadrature_point){drag->weights[k], drag->N + k * n, drag->N_x + k * n};
+    return (fu_quadrature_point){drag->weights[k], drag->N + k * n, drag->N_x + k * n,
+                                 fu_drag_on_section(drag) ? drag->N_chord + k * n : 0};
 }
 
 /* Makes the place of a point of quadrature on an element with the coordinates e, rates v and accelerations a; null: without. */
@@ -59,6 +60,9 @@ void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const dou
             at->v[d] += N[k] * v[k * dim + d];
             at->r_x_rate[d] += N_x[k] * (v[k * dim + d] - (is_place ? v[d] : 0.0));
             if (a) at->a[d] += N[k] * a[k * dim + d];
+            if (!point.N_chord) continue;
+            at->chord[d] += point.N_chord[k] * local;
+            at->chord_rate[d] += point.N_chord[k] * (v[k * dim + d] - (is_place ? v[d] : 0.0));
         }
 }
 
@@ -78,7 +82,10 @@ static void on_cable(const fu_model *model, const fu_drag *drag, double t, const
             fu_drag_place_on_axis(model, drag, q + first, v + first, 0, point, &at);
             fu_drag_act(model, drag, t, &at, 0, &a);
             whole_force(model, drag, &a, force);
+            const double share = point.weight * model->load_fraction;
             if (sums->power) add_powers(model, drag, &at, &a, point.weight, sums->power);
+            if (sums->power && point.N_chord) sums->power->external += share * fu_section_power(&at, &a);
+            if (sums->f && point.N_chord) fu_section_forces(&a, point, share, n, sums->f + first);
             for (int d = 0; d < dim; ++d) {
                 const double part = point.weight * force[d];
                 if (sums->total) sums->total[d] += part;
@@ -116,6 +123,7 @@ static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu
                             K[(k * dim + i) * all + l * dim + j] +=
                                 scale * N[k] * (a.by_slope[i * dim + j] * N_x[l] + by_r * N[l]);
                 }
+            if (point.N_chord) fu_section_matrix(&a, point, scale, weights.rate, all, K);
         }
         fu_add_element_matrix(model, first, all, K, system);
     }
@@ -333,10 +341,12 @@ static const fu_field fields[] = {
     FU_FIELD_ARRAY(fu_drag, span, FU_REAL),
     FU_FIELD_ARRAY(fu_drag, chord, FU_REAL),
     FU_FIELD(fu_drag, foil_lift, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_drag, section, FU_REAL),
     FU_FIELD(fu_drag, n_angles, FU_INTEGER, 0),
     FU_FIELD(fu_drag, angles, FU_REALS, 0),
     FU_FIELD(fu_drag, polar_drag, FU_REALS, 0),
     FU_FIELD(fu_drag, polar_lift, FU_REALS, 0),
+    FU_FIELD(fu_drag, polar_moment, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_drag, buoyancy, FU_REAL),
     FU_FIELD(fu_drag, displaced, FU_REAL, 0),
     FU_FIELD_ARRAY(fu_drag, added, FU_REAL),
@@ -345,6 +355,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_drag, weights, FU_REALS, 0),
     FU_FIELD(fu_drag, N, FU_REALS, 0),
     FU_FIELD(fu_drag, N_x, FU_REALS, 0),
+    FU_FIELD(fu_drag, N_chord, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_drag, attachments, FU_ATTACHMENT),
     {0},
 };

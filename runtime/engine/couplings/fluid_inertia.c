@@ -13,12 +13,6 @@
 
 #include <string.h>
 
-/* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is -G. */
-typedef struct {
-    fu_flow_state flow;
-    double w[3], w_rate[3], material[3];
-} passage;
-
 /* What the kernels give: impulse, its rate, and their derivatives, of a cable or of a body's point. */
 typedef struct {
     double p[3], p_rate[3], g[3], M[9], p_t[9], p_rate_t[9], p_rate_t_rate[9], p_rate_w[9], g_t[9], g_w[9];
@@ -27,10 +21,10 @@ typedef struct {
     double p[3], p_rate[3], moment[3], M[9], p_turn[9], p_rate_turn[9], moment_turn[9], p_rate_omega[9], p_rate_w[9], moment_w[9];
 } of_point;
 
-static passage pass(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v, const double *a)
+fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v, const double *a)
 {
     const int dim = model->dim;
-    passage out;
+    fu_fluid_past out;
     fu_flow_at(model, &drag->flow, t, r, &out.flow);
     for (int d = 0; d < dim; ++d) {
         const double *gradient = out.flow.gradient + d * dim;
@@ -42,7 +36,7 @@ static passage pass(const fu_model *model, const fu_drag *drag, double t, const 
 }
 
 /* Makes G' x. */
-static void back(int dim, const passage *at, const double *x, double out[3])
+static void back(int dim, const fu_fluid_past *at, const double *x, double out[3])
 {
     for (int j = 0; j < dim; ++j) {
         out[j] = 0.0;
@@ -50,8 +44,7 @@ static void back(int dim, const passage *at, const double *x, double out[3])
     }
 }
 
-/* Makes the force with the particles, as it stands on the left of the equations of motion, and adds the power. */
-static void of_particles(const fu_model *model, const fu_drag *drag, const passage *at, const double *p, const double *p_rate,
+void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_fluid_past *at, const double *p, const double *p_rate,
                          const double *v, double part, double left[3], fu_drag_powers *power)
 {
     const int dim = model->dim;
@@ -63,14 +56,13 @@ static void of_particles(const fu_model *model, const fu_drag *drag, const passa
                                    fu_dot(dim, strained, v));
 }
 
-static void terms_of_length(const fu_drag *drag, const fu_drag_place *at, const passage *past, of_length *out)
+static void terms_of_length(const fu_drag *drag, const fu_drag_place *at, const fu_fluid_past *past, of_length *out)
 {
     drag->kernel->inertia_of_cable(at->r_x, at->r_x_rate, past->w, past->w_rate, drag->added, out->p, out->p_rate, out->g,
                                    out->M, out->p_t, out->p_rate_t, out->p_rate_t_rate, out->p_rate_w, out->g_t, out->g_w);
 }
 
-/* Adds a force with the particles and one on the slope, at a point of quadrature, to those on an element's dofs. */
-static void add_to_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point, const double *left,
+void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point, const double *left,
                            const double *on_slope, const fu_drag_sums *sums)
 {
     const int dim = model->dim, n = model->cables[drag->cable].coordinates / dim;
@@ -94,11 +86,11 @@ static void on_cable(const fu_model *model, const fu_drag *drag, const fu_state 
             fu_drag_place at;
             of_length terms;
             fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, a ? a + first : 0, point, &at);
-            const passage past = pass(model, drag, state->t, at.r, at.v, at.a);
+            const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
             terms_of_length(drag, &at, &past, &terms);
-            of_particles(model, drag, &past, terms.p, terms.p_rate, at.v, part, left, sums->power);
+            fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, at.v, part, left, sums->power);
             for (int d = 0; d < dim; ++d) terms.g[d] *= part;
-            add_to_element(model, drag, first, point, left, terms.g, sums);
+            fu_fluid_on_element(model, drag, first, point, left, terms.g, sums);
         }
     }
 }
@@ -115,9 +107,9 @@ void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupli
             fu_drag_place at;
             of_length terms;
             fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, fu_drag_point(drag, n, e, k), &at);
-            const passage past = pass(model, drag, state->t, at.r, at.v, at.a);
+            const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
             terms_of_length(drag, &at, &past, &terms);
-            of_particles(model, drag, &past, terms.p, terms.p_rate, at.v, model->load_fraction, left, 0);
+            fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, at.v, model->load_fraction, left, 0);
             memset(out, 0, sizeof(double[FU_INERTIA_DENSITIES]));
             for (int d = 0; d < dim; ++d) {
                 out[d] = -left[d];
@@ -128,42 +120,9 @@ void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupli
     }
 }
 
-/* The same over a step, with the change of impulse and a discrete gradient: the energy T changes by the work of the force. */
-static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
-{
-    const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim, n = cable->coordinates / dim;
-    const fu_state *ends[2] = {at->now, at->next};
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
-        for (int k = 0; k < drag->n_points; ++k) {
-            const fu_quadrature_point point = fu_drag_point(drag, n, e, k);
-            fu_drag_place place[2], middle;
-            passage past[2];
-            double dp[3], g[3], rate[3], mean[3], M[9], left[3];
-            for (int i = 0; i < 2; ++i) {
-                fu_drag_place_on_axis(model, drag, ends[i]->q + first, ends[i]->v + first, 0, point, &place[i]);
-                past[i] = pass(model, drag, ends[i]->t, place[i].r, place[i].v, place[i].a);
-            }
-            fu_drag_place_on_axis(model, drag, at->middle->q + first, at->middle->v + first, 0, point, &middle);
-            const passage halfway = pass(model, drag, at->middle->t, middle.r, middle.v, middle.a);
-            drag->kernel->inertia_step(place[0].r_x, place[1].r_x, past[0].w, past[1].w, drag->added, dp, g);
-            drag->kernel->impulse_of_cable(middle.r_x, halfway.w, drag->added, mean, M);
-            for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
-            of_particles(model, drag, &halfway, mean, rate, middle.v, point.weight, left, sums->power);
-            if (sums->power) /* that T changes by, with the velocities at both ends; of_particles has -rate . U half-way */
-                for (int d = 0; d < dim; ++d)
-                    sums->power->external += point.weight * rate[d] *
-                                             (0.5 * (past[0].w[d] + past[1].w[d]) - middle.v[d] + halfway.flow.U[d]);
-            for (int d = 0; d < dim; ++d) g[d] *= point.weight;
-            add_to_element(model, drag, first, point, left, g, sums);
-        }
-    }
-}
-
 /* Makes the derivatives of a force on particles by the slope and by the place, and those of g (dim x dim each); rate: that of
  * velocities by places. */
-static void derivatives(const fu_drag *drag, int dim, const of_length *of, const passage *past, double rate, double by_slope[9],
+static void derivatives(const fu_drag *drag, int dim, const of_length *of, const fu_fluid_past *past, double rate, double by_slope[9],
                         double by_place[9], double g_place[9])
 {
     const double *G = past->flow.gradient;
@@ -201,7 +160,7 @@ static void tangent_of_cable(const fu_model *model, const fu_drag *drag, const f
             fu_drag_place at;
             of_length terms;
             fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, a ? a + first : 0, point, &at);
-            const passage past = pass(model, drag, state->t, at.r, at.v, at.a);
+            const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
             terms_of_length(drag, &at, &past, &terms);
             derivatives(drag, dim, &terms, &past, weights.rate, by_slope, by_place, g_place);
             fu_add_element_product(dim, all, part, point.N, point.N_x, by_slope, K);
@@ -214,7 +173,7 @@ static void tangent_of_cable(const fu_model *model, const fu_drag *drag, const f
 }
 
 /* Makes the state of a body's point with its axes, its acceleration, and what the kernel gives of it. */
-static passage at_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+static fu_fluid_past at_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                        fu_attachment_state *end, of_point *out)
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
@@ -225,7 +184,7 @@ static passage at_body(const fu_model *model, const fu_drag *drag, const fu_stat
         for (int i = 0; i < end->n; ++i) acceleration[d] += end->P[d * end->n + i] * a[end->at[i]];
     for (int k = 0; k < turns; ++k)
         for (int i = 0; i < end->n; ++i) omega[k] += end->T[k * end->n + i] * state->v[end->at[i]];
-    const passage past = pass(model, drag, state->t, end->p, end->v, acceleration);
+    const fu_fluid_past past = fu_past_fluid(model, drag, state->t, end->p, end->v, acceleration);
     drag->kernel->inertia_of_point(end->A, drag->added, omega, past.w, past.w_rate, out->p, out->p_rate, out->moment, out->M,
                                    out->p_turn, out->p_rate_turn, out->moment_turn, out->p_rate_omega, out->p_rate_w,
                                    out->moment_w);
@@ -238,8 +197,8 @@ static void on_body(const fu_model *model, const fu_drag *drag, const fu_state *
     double left[3];
     fu_attachment_state end;
     of_point terms;
-    const passage past = at_body(model, drag, state, a, &end, &terms);
-    of_particles(model, drag, &past, terms.p, terms.p_rate, end.v, model->load_fraction, left, sums->power);
+    const fu_fluid_past past = at_body(model, drag, state, a, &end, &terms);
+    fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, end.v, model->load_fraction, left, sums->power);
     for (int d = 0; d < dim && sums->total; ++d) sums->total[d] -= left[d];
     for (int i = 0; sums->f && i < end.n; ++i) {
         double sum = 0.0;
@@ -259,10 +218,10 @@ static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu
     double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], left[3];
     fu_attachment_state end;
     of_point of;
-    const passage past = at_body(model, drag, state, a, &end, &of);
+    const fu_fluid_past past = at_body(model, drag, state, a, &end, &of);
     const int n = end.n;
     const double *G = past.flow.gradient;
-    of_particles(model, drag, &past, of.p, of.p_rate, end.v, 1.0, left, 0);
+    fu_fluid_on_particles(model, drag, &past, of.p, of.p_rate, end.v, 1.0, left, 0);
     memcpy(turned, end.P, sizeof turned);
     memcpy(axes, end.T, sizeof axes);
     memset(K, 0, sizeof(double) * (size_t)(n * n));
@@ -312,12 +271,6 @@ void fu_fluid_inertia_forces(const fu_model *model, const fu_drag *drag, const f
 {
     if (drag->cable >= 0) on_cable(model, drag, state, a, sums);
     else on_body(model, drag, state, a, sums);
-}
-
-/* Of cables alone: runs that conserve energy refuse bodies with inertia of a fluid. */
-void fu_fluid_inertia_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
-{
-    on_cable_in_step(model, drag, at, sums);
 }
 
 void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,

@@ -75,6 +75,8 @@ typedef struct {
 void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
 /* Does the same at a state that may be far from the one that the numbers are of: of two finds it takes the closer one. */
 void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
+/* Returns the size of a line's pieces, m. */
+double fu_line_size(const fu_model *model, const fu_crossing *crossing, int line);
 void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state,
                       const fu_line_point *point, fu_line_moves *out);
 
@@ -98,6 +100,11 @@ void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state);
 /* crossings.c; the second: whether the normal has swung round since the last state, as where the lines have been parallel. */
 void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out);
 int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const fu_crossing_contact *contact);
+
+/* crossing_steps.c; the first: the middle of a step, with the numbers and the flags of its end. */
+fu_state fu_crossing_middle(const fu_equations *at);
+void fu_crossing_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
+double fu_crossing_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
 /* clearances.c */
 fu_clearance fu_crossing_clearance(const fu_model *model, const fu_coupling *coupling, const fu_state *state);

@@ -14,36 +14,39 @@ typedef struct {
     int cable;                 /* -1: on a body, at its attachment */
     double coefficients[3];    /* as the kernel takes them */
     double lift[2];            /* of a cable, as the kernel takes them: none where the first is zero */
-    int is_foil;               /* not zero: a body with a span, and a force by its angle of attack, with drag by `coefficients` */
-    double foil[2], span[3], chord[3]; /* as the kernel takes them; along axes of the body, span[0] in the plane its sense */
+    int is_foil;               /* not zero: a force by the angle of attack, of a body with a span or of a beam with a chord */
+    double foil[2], span[3], chord[3]; /* of a body: as the kernel takes them; along its axes, span[0] in the plane its sense */
     double foil_lift;                  /* coefficient without a polar: drag is by `coefficients` then */
-    int n_angles;                      /* polynomials of the angle, as a signal's of time: of the coefficients of drag and lift */
-    const double *angles, *polar_drag, *polar_lift;
+    double section[3];                 /* of a beam, as the kernel takes them */
+    int n_angles;                      /* polynomials of the angle, as a signal's of time, of each coefficient; */
+    const double *angles, *polar_drag, *polar_lift, *polar_moment; /* that of the moment of a beam alone */
     double buoyancy[3];        /* N/m a length of the undeformed cable, N on a body */
     double displaced;          /* mass of the fluid displaced: kg/m, kg */
     double added[9];           /* mass added: of a length of cable across and along it, kg/m; of a body in its axes (dim x dim), kg */
     int n_points;              /* of quadrature on an element: weights in m, shape functions, their slopes, */
     int stride;                /* each of the first element; points from one element's to the next's: 0 where they are equal */
-    const double *weights, *N, *N_x;
+    const double *weights, *N, *N_x, *N_chord; /* N_chord of a beam's foil: of the director along the chord */
     fu_attachment attachments[1];
 } fu_drag;
 extern const fu_coupling_type fu_drag_type;
 
-/* A point of quadrature on an element: its weight in m, shape functions and their slopes. */
+/* A point of quadrature on an element: its weight in m, shape functions, their slopes, and those of the chord or null. */
 typedef struct {
     double weight;
-    const double *N, *N_x;
+    const double *N, *N_x, *N_chord;
 } fu_quadrature_point;
 
-/* Where the fluid acts: a point of a cable's axis, or of a body. r_x, its rate, and `a`, acceleration, only of a cable. */
+/* Where the fluid acts: a point of a cable's axis, or of a body. r_x, its rate, and `a`, acceleration, only of a cable; the
+ * director along the chord and its rate only of a beam's foil. */
 typedef struct {
-    double r[3], r_x[3], v[3], r_x_rate[3], a[3];
+    double r[3], r_x[3], v[3], r_x_rate[3], a[3], chord[3], chord_rate[3];
 } fu_drag_place;
 
-/* What the fluid does at a place: its velocity with derivatives, that past the place; drag and lift with their derivatives. */
+/* What the fluid does at a place: its velocity with derivatives, that past the place; drag and lift with their derivatives.
+ * of_section: of a beam's foil the forces on r, r_x and chord, with their derivatives by r_x, chord and w; f has the first. */
 typedef struct {
     fu_flow_state flow;
-    double w[3], f[3], by_slope[9], by_w[9], by_turn[9];
+    double w[3], f[3], by_slope[9], by_w[9], by_turn[9], of_section[9], section_by[81];
 } fu_drag_action;
 
 /* Powers: what goes to heat, what the fluid gives, W. */
@@ -57,6 +60,12 @@ typedef struct {
     fu_drag_powers *power;
 } fu_drag_sums;
 
+/* Returns whether it is on a beam, by the angle of attack of its section. */
+static inline int fu_drag_on_section(const fu_drag *drag)
+{
+    return drag->cable >= 0 && drag->is_foil;
+}
+
 fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point);
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
                            fu_quadrature_point point, fu_drag_place *at);
@@ -65,13 +74,23 @@ void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const dou
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
                  fu_drag_action *out);
 
+/* section_flow.c: forces on slope and chord of a beam's foil at a point of quadrature, and what they add to the matrix. */
+double fu_section_power(const fu_drag_place *at, const fu_drag_action *action);
+void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, double part, int n, double *f);
+void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all, double *K);
+
 /* table_events.c */
 extern const fu_coupling_events fu_table_edges;
+
+/* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is minus the flow's gradient. */
+typedef struct {
+    fu_flow_state flow;
+    double w[3], w_rate[3], material[3];
+} fu_fluid_past;
 
 /* fluid_inertia.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or without, null. */
 void fu_fluid_inertia_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                              const fu_drag_sums *sums);
-void fu_fluid_inertia_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums);
 void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                               const double *psi, fu_weights weights, fu_system *system);
 void fu_fluid_inertia(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
@@ -82,5 +101,16 @@ void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const dou
 void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 double fu_fluid_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
                                int past_fluid);
+fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v, const double *a);
+/* Makes the force with the particles, of an impulse p and its rate, as it stands on the left of the equations of motion, and adds
+ * the power. */
+void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_fluid_past *at, const double *p, const double *p_rate,
+                           const double *v, double part, double left[3], fu_drag_powers *power);
+/* Adds a force with the particles and one on the slope, at a point of quadrature, to those on an element's dofs. */
+void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point, const double *left,
+                         const double *on_slope, const fu_drag_sums *sums);
+
+/* fluid_inertia_steps.c */
+void fu_fluid_inertia_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums);
 
 #endif

@@ -34,6 +34,7 @@ typedef struct {
     void (*forget)(fu_run *run);
     int keeps_scratch;      /* checkpoints hold its work space, which is real numbers alone */
     int keeps_energy;       /* velocities stay as they are where it starts anew: to project them would cost energy */
+    int coasts;             /* nothing of a very short step is in what it goes on with: it is not started anew after one */
     int has_matrix;         /* run->newton has the mass and the stiffness of a step, times its square */
     int crosses_boundaries; /* it finds the slides' elements within a step, which may go over boundaries of elements */
     const fu_newton *newton; /* of implicit steps with constraints on positions; null where eq 38 gives accelerations */

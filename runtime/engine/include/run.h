@@ -68,6 +68,7 @@ struct fu_run {
                                                           * was, 0 where only the first is known, -1 none */
     double recorded; /* s: time of the last row */
     double usual; /* s: the step that is wanted, were it not for an event or an output time */
+    int is_remainder; /* the step taken is shorter for an output time or a boundary of a piece alone: no force changes faster in it */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double controlled_motion; /* m: largest so far of what tol is the error of */
     double size; /* m: of the scene as it is at the start, wherever it lies */

@@ -18,7 +18,7 @@ typedef struct {
     double half_size[3];        /* of a box along its axes, m */
     int n_first, n_second;      /* knots of a terrain along its horizontal axes, m; no second in the plane */
     const double *first, *second, *heights; /* heights: 4 (or 4 x 4) coefficients of a cell's cubics, from its first knots */
-    double highest;             /* of a terrain, m */
+    double highest, steepest, bend; /* bounds of a terrain's height, m, its slope, and how much that changes along it, 1/m */
     fu_attachment on[1];
 } fu_surface;
 
@@ -46,12 +46,13 @@ void fu_surface_motion(int dim, const fu_attachment_state *at, const double *r, 
 void fu_surface_out(int dim, const fu_attachment_state *at, const double *own, double *out);
 void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *own);
 
-/* A point at an end of a step, along the shape's axes: its place, m, its velocity past the surface, m/s, how far it is off it, m. */
+/* A point at an end of a step, along the shape's axes: its place, m, its velocity past the surface, m/s, the gradient of its distance,
+ * how far it is off the surface, m. */
 typedef struct {
-    double y[3], rate[3], gap;
+    double y[3], rate[3], n[3], gap;
 } fu_surface_end;
-/* Returns when a point that is off the surface at both ends of a step of h is below it by more than `least`, as its way is predicted to
- * be, s after the first; 0 where it is not: couplings/surface_passes.c. */
+/* Returns when a point that is off the surface at the first end of a step of h is below it by more than `least` and comes off it again,
+ * as its way is predicted to be, s after that end; 0 where it does not: couplings/surface_passes.c. */
 double fu_surface_pass(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, double least);
 
 /* Fields of a structure's member `surface` (include/fields.h), which has the words of its shapes in fu_surface_shapes. */
@@ -67,6 +68,7 @@ extern const char *const fu_surface_shapes[], *const fu_surface_role[];
     FU_SURFACE_FIELD(structure, n_first, FU_INTEGER, 0), FU_SURFACE_FIELD(structure, n_second, FU_INTEGER, 0),           \
     FU_SURFACE_FIELD(structure, first, FU_REALS, 0), FU_SURFACE_FIELD(structure, second, FU_REALS, 0),                   \
     FU_SURFACE_FIELD(structure, heights, FU_REALS, 0), FU_SURFACE_FIELD(structure, highest, FU_REAL, 0),                 \
+    FU_SURFACE_FIELD(structure, steepest, FU_REAL, 0), FU_SURFACE_FIELD(structure, bend, FU_REAL, 0),                    \
     {"on", FU_ATTACHMENT, offsetof(structure, surface.on), 1, sizeof(fu_attachment), NULL}
 
 #endif

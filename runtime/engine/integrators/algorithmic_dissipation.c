@@ -64,8 +64,8 @@ static double *state_of(const fu_cable *cable, double *numbers, int k)
     return numbers + cable->dissipation_state + k * numbers_of(cable);
 }
 
-/* Returns the head of the work space, laid out as a state's numbers: r, what the velocities at the start of the step would change, and its energy; at the head of
- * the scratch. */
+/* Returns the head of the work space, laid out as a state's numbers: r, what the velocities at the start of the step would
+ * change, and its energy; at the head of the scratch. */
 static double *expected_of(const fu_run *run)
 {
     return run->scratch;

@@ -172,7 +172,8 @@ static int step(fu_run *run, double h)
     return fu_newton_step(run, &newton, h);
 }
 
-/* Returns the local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the one before. */
+/* Returns the local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the one
+ * before. */
 static double error(fu_run *run, double h)
 {
     const double factor = h * h * h / 12.0 / (0.5 * h + run->since);

@@ -9,6 +9,11 @@
  * the force is f = f~ mass/sigma with sigma = beta h^2 (1 - alpha_f)/(1 - alpha_m). Rows of equilibrium are multiplied
  * by sigma, constraint rows by the mass: the matrix is M + sigma K bordered by mass C_q, of one scale for any h
  * (Bottasso, Dopico & Trainelli 2008). What Newton leaves of a step, the next ones make up for (carried_residual.c).
+ *
+ * Of vibrations that steps do not resolve, h a_n is as large as velocities are, however long h is. Where a step is much shorter than
+ * the next one, as what is left between an event and an output time can be, its a_n+1 would push the next one by that times the ratio
+ * of both, and vibrations would grow from event to event, the more so the stiffer a cable is. After such a step the a_n that it began
+ * with goes on, nor is the scheme started anew with a_n = q''_n, which holds their acceleration in full.
  */
 #include "engine.h"
 
@@ -18,6 +23,7 @@
 
 #include <string.h>
 
+#define BRIEF 0.1 /* of the usual step: a shorter one leaves a_n as it was, which is off by less than the usual step's error */
 #define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
 
 
@@ -179,12 +185,13 @@ static int step(fu_run *run, double h)
     if (!fu_is_short(run, h)) return fu_newton_step(run, &newton, h);
     const workspace w = space(run);
     fu_carried_residual_note_none(&w.carried, run->model);
+    memcpy(run->next.a, run->now.a, sizeof(double) * (size_t)run->model->n_dof);
     return fu_coast(run, h);
 }
 
-/* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has changed its
- * element the accelerations have jumped at some instant of the step, and velocities are wrong by the part of h that lies
- * between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. */
+/* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has
+ * changed its element the accelerations have jumped at some instant of the step, and velocities are wrong by the part of h
+ * that lies between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. */
 static double error(fu_run *run, double h)
 {
     const parameters *g = scheme_of(run);
@@ -206,7 +213,8 @@ static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_accept(&w.carried, run->model, h);
-    if (fu_goes_on(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
+    if (run->is_remainder && h < BRIEF * run->usual) memcpy(run->next.a, run->now.a, sizeof(double) * (size_t)run->model->n_dof);
+    else if (fu_goes_on(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
     else fu_extrapolation_start(&w.past);
     fu_account_trapezoid(run, h);
 }
@@ -232,4 +240,5 @@ const fu_integrator fu_genalpha = {.name = "genalpha",
                                    .has_matrix = 1,
                                    .crosses_boundaries = 1,
                                    .keeps_scratch = 1,
+                                   .coasts = 1,
                                    .newton = &newton};

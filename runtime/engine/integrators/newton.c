@@ -9,10 +9,10 @@
 #define STAGNANT 0.3          /* increments that shrink less than to this, at the size of rounding, are rounding */
 #define FIRST_CONTRACTION 0.5 /* assumed before there are two increments: too large to stop after one iteration */
 #define SLOWEST 0.9           /* largest contraction by which the rest of the error is estimated */
-#define QUICK 0.03            /* least contraction by which it is: the first iterations mend what is linear, the next are slower */
+#define QUICK 0.03            /* least contraction by which it is: first iterations mend what is linear, the next are slower */
 #define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is not rounding */
 #define MATRIX_COST 2.0       /* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
-#define UNDERESTIMATE 10.0    /* how many times more an increment may shrink less than its residual, which counts stiffness more */
+#define UNDERESTIMATE 10.0    /* how many times less an increment may shrink than its residual, which counts stiffness more */
 #define COARSE 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
 #define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
 
@@ -130,8 +130,8 @@ static void close_gaps(fu_run *run, const fu_newton *method, double h)
     method->kinematics(run, h);
 }
 
-/* Returns whether an iteration may end after an increment of this size, which is `ratio` of the last. Increments that shrink no more
- * are rounding, of which long chains of joints make more than one position has. */
+/* Returns whether an iteration may end after an increment of this size, which is `ratio` of the last. Increments that shrink
+ * no more are rounding, of which long chains of joints make more than one position has. */
 static int leaves_nothing(const fu_run *run, const fu_newton *method, double size, double ratio)
 {
     if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance) return 1;
@@ -199,7 +199,8 @@ static double contraction_of_residual(residual_size before, residual_size after)
     return fmin(1.0, UNDERESTIMATE * fmax(motion, own));
 }
 
-/* Returns whether an iteration may end after an increment of this size, which the next will be `contraction` of, at these gaps. */
+/* Returns whether an iteration may end after an increment of this size, which the next will be `contraction` of, at these
+ * gaps. */
 static int leaves_little(const fu_run *run, double size, double contraction, double gap)
 {
     const double enough = fmax(run->newton_tolerance, run->round_off);
@@ -249,8 +250,8 @@ int fu_goes_on(const fu_run *run)
 }
 
 /* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to
- * rounding instead: a gap of 1e-14 m after a step of 1 ms takes a force of 1e-8 N for each kg in the next one, which vibrations of
- * the scheme keep for long. So are fixed steps that had to be divided, or are too coarse. */
+ * rounding instead: a gap of 1e-14 m after a step of 1 ms takes a force of 1e-8 N for each kg in the next one, which
+ * vibrations of the scheme keep for long. So are fixed steps that had to be divided, or are too coarse. */
 int fu_carries_rest(const fu_run *run)
 {
     const fu_newton *method = run->integrator->newton;
@@ -276,8 +277,8 @@ int fu_newton_step(fu_run *run, const fu_newton *method, double h)
     return 1;
 }
 
-/* Returns the size of an error of positions in run->work, passed through (M + sigma K)^-1 M on the constraints' tangent space so that
- * vibrations that the step does not resolve count by their amplitude and not by their acceleration. */
+/* Returns the size of an error of positions in run->work, passed through (M + sigma K)^-1 M on the constraints' tangent space
+ * so that vibrations that the step does not resolve count by their amplitude and not by their acceleration. */
 double fu_filtered_size(fu_run *run)
 {
     const fu_model *model = run->model;

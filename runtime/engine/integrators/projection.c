@@ -77,9 +77,9 @@ int fu_return_to_joints(fu_run *run, fu_state *state)
     return 0;
 }
 
-/* Goes from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints. `left` is what
- * is left of the couplings' equations then, redundant ones too, in the places of their forces. Returns not zero where there is no
- * way back. */
+/* Goes from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints. `left` is
+ * what is left of the couplings' equations then, redundant ones too, in the places of their forces. Returns not zero where
+ * there is no way back. */
 int fu_probe_mechanism(fu_run *run, const double *along, double *left)
 {
     const fu_model *model = run->model;
@@ -109,15 +109,15 @@ int fu_complete(fu_run *run, fu_state *state)
     return info;
 }
 
-/* Returns whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding of positions
- * would rule a velocity or an acceleration that is made of them. */
+/* Returns whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding of
+ * positions would rule a velocity or an acceleration that is made of them. */
 int fu_is_short(const fu_run *run, double h)
 {
     return h < SHORT_STEP * run->usual;
 }
 
-/* Makes such a step, of any length: `next` from `now` by its accelerations, and back onto the joints; returns 0 where that
- * converged. */
+/* Makes such a step, of any length: `next` from `now` by its accelerations, and back onto the joints, but for what the scheme has
+ * beside them; returns 0 where that converged. */
 int fu_coast(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -133,6 +133,5 @@ int fu_coast(fu_run *run, double h)
     if (model->n_motions) fu_prescribe(model, next);
     if (fu_find_own(run) || fu_return_to_joints(run, next)) return 1;
     if (fu_complete(run, next)) return fu_fail_eq38(run);
-    memcpy(next->a, next->acceleration, sizeof(double) * (size_t)model->n_dof);
     return 0;
 }

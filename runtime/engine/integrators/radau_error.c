@@ -84,17 +84,16 @@ static int turns(const fu_run *run, double h)
     return 0;
 }
 
-/* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the stages say of
- * it for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the method. What the same
- * filter, applied to E, takes away, V, has the right order, and is 0.55 to 2.5 times the error for every z. A part of E counts
- * beside it, for what the matrix has nothing of: loads that change in time, bodies that turn.
+/* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the stages
+ * say of it for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the method. What the
+ * same filter, applied to E, takes away, V, has the right order, and is 0.55 to 2.5 times the error for every z. A part of E
+ * counts beside it, for what the matrix has nothing of: loads that change in time, bodies that turn.
  *
- * Errors of steps add up, those of vibrations that a step does not resolve do not: the method damps them, so that all that can be
- * lost is what there is, once. They may be a part of all that is allowed; what adds up, which the filter leaves of E and V, may be
- * the step's share of it. Friction has kinks, which show in what the filter takes away: there all counts as adding up. So it does
- * where bodies turn: a vibration acts on a turn with the square of its size, as a torque, and one that is lost makes an error that
- * grows with the square of the time.
- */
+ * Errors of steps add up, those of vibrations that a step does not resolve do not: the method damps them, so that all that can
+ * be lost is what there is, once. They may be a part of all that is allowed; what adds up, which the filter leaves of E and V,
+ * may be the step's share of it. Friction has kinks, which show in what the filter takes away: there all counts as adding up.
+ * So it does where bodies turn: a vibration acts on a turn with the square of its size, as a torque, and one that is lost
+ * makes an error that grows with the square of the time. */
 double fu_radau_error(fu_run *run, double h)
 {
     const fu_model *model = run->model;

@@ -73,7 +73,8 @@ void fu_choose_pieces(fu_run *run)
     }
 }
 
-/* Puts the couplings of a state on the pieces that hold their coordinates, but those that are on one of these, at its ends too. */
+/* Puts the couplings of a state on the pieces that hold their coordinates, but those that are on one of these, at its ends
+ * too. */
 void fu_find_pieces(const fu_model *model, fu_state *state)
 {
     for (int k = 0; k < model->n_others; ++k) {

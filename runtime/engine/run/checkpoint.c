@@ -59,8 +59,8 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, (char *)run + numbers, sizeof *run - numbers);
 }
 
-/* Drops what a checkpoint does not hold, and takes the values of all watches, as it does not hold which are passed over. Done at each pause whether a checkpoint is taken or not, so that results do
- * not depend on it. */
+/* Drops what a checkpoint does not hold, and takes the values of all watches, as it does not hold which are passed over. Done
+ * at each pause whether a checkpoint is taken or not, so that results do not depend on it. */
 void fu_pause(fu_run *run)
 {
     run->factored = 0;

@@ -122,8 +122,8 @@ static const fu_coupling *passing(const fu_run *run, fu_event event)
     return c && c->type->events->passed ? c : 0;
 }
 
-/* Returns whether a step may end a little off an event: the slope of a force jumps there, which over so short a way makes nothing, and
- * the instant follows from the rate (run/happenings.c). */
+/* Returns whether a step may end a little off an event: the slope of a force jumps there, which over so short a way makes
+ * nothing, and the instant follows from the rate (run/happenings.c). */
 static int may_miss(const fu_run *run, fu_event event)
 {
     const fu_coupling *c = passing(run, event);
@@ -135,9 +135,10 @@ typedef struct {
     double aim, close;
 } landing_place;
 
-/* Returns how close to an event a step must end: beyond a passage, lest it happen again. A coupling that goes on in the next piece, a way
- * d from the boundary, has gone that way on the wrong curve, whose direction is wrong by d times the jump of r_xx: its velocity by less
- * than rate d/length for pieces that bend by less than a radian. Over the step that shall be little of what is allowed. */
+/* Returns how close to an event a step must end: beyond a passage, lest it happen again. A coupling that goes on in the next
+ * piece, a way d from the boundary, has gone that way on the wrong curve, whose direction is wrong by d times the jump of
+ * r_xx: its velocity by less than rate d/length for pieces that bend by less than a radian. Over the step that shall be little
+ * of what is allowed. */
 static landing_place landing(const fu_run *run, fu_event event, double range)
 {
     if (event.kind == FU_WATCHED)

@@ -1,13 +1,14 @@
 /* Passages: changes of couplings that a step goes over, as the jump that they make in its forces is within what is allowed. The
  * forces at the step's end, and at all stages within it, are of what couplings are there.
  *
- * A passage at a part x of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. What a rule of weights b at c makes
- * of that is wrong by a part of F h, which is a change of momentum: |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. That is the
- * error of velocities, and times h it counts as a local error of positions, as errors of velocities go on for the rest of the run and
- * what is allowed is h/t of the whole. Estimates of integrators do not replace it: they rest on smooth forces, and by chance are nil.
+ * A passage at a part x of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. What a rule of weights b
+ * at c makes of that is wrong by a part of F h, which is a change of momentum:
+ * |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. That is the error of velocities, and times h it counts as a local error of
+ * positions, as errors of velocities go on for the rest of the run and what is allowed is h/t of the whole. Estimates of
+ * integrators do not replace it: they rest on smooth forces, and by chance are nil.
  *
- * A discrete gradient of the energy is the mean force over the way, that over passages too: it keeps the energy, errs by hardly more
- * than where there is no passage, and goes over all of them, at steps of any kind. */
+ * A discrete gradient of the energy is the mean force over the way, that over passages too: it keeps the energy, errs by
+ * hardly more than where there is no passage, and goes over all of them, at steps of any kind. */
 #include "engine.h"
 
 #include <math.h>
@@ -17,8 +18,8 @@
 #define AROUND 0.1 /* of a step: how far from where it seems to be a passage may be, for the bound of its error */
 #define PARTS 8    /* so many instants are looked at on either side */
 
-/* Returns whether steps may go over changes of a coupling. Where it has a damper its force jumps there, and what it dissipates: steps
- * then end there, lest the balance of energy err by more than positions do. */
+/* Returns whether steps may go over changes of a coupling. Where it has a damper its force jumps there, and what it
+ * dissipates: steps then end there, lest the balance of energy err by more than positions do. */
 int fu_can_pass(const fu_coupling *coupling)
 {
     return fu_can_act(coupling) && coupling->type->events->pass && !coupling->is_damped;
@@ -30,8 +31,8 @@ static int has_passed(const fu_run *run, const fu_coupling *c)
     return fu_can_pass(c) && memcmp(run->now.flags + c->flags, run->next.flags + c->flags, size) != 0;
 }
 
-/* Gives the couplings of `next` the flags that follow from where it is, unless they are to keep those of `now`; returns whether that
- * changes them. First: it is the first stage of the step, or the only one. */
+/* Gives the couplings of `next` the flags that follow from where it is, unless they are to keep those of `now`; returns
+ * whether that changes them. First: it is the first stage of the step, or the only one. */
 int fu_choose_passages(fu_run *run, int first)
 {
     const fu_model *model = run->model;
@@ -104,8 +105,8 @@ static double largest_defect(fu_quadrature rule, double x)
     return worst;
 }
 
-/* Returns the size of what a force makes in a time of which this is the square, s^2; by the matrix of the step, where there is one, for
- * vibrations that it does not resolve to count by their amplitude and not by their acceleration. */
+/* Returns the size of what a force makes in a time of which this is the square, s^2; by the matrix of the step, where there is
+ * one, for vibrations that it does not resolve to count by their amplitude and not by their acceleration. */
 static double size_of_response(fu_run *run, const double *force, double square)
 {
     const fu_model *model = run->model;
@@ -139,7 +140,8 @@ double fu_passage_error(fu_run *run, double h)
     return size_of_response(run, run->before, DOUBLE * h * h);
 }
 
-/* Makes the earliest of passages and slack cables that the caller does not know of the run's event; returns 0 where there is none. */
+/* Makes the earliest of passages and slack cables that the caller does not know of the run's event; returns 0 where there is
+ * none. */
 int fu_take_passage(fu_run *run)
 {
     int first = -1;

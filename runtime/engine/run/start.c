@@ -8,8 +8,8 @@
 #define FIRST_MOTION 1e-3 /* of the duration: until then the motion is judged by the velocities at the start */
 
 /* Starts the scheme at `now` with consistent velocities, which are projected on the joints where that is asked for, and with
- * accelerations and forces from eq 38; returns a status. Starting it from zero accelerations instead makes every error fall with the first power of the step
- * (tests/benchmarks/order.py). */
+ * accelerations and forces from eq 38; returns a status. Starting it from zero accelerations instead makes every error fall
+ * with the first power of the step (tests/benchmarks/order.py). */
 int fu_start_scheme(fu_run *run, int project)
 {
     const fu_model *model = run->model;

@@ -12,38 +12,17 @@
 #define MOST_CUTS 4           /* of a step before what is watched dips beyond zero in it: then it is taken all the same */
 #define PASSED_BY 0.5         /* of the step that was wanted: what is wanted after one whose event was not found */
 
-/* Takes the step just made: `next` becomes `now`. */
-static void accept(fu_run *run, double h, fu_event event)
-{
-    const fu_model *model = run->model;
-    for (int i = 0; i < model->n_coordinates; ++i) run->s_slope[i] = (run->next.s[i] - run->now.s[i]) / h;
-    run->integrator->account(run, h);
-    fu_note_passages(run, h);
-    fu_note_slackness(run, h);
-    run->dissipated += fu_lost_in_step(model, &run->now, &run->next);
-    run->statistics.crossings += fu_count_changes(run);
-    const fu_state state = run->now;
-    run->now = run->next;
-    run->next = state;
-    fu_carry(model, &run->now);
-    fu_look_around(run, h, 0);
-    const double moved = fu_largest_motion(model, run->first, run->now.q);
-    if (moved > run->motion) run->motion = moved;
-    run->controlled_motion = run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
-    fu_watch_now(run, event, h);
-    run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
-    fu_statistics *s = &run->statistics;
-    ++s->steps;
-    if (s->steps == 1 || h < s->h_min) s->h_min = h;
-    if (h > s->h_max) s->h_max = h;
-}
-
-/* Starts the scheme anew after a very short step; returns a status. What is left between an event and an output time can be so
- * short that the rounding of psi, over h^2, is all there is in its accelerations: they must not go on. */
+/* Starts the scheme anew after a very short step, unless the scheme went over it as one that leaves what it goes on with; returns a
+ * status. What is left between an event and an output time can be so short that rounding, over h^2, is all there is in accelerations
+ * that are made of it. */
 static int refresh(fu_run *run, double h)
 {
+    const int coasted = run->integrator->coasts && fu_is_short(run, h);
     run->usual = run->fixed_step > 0.0 ? run->fixed_step : run->h;
-    return fu_is_short(run, h) ? fu_start_scheme(run, !run->integrator->keeps_energy) : FU_RUNNING;
+    if (!fu_is_short(run, h)) return FU_RUNNING;
+    if (!coasted) return fu_start_scheme(run, !run->integrator->keeps_energy);
+    fu_coordinate_rates(run->model, &run->accelerator, run->s_slope);
+    return FU_RUNNING;
 }
 
 /* Returns whether the error chooses the size of steps. */
@@ -153,8 +132,8 @@ static int attempt(fu_run *run, trial *t)
     return 1;
 }
 
-/* Returns whether the step, which was made as if there were no passage, is to be made anew and go over those that it leads to. This comes
- * first where the last passage was not gone over: iterations and stages beyond one cost more than without. */
+/* Returns whether the step, which was made as if there were no passage, is to be made anew and go over those that it leads to.
+ * This comes first where the last passage was not gone over: iterations and stages beyond one cost more than without. */
 static int shall_go_over(fu_run *run, trial *t)
 {
     if (!is_adaptive(run) || !run->integrator->quadrature || !run->keep_forces || t->refused || !run->model->n_passing) return 0;
@@ -211,11 +190,39 @@ static int is_cut_at_dip(fu_run *run, trial *t)
     return 1;
 }
 
+/* Takes the step just made: `next` becomes `now`. */
+static void accept(fu_run *run, const trial *t)
+{
+    const fu_model *model = run->model;
+    const double h = t->h;
+    run->is_remainder = !t->cuts && (!t->event.kind || t->event.kind == FU_CROSSING);
+    for (int i = 0; i < model->n_coordinates; ++i) run->s_slope[i] = (run->next.s[i] - run->now.s[i]) / h;
+    run->integrator->account(run, h);
+    fu_note_passages(run, h);
+    fu_note_slackness(run, h);
+    run->dissipated += fu_lost_in_step(model, &run->now, &run->next);
+    run->statistics.crossings += fu_count_changes(run);
+    const fu_state state = run->now;
+    run->now = run->next;
+    run->next = state;
+    fu_carry(model, &run->now);
+    fu_look_around(run, h, 0);
+    const double moved = fu_largest_motion(model, run->first, run->now.q);
+    if (moved > run->motion) run->motion = moved;
+    run->controlled_motion = run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
+    fu_watch_now(run, t->event, h);
+    run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
+    fu_statistics *s = &run->statistics;
+    ++s->steps;
+    if (s->steps == 1 || h < s->h_min) s->h_min = h;
+    if (h > s->h_max) s->h_max = h;
+}
+
 /* Takes a step that ends on no event; returns a status. */
 static int take_step(fu_run *run, const trial *t)
 {
     if (t->passages) run->goes_over = 1;
-    accept(run, t->h, t->event);
+    accept(run, t);
     if (fu_has_lost_a_watch(run)) return FU_NO_CONVERGENCE;
     run->turned = 0;
     run->statistics.error_sum += t->error;
@@ -255,7 +262,7 @@ int fu_step_towards(fu_run *run, double target)
         }
         if ((t.changes || t.passages) && !is_accurate_without_jump(run, &t)) continue;
         if (run->n_watches && is_cut_at_dip(run, &t)) continue;
-        accept(run, t.h, t.event);
+        accept(run, &t);
         const int status = t.event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, t.h);
         return status ? status : fu_let_happen(run, t.event);
     }

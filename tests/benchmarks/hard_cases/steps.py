@@ -131,4 +131,14 @@ HERE.case("the paper's scene, 3 elements", crossings=(2, 2), residual=HELD, gap=
 HERE.case("the paper's scene, 30 elements", integrators=["genalpha"], slow=["genalpha"], crossings=(21, 21),
           residual=HELD, gap=HELD, balance=BALANCE)(paper(30, 1e-4))
 HERE.case("the paper's scene, 300 elements", integrators=["genalpha"], slow=["genalpha"], crossings=(214, 214),
-          residual=HELD, gap=HELD, balance=1e-3, rejected=160, **{"from 30 elements": 5e-4})(paper(300, 1e-3))
+          residual=HELD, gap=HELD, balance=1e-3, rejected=250, **{"from 30 elements": 5e-4})(paper(300, 1e-3))
+
+
+@HERE.case("a steel wire, 300 elements", integrators=["genalpha"], residual=HELD, gap=HELD, balance=1e-2, rejected=200,
+           steps=300)
+def steel(integrator):
+    """Vibrations of 1e6 Hz, which no step resolves: short steps to output times shall not wake them. Where they did,
+    the energy grew by its own amount within the run, or the run ended.
+    """
+    return figures(simulate(sliding_mass(300, "beam24", youngs_modulus=2e11), 0.25, tol=1e-3, output_step=0.01,
+                            integrator=integrator))

@@ -1,0 +1,20 @@
+"""Rules of quadrature along the elements of a cable, for what acts between its nodes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+def along_elements(on_axis: Any, lengths: np.ndarray,
+                   rule: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (elements, points, vectors), twice: shape functions of the axis and their slopes, by the kernel on_axis;
+    and the weights (elements, points) in m.
+
+    lengths (elements,) in m; rule: places and weights between -1 and 1, as `numpy.polynomial.legendre.leggauss` has.
+    """
+    places, weights = rule
+    shapes = [[on_axis(length, length * (1 + x) / 2) for x in places] for length in lengths]
+    N, N_x = (np.array([[shape[k] for shape in each] for each in shapes]) for k in range(2))
+    return N, N_x, np.outer(lengths, weights) / 2
