@@ -141,14 +141,22 @@ class Changes:
         stays = direction.any() and not direction[self.model.dim :].any()
         return direction[: self.model.dim] if stays else None
 
-    def _weighs_plainly(self) -> bool:
-        """Return whether weight is a force of constant direction on each dof, and nothing else depends on it."""
-        return not (self.of_sections or self.scene.drags or any(body.modes for body in self.model.bodies))
+    def _weighs_plainly(self, *names: str) -> bool:
+        """Return whether weight is a force of constant direction on each dof, and nothing else depends on that of these
+        cables and bodies, as the stiffness of a contact does where none is given.
+        """
+        found = any(contact.a in names and contact.as_made().stiffness is None and not contact.is_hard
+                    for contact in self.scene.contacts.values())
+        return not (found or self.of_sections or self.scene.drags or any(body.modes for body in self.model.bodies))
 
     def _gravity(self, path: Path) -> Change | None:
         """Return what a component of gravity changes, None where the path is of something else."""
         direction = self.along(path.entries[0])
-        if path.head != "gravity" or direction is None or not self._weighs_plainly():
+        hanging = [cable for cable in self.scene.cables.values() if cable.shape == "hanging"]
+        if path.head != "gravity" or direction is None or not self._weighs_plainly(*self.scene.cables,
+                                                                                   *self.scene.bodies):
+            return None
+        if any(self._names(cable.name, SLIDING) or not self._hangs_plainly(cable) for cable in hanging):
             return None
         cables = [cable_gravity(model, self.scene.cables[model.name], direction) for model in self.model.cables]
         bodies = [body_gravity(body, direction) for body in self.model.bodies]
@@ -166,7 +174,7 @@ class Changes:
             f = np.zeros(self.model.n_dof)
             at = self._model_of(cable).coordinates
             f[at] = -self.model.gravity[at] / cable.material.density
-            return Change(f) if self._weighs_plainly() else None
+            return Change(f) if self._weighs_plainly(cable.name) else None
         if self.of_sections or cable.name in self.reader.parts:
             return None
         if path.entries == ("rest_length",):
@@ -177,7 +185,7 @@ class Changes:
 
     @_of.register
     def _of_body(self, part: RigidBody, path: Path) -> Change | None:
-        if path.entries != ("mass",) or not self._weighs_plainly():
+        if path.entries != ("mass",) or not self._weighs_plainly(part.name):
             return None
         model = next(body for body in self.model.bodies if body.name == part.name)
         f = np.zeros(self.model.n_dof)
@@ -312,12 +320,13 @@ class Changes:
         return np.asarray(found[1] - found[0])
 
     def _of_section(self, cable: Cable, path: Path) -> Change | None:
-        """Return what a number of a cable's section or material changes: its elastic forces and weight, which are
-        linear in Young's modulus, and else differenced.
+        """Return what a number of a cable's section or material changes: its elastic forces and weight, differenced,
+        exactly by Young's modulus, in which they are linear at a given Poisson ratio by the laws of this package.
         """
         model, drawn = self._model_of(cable), self.scene.as_drawn
         value = value_at(drawn, path)
-        linear = path.entries == ("material", "youngs_modulus")
+        linear = (path.entries == ("material", "youngs_modulus") and cable.material.poisson_ratio is not None
+                  and cable.library is None)
         h = abs(value) if linear else STEP * abs(value) or STEP
         ends = (value, value + h) if linear else (value - h, value + h)
         assert path.part is not None, f"{path.text} is of a cable"
