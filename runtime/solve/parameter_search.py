@@ -5,9 +5,9 @@ At rest R(x, p) = 0 with the state x and the parameters p. The values asked for 
     dx/dp = -K^-1 dR/dp,    dg/dp = dg/dx dx/dp + dg/dp,
 
 with the factorised tangent K = dR/dx of the state at rest; dg/dp is the central difference of g along (dx/dp, 1). No
-other equilibria are sought. dR/dp of loads, weights, motions, places along cables, lengths, sections and materials is that
-of their columns (solve/parameter_changes.py). What a law of a force between two points changes is the equation of that
-force alone, which is differenced by itself: the forces are unknowns. dR/dp of what else a scene has is the central
+other equilibria are sought. dR/dp of loads, weights, motions, places along cables, lengths, sections and materials is
+that of their columns (solve/parameter_changes.py). What a law of a force between two points changes is the equation of
+that force alone, which is differenced by itself: the forces are unknowns. dR/dp of what else a scene has is the central
 difference of the residual at a fixed state.
 """
 
