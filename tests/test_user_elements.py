@@ -25,6 +25,7 @@ from funicular.kernels.libraries import load as load_library
 from funicular.results.run import SceneText
 from funicular.scene_file import load_scene, loads
 from pages import page
+from parameter_searches import apart, by_scenes, found_of, search_of
 from shared_scenes import SQUARE, TABLE_1
 from typer.testing import CliRunner
 from user_element_specs import spec
@@ -154,6 +155,23 @@ def test_a_scene_says_what_is_wrong_with_its_library(tmp_path, made):
         cable(scene, element="mine8p", library=3)
     with pytest.raises(SceneError, match=re.escape(f'element "mine" is not known in library "{made}"')):
         cable(scene, element="mine", library=made)
+
+
+def test_its_cables_are_adjusted_by_the_derivatives_of_differences_of_scenes(made, monkeypatch):
+    scene = funicular.Scene(gravity=(0.3, -9.81, 0))
+    rope = scene.cable("wire", start=(0, 0, 0), end=(4, 0.3, 0), elements=8, rest_length=4.1, element="mine8p",
+                       library=made, section=funicular.Circle(radius=0.01),
+                       material=funicular.Material(youngs_modulus=1e7, shear_modulus=4e6, density=1500.0))
+    for s in (0, rope.length):
+        scene.clamp("wire", s=s)
+    scene.distributed_force("wire", start=0.5, stop=2.0, value=(0, -2.0, 0), name="snow")
+    scene.spring((1, 1, 0), ("wire", 1.3), name="up", stiffness=100.0, length=0.5)
+    paths = ["wire.rest_length", "wire.section.radius", "wire.material.youngs_modulus", "wire.material.density",
+             "gravity.y", "snow.value.y", "snow.start", "snow.stop", "up.b.1", "up.a.y"]
+    search, at = search_of(scene, paths, ["wire@1.9.position.y", "wire@0.force.x"])
+    assert found_of(search, at) == paths
+    for found, wanted in zip(search.linear(at), by_scenes(search, at, monkeypatch), strict=True):
+        assert dict(zip(paths, apart(found, wanted) < 1e-6, strict=True)) == dict.fromkeys(paths, True)
 
 
 # --- a file alone loads nothing ----------------------------------------------------------------------------------

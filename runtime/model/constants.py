@@ -19,12 +19,13 @@ PLANAR = 4
 """Elastic constants of a planar continuum; of a spatial one there are nine."""
 
 
-def constants(cable: Cable, axial: float = 1.0) -> np.ndarray:
+def constants(cable: Cable, axial: float = 1.0, S: np.ndarray | None = None) -> np.ndarray:
     """Return (1, n), or (elements, n) where they differ because the stress-free shape is curved or the elements are not
-    equal; axial: a factor of EA, of a cable's law alone.
+    equal; axial: a factor of EA, of a cable's law alone; S: stiffness of the section, the cable's own if not given.
     """
     lengths = cable.mesh.lengths
-    S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
+    if S is None:
+        S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
     if axial != 1.0:
         S = S * [axial, 1.0, axial][: len(S)]  # of EA, EI, and EA of the upper modes of an assumed strain
     reference = cable.reference

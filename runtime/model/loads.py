@@ -101,11 +101,24 @@ class ForceLaw:
 
     def at_rest(self, gap: np.ndarray) -> np.ndarray:
         """Return the force (dim,) on the first point, in N, from the way (dim,) to the second one, which rests."""
+        parameters = self._at(gap)
+        if parameters is None:
+            return np.zeros(self.dim)
+        return np.asarray(getattr(kernels_of(None), f"{self.law}_force")(parameters, gap, np.zeros(self.dim)))
+
+    def tangent_at_rest(self, gap: np.ndarray) -> np.ndarray:
+        """Return (dim, dim): the derivative of `at_rest` by the way (dim,), in N/m."""
+        parameters = self._at(gap)
+        if parameters is None:
+            return np.zeros((self.dim, self.dim))
+        return np.asarray(getattr(kernels_of(None), f"{self.law}_tangent")(parameters, gap, np.zeros(self.dim))[1])
+
+    def _at(self, gap: np.ndarray) -> np.ndarray | None:
+        """Return what the kernels take of the piece that a way (dim,) is in; None where it has no force."""
         piece = int(np.searchsorted(self.bounds, np.linalg.norm(gap)))
         if self.senses[piece] == HAS_NO_FORCE:
-            return np.zeros(self.dim)
-        parameters = np.array(self.parameters[piece * self.n_parameters :][: self.n_parameters])
-        return np.asarray(getattr(kernels_of(None), f"{self.law}_force")(parameters, gap, np.zeros(self.dim)))
+            return None
+        return np.array(self.parameters[piece * self.n_parameters :][: self.n_parameters])
 
 
 @dataclass(kw_only=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from typing import cast
 
 import numpy as np
 
@@ -30,6 +31,35 @@ def section_stiffness(law: str, section: Section, material: Material, dim: int =
         return variants()[law].stiffness(section, material, dim)
     traits = built_in_laws()[law]
     return _BY_KIND[traits.kind, traits.membrane](section, material, dim)
+
+
+def lengths_in_stiffness(law: str, section: Section, material: Material, dim: int = 3) -> np.ndarray:
+    """Return, of the shape of S, the power of a length that each of its numbers is times an elastic constant: 2 of an
+    area, 4 of a second moment; 0 of numbers without a unit, and of zeros.
+    """
+    S = section_stiffness(law, section, material, dim)
+    doubled = section_stiffness(law, cast(Section, _Doubled(section)), material, dim)
+    return np.rint(np.log2(np.divide(doubled, S, out=np.ones_like(S), where=S != 0)))
+
+
+@dataclass(frozen=True)
+class _Doubled:
+    """A section of twice the size."""
+
+    section: Section
+
+    def moments(self) -> np.ndarray:
+        """Return the integrals over the section, of the second, fourth and sixth order."""
+        return self.section.moments() * 2.0 ** np.array([2, 4, 4, 6, 6, 6])
+
+    def shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        """Return what its shape makes of its shear stiffness."""
+        return self.section.shear_factors(poisson_ratio)
+
+    @property
+    def torsion_constant(self) -> float:
+        """Return that, in m^4."""
+        return 16.0 * self.section.torsion_constant
 
 
 @dataclass(frozen=True)

@@ -1,53 +1,49 @@
-"""What parameters change of the residual at a state of rest, where no equation of an element depends on them.
+"""What parameters change of the residual at a state of rest, where they change few of its equations.
 
-Loads, weights, and what motions prescribe enter R linearly. A unit of such a parameter adds the forces f to those on
-all dofs and moves the prescribed ones by c, so that by the unknowns x
+A unit of a load, a weight, a length or a place adds the forces f to those on all dofs and g to the equations of
+couplings; a unit of what a motion prescribes moves the prescribed dofs by c. So by the unknowns x
 
-    dR/dp = T' (f + K c),    q = T x + c p,
+    dR/dp = T' (f + K c) + g,    q = T x + c p,
 
-with K the tangent over all dofs, and T that of the dofs by the unknowns (model/unknowns.py).
+with K the tangent over all dofs, and T that of the dofs by the unknowns (model/unknowns.py). Where a cable becomes
+longer, x are the coordinates by which its points stay (solve/cable_changes.py).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import singledispatchmethod
-from typing import Any, cast
 
 import numpy as np
 from scipy.sparse import csc_array, csr_array
 
-from ..engine import Engine
-from ..model.attachments import AttachmentBuilder
+from ..errors import SceneError
 from ..model.bodies import body_gravity
 from ..model.border import ACCELERATIONS, NEWTON, elimination
 from ..model.cables import cable_gravity
-from ..model.loads import LoadBuilder
 from ..model.model import Model
 from ..model.numbering import as_drawn
 from ..model.unknowns import by_unknowns
+from ..parts.arc_lengths import on_cables
+from ..parts.attachment import Attachment
 from ..parts.cable import Cable
-from ..parts.laid import turned
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.part import Part
-from ..parts.paths import COMPONENTS, Path
-from ..parts.plane import aligned
+from ..parts.paths import Path, changes_of, value_at
+from ..parts.point_force import PointForce
 from ..parts.rigid_body import RigidBody
 from ..parts.support import Motion
+from .cable_changes import Own
+from .change import Change, Rest, altered
+from .length_changes import SLIDING, by_length, hangs_plainly, lengthens_plainly
+from .load_changes import AnyLoad, by_end, by_place, by_values, unit_of
+from .snapshots import Reader
 from .static_problem import StaticProblem
 
-AnyLoad = Force | DistributedForce | Moment
-
-
-@dataclass
-class Change:
-    """What a unit of a parameter adds to the forces on the dofs, f (n_dof,), and by how much it moves what is
-    prescribed, c (n_dof,); None: nothing.
-    """
-
-    f: np.ndarray | None = None
-    c: np.ndarray | None = None
+OF_SECTIONS = "contacts", "crossings", "drags"
+"""Groups of parts that depend on the size and the weight of a cable's section."""
+STEP = 1e-6
+"""Of a number of a section, to either side: where the forces of its cable are differenced."""
 
 
 class Changes:
@@ -56,22 +52,24 @@ class Changes:
     found: by the number of a parameter, of those that enter the residual linearly.
     """
 
-    def __init__(self, problem: StaticProblem, paths: Mapping[int, Path], of_sections: bool):
-        """paths: of parameters, by their numbers; of_sections: whether forces in sections of cables are asked for,
-        which depend on loads themselves.
+    def __init__(self, problem: StaticProblem, paths: Mapping[int, Path], reader: Reader):
+        """paths: of parameters, by their numbers; reader: of the values asked for, which depend on some parameters
+        themselves: forces in sections of cables on loads.
         """
-        self.problem, self.scene, self.model, self.of_sections = problem, problem.scene, problem.model, of_sections
+        self.rest = Rest(problem, reader)
+        self.scene, self.model = self.rest.scene, self.rest.model
         self.found: dict[int, Change] = {}
         parts = list(self.scene.as_drawn.parts())
         loads: dict[int, AnyLoad] = {}
         for k, path in paths.items():
             part = None if path.part is None else parts[path.part]
-            if isinstance(part, Force | DistributedForce | Moment):
-                if (unit := self._unit(part, path.entries)) is not None:
+            if isinstance(part, Force | DistributedForce | Moment) and path.entries[0] == "value":
+                if (unit := unit_of(self.rest, part, path.entries)) is not None:
                     loads[k] = unit
-            elif (change := self._gravity(path) if part is None else self._of(part, path.entries)) is not None:
+            elif (change := self._gravity(path) if part is None else self._of(part, path)) is not None:
                 self.found[k] = change
-        self.found |= self._of_loads(loads)
+        self.found |= by_values(self.rest, loads)
+        self._keep_places(paths)
 
     def columns(self) -> dict[int, np.ndarray]:
         """Return dR/dp (unknowns,) of each parameter found."""
@@ -85,47 +83,77 @@ class Changes:
             if change.c is not None:
                 assert K is not None, "what is prescribed moves"
                 forces[k] += K[:, : model.n_dof] @ change.c
+            if change.g is not None:
+                forces[k][model.n_dof :] += change.g
         by_unknowns = _by_unknowns(model).T
         return {k: by_unknowns @ force for k, force in forces.items()}
 
-    def along(self, component: str) -> np.ndarray | None:
-        """Return an axis of the ground along the axes of the model, (dim,); None where it leaves the plane."""
-        direction = np.array(_axis(component))
-        if self.scene.plane_axes is not None:
-            direction = aligned(self.scene.plane_axes.plane.into(direction))
-        stays = direction.any() and not direction[self.model.dim :].any()
-        return direction[: self.model.dim] if stays else None
+    def _keep_places(self, paths: Mapping[int, Path]) -> None:
+        """Take off what lengths of cables change by places along them that are parameters, too, and stay where they
+        are; a length with such a place for which nothing is found is left out.
+        """
+        parts = list(self.scene.as_drawn.parts())
+        for k, path in paths.items():
+            cable = None if path.part is None else parts[path.part]
+            change = self.found.get(k)
+            if not isinstance(cable, Cable) or path.entries != ("rest_length",) or change is None:
+                continue
+            for j, other in paths.items():
+                s = None if other.part is None else _place(parts[other.part], other, cable.name)
+                if s is not None:
+                    change = None if change is None or j not in self.found else change.less(s / cable.length,
+                                                                                            self.found[j])
+            if change is None:
+                del self.found[k]
+            else:
+                self.found[k] = change
 
-    def _weighs_plainly(self) -> bool:
-        """Return whether weight is a force of constant direction on each dof, and nothing else depends on it."""
-        return not (self.of_sections or self.scene.drags or any(body.modes for body in self.model.bodies))
+    def _weighs_plainly(self, *names: str) -> bool:
+        """Return whether weight is a force of constant direction on each dof, and nothing else depends on that of these
+        cables and bodies, as the stiffness of a contact does where none is given.
+        """
+        found = any(contact.a in names and contact.as_made().stiffness is None and not contact.is_hard
+                    for contact in self.scene.contacts.values())
+        modal = any(body.modes for body in self.model.bodies)
+        return not (found or modal or self.rest.reader.sections or self.scene.drags)
 
     def _gravity(self, path: Path) -> Change | None:
         """Return what a component of gravity changes, None where the path is of something else."""
-        direction = self.along(path.entries[0])
-        if path.head != "gravity" or direction is None or not self._weighs_plainly():
+        direction = self.rest.along(path.entries[0])
+        hanging = [cable for cable in self.scene.cables.values() if cable.shape == "hanging"]
+        if path.head != "gravity" or direction is None or not self._weighs_plainly(*self.scene.cables,
+                                                                                   *self.scene.bodies):
+            return None
+        if any(self.rest.names(cable.name, SLIDING) or not hangs_plainly(self.rest, cable) for cable in hanging):
             return None
         cables = [cable_gravity(model, self.scene.cables[model.name], direction) for model in self.model.cables]
         bodies = [body_gravity(body, direction) for body in self.model.bodies]
         return Change(-np.concatenate([*cables, *bodies]))
 
     @singledispatchmethod
-    def _of(self, part: Part, entries: tuple[str, ...]) -> Change | None:
-        """Return what an entry of a part changes, None where it changes more than forces and what is prescribed."""
+    def _of(self, part: Part, path: Path) -> Change | None:
+        """Return what an entry of a part changes, None where it changes more than `Change` has."""
         return None
 
     @_of.register
-    def _of_cable(self, part: Cable, entries: tuple[str, ...]) -> Change | None:
-        if entries != ("material", "density") or not self._weighs_plainly():
+    def _of_cable(self, part: Cable, path: Path) -> Change | None:
+        cable = self.scene.cables[part.name]
+        if path.entries == ("material", "density"):
+            f = np.zeros(self.model.n_dof)
+            at = self.rest.model_of(cable).coordinates
+            f[at] = -self.model.gravity[at] / cable.material.density
+            return Change(f) if self._weighs_plainly(cable.name) else None
+        if self.rest.reader.sections or cable.name in self.rest.reader.parts:
             return None
-        model = next(cable for cable in self.model.cables if cable.name == part.name)
-        f = np.zeros(self.model.n_dof)
-        f[model.coordinates] = -self.model.gravity[model.coordinates] / part.material.density
-        return Change(f)
+        if path.entries == ("rest_length",):
+            return by_length(self.rest, cable) if lengthens_plainly(self.rest, cable) else None
+        if path.entries[0] not in ("section", "material") or self.rest.names(cable.name, OF_SECTIONS):
+            return None
+        return self._of_section(cable, path)
 
     @_of.register
-    def _of_body(self, part: RigidBody, entries: tuple[str, ...]) -> Change | None:
-        if entries != ("mass",) or not self._weighs_plainly():
+    def _of_body(self, part: RigidBody, path: Path) -> Change | None:
+        if path.entries != ("mass",) or not self._weighs_plainly(part.name):
             return None
         model = next(body for body in self.model.bodies if body.name == part.name)
         f = np.zeros(self.model.n_dof)
@@ -134,8 +162,9 @@ class Changes:
         return Change(f)
 
     @_of.register
-    def _of_motion(self, part: Motion, entries: tuple[str, ...]) -> Change | None:
-        direction = self.along(entries[1]) if len(entries) == 2 and entries[0] == "displacement" else None
+    def _of_motion(self, part: Motion, path: Path) -> Change | None:
+        entries = path.entries
+        direction = self.rest.along(entries[1]) if len(entries) == 2 and entries[0] == "displacement" else None
         if direction is None:
             return None
         model, c = self.model, np.zeros(self.model.n_dof)
@@ -146,33 +175,36 @@ class Changes:
             c[motion.dof] += motion.linear * signals.get(motion.signal, 0.0)
         return Change(c=c)
 
-    def _unit(self, part: AnyLoad, entries: tuple[str, ...]) -> AnyLoad | None:
-        """Return a load whose value is a unit along one axis, None where the entry is of something else."""
-        if len(entries) != 2 or entries[0] != "value" or self.of_sections:
+    def _of_section(self, cable: Cable, path: Path) -> Change | None:
+        """Return what a number of a cable's section or material changes: its elastic forces and weight, differenced,
+        exactly by Young's modulus, in which they are linear at a given Poisson ratio by the laws of this package.
+        """
+        model, drawn = self.rest.model_of(cable), self.scene.as_drawn
+        value = value_at(drawn, path)
+        linear = (path.entries == ("material", "youngs_modulus") and cable.material.poisson_ratio is not None
+                  and cable.library is None)
+        h = abs(value) if linear else STEP * abs(value) or STEP
+        ends = (value, value + h) if linear else (value - h, value + h)
+        assert path.part is not None, f"{path.text} is of a cable"
+        if path.entries[0] == "section" and self.scene.drags:
             return None
-        unit = part.model_copy(update={"value": _axis(entries[1])})
-        if self.scene.plane_axes is not None:
-            unit = cast(AnyLoad, turned(unit, self.scene.plane_axes, self.scene.as_drawn))
-        return unit if any(unit.value) and not (self.model.dim == 2 and any(unit.off_plane())) else None
+        own = Own(model, self.rest.problem.keep()["q"], np.array(self.scene.gravity)[: self.model.dim])
+        try:
+            below, above = (own.of(cable.remade(changes_of(drawn, {path: end})[path.part])) for end in ends)
+        except SceneError:  # at the edge of what a section or a material takes
+            return None
+        f = np.zeros(self.model.n_dof)
+        f[model.coordinates] = (above - below) / (ends[1] - ends[0])
+        return Change(f)
 
-    def _of_loads(self, units: Mapping[int, AnyLoad]) -> dict[int, Change]:
-        """Return what loads of unit values change, by the numbers of their parameters."""
-        if not units:
-            return {}
-        model = self.model
-        builder = LoadBuilder(self.scene, AttachmentBuilder(self.scene, model.cables, model.bodies))
-        builder.signals = list(model.signals)
-        owners: dict[str, list[int]] = {"dead": [], "turning": []}
-        for k, unit in units.items():
-            builder.load(unit)
-            owners["dead"] += [k] * (len(builder.dead) - len(owners["dead"]))
-            owners["turning"] += [k] * (len(builder.turning) - len(owners["turning"]))
-        loaded = _with(model, loads=[*builder.dead, *builder.turning], signals=builder.signals)
-        engine = self._engine(loaded)
-        found = {k: np.zeros(model.n_dof) for k in units}
-        for number, k in enumerate([*owners["dead"], *owners["turning"]]):
-            found[k] += engine.external_forces(number, number + 1)[0]
-        return {k: Change(f) for k, f in found.items()}
+    @_of.register
+    def _of_point_force(self, part: PointForce, path: Path) -> Change | None:
+        return by_end(self.rest, part, path)
+
+    @_of.register(Force)
+    @_of.register(DistributedForce)
+    def _of_place(self, part: Force | DistributedForce, path: Path) -> Change | None:
+        return by_place(self.rest, part, path)
 
     def _tangent_over_dofs(self) -> csc_array:
         """Return dR/dx at the state where each dof is an unknown of its own: (n_dof + own of couplings, the same)."""
@@ -181,29 +213,19 @@ class Changes:
         elements = np.array([(node.first, 2 * node.vectors.size) for nodes in model.nodes.values()
                              for node in nodes[:-1]], dtype=int).reshape(-1, 2)
         numbering = as_drawn(elements, np.arange(n))
-        free = _with(model, motions=[], unknown_of_dof=np.arange(model.n_dof), combinations=csr_array((0, n)),
+        free = altered(model, motions=[], unknown_of_dof=np.arange(model.n_dof), combinations=csr_array((0, n)),
                      n_band=n, n_border_dof=model.n_dof - n, width=numbering.width, chains=numbering.chains)
         free.newton, free.accelerations = elimination(free, NEWTON), elimination(free, ACCELERATIONS)
-        return self._engine(free).matrix(0.0, 0.0, 1.0)
-
-    def _engine(self, model: Model) -> Engine:
-        """Return an engine of another model of the scene, in the state of the problem."""
-        engine = Engine(model)
-        engine.redundant_rows([(k, row) for k, joint in enumerate(model.joints) for row in joint.redundant_rows])
-        engine.set_state(0.0, **self.problem.keep(), prescribe=False)
-        return engine
+        return self.rest.engine(free).matrix(0.0, 0.0, 1.0)
 
 
-def _axis(component: str) -> tuple[float, ...]:
-    """Return the unit vector (3,) along an axis, x or 0 and so on; zeros where it is none."""
-    return tuple(float(component in (name, str(k))) for name, k in COMPONENTS.items())
-
-
-def _with(model: Model, **changes: Any) -> Model:
-    """Return a model with some arrays or couplings of other values, and the border as it is."""
-    made = replace(model, **changes)
-    made.newton, made.accelerations = model.newton, model.accelerations
-    return made
+def _place(part: Part, path: Path, cable: str) -> float | None:
+    """Return the arc-length on a cable that a path to an entry of this part leads to, in m; None where to no such."""
+    for keyword, on, s in on_cables(part):
+        if (keyword,) == path.entries and on == cable:
+            return s
+    end = getattr(part, path.entries[0], None)
+    return end.s if isinstance(end, Attachment) and end.on == cable else None
 
 
 def _by_unknowns(model: Model) -> csr_array:

@@ -5,10 +5,10 @@ At rest R(x, p) = 0 with the state x and the parameters p. The values asked for 
     dx/dp = -K^-1 dR/dp,    dg/dp = dg/dx dx/dp + dg/dp,
 
 with the factorised tangent K = dR/dx of the state at rest; dg/dp is the central difference of g along (dx/dp, 1). No
-other equilibria are sought. dR/dp of loads, weights and what motions prescribe is that of their columns
-(solve/parameter_changes.py). What a law of a force between two points changes, or its end on the ground, is the
-equation of that force alone, which is differenced by itself: the forces are unknowns. dR/dp of what else a scene has is
-the central difference of the residual at a fixed state.
+other equilibria are sought. dR/dp of loads, weights, motions, places along cables, lengths, sections and materials is
+that of their columns (solve/parameter_changes.py). What a law of a force between two points changes is the equation of
+that force alone, which is differenced by itself: the forces are unknowns. dR/dp of what else a scene has is the central
+difference of the residual at a fixed state.
 """
 
 from __future__ import annotations
@@ -127,8 +127,8 @@ class ParameterSearch(Generic[S]):
         """Return dx/dp (unknowns, n) and dg/dp (targets, n) at a state of rest."""
         problem, p = at.problem, at.p
         steps = STEP * np.maximum(np.abs(p), 1e-3 * self.parameters.sizes(problem.size))
-        kept, changes = problem.keep(), Changes(problem, dict(enumerate(self.parameters.paths)), self.reader.sections)
-        here = {**changes.columns(), **self.by_forces(at, kept["q"], steps, changes)}
+        kept, changes = problem.keep(), Changes(problem, dict(enumerate(self.parameters.paths)), self.reader)
+        here = {**changes.columns(), **self.by_laws(at, kept["q"], steps)}
         ends = {k: [self.beside(at, k, change, kept) for change in (-steps[k], steps[k])]
                 for k in range(len(p)) if k not in here}
         columns = here | {k: (above.residual() - below.residual()) / (2 * steps[k])
@@ -141,6 +141,9 @@ class ParameterSearch(Generic[S]):
             below.move(-steps[k] * rates[:, k])
             above.move(steps[k] * rates[:, k])
             G[:, k] = (self.reader.values(above.state) - self.reader.values(below.state)) / (2 * steps[k])
+        for k, change in changes.found.items():
+            if change.same is not None:
+                rates[:, k] += change.same
         return rates, G
 
     def without_effect(self, at: AtRest) -> int:
@@ -150,29 +153,21 @@ class ParameterSearch(Generic[S]):
                  if isinstance(part, Spring) and part.tension_only and not force.any()}
         return sum(self.parameters.law_of(k) in slack for k in range(len(at.p)))
 
-    def by_forces(self, at: AtRest, q: np.ndarray, steps: np.ndarray, changes: Changes) -> dict[int, np.ndarray]:
-        """Return dR/dp (unknowns,) by those parameters that are of forces between two points alone, at a configuration
-        q (n_q,); steps (n,): how far to either side their laws are looked at.
+    def by_laws(self, at: AtRest, q: np.ndarray, steps: np.ndarray) -> dict[int, np.ndarray]:
+        """Return dR/dp (unknowns,) by those parameters that are of laws of forces between two points, at a
+        configuration q (n_q,); steps (n,): how far to either side their laws are looked at.
         """
         model, found = at.problem.model, {}
         forces = {force.name: force for force in model.point_forces}
         for k, h in enumerate(steps.tolist()):
-            name, moved = self.parameters.law_of(k), np.zeros(model.dim)
-            if name is None:
-                end = self.parameters.end_of(k)
-                along = None if end is None or end[0] in self.reader.parts else changes.along(end[2])
-                if end is None or along is None:
-                    continue
-                name, moved = end[0], along * (h if end[1] else -h)
-                laws: list[ForceLaw] = [forces[name], forces[name]]
-            else:
-                laws = [ForceLaw.of(self.parameters.force_with(at.problem.scene.as_drawn, k, at.p[k] + change),
-                                    model.dim) for change in (-h, h)]
+            if (name := self.parameters.law_of(k)) is None:
+                continue
+            laws = [ForceLaw.of(self.parameters.force_with(at.problem.scene.as_drawn, k, at.p[k] + change), model.dim)
+                    for change in (-h, h)]
             a, b = (attachment_points(model, end, q[None])[0, : model.dim] for end in forces[name].attachments)
             first = model.n_band + model.n_border_dof + forces[name].unknown
             found[k] = np.zeros(len(at.problem.weight))
-            found[k][first : first + model.dim] = (laws[0].at_rest(b - a - moved) - laws[1].at_rest(b - a + moved)) / (
-                2 * h)
+            found[k][first : first + model.dim] = (laws[0].at_rest(b - a) - laws[1].at_rest(b - a)) / (2 * h)
         return found
 
     def along(self, problem: StaticState, kept: dict, ways: Sequence[Way]) -> np.ndarray:

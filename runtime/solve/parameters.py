@@ -98,18 +98,6 @@ class Parameters(Generic[S]):
         part = None if path.part is None else self.parts[path.part]
         return part.name if isinstance(part, PointForce) and path.entries[0] not in ENDS else None
 
-    def end_of(self, k: int) -> tuple[str, int, str] | None:
-        """Return of what force between two points, which end and which component on the ground parameter k is; None
-        where it is of none, or of one whose law depends on where it is drawn.
-        """
-        path = self.paths[k]
-        part = None if path.part is None else self.parts[path.part]
-        if not isinstance(part, PointForce) or path.entries[0] not in ENDS or len(path.entries) != 2:
-            return None
-        end = ENDS.index(path.entries[0])
-        on_ground = (part.a, part.b)[end].on is None and part.as_made() is part
-        return (part.name, end, path.entries[1]) if on_ground and part.name is not None else None
-
     def force_with(self, scene: S, k: int, value: float) -> PointForce:
         """Return the force between two points, in a scene of these parameters, with another value of parameter k, of
         those that `law_of` names: nothing else of the scene depends on it. Raises SceneError.

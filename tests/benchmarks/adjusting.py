@@ -1,6 +1,9 @@
 """Seconds that `equilibrium(adjust=, to=)` takes of an overhead line by its number of spans, in the plane z = 0 and in
 another one. Adjusted are lengths of droppers to the heights of the contact wire, and the wire's length to its pull;
-heights of supports to those of the messenger; loads on the contact wire to its heights.
+heights of supports to those of the messenger; loads on the contact wire to its heights. Then the form of the 55 m line
+(`funicular.catenary.form`), and ropes from post to post, whose lengths are adjusted to their sags.
+
+    python adjusting.py [--most SPANS] [--out FILE.csv]
 """
 
 from __future__ import annotations
@@ -9,6 +12,9 @@ import time
 
 import funicular as fu
 import numpy as np
+from funicular import catenary
+from funicular.solve import static_problem
+from pantographs import line55
 from table import arguments, show
 
 G, SPAN, ELEMENTS = 9.81, 55.0, 22
@@ -110,12 +116,49 @@ def row(case: str, spans: int) -> dict:
             "iterations": last.iterations, "misfit": last.misfits[-1]}
 
 
+def ropes(spans: int) -> tuple[fu.Scene, list[str], dict[str, float]]:
+    """Return ropes of one length from post to post, which are stiff springs, and lengths by sags from 1 to 2 m."""
+    scene, heights = fu.Scene(gravity=(0, -G, 0)), {}
+    area, modulus = MESSENGER["area"], MESSENGER["modulus"]
+    section = fu.GeneralSection(area=area, second_moment_about_z=MESSENGER["bending"] / modulus)
+    steel = fu.Material(youngs_modulus=modulus, poisson_ratio=0.3, density=MESSENGER["mass"] / area)
+    for k in range(spans):
+        rope = scene.cable(f"rope_{k}", start=(k * SPAN, 0, 0), end=((k + 1) * SPAN, 0, 0), elements=ELEMENTS,
+                           element="cable8p", section=section, material=steel, rest_length=SPAN + 0.06)
+        heights[f"{rope.name}@{rope.length / 2:.12g}.position.y"] = -1.5 + 0.5 * np.cos(k)
+        if k:
+            scene.tie(rope, s=0, to=f"rope_{k - 1}", at=rope.length, rotation="free")
+            scene.spring((k * SPAN, -8, 0), (rope, 0), name=f"post_{k}", stiffness=50e3, length=8.0)
+            scene.spring((k * SPAN + 8, 0, 0), (rope, 0), name=f"stay_{k}", stiffness=500e3, length=8.0)
+        else:
+            scene.pin(rope, s=0)
+    scene.pin(rope, s=rope.length)
+    return scene, [f"rope_{k}.rest_length" for k in range(spans)], heights
+
+
+def wires(case: str, size: float) -> dict:
+    """Return what is measured of the form of a span with elements of this length in m, or of so many ropes."""
+    built, plain = [], static_problem.build
+    static_problem.build = lambda scene: built.append(scene) or plain(scene)
+    begin = time.process_time()
+    if case == "form":
+        rest = catenary.form(line55(), longest=(size, size)).rest
+    else:
+        scene, adjust, to = ropes(int(size))
+        rest = scene.equilibrium(adjust=adjust, to=to)
+    seconds, static_problem.build = time.process_time() - begin, plain
+    last = rest.adjustment
+    return {"adjusted": case, "size": size, "parameters": len(last.values), "seconds": seconds, "scenes": len(built),
+            "iterations": last.iterations, "misfit": last.misfits[-1]}
+
+
 def main() -> None:
     """Measure and print."""
     options = arguments(__doc__, most=(30, "spans"))
     adjusted("droppers", 1, "z = 0")  # imports
     show([row(case, spans) for case in CASES for spans in (1, 3, 10, 30, 100)
           if spans <= options.most and (spans > 1 or case != "supports")], options.out)
+    show([wires(case, size) for case, sizes in (("form", (1.0, 0.5, 0.25)), ("ropes", (3, 10))) for size in sizes])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,53 @@
+"""Searches for values of states of rest, and their derivatives by differences of whole scenes."""
+
+import numpy as np
+from funicular.parts.laid import laid
+from funicular.parts.settings import EquilibriumSettings
+from funicular.results.equilibrium import Equilibrium
+from funicular.results.targets import reader
+from funicular.solve import parameter_search
+from funicular.solve.parameter_changes import Changes
+from funicular.solve.parameter_search import ParameterSearch
+from funicular.solve.parameters import Parameters
+from funicular.solve.static import equilibrium
+
+
+def search_of(scene, paths, to):
+    """Return a search for these values, at the state of rest of the scene."""
+    settings = EquilibriumSettings(adjust=dict.fromkeys(paths, "free"), to=dict.fromkeys(to, 0.0))
+    rest = equilibrium(laid(scene), settings, None, Equilibrium)
+    search = ParameterSearch(Parameters(scene, settings.adjust), settings, Equilibrium, reader(rest, to))
+    return search, search.begin(rest)
+
+
+def found_of(search, at):
+    """Return the paths of the parameters whose columns of the residual are known, in their order."""
+    found = Changes(at.problem, dict(enumerate(search.parameters.paths)), search.reader).found
+    return [path.text for k, path in enumerate(search.parameters.paths) if k in found]
+
+
+def by_scenes(search, at, monkeypatch, step=1e-4):
+    """Return dx/dp and dg/dp of differences of scenes, to twice a step and extrapolated: of less than 1e-4, reactions
+    are but rounding.
+    """
+    ends = []
+    with monkeypatch.context() as patch:
+        patch.setattr(parameter_search, "Changes", NoChanges)
+        for h in (step, 2 * step):
+            patch.setattr(parameter_search, "STEP", h)
+            ends.append(search.linear(at))
+    return [(4 * near - far) / 3 for near, far in zip(*ends, strict=True)]
+
+
+def apart(found, wanted):
+    """Return (n,): how far columns (rows, n) are apart, over the largest number of each; all have one."""
+    scales = np.max(np.abs(wanted), axis=0)
+    assert (scales > 0).all(), scales
+    return np.max(np.abs(found - wanted), axis=0) / scales
+
+
+class NoChanges(Changes):
+    """Changes that leaves all parameters to differences of scenes."""
+
+    def __init__(self, problem, paths, reader):
+        super().__init__(problem, {}, reader)
