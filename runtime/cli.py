@@ -221,7 +221,8 @@ def sweep(
                       "wire.material.youngs_modulus, A.velocity.x or run.tol, and its values: 1,2,3 or "
                       "first:last:number, with :log for equal ratios; to draw samples low:high or low:high:log; "
                       "repeatable")],
-    keep: Annotated[str, typer.Option(help="results with commas between, such as A.position,trolley.force.y")],
+    keep: Annotated[list[str], typer.Option(help="results with commas between, such as A.position,trolley.force.y; "
+                                            "repeatable")],
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="netCDF file to write (default: SCENE-sweep.nc, here)")
     ] = None,
@@ -256,7 +257,7 @@ def sweep(
     options = SweepOptions(method, samples, seed, 0 if serial else workers, cluster, batch, record_invalid,
                            retry_failed, {name: value for name, value in given.items() if value is not None})
     with _reported_without_traceback():
-        whole = run_sweep(scene, values, _listed(keep) or [], output or Path(f"{Path(scene).stem}-sweep.nc"), options,
+        whole = run_sweep(scene, values, _listed(",".join(keep)) or [], output or Path(f"{Path(scene).stem}-sweep.nc"), options,
                           library or [], estimate)
     if not whole:
         raise typer.Exit(EXIT_INTERRUPTED)

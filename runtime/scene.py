@@ -162,6 +162,8 @@ class Scene(Viewable, DescribedScene):
         given = {"tol": tol, "duration": duration, "initial": initial, "integrator": integrator}
         given = {name: value for name, value in given.items() if value is not None}
         settings = RunSettings(**{"tol": 1e-3} | overridden(self.run_settings, given))
+        if isinstance(quantities, str):
+            raise SceneError("choose", f"quantities must be a list of names, got {quantities!r}")
         return self._choose(settings, quantities, free, unequal)
 
     def _chosen_for(self, settings: RunSettings) -> Choice[Self] | None:

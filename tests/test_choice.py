@@ -107,6 +107,8 @@ def test_what_was_given_is_kept_unless_all_is_free():
 
 @pytest.mark.parametrize(("keywords", "message"), [
     ({"quantities": ["strip.tensoin"]}, 'there is no quantity "strip.tensoin"'),
+    ({"quantities": ["energy.kinetic.x"]}, 'there is no quantity "energy.kinetic.x"'),
+    ({"quantities": "strip.position"}, "quantities must be a list of names, got 'strip.position'"),
     ({"free": "some"}, 'free must be one of "unset" and "all"'),
     ({"initial": "state"}, "a state to start from fits one mesh alone"),
 ])
@@ -354,6 +356,14 @@ def test_quantities_of_two_units():
     scene = fu.load_scene("paper51")
     choice = scene.choose(5e-2, duration=0.2, free="all", quantities=["A.velocity", "trolley.s", "wire.position"])
     assert choice.kept and choice.models["wire"].elements < 30
+
+
+def test_a_component_counts_by_itself():
+    sideways = strip().choose(1e-2, duration=0.1, quantities=["strip.position.z"])
+    assert sideways.unchanged == ["strip.position.z"]
+    down = strip().choose(1e-2, duration=0.1, quantities=["strip.position.y"])
+    assert down.kept and not down.unchanged and down.models["strip"].elements > sideways.models["strip"].elements
+    assert strip().run(0.1, tol=1e-2, model="auto", quantities=["strip.position.y"]).report["choice"]
 
 
 def test_a_scene_without_cables_and_one_that_an_event_stops():

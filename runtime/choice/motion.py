@@ -24,6 +24,10 @@ OF_NODES = (".nodal_vectors", ".nodal_velocity", ".position", ".velocity")
 """Ends of the names of results of a cable that depend on its mesh: they are compared at the stations."""
 
 
+AXES = "xyz"
+"""Components of a result that can be named by themselves, as in "A.position.y"."""
+
+
 def samples(scene: SceneData, run: Run, quantities: Sequence[str]) -> dict[str, np.ndarray]:
     """Return what is compared of a run, (time, point, components) by name: without quantities the motion.
 
@@ -35,12 +39,20 @@ def samples(scene: SceneData, run: Run, quantities: Sequence[str]) -> dict[str, 
 
 
 def _sampled(scene: SceneData, run: Run, name: str) -> np.ndarray:
+    whole, _, axis = name.rpartition(".")
+    if name not in run and axis in AXES and (found := _whole(scene, run, whole)) is not None and found.shape[2] == 3:
+        return found[..., AXES.index(axis), None]
+    if (found := _whole(scene, run, name)) is None:
+        raise SceneError("choose", f'there is no quantity "{name}"', near(name, list(run)))
+    return found
+
+
+def _whole(scene: SceneData, run: Run, name: str) -> np.ndarray | None:
+    """Return (time, point, components) of a result with all its components; None where the run has none."""
     cable = scene.cables.get(name.rpartition(".")[0])
     if cable is not None and name.endswith(OF_NODES):
         return along(cable, run[f"{cable.name}.nodal_vectors"])
-    if name not in run:
-        raise SceneError("choose", f'there is no quantity "{name}"', near(name, list(run)))
-    return run[name].reshape(len(run.time), 1, -1)
+    return run[name].reshape(len(run.time), 1, -1) if name in run else None
 
 
 def motion(scene: SceneData, run: Run) -> np.ndarray:
