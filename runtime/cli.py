@@ -257,8 +257,8 @@ def sweep(
     options = SweepOptions(method, samples, seed, 0 if serial else workers, cluster, batch, record_invalid,
                            retry_failed, {name: value for name, value in given.items() if value is not None})
     with _reported_without_traceback():
-        whole = run_sweep(scene, values, _listed(",".join(keep)) or [], output or Path(f"{Path(scene).stem}-sweep.nc"), options,
-                          library or [], estimate)
+        whole = run_sweep(scene, values, _listed(",".join(keep)) or [],
+                          output or Path(f"{Path(scene).stem}-sweep.nc"), options, library or [], estimate)
     if not whole:
         raise typer.Exit(EXIT_INTERRUPTED)
 

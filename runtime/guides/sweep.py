@@ -108,3 +108,13 @@ axes[0].set(ylabel="sag in mm")
 
 assert np.corrcoef(samples["wire.material.density"], samples.sag)[0, 1] > 0.8
 assert np.corrcoef(samples["A.velocity.x"], samples.sag)[0, 1] < -0.3
+
+# %%
+# Your own loop
+# -------------
+#
+# ``fu.run_many`` runs scenes that a program makes, on threads. A scene that fails is returned as its error.
+
+variants = [scene.replace("A", mass=mass) for mass in (0.5, 1.0, 2.0)]
+for kept in fu.run_many(variants, keep=["A.position"], duration=0.6, tol=1e-3):
+    print(kept if isinstance(kept, fu.FunicularError) else f"{1e3 * kept['A.position'][:, 1].min():.1f} mm")
