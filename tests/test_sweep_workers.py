@@ -91,6 +91,26 @@ def test_a_batch_whose_result_is_lost_is_computed_again(cluster, monkeypatch):
     assert losses and found.drop_vars("seconds").identical(alone.drop_vars("seconds"))
 
 
+def test_a_batch_that_fails_as_the_scheduler_is_lost_is_computed_again(cluster, monkeypatch):
+    failures = []
+
+    def finished_but_one(self, finished=module.DaskWorkers._finished):
+        found = finished(self)
+        if not failures:
+            failures.append(found[0])
+            found[0]._state.set_error(distributed.scheduler.KilledWorker(found[0].key, None, 1), None)
+        return found
+
+    def lost_with_it(self, future, batch, batches, lost):
+        raise distributed.CancelledError("it is gone")
+
+    monkeypatch.setattr(module.DaskWorkers, "_finished", finished_but_one)
+    monkeypatch.setattr(module.DaskWorkers, "_dead", lost_with_it)
+    alone = fu.sweep(square, {"x": [1], "y": [*range(30)]}, workers=0, progress=False)
+    found = fu.sweep(square, {"x": [1], "y": [*range(30)]}, cluster=cluster, batch=4, progress=False)
+    assert failures and found.drop_vars("seconds").identical(alone.drop_vars("seconds"))
+
+
 def test_the_cost_counts_the_workers_of_the_cluster(cluster):
     told = []
     fu.sweep(square, {"x": [1], "y": [*range(30)]}, cluster=cluster, progress=False, on_cost=told.append)

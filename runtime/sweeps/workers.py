@@ -200,13 +200,14 @@ class DaskWorkers:
                     if status in ("pending", "finished"):  # its worker died with it: is computed anew, or was
                         future.add_done_callback(self._ended.put)
                         continue
-                    batch = pending.pop(future)
+                    batch = pending[future]
                     if status == "fetched":
                         came.append((batch, results[future]))
                     elif status == "error":
                         came += self._dead(future, batch, batches, lost)
                     else:  # lost or cancelled, and stays so where no worker is left
                         batches.give_back([batch])
+                    del pending[future]  # and not before: what is raised here gives back what is pending
             except (OSError, TimeoutError, RuntimeError, self._distributed.comm.CommClosedError,
                     self._distributed.CancelledError) as error:
                 LOG.warning("sweep: lost the scheduler, and connect anew: %s", error or type(error).__name__)
