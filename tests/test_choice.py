@@ -108,6 +108,8 @@ def test_what_was_given_is_kept_unless_all_is_free():
 @pytest.mark.parametrize(("keywords", "message"), [
     ({"quantities": ["strip.tensoin"]}, 'there is no quantity "strip.tensoin"'),
     ({"quantities": ["energy.kinetic.x"]}, 'there is no quantity "energy.kinetic.x"'),
+    ({"quantities": ["strip.position.xy"]}, 'there is no quantity "strip.position.xy"'),
+    ({"quantities": ["strip.position."]}, 'there is no quantity "strip.position."'),
     ({"quantities": "strip.position"}, "quantities must be a list of names, got 'strip.position'"),
     ({"free": "some"}, 'free must be one of "unset" and "all"'),
     ({"initial": "state"}, "a state to start from fits one mesh alone"),

@@ -11,6 +11,7 @@ from ..errors import SceneError, near
 from ..kernels.libraries import kernels_of
 from ..kernels.mesh import Mesh
 from ..parts.cable import Cable
+from ..parts.paths import COMPONENTS
 from ..parts.scene_data import SceneData
 from ..results.run import Run
 
@@ -24,10 +25,6 @@ OF_NODES = (".nodal_vectors", ".nodal_velocity", ".position", ".velocity")
 """Ends of the names of results of a cable that depend on its mesh: they are compared at the stations."""
 
 
-AXES = "xyz"
-"""Components of a result that can be named by themselves, as in "A.position.y"."""
-
-
 def samples(scene: SceneData, run: Run, quantities: Sequence[str]) -> dict[str, np.ndarray]:
     """Return what is compared of a run, (time, point, components) by name: without quantities the motion.
 
@@ -39,12 +36,13 @@ def samples(scene: SceneData, run: Run, quantities: Sequence[str]) -> dict[str, 
 
 
 def _sampled(scene: SceneData, run: Run, name: str) -> np.ndarray:
-    whole, _, axis = name.rpartition(".")
-    if name not in run and axis in AXES and (found := _whole(scene, run, whole)) is not None and found.shape[2] == 3:
-        return found[..., AXES.index(axis), None]
-    if (found := _whole(scene, run, name)) is None:
+    if (found := _whole(scene, run, name)) is not None:
+        return found
+    of, _, axis = name.rpartition(".")
+    vector = _whole(scene, run, of) if axis in COMPONENTS else None
+    if vector is None or vector.shape[2] != len(COMPONENTS):
         raise SceneError("choose", f'there is no quantity "{name}"', near(name, list(run)))
-    return found
+    return vector[..., COMPONENTS[axis], None]
 
 
 def _whole(scene: SceneData, run: Run, name: str) -> np.ndarray | None:
