@@ -10,7 +10,6 @@ import numpy as np
 
 from ..engine import Engine
 from ..model.model import CableModel, Model
-from ..parts.cable import Cable
 from ..parts.part import Part
 from ..parts.paths import COMPONENTS
 from ..parts.plane import aligned
@@ -56,15 +55,15 @@ class Rest:
 
     def shape(self, cable: str, s: float, derivative: int = 0) -> tuple[np.ndarray, slice]:
         """Return the shape functions (vectors,) at s on a cable, or their derivatives, and the dofs of its element."""
-        model = next(each for each in self.model.cables if each.name == cable)
+        model = self.model_of(cable)
         element = int(model.mesh.element_at(s))
         N = model.kernel("on_axis")(model.mesh.length(element), s - model.mesh.start(element))[derivative]
         first = model.first + element * model.shape[1] * model.shape[2]
         return N, slice(first, first + len(N) * model.shape[2])
 
-    def model_of(self, cable: Cable) -> CableModel:
-        """Return the model of a cable."""
-        return next(model for model in self.model.cables if model.name == cable.name)
+    def model_of(self, cable: str) -> CableModel:
+        """Return the model of a cable, by its name."""
+        return next(model for model in self.model.cables if model.name == cable)
 
     def names(self, cable: str, groups: Iterable[str]) -> bool:
         """Return whether a part of these groups of the scene is on a cable."""

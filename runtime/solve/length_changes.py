@@ -33,7 +33,7 @@ def lengthens_plainly(rest: Rest, cable: Cable) -> bool:
 
 def hangs_plainly(rest: Rest, cable: Cable) -> bool:
     """Return whether nothing on a cable depends on how it hangs as it is drawn."""
-    scene, model, name = rest.scene, rest.model_of(cable), cable.name
+    scene, model, name = rest.scene, rest.model_of(cable.name), cable.name
     held = rest.model.unknown_of_dof[model.coordinates].reshape(model.shape) < 0
     held[[0, -1], model.vectors.index("r")] = False
     rough = any(contact.a == name and contact.friction is not None for contact in scene.contacts.values())
@@ -44,7 +44,7 @@ def hangs_plainly(rest: Rest, cable: Cable) -> bool:
 
 def by_length(rest: Rest, cable: Cable) -> Change:
     """Return what the length of a cable changes: all that acts on each length of it."""
-    model, q = rest.model_of(cable), rest.problem.keep()["q"]
+    model, q = rest.model_of(cable.name), rest.problem.keep()["q"]
     at, f = model.coordinates, np.zeros(rest.model.n_dof)
     f[at] = of_elements(model, cable, q) - rest.model.gravity[at]
     spread = {k: load for k, load in enumerate(rest.scene.loads.values())

@@ -140,7 +140,7 @@ class Changes:
         cable = self.scene.cables[part.name]
         if path.entries == ("material", "density"):
             f = np.zeros(self.model.n_dof)
-            at = self.rest.model_of(cable).coordinates
+            at = self.rest.model_of(cable.name).coordinates
             f[at] = -self.model.gravity[at] / cable.material.density
             return Change(f) if self._weighs_plainly(cable.name) else None
         if self.rest.reader.sections or cable.name in self.rest.reader.parts:
@@ -179,7 +179,7 @@ class Changes:
         """Return what a number of a cable's section or material changes: its elastic forces and weight, differenced,
         exactly by Young's modulus, in which they are linear at a given Poisson ratio by the laws of this package.
         """
-        model, drawn = self.rest.model_of(cable), self.scene.as_drawn
+        model, drawn = self.rest.model_of(cable.name), self.scene.as_drawn
         value = value_at(drawn, path)
         linear = (path.entries == ("material", "youngs_modulus") and cable.material.poisson_ratio is not None
                   and cable.library is None)
