@@ -1,8 +1,8 @@
 /* Lines that touch within a step and not at its ends, as where they fly through each other and past an end of one of them, or so far
  * that they are apart again from end to end: the penetration and the ways of the closest points to the ends of their lines are led
- * from one end of the step to the other by the cubics through their values and rates there (Hermite's). What is least of them is looked at from place to place: none of the
- * cubics can change faster than the chords of its control points, so that from a place where one is below zero the next is as far
- * away as that one needs to come back.
+ * from one end of the step to the other by the cubics through their values and rates there (Hermite's). What is least of them is
+ * looked at from place to place: none of the cubics can change faster than the chords of its control points, so that from a place
+ * where one is below zero the next is as far away as that one needs to come back.
  */
 #include "engine.h"
 
