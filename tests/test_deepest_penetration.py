@@ -1,13 +1,35 @@
-"""The penetration that a run tells, of its rows, is what the energy allows."""
+"""The penetration that a run tells is what the energy allows, also between its rows."""
 
 import re
 
 import funicular as fu
 import numpy as np
 import pytest
+from funicular.results import streaming
+from interrupted_runs import Killed, failing
+
+SETTINGS = {"duration": 0.8, "output_step": 0.1, "tol": 1e-5, "progress": False}
+DEEPEST = 2.0 * np.sqrt(3.0 / 1e3)
+"""m: of the ball that is dropped, where its spring has all of its energy, m v^2/2 = k d^2/2."""
+INTEGRATORS = ["genalpha", "radau", "explicit", "energy"]
 
 
-@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit", "energy"])
+def told_depth(run) -> float:
+    """Return the depth in m of the one note on it."""
+    (told,) = [message for message in run.report["messages"] if "keeps it up" in message]
+    return float(re.search(r"up to ([0-9.e-]+) m", told)[1])
+
+
+def dropped() -> fu.Scene:
+    """Return a scene of a ball that flies at the ground; it touches from 0.2 to 0.37 s."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.surface("ground", fu.Plane())
+    scene.rigid_body("ball", mass=3.0, inertia=(1, 1, 1), position=(0, 0.5, 0), velocity=(0, -2.0, 0))
+    scene.contact("ball", "ground", radius=0.1, stiffness=1e3)
+    return scene
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize(("speed", "stiffness"), [(2.0, 1e3), (0.7, 50.0)])
 def test_the_penetration_at_rows_is_what_the_energy_allows(integrator, speed, stiffness):
     """A linear penalty stores all the energy where the ball turns round: m v^2/2 = k d^2/2. A row is there."""
@@ -19,7 +41,49 @@ def test_the_penetration_at_rows_is_what_the_energy_allows(integrator, speed, st
     duration = 0.8 / speed + np.pi * np.sqrt(mass / stiffness)  # down, half a cycle, up: deepest half-way
     with pytest.warns(fu.FunicularWarning, match="below its surface"):
         run = scene.run(duration, output_step=duration / 2, integrator=integrator, tol=1e-5, progress=False)
-    (told,) = [message for message in run.report["messages"] if "below its surface" in message]
     deepest = speed * np.sqrt(mass / stiffness)
     assert run["contact_1.penetration"][1] == pytest.approx(deepest, rel=1e-4)
-    assert float(re.search(r"up to ([0-9.]+) m below", told)[1]) == pytest.approx(deepest, rel=1e-2)
+    assert told_depth(run) == pytest.approx(deepest, rel=1e-2)
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_the_penetration_between_rows_is_told(integrator):
+    """The ball is off the ground at both rows."""
+    with pytest.warns(fu.FunicularWarning, match="below its surface"):
+        run = dropped().run(0.8, output_step=0.8, integrator=integrator, tol=1e-5, progress=False)
+    assert run["contact_1.penetration"].max() == 0.0
+    assert told_depth(run) == pytest.approx(DEEPEST, rel=1e-2)
+
+
+def test_the_penetration_before_a_checkpoint_is_told(tmp_path, monkeypatch):
+    """The ball has left the ground when the run is killed: what goes on tells how deep it was."""
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", 0.0)
+    left = failing(monkeypatch, 1_000_000, Killed())
+    with pytest.warns(fu.FunicularWarning, match="below its surface"):
+        whole = dropped().run(**SETTINGS, save=tmp_path / "whole.nc")
+    left[0], path = 1_000_000 - left[0] - 8, tmp_path / "killed.nc"
+    with pytest.raises(Killed):
+        dropped().run(**SETTINGS, save=path)
+    left[0] = 1_000_000
+    with pytest.warns(fu.FunicularWarning, match="below its surface"):
+        run = dropped().run(**SETTINGS, save=path, resume=True)
+    assert run.report["resumed_at_s"][0] > 0.4
+    assert run["contact_1.penetration"].max() < 0.98 * DEEPEST  # no row tells it
+    assert told_depth(run) == told_depth(whole) == pytest.approx(DEEPEST, rel=1e-2)
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_lines_that_pass_through_each_other_are_told(integrator):
+    """A soft crossing lets a heavy bar past the axis of a wire between two rows; it is as deep as rows of 1 ms show."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    wire = scene.cable("wire", start=(-1, 0, 0), end=(1, 0, 0), elements=4, element="cable12",
+                       section=fu.Circle(radius=0.02),
+                       material=fu.Material(youngs_modulus=1e7, density=1000, poisson_ratio=0.3))
+    scene.pin(wire, s=0.0)
+    scene.pin(wire, s=2.0)
+    scene.rigid_body("bar", mass=1.0, inertia=(1, 1, 1), position=(0.1, 0, -0.1), velocity=(0, 0, 2.0))
+    crossing = scene.crossing(wire, "bar", axis=(0, 1, 0), length=1.0, stiffness=200.0, radius=0.05)
+    with pytest.warns(fu.FunicularWarning, match="past where its lines touch"):
+        run = scene.run(0.6, output_step=0.6, integrator=integrator, tol=1e-4, progress=False)
+        fine = scene.run(0.6, output_step=0.001, integrator="radau", tol=1e-5, progress=False)
+    assert told_depth(run) == pytest.approx(float(fine[f"{crossing.name}.penetration"].max()), rel=1e-2)

@@ -180,7 +180,7 @@ class Stream:
 
     def _clear(self) -> None:
         """Let the engine write over the rows that it has."""
-        self._row_notes.see(self._engine.rows())
+        self._row_notes.see(self._engine)
         self._engine.take_rows()
 
     def finish(self, recording: Recording) -> Run:

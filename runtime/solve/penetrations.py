@@ -1,59 +1,82 @@
-"""How deep the penalty law of contact lets cables and bodies sink below surfaces."""
+"""How deep the penalty laws of contact let cables and bodies sink."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ..engine import Engine
 from ..model.model import Model
 
 DEEP = 0.1
-"""Of the radius of the cable or of what is round: deeper than that is noted."""
+"""Of the radius of the cable or of what is round: what is deeper than that below a surface is noted."""
+
+
+@dataclass
+class _Limit:
+    """From which depth in m a contact's is noted, beside which length in m, and how the two are told."""
+
+    name: str
+    stiffness: float
+    depth: float
+    radius: float
+    below: str
+
+    def note(self, depth: float) -> str:
+        """Return a note on a depth in m that is large beside the radius."""
+        return (f'contact "{self.name}" is up to {depth:.3g} m {self.below}, {100 * depth / self.radius:.3g} % of the '
+                f"radius of {self.radius:.3g} m: a stiffness greater than {self.stiffness:.3g} keeps it up")
+
+
+def _of_surfaces(model: Model) -> list[_Limit]:
+    """Return the limits of contacts with surfaces."""
+    limits = []
+    for contact in model.contacts:
+        radius = min((r for r in (contact.radius, contact.round_radius) if r > 0), default=np.inf)
+        limits.append(_Limit(contact.name, contact.stiffness, DEEP * radius, radius, "below its surface"))
+    return limits
+
+
+def _of_crossings(model: Model) -> list[_Limit]:
+    """Return the limits of crossings: where they are as deep, their lines are beyond each other's axes."""
+    return [_Limit(each.name, each.stiffness, each.law[0], each.law[0], "past where its lines touch")
+            for each in model.crossings]
 
 
 class Penetrations:
-    """Sees the rows of contacts; notes where one is deep below its surface."""
+    """Sees how deep contacts and crossings are; notes where one is too deep."""
 
     def __init__(self, model: Model):
         self.found: dict[str, Any] = {}
-        self.contacts = list(_radii(model))
+        self._limits = {"contact": _of_surfaces(model), "crossing": _of_crossings(model)}
 
-    def see(self, rows: dict[str, np.ndarray]) -> None:
-        """Take further output rows, by name, time first."""
-        if not self.contacts:
-            return
-        depths = rows["contact"][..., 6].max(axis=0, initial=0.0)
-        for k in np.flatnonzero(depths):
-            name = self.contacts[k][0].name
-            self.found[name] = max(self.found.get(name, 0.0), float(depths[k]))
+    def see(self, engine: Engine) -> None:
+        """Take how deep the engine has found them at the ends of its steps, rows of output among them."""
+        for kind, limits in self._limits.items():
+            self._take(limits, engine.deepest(kind))
+
+    def see_rest(self, outputs: dict[str, np.ndarray]) -> None:
+        """Take a state of rest, by the engine's numbers of each kind of coupling, (couplings, numbers)."""
+        for kind, column in (("contact", 6), ("crossing", 4)):
+            if self._limits[kind]:
+                self._take(self._limits[kind], outputs[kind][:, column])
+
+    def _take(self, limits: list[_Limit], depths: np.ndarray) -> None:
+        """Keep the depths, in m, that are larger than those before."""
+        for limit, depth in zip(limits, depths, strict=True):
+            if depth > self.found.get(limit.name, 0.0):
+                self.found[limit.name] = float(depth)
 
     def notes(self) -> list[str]:
-        """Return the notes on all rows that were seen."""
-        depths = np.array([self.found.get(contact.name, 0.0) for contact, _ in self.contacts])
-        return _notes(self.contacts, depths)
+        """Return the notes on all that was seen."""
+        return [limit.note(self.found[limit.name]) for limits in self._limits.values() for limit in limits
+                if self.found.get(limit.name, 0.0) > limit.depth]
 
 
-def _radii(model: Model) -> Iterator[tuple[Any, float]]:
-    """Yield the contacts of a model with the radius that their depth is to be small against, in m."""
-    for contact in model.contacts:
-        radii = (contact.radius, contact.round_radius)
-        yield contact, min((radius for radius in radii if radius > 0), default=np.inf)
-
-
-def penetrations(model: Model, outputs: np.ndarray) -> list[str]:
-    """Return the notes on a state of rest; outputs: (contacts, 10), the engine's."""
-    return _notes(list(_radii(model)), outputs[:, 6]) if len(outputs) else []
-
-
-def _notes(contacts: list[tuple[Any, float]], depths: np.ndarray) -> list[str]:
-    """Return the notes on depths (contacts,), in m, of contacts with the radii that these are to be small against."""
-    return [too_deep(contacts[k][0].name, contacts[k][0].stiffness, contacts[k][1], float(depths[k]))
-            for k in np.flatnonzero(depths > DEEP * np.array([radius for _, radius in contacts]))]
-
-
-def too_deep(name: str, stiffness: float, radius: float, depth: float) -> str:
-    """Return a note on a depth in m that is large beside a radius in m."""
-    return (f'contact "{name}" is up to {depth:.3g} m below its surface, {100 * depth / radius:.3g} % of the radius of '
-            f"{radius:.3g} m: a stiffness greater than {stiffness:.3g} keeps it up")
+def penetrations(model: Model, outputs: dict[str, np.ndarray]) -> list[str]:
+    """Return the notes on a state of rest; outputs: the engine's of each kind of coupling, (couplings, numbers)."""
+    found = Penetrations(model)
+    found.see_rest(outputs)
+    return found.notes()

@@ -341,7 +341,7 @@ def _told(problem: StaticProblem, motion: _Motion, found: Stability, made: type[
     state = made.of(problem, found)
     state.relaxation = motion.report
     problem.messages += [*folds(problem.scene, problem.model, state.static_state["q"]),
-                         *penetrations(problem.model, state.couplings["contact"]), *unseen_contact(problem.scene)]
+                         *penetrations(problem.model, state.couplings), *unseen_contact(problem.scene)]
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=5)
     LOG.info("relaxation: %d steps, %d resets, %.3g N left over", motion.report.steps, motion.report.resets,

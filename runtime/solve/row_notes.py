@@ -1,4 +1,4 @@
-"""Notes on a run that take all of its output rows, also those that are on disk already."""
+"""Notes on a run that take all of its output rows and steps, also those that are on disk already."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ..engine import Engine
 from ..model.model import Model
 from ..parts.scene_data import SceneData
 from .fast_turns import FastTurns
@@ -17,16 +18,20 @@ from .sensitivity import Sensitivity
 from .straight_struts import StraightStruts
 
 
-class Watched(Protocol):
-    """Sees output rows and keeps what it has found, as JSON takes it, by the names of parts."""
+class Noted(Protocol):
+    """Keeps what has been found of a run, as JSON takes it, by the names of parts."""
 
     found: dict[str, Any]
 
+    def notes(self) -> list[str]:
+        """Return the notes on all that was seen."""
+
+
+class Watched(Noted, Protocol):
+    """Sees output rows."""
+
     def see(self, rows: dict[str, np.ndarray]) -> None:
         """Take further output rows, by name, time first."""
-
-    def notes(self) -> list[str]:
-        """Return the notes on all rows that were seen."""
 
 
 class RowNotes:
@@ -34,28 +39,31 @@ class RowNotes:
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0):
         self.sensitivity, self.turns = Sensitivity(scene, model), FastTurns(model, step)
+        self._penetrations = Penetrations(model)
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
             "sensitivity": self.sensitivity, "meeting points": MeetingPoints(scene, model),
-            "fast turns": self.turns, "penetrations": Penetrations(model),
-            "folds": Folds(scene, model)}
+            "fast turns": self.turns, "folds": Folds(scene, model)}
+        self._noted: dict[str, Noted] = {**self._watched, "penetrations": self._penetrations}
 
-    def see(self, rows: dict[str, np.ndarray]) -> None:
-        """Take further rows of the engine, by name, time first."""
+    def see(self, engine: Engine) -> None:
+        """Take further rows, which the engine has, and what it has found at the ends of its steps."""
+        rows = engine.rows()
+        self._penetrations.see(engine)
         if len(rows["time"]):
             for each in self._watched.values():
                 each.see(rows)
 
     def notes(self) -> list[str]:
         """Return the notes on all rows that were seen."""
-        return [note for each in self._watched.values() for note in each.notes()]
+        return [note for each in self._noted.values() for note in each.notes()]
 
     @property
     def found(self) -> dict[str, Any]:
         """What rows have shown so far, as JSON takes it, for a checkpoint."""
-        return {name: each.found for name, each in self._watched.items()}
+        return {name: each.found for name, each in self._noted.items()}
 
     def go_on(self, found: dict[str, Any]) -> None:
         """Go on from what the rows before a checkpoint had shown."""
-        for name, each in self._watched.items():
+        for name, each in self._noted.items():
             each.found = found.get(name, {})

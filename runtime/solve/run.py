@@ -119,7 +119,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream)
     messages += run.follow.notes() + _warned(run.watcher.notes())
     cpu, ended = clock() - cpu, time.perf_counter()
-    run.row_notes.see(run.engine.rows())
+    run.row_notes.see(run.engine)
     messages += _controlled_alone(run.engine, settings)
     if status == "completed":
         grows = [] if settings.estimate else [*sensitive(run.engine, settings, run.row_notes.sensitivity),

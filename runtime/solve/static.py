@@ -79,7 +79,7 @@ def note(problem: StaticProblem, state: RestState) -> None:
         problem.messages.append(f"the state is {state.stability}{leaves}")
     LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
              state.iterations, state.residual)
-    problem.messages += [*penetrations(problem.model, state.couplings["contact"]), *unseen_contact(problem.scene)]
+    problem.messages += [*penetrations(problem.model, state.couplings), *unseen_contact(problem.scene)]
     state.messages = problem.messages + implausible(problem.scene)
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=4)

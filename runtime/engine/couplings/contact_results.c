@@ -197,6 +197,12 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
     return deepest(run->model, of(coupling), state);
 }
 
+static double depth(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double watched_value)
+{
+    (void)model, (void)coupling, (void)state;
+    return watched_value;
+}
+
 static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
 {
     (void)model, (void)which;
@@ -318,4 +324,4 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
 }
 
 const fu_coupling_events fu_contact_events = {
-    .watches = watches, .watched = watched, .sign = sign, .act = act, .begin = begin, .dip = dip};
+    .watches = watches, .watched = watched, .depth = depth, .sign = sign, .act = act, .begin = begin, .dip = dip};

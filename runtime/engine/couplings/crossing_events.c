@@ -74,6 +74,15 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
     return gap > 0.0 ? -gap : margin;
 }
 
+static double depth(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double watched_value)
+{
+    fu_course gap;
+    (void)watched_value;
+    if (!state->flags[coupling->flags]) return 0.0;
+    gap_of(model, crossing_of(coupling), state, &gap);
+    return -gap.value;
+}
+
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     int *touches = &run->now.flags[coupling->flags];
@@ -102,6 +111,7 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 const fu_coupling_events fu_crossing_events = {
     .watches = watches,
     .watched = watched,
+    .depth = depth,
     .act = act,
     .dip = dip,
     .begin = begin,

@@ -298,6 +298,7 @@ cdef extern from "engine.h" nogil:
         double *watch_work
         int *late
         fu_slackness *slackness
+        double *deepest
         double *passed_at
         const char **passed
         double (*call)(void *context, int watch, const fu_state *state) noexcept nogil

@@ -68,6 +68,10 @@ cdef class Report(Statics):
         fu_part_timing(&self.run, &seconds[0])
         return np.asarray(seconds)[:self.model.n_couplings]
 
+    def deepest(self, str kind):
+        """(couplings,): how deep each of a kind has let parts sink since the start, or a checkpoint, in m."""
+        return np.array([self.run.deepest[<int>number] for number in self._of(kind)])
+
     @property
     def integrator(self):
         """Name of the integrator."""

@@ -36,6 +36,8 @@ struct fu_coupling_events {
     /* When a watched number is farthest beyond zero in the step just made, of h, at both ends of which it is on one side, as fu_dip
      * (include/events.h) predicts it; or where the step should end as an impact needs shorter ones; else 0. Null: it is not known. */
     double (*dip)(const fu_run *run, const fu_coupling *coupling, int which, double h);
+    /* How deep what touches has sunk, m, at a state where the coupling's watched number has this value. Null: it cannot sink. */
+    double (*depth)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double watched);
     /* The sign that a watched number has from here on, after it has been zero and the coupling has changed: 1 or -1. Null: -1. */
     int (*sign)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which);
     /* Lets happen what follows where a watched number has passed zero to this side; returns a status. *what says in words

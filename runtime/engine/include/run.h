@@ -39,6 +39,7 @@ struct fu_run {
     double *passed_at;   /* per watch: when a step has gone over it, s, for the caller to learn of it; negative where none has */
     const char **passed; /* per watch: what has happened then, in words */
     fu_slackness *slackness; /* per cable */
+    double *deepest;     /* per coupling: how deep it has let parts sink since the start, or a checkpoint, m */
     double *watch_work;  /* n_dof + n_outputs: accelerations and a row of output that a watched number is of */
     int watch_solution;  /* what is known of these accelerations: FU_SOLVE_ANEW and the like */
     double (*call)(void *context, int watch, const fu_state *state);
@@ -121,6 +122,9 @@ int fu_stop(fu_run *run);
 int fu_prepare(fu_run *run);
 int fu_start(fu_run *run);
 int fu_start_scheme(fu_run *run, int project);
+
+/* run/depths.c */
+void fu_note_depths(fu_run *run);
 
 /* run/happenings.c */
 int fu_let_happen(fu_run *run, fu_event event);

@@ -77,5 +77,6 @@ int fu_start(fu_run *run)
     fu_watch_now(run, fu_no_event, INFINITY);
     fu_watch_anew(run, -1);
     fu_look_around(run, 0.0, 1);
+    fu_note_depths(run);
     return FU_RUNNING;
 }

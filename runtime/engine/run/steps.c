@@ -211,6 +211,7 @@ static void accept(fu_run *run, const trial *t)
     if (moved > run->motion) run->motion = moved;
     run->controlled_motion = run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
     fu_watch_now(run, t->event, h);
+    fu_note_depths(run);
     run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
     fu_statistics *s = &run->statistics;
     ++s->steps;
