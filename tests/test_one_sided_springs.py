@@ -159,6 +159,44 @@ def test_droppers_unload_and_reload_between_two_wires():
         assert side.min() < 2e-5  # the passage is near: neither is deep in a spring of 1e5 N/m
 
 
+def between_two_droppers(speed, preload):
+    """Return the instants of half a period, and a function of time: a mass between two droppers that pull alone.
+
+    It begins in the middle with this speed, while both pull, each extended by the preload (m). Beyond that the one is
+    slack, and the other pulls with twice the preload and more.
+    """
+    both, one = np.sqrt(2 * STIFFNESS / MASS), np.sqrt(STIFFNESS / MASS)
+    slack = np.arcsin(preload * both / speed) / both
+    left = speed * np.cos(both * slack) / one
+    taut = slack + (np.pi - 2 * np.arctan2(2 * preload, left)) / one
+    half = slack + taut
+
+    def place(time):
+        side, t = np.where(time % (2 * half) < half, 1, -1), time % half
+        t_one = one * (t - slack)
+        alone = 2 * preload * np.cos(t_one) + left * np.sin(t_one) - preload
+        return side * np.where((t > slack) & (t < taut), alone, speed / both * np.sin(both * np.minimum(t, half - t)))
+
+    return (slack, taut, half), place
+
+
+@pytest.mark.parametrize("integrator", (*BY_TOL, *BY_STEP))
+def test_a_pair_of_droppers_unloads_and_reloads_as_sines(integrator):
+    (slack, taut, half), place = between_two_droppers(0.6, 0.02)
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.rigid_body("m", mass=MASS, inertia=(1, 1, 1), position=(0, 0, 0), velocity=(0.6, 0, 0))
+    for name, x in (("left", -1), ("right", 1)):
+        scene.spring((x, 0, 0), "m", stiffness=STIFFNESS, length=0.98, tension_only=True, name=name)
+    run = scene.run(duration=1.0, output_step=0.01, integrator=integrator, tol=1e-8)
+    assert np.abs(run["m.position"][:, 0] - place(run.time)).max() < 1e-8
+    exact = [(k * half + t, "right" if k % 2 == 0 else "left", what) for k in range(int(1 / half) + 1)
+             for t, what in ((slack, "became slack"), (taut, "became taut")) if k * half + t < 1.0]
+    assert [(event["name"], event["what"]) for event in run.events] == [each[1:] for each in exact]
+    assert np.abs(np.subtract([event["time"] for event in run.events], [each[0] for each in exact])).max() < (
+        1e-9 if integrator in BY_TOL else 1e-8)
+    assert drift(run) < (1e-12 if integrator == "energy" else 1e-8)
+
+
 def test_rest_on_droppers_takes_those_that_are_taut():
     scene = fu.Scene(gravity=(0, 0, -10.0))
     scene.rigid_body("m", mass=1.0, inertia=(1, 1, 1), position=(0, 0, -1.0))

@@ -30,6 +30,22 @@ def test_other_units_are_noted(given, notes):
         assert any(note in each for each in found)
 
 
+@pytest.mark.parametrize("shape", ["drawn", "surface"])
+@pytest.mark.parametrize(("given", "noted"), [({}, True), ({"radius": 0.1}, False), ({"points": [(0, 0, 0)]}, False)])
+def test_a_body_with_a_shape_that_touches_by_its_origin_alone_is_noted(shape, given, noted):
+    """A box of 0.2 m would come to lie with its middle on the ground."""
+    made = fu.Scene()
+    made.rigid_body("box", mass=1, inertia=(0.01,) * 3, position=(0, 1, 0),
+                    shape=fu.Box(size=(0.2, 0.2, 0.2)) if shape == "drawn" else None)
+    made.surface("ground", fu.Plane())
+    if shape == "surface":
+        made.surface("skin", fu.Sphere(radius=0.1), on="box")
+    made.contact("box", "ground", name="foot", restitution=0.2, **given)
+    found = made.run(duration=1e-3, tol=1e-3).report["messages"]
+    says = 'contact "foot" touches with the origin of "box" alone, and not with the shape of that body: give points='
+    assert any(each.startswith(says) for each in found) == noted
+
+
 def test_an_equilibrium_has_the_notes_too():
     assert any("is it in kg/m³" in each for each in scene(density=7.85).equilibrium().messages)
 

@@ -1,4 +1,4 @@
-"""Numbers that look like another unit, and surfaces without contact, in words: notes of a run, never a refusal."""
+"""Numbers that look like another unit, and contacts that are left out, in words: notes of a run, never a refusal."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from ..parts.material import Material
 from ..parts.scene_data import SceneData
+from ..parts.solids import Solid
 from ..parts.validation import show
 
 MODULI = 1e3, 2e12
@@ -21,14 +22,25 @@ GRAVITY = 300.0
 
 
 def implausible(scene: SceneData) -> list[str]:
-    """Return a note for each number of a scene that looks like one in other units than SI, and for idle surfaces."""
-    return [*_gravity(scene), *_materials(scene), *_surfaces(scene)]
+    """Return a note for each number of a scene that looks like one in other units than SI, for idle surfaces, and for
+    bodies that have a shape and touch by their origin alone.
+    """
+    return [*_gravity(scene), *_materials(scene), *_surfaces(scene), *_origins(scene)]
 
 
 def _surfaces(scene: SceneData) -> Iterator[str]:
     touched = {contact.b for contact in scene.contacts.values()}
     yield from (f"{surface.where} has no contact: nothing can touch it; add scene.contact(..., \"{name}\")"
                 for name, surface in scene.surfaces.items() if name not in touched)
+
+
+def _origins(scene: SceneData) -> Iterator[str]:
+    shaped = {name for name, body in scene.bodies.items() if isinstance(getattr(body, "shape", None), Solid)}
+    shaped |= {surface.on for surface in scene.surfaces.values() if surface.on}
+    yield from (f"{contact.where} touches with the origin of \"{contact.a}\" alone, and not with the shape of that "
+                "body: give points=, such as corners of a box, or a radius= about them"
+                for contact in (each.as_made() for each in scene.contacts.values())
+                if contact.a in shaped and contact.points is None and not contact.radius)
 
 
 def _gravity(scene: SceneData) -> Iterator[str]:

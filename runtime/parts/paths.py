@@ -81,7 +81,13 @@ def _check_entry(scene: SceneData, path: Path) -> None:
                          + ", ".join(known) + ")")
     if path.entries[0] not in known:
         raise SceneError(path.where, f'{path.head} has no "{path.entries[0]}"',
-                         f"{near(path.entries[0], known)} (known: {', '.join(known)})")
+                         _nearest(path.entries[0], known))
+
+
+def _nearest(name: str, known: Iterable[str]) -> str:
+    """Return the remedy for an unknown name: the nearest known one, and the list of them, once."""
+    nearest, listed = near(name, known), f"known: {', '.join(known)}"
+    return nearest if nearest == listed else f"{nearest} ({listed})"
 
 
 def check_each_once(paths: Iterable[Path]) -> None:
