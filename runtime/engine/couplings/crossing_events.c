@@ -10,6 +10,19 @@ static const fu_crossing *crossing_of(const fu_coupling *coupling)
     return (const fu_crossing *)coupling;
 }
 
+double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact)
+{
+    const double damping = crossing->law[FU_LAW_DAMPING];
+    double margin = contact->depth[0];
+    /* a length, that of a millisecond's motion */
+    if (damping > 0.0) margin = fmin(margin, (1.0 / damping + contact->depth[1]) * FU_INSTANT);
+    for (int line = 0; line < FU_LINES; ++line) {
+        margin = fmin(margin, points->s[line] - crossing->low[line]);
+        margin = fmin(margin, crossing->high[line] - points->s[line]);
+    }
+    return margin;
+}
+
 double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state)
 {
     fu_closest_points points;
@@ -18,15 +31,7 @@ double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, co
     if (!points.found) return points.apart > 0.0 ? -points.apart : NAN;
     fu_crossing_contact_at(crossing, &points, &contact);
     if (fu_crossing_swung(crossing, state, &contact)) return NAN;
-    const double damping = crossing->law[FU_LAW_DAMPING];
-    double margin = contact.depth[0];
-    /* a length, that of a millisecond's motion */
-    if (damping > 0.0) margin = fmin(margin, (1.0 / damping + contact.depth[1]) * FU_INSTANT);
-    for (int line = 0; line < FU_LINES; ++line) {
-        margin = fmin(margin, points.s[line] - crossing->low[line]);
-        margin = fmin(margin, crossing->high[line] - points.s[line]);
-    }
-    return margin;
+    return fu_crossing_margin_of(crossing, &points, &contact);
 }
 
 /* Makes the gap of lines that touch less or more than nil, m, and its rate; returns whether they are closest within their ends. */
@@ -42,17 +47,15 @@ static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_s
     return points.found;
 }
 
-/* The gap dips where the points are closest within the ends of both lines. Lines that are apart may touch on their way past an end, or
- * be through and away. */
+/* Lines that touch may part within a step and be together again, lines that do not may touch. */
 static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_crossing *crossing = crossing_of(coupling);
-    const int touch = run->now.flags[coupling->flags];
     fu_course from, to;
     (void)which;
+    if (!run->now.flags[coupling->flags]) return fu_crossing_pass(run->model, crossing, &run->now, &run->next, h, run->round_off);
     const int within = gap_of(run->model, crossing, &run->now, &from) && gap_of(run->model, crossing, &run->next, &to);
-    if (touch || (within && !(to.value < 0.0))) return within ? fu_dip(from, to, touch ? -1 : 1, h, run->round_off) : 0.0;
-    return fu_crossing_pass(run->model, crossing, &run->now, &run->next, h, run->round_off);
+    return within ? fu_dip(from, to, -1, h, run->round_off) : 0.0;
 }
 
 static int watches(const fu_coupling *coupling, fu_watch *out)

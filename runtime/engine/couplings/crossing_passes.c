@@ -1,20 +1,39 @@
-/* Lines that touch within a step and not at its ends, as where they fly through each other and past an end of one of them, or so far
- * that they are apart again from end to end: the penetration and the ways of the closest points to the ends of their lines are led
- * from one end of the step to the other by the cubics through their values and rates there (Hermite's). What is least of them is
- * looked at from place to place: none of the cubics can change faster than the chords of its control points, so that from a place
- * where one is below zero the next is as far away as that one needs to come back.
+/* Lines that touch within a step and not at its ends, as where they graze, or fly through each other and past an end of one of them.
+ *
+ * Between the ends of the step all points of the lines are taken along the cubics of their places and velocities there (Hermite's).
+ * The closest points of the lines so placed are followed through the step. As their distance changes by no more than the ways of
+ * points of both lines, lines can go as far as they are off without touching; so they are led on from one such place to the next
+ * (conservative advancement; Mirtich 1996). Where they are led on by more, since so little is left, the cubic of the gap through both
+ * places tells whether it dips below zero between them.
  */
 #include "engine.h"
 
 #include <math.h>
+#include <string.h>
 
-#define LEAST 1e-3 /* of a step: how far apart places are at least */
-enum { COURSES = 1 + 2 * FU_LINES };
+#define LONGEST 0.0625 /* of a step: lines are led on by no more, and by so much where nothing tells how far they can go */
+#define SHORTEST 1e-4  /* of a step: lines are led on by no less */
+#define SHARE 0.25     /* of the distance at which lines touch: what points go at least from place to place */
+#define CAUTION 0.5    /* of the way that closest points have to the ends of their lines, at their rate */
+#define CORNER 1e-2    /* of a bracket: how far from its ends the bottom of a dip is looked for */
+#define NEAR 1e-2      /* of a dip: how far from zero its bottom may be predicted and yet be looked at */
 
-/* A course over a step: the ordinates of its control points (Bezier's), and what it changes by in a step at most. */
+enum { SECTIONS = 8 }; /* of a bracket of the bottom of a dip */
+
+/* The contact after a part x of a step: how far lines are in contact, m; the gap and its rate by x; the part for which lines do not
+ * touch; whether the closest points are known. */
 typedef struct {
-    double points[4], change;
-} arc;
+    double x, margin, gap, rate, free;
+    int found;
+} place;
+
+/* What is followed through a step: the numbers of the closest points and the normal; the way that lines go at most, m. */
+typedef struct {
+    const fu_model *model;
+    const fu_crossing *crossing;
+    fu_moment at;
+    double s[FU_LINES], normal[3], way, shortest;
+} passage;
 
 /* Makes the rates of the arc-lengths of the closest points, m/s. */
 static void rates_of_points(const fu_crossing *crossing, const fu_closest_points *points, double rates[FU_LINES])
@@ -31,68 +50,152 @@ static void rates_of_points(const fu_crossing *crossing, const fu_closest_points
     }
 }
 
-/* Makes the courses of a state: the penetration, and how far both closest points are within the ends of their lines, m, with rates;
- * returns whether there are such points. */
-static int courses_of(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_course out[COURSES])
+/* Returns the part of the step that a closest point needs at least to come within the ends of its line. */
+static double part_beyond_ends(const passage *of, const fu_closest_points *points)
 {
-    fu_closest_points points;
-    fu_crossing_contact contact;
-    double rates[FU_LINES];
-    fu_find_closest(model, crossing, state, &points);
-    fu_crossing_contact_at(crossing, &points, &contact);
-    if (!points.found || fu_crossing_swung(crossing, state, &contact)) return 0;
-    rates_of_points(crossing, &points, rates);
-    out[0] = (fu_course){contact.depth[0], contact.depth[1]};
+    const fu_crossing *crossing = of->crossing;
+    double rates[FU_LINES], part = 0.0;
+    rates_of_points(crossing, points, rates);
     for (int line = 0; line < FU_LINES; ++line) {
-        out[1 + 2 * line] = (fu_course){points.s[line] - crossing->low[line], rates[line]};
-        out[2 + 2 * line] = (fu_course){crossing->high[line] - points.s[line], -rates[line]};
+        const double beyond = fmax(crossing->low[line] - points->s[line], points->s[line] - crossing->high[line]);
+        if (beyond > 0.0) part = fmax(part, CAUTION * beyond / (of->at.h * fabs(rates[line])));
     }
-    return 1;
+    return part;
 }
 
-static arc arc_of(fu_course from, fu_course to, double h)
+/* Follows the closest points to the part x of the step. */
+static place follow(passage *of, double x)
 {
-    arc out = {{from.value, from.value + h * from.rate / 3.0, to.value - h * to.rate / 3.0, to.value}, 0.0};
-    for (int k = 0; k < 3; ++k) out.change = fmax(out.change, 3.0 * fabs(out.points[k + 1] - out.points[k]));
+    const fu_crossing *crossing = of->crossing;
+    place out = {.x = x, .margin = -INFINITY, .gap = NAN, .rate = NAN, .free = LONGEST};
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    of->at.x = x;
+    fu_find_closest_within(of->model, crossing, &of->at, of->s, &points);
+    if (!points.found) {
+        if (points.apart > 0.0) out.free = points.apart / of->way;
+        return out;
+    }
+    fu_crossing_contact_at(crossing, &points, &contact);
+    if (fu_dot(3, of->normal, contact.normal) < 0.0) return out;
+    memcpy(of->s, points.s, sizeof of->s);
+    memcpy(of->normal, contact.normal, sizeof of->normal);
+    out.found = 1;
+    out.gap = -contact.depth[0];
+    out.rate = -of->at.h * contact.depth[1];
+    out.margin = fu_crossing_margin_of(crossing, &points, &contact);
+    out.free = out.margin > 0.0 ? out.margin / of->way : fmax(out.gap / of->way, part_beyond_ends(of, &points));
+    if (!(out.free > 0.0)) out.free = out.gap < 0.0 ? LONGEST : of->shortest; /* damping would turn the force round */
     return out;
 }
 
-static double value_at(const arc *of, double x)
+/* Returns the part of the step at which lines touch between two places of it, or nearly, as against the gap at its ends; 0 where they
+ * do not: by the bottom of the gap, where its rate passes zero. */
+static double touch_between(const passage *of, place from, place to, double ends, double least)
 {
-    const double u = 1.0 - x, *p = of->points;
-    return u * u * (u * p[0] + 3.0 * x * p[1]) + x * x * (3.0 * u * p[2] + x * p[3]);
+    if (!from.found || !to.found || !(from.gap >= 0.0 && from.rate < 0.0 && to.rate > 0.0)) return 0.0;
+    for (int i = 0; i < SECTIONS; ++i) {
+        passage between = *of;
+        const double part = fmin(fmax(from.rate / (from.rate - to.rate), CORNER), 1.0 - CORNER);
+        const place bottom = follow(&between, from.x + part * (to.x - from.x));
+        if (!bottom.found) return 0.0;
+        if (bottom.margin > least) return bottom.x;
+        /* a convex gap lies above its tangent */
+        const double nearly = NEAR * (ends - bottom.gap), below = fabs(bottom.rate) * (to.x - from.x);
+        if (bottom.gap - below > fmax(nearly, 0.0)) return 0.0;
+        if (i == SECTIONS - 1 && bottom.gap < nearly && bottom.margin >= -bottom.gap) return bottom.x;
+        *(bottom.rate < 0.0 ? &from : &to) = bottom;
+    }
+    return 0.0;
 }
 
-/* Returns what is least of the courses after part x of the step; makes in *way the part of it for which one stays below zero. */
-static double least_at(const arc *arcs, int n, double x, double *way)
+/* Returns the largest size of points of a line's cubic by differences, m in a step: of three numbers, the velocities at its ends and
+ * that between them that its control points give. */
+static double largest_way(int dim, const double *a, const double *b, const double *v, const double *w, const double *mean, double h)
 {
-    double least = INFINITY;
-    *way = 0.0;
-    for (int i = 0; i < n; ++i) {
-        const double value = value_at(&arcs[i], x);
-        least = fmin(least, value);
-        if (value < 0.0) *way = fmax(*way, arcs[i].change > 0.0 ? -value / arcs[i].change : INFINITY);
+    double squares[3] = {0.0};
+    for (int d = 0; d < dim; ++d) {
+        const double first = h * (v[d] - mean[d]), last = h * (w[d] - mean[d]);
+        const double middle = 3.0 * (b[d] - a[d] - h * mean[d]) - first - last;
+        squares[0] += first * first;
+        squares[1] += middle * middle;
+        squares[2] += last * last;
     }
-    return least;
+    return sqrt(fmax(squares[0], fmax(squares[1], squares[2])));
+}
+
+/* Returns how far points of a line go in the step at most, as against points that go at the mean velocity, m. */
+static double way_of_line(const passage *of, int line, const double *mean)
+{
+    static const double still[3] = {0.0};
+    const fu_crossing *crossing = of->crossing;
+    const fu_state *now = of->at.now, *next = of->at.next;
+    const int dim = of->model->dim;
+    double sum = 0.0;
+    if (crossing->cables[line] < 0) {
+        for (int end = 0; end < 2; ++end) {
+            const double s = dim == 2 ? 0.0 : end ? crossing->high[line] : crossing->low[line];
+            fu_line_point from, to;
+            fu_line_point_of(of->model, crossing, line, now, s, &from);
+            fu_line_point_of(of->model, crossing, line, next, s, &to);
+            sum = fmax(sum, largest_way(dim, from.r, to.r, from.v, to.v, mean, of->at.h));
+        }
+        return sum;
+    }
+    const fu_cable *cable = &of->model->cables[crossing->cables[line]];
+    for (int k = 0; k < cable->kernel->vectors; ++k) {
+        const double share = cable->share ? cable->share[k] : k ? cable->length : 1.0;
+        double most = 0.0;
+        for (int node = 0; node <= cable->n_elements && share != 0.0; ++node) {
+            const int at = cable->first + node * cable->per_node + k * dim;
+            most = fmax(most, largest_way(dim, now->q + at, next->q + at, now->v + at, next->v + at, k ? still : mean, of->at.h));
+        }
+        sum += share * most;
+    }
+    return sum;
+}
+
+/* Returns how far points of both lines can come nearer in the step at most, m. */
+static double most_way(const passage *of)
+{
+    const fu_cable *cable = &of->model->cables[of->crossing->cables[0]];
+    double mean[3] = {0.0};
+    for (int d = 0; d < of->model->dim; ++d)
+        for (int node = 0; node <= cable->n_elements; ++node)
+            mean[d] += of->at.now->v[cable->first + node * cable->per_node + d] / (cable->n_elements + 1);
+    return way_of_line(of, 0, mean) + way_of_line(of, 1, mean);
+}
+
+static void begin(passage *of)
+{
+    const double *numbers = of->at.now->numbers + of->crossing->base.numbers;
+    memcpy(of->s, numbers + FU_CROSSING_S, sizeof of->s);
+    memcpy(of->normal, numbers + FU_CROSSING_NORMAL, sizeof of->normal);
+    of->way = most_way(of);
+    of->shortest = fmin(fmax(SHARE * of->crossing->law[0] / of->way, SHORTEST), LONGEST);
 }
 
 double fu_crossing_pass(const fu_model *model, const fu_crossing *crossing, const fu_state *now, const fu_state *next, double h,
                         double least)
 {
-    fu_course from[COURSES], to[COURSES];
-    arc arcs[COURSES];
-    double way, back, first = 0.0;
-    int n = 0;
-    if (!courses_of(model, crossing, now, from) || !courses_of(model, crossing, next, to)) return 0.0;
-    for (int i = 0; i < COURSES; ++i)
-        if (from[i].value < INFINITY) arcs[n++] = arc_of(from[i], to[i], h);
-    if (!(least_at(arcs, n, 0.0, &way) < 0.0)) return 0.0;
-    least_at(arcs, n, 1.0, &back);
-    for (double x = fmax(way, LEAST); x < 1.0 - back; x += fmax(way, LEAST)) {
-        const double here = least_at(arcs, n, x, &way);
-        const int has_met = value_at(&arcs[0], x) > crossing->law[0]; /* the axes of the lines have */
-        if (first > 0.0 && (here < least || has_met)) return 0.5 * h * (first + x);
-        if (first == 0.0 && here > least) first = x;
+    passage of = {.model = model, .crossing = crossing, .at = {now, next, h, 0.0}};
+    double first = 0.0;
+    begin(&of);
+    place from = follow(&of, 0.0);
+    if (from.margin > 0.0 || (from.found && from.free > 1.0)) return 0.0;
+    passage beyond = of;
+    const place end = follow(&beyond, 1.0);
+    const double ends = fmin(from.gap, end.gap);
+    while (from.x < 1.0) {
+        const double x = fmin(from.x + fmin(fmax(from.free, of.shortest), LONGEST), 1.0);
+        const place to = follow(&of, x);
+        if (first > 0.0 && (!(to.margin > least) || -to.gap > crossing->law[0])) return 0.5 * h * (first + x);
+        if (first == 0.0 && to.margin > least && x < 1.0) first = x;
+        if (first == 0.0) {
+            const double dip = touch_between(&of, from, to, ends, least);
+            if (dip > 0.0) return h * dip;
+        }
+        from = to;
     }
-    return first > 0.0 ? 0.5 * h * (first + 1.0 - back) : 0.0;
+    return 0.0;
 }

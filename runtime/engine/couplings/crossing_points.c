@@ -73,20 +73,58 @@ static void point_of_bar(const fu_model *model, const fu_crossing *crossing, con
     }
 }
 
-static void point_of_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state, double s,
-                          fu_line_point *out)
+void fu_line_point_of(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state, double s,
+                      fu_line_point *out)
 {
     if (crossing->cables[line] >= 0) point_of_cable(&model->cables[crossing->cables[line]], state->q, state->v, s, out);
     else point_of_bar(model, crossing, state, s, out);
 }
 
+/* Makes how fast the second derivatives by arc-length change: those of a cable are linear in its coordinates. */
+static void bends_of_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state, double s, double *out)
+{
+    fu_line_point rates;
+    memset(out, 0, sizeof(double[3]));
+    if (crossing->cables[line] < 0) return;
+    point_of_cable(&model->cables[crossing->cables[line]], state->v, state->v, s, &rates);
+    memcpy(out, rates.k, sizeof rates.k);
+}
+
+/* Takes a quantity and its rate along the cubic through both ends of a step. */
+static void along_cubic(const fu_moment *at, const double *a, const double *a_t, const double *b, const double *b_t, double *value,
+                        double *rate)
+{
+    const double x = at->x, rest = 1.0 - x, h = at->h;
+    for (int d = 0; d < 3; ++d) {
+        const double change = b[d] - a[d];
+        value[d] = a[d] + x * x * (3.0 - 2.0 * x) * change + h * x * rest * (rest * a_t[d] - x * b_t[d]);
+        rate[d] = 6.0 * x * rest * change / h + rest * (1.0 - 3.0 * x) * a_t[d] + x * (3.0 * x - 2.0) * b_t[d];
+    }
+}
+
+/* Makes a line's point at a moment; a bar's is not on its carrier within a step. */
+static void point_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_moment *at, double s, fu_line_point *out)
+{
+    fu_line_point_of(model, crossing, line, at->now, s, out);
+    if (!at->next) return;
+    const fu_line_point from = *out;
+    fu_line_point to;
+    double from_k[3], to_k[3], unused[3];
+    fu_line_point_of(model, crossing, line, at->next, s, &to);
+    bends_of_line(model, crossing, line, at->now, s, from_k);
+    bends_of_line(model, crossing, line, at->next, s, to_k);
+    along_cubic(at, from.r, from.v, to.r, to.v, out->r, out->v);
+    along_cubic(at, from.t, from.w, to.t, to.w, out->t, out->w);
+    along_cubic(at, from.k, from_k, to.k, to_k, out->k, unused);
+}
+
 /* Makes both points at out->s as the kernels take them. */
-static void put_together(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
+static void put_together(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, fu_closest_points *out)
 {
     const int dim = model->dim;
     for (int line = 0; line < FU_LINES; ++line) {
         fu_line_point *point = &out->line[line];
-        point_of_line(model, crossing, line, state, out->s[line], point);
+        point_at(model, crossing, line, moment, out->s[line], point);
         if (line >= dim - 1) continue;
         memcpy(out->t + line * dim, point->t, sizeof(double) * (size_t)dim);
         memcpy(out->k + line * dim, point->k, sizeof(double) * (size_t)dim);
@@ -105,14 +143,14 @@ double fu_line_size(const fu_model *model, const fu_crossing *crossing, int line
 }
 
 /* Finds the closest points by Newton's method from out->s; returns whether it has. `out` is there then. */
-static int converge(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
+static int converge(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, fu_closest_points *out)
 {
     const int lines = model->dim - 1;
     double step[FU_LINES] = {0.0, 0.0}, size[FU_LINES] = {1.0, 1.0};
     for (int line = 0; line < lines; ++line) size[line] = fu_line_size(model, crossing, line);
     for (int i = 0; i < MOST_ITERATIONS; ++i) {
         double part = 1.0, left = 0.0;
-        put_together(model, crossing, state, out);
+        put_together(model, crossing, moment, out);
         crossing->kernel->closest(out->d, out->t, out->k, step);
         for (int line = 0; line < lines; ++line) part = fmin(part, FARTHEST * size[line] / fabs(step[line]));
         for (int line = 0; line < lines; ++line) {
@@ -126,7 +164,7 @@ static int converge(const fu_model *model, const fu_crossing *crossing, const fu
 }
 
 /* Returns the square of the distance of a point from the second line, and the arc-length there; a cable's by its samples. */
-static double distance_from_second(const fu_model *model, const fu_crossing *crossing, const fu_state *state, const double *r,
+static double distance_from_second(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, const double *r,
                                    double *s)
 {
     const int dim = model->dim, cable = crossing->cables[1], n = cable >= 0 ? SAMPLES * model->cables[cable].n_elements : 0;
@@ -134,7 +172,7 @@ static double distance_from_second(const fu_model *model, const fu_crossing *cro
     fu_line_point point;
     for (int i = 0; i <= n; ++i) {
         double square = 0.0, along = 0.0, slope = 0.0, at = cable >= 0 ? i * fu_cable_length(&model->cables[cable]) / n : 0.0;
-        point_of_line(model, crossing, 1, state, at, &point);
+        point_at(model, crossing, 1, moment, at, &point);
         for (int d = 0; d < dim; ++d) {
             square += (r[d] - point.r[d]) * (r[d] - point.r[d]);
             along += (r[d] - point.r[d]) * point.t[d];
@@ -152,7 +190,7 @@ static double distance_from_second(const fu_model *model, const fu_crossing *cro
 }
 
 /* Begins the search anew: where samples of both lines are closest. Returns their distance, m. */
-static double search(const fu_model *model, const fu_crossing *crossing, const fu_state *state, double s[FU_LINES])
+static double search(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, double s[FU_LINES])
 {
     const fu_cable *cable = &model->cables[crossing->cables[0]];
     const int n = SAMPLES * cable->n_elements;
@@ -160,8 +198,8 @@ static double search(const fu_model *model, const fu_crossing *crossing, const f
     fu_line_point point;
     for (int i = 0; i <= n; ++i) {
         const double at = i * fu_cable_length(cable) / n;
-        point_of_cable(cable, state->q, state->v, at, &point);
-        const double square = distance_from_second(model, crossing, state, point.r, &other);
+        point_at(model, crossing, 0, moment, at, &point);
+        const double square = distance_from_second(model, crossing, moment, point.r, &other);
         if (square >= least) continue;
         least = square;
         s[0] = at;
@@ -170,19 +208,27 @@ static double search(const fu_model *model, const fu_crossing *crossing, const f
     return sqrt(least);
 }
 
+void fu_find_closest_within(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, const double s[FU_LINES],
+                            fu_closest_points *out)
+{
+    memcpy(out->s, s, sizeof out->s);
+    out->found = converge(model, crossing, moment, out);
+    if (out->found) return;
+    const double apart = search(model, crossing, moment, out->s), reach = fu_line_size(model, crossing, 0) / SAMPLES;
+    out->found = converge(model, crossing, moment, out);
+    out->apart = fmax(apart - reach - crossing->law[0], 0.0);
+}
+
 void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
 {
-    for (int line = 0; line < FU_LINES; ++line) out->s[line] = state->numbers[crossing->base.numbers + FU_CROSSING_S + line];
-    out->found = converge(model, crossing, state, out);
-    if (out->found) return;
-    const double apart = search(model, crossing, state, out->s), reach = fu_line_size(model, crossing, 0) / SAMPLES;
-    out->found = converge(model, crossing, state, out);
-    out->apart = fmax(apart - reach - crossing->law[0], 0.0);
+    const fu_moment moment = {.now = state};
+    fu_find_closest_within(model, crossing, &moment, state->numbers + crossing->base.numbers + FU_CROSSING_S, out);
 }
 
 void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
 {
     const double *kept = state->numbers + crossing->base.numbers + FU_CROSSING_S;
+    const fu_moment moment = {.now = state};
     fu_closest_points other;
     int moved = 0;
     fu_find_closest(model, crossing, state, out);
@@ -190,8 +236,8 @@ void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, co
         moved |= fabs(out->s[line] - kept[line]) > fu_line_size(model, crossing, line);
     if (!moved) return;
     other = *out;
-    search(model, crossing, state, other.s);
-    other.found = converge(model, crossing, state, &other);
+    search(model, crossing, &moment, other.s);
+    other.found = converge(model, crossing, &moment, &other);
     if (other.found && fu_dot(model->dim, other.d, other.d) < fu_dot(model->dim, out->d, out->d)) *out = other;
 }
 

@@ -71,10 +71,21 @@ typedef struct {
     double P[3 * FU_ATTACHMENT_COORDINATES], T[3 * FU_ATTACHMENT_COORDINATES];
 } fu_line_moves;
 
-/* crossing_points.c */
+/* When lines are looked at: at a state; or, where `next` is not null, after the part x of a step of h, s, along the cubics of places
+ * and velocities at both ends. */
+typedef struct {
+    const fu_state *now, *next;
+    double h, x;
+} fu_moment;
+
+/* crossing_points.c; the first: from arc-lengths s. */
+void fu_find_closest_within(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, const double s[FU_LINES],
+                            fu_closest_points *out);
 void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
 /* Does the same at a state that may be far from the one that the numbers are of: of two finds it takes the closer one. */
 void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
+/* Makes a line's point at an arc-length. */
+void fu_line_point_of(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state, double s, fu_line_point *out);
 /* Returns the size of a line's pieces, m. */
 double fu_line_size(const fu_model *model, const fu_crossing *crossing, int line);
 void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state,
@@ -83,9 +94,10 @@ void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int li
 /* crossing_events.c: how far the lines are in contact, m, negative where they are not; not a number where no points are
  * the closest, though the lines may touch. */
 double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state);
+double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact);
 
 /* crossing_passes.c: when lines that do not touch at the ends of a step of h do within it, by more than `least`, m: half-way from the
- * touch to where they part or their axes meet, s after the start of the step; 0 where they are not predicted to touch. */
+ * touch to where they part or their axes meet, or at the bottom of a dip, s after the start of the step; 0 where they are not predicted to touch. */
 double fu_crossing_pass(const fu_model *model, const fu_crossing *crossing, const fu_state *now, const fu_state *next, double h,
                         double least);
 
