@@ -71,7 +71,8 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if cause == "not_known":
         return (f"no force is known at {when}: {what}; {KEPT}. A crossing has no closest points where its lines are "
-                "parallel near each other, or wind around each other: keep them at an angle")
+                "parallel near each other, or wind around each other: keep them at an angle. Lines that come round an "
+                "end of the other are on its other side: let them touch beforehand, or make them longer")
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif cause == "self_locking" and _is_force(model, coupling):

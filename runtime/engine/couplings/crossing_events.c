@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#define PARTED 1e-6 /* of the energy that contact has: lines that had less when it ended had come apart */
+
 static const fu_crossing *crossing_of(const fu_coupling *coupling)
 {
     return (const fu_crossing *)coupling;
@@ -86,10 +88,31 @@ static double depth(const fu_model *model, const fu_coupling *coupling, const fu
     return -gap.value;
 }
 
+/* Returns whether lines that are about to touch, as the closest points come within an end, are past each other's axes: they have come
+ * round that end, and are on the other side than contact keeps them on. Lines that have gone past an end while they touched have not. */
+static int has_come_round(const fu_run *run, const fu_crossing *crossing)
+{
+    const double damping = crossing->law[FU_LAW_DAMPING];
+    double within = INFINITY;
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    fu_find_closest(run->model, crossing, &run->now, &points);
+    fu_crossing_contact_at(crossing, &points, &contact);
+    for (int line = 0; line < FU_LINES; ++line)
+        within = fmin(within, fmin(points.s[line] - crossing->low[line], crossing->high[line] - points.s[line]));
+    if (damping > 0.0 && (1.0 / damping + contact.depth[1]) * FU_INSTANT < within) return 0;
+    if (!(run->now.numbers[crossing->base.numbers + FU_CROSSING_LEFT_BEHIND] < PARTED * contact.energy)) return 0;
+    return within < contact.depth[0] && contact.depth[0] > crossing->law[0];
+}
+
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     int *touches = &run->now.flags[coupling->flags];
     (void)which, (void)side;
+    if (!*touches && has_come_round(run, crossing_of(coupling))) {
+        fu_fail(run, FU_NOT_KNOWN, run->now.v, coupling->number);
+        return FU_NO_CONVERGENCE;
+    }
     const double stored = coupling->type->energy(run->model, coupling, &run->now);
     run->now.numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND] = *touches ? stored : 0.0;
     *touches = !*touches;
