@@ -12,6 +12,7 @@ SECTION, MATERIAL = Circle(radius=RADIUS), Material(youngs_modulus=1e3, poisson_
 DEEP = 2e-4
 """m: how deep lines touch at least, in short steps, where long steps must not miss it: more than these err by."""
 SEEDS = range(24)
+pytestmark = pytest.mark.slow
 
 
 def flight(seed: int) -> fu.Scene:
