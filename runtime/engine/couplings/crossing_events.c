@@ -12,17 +12,22 @@ static const fu_crossing *crossing_of(const fu_coupling *coupling)
     return (const fu_crossing *)coupling;
 }
 
+/* Returns how far the closest points are within the ends of their lines, m. */
+static double way_to_ends(const fu_crossing *crossing, const fu_closest_points *points)
+{
+    double way = INFINITY;
+    for (int line = 0; line < FU_LINES; ++line)
+        way = fmin(way, fmin(points->s[line] - crossing->low[line], crossing->high[line] - points->s[line]));
+    return way;
+}
+
 double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact)
 {
     const double damping = crossing->law[FU_LAW_DAMPING];
     double margin = contact->depth[0];
     /* a length, that of a millisecond's motion */
     if (damping > 0.0) margin = fmin(margin, (1.0 / damping + contact->depth[1]) * FU_INSTANT);
-    for (int line = 0; line < FU_LINES; ++line) {
-        margin = fmin(margin, points->s[line] - crossing->low[line]);
-        margin = fmin(margin, crossing->high[line] - points->s[line]);
-    }
-    return margin;
+    return fmin(margin, way_to_ends(crossing, points));
 }
 
 double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state)
@@ -44,9 +49,7 @@ static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_s
     fu_find_closest(model, crossing, state, &points);
     fu_crossing_contact_at(crossing, &points, &contact);
     *gap = (fu_course){-contact.depth[0], -contact.depth[1]};
-    for (int line = 0; line < FU_LINES; ++line)
-        if (!(points.s[line] >= crossing->low[line] && points.s[line] <= crossing->high[line])) return 0;
-    return points.found;
+    return points.found && way_to_ends(crossing, &points) >= 0.0;
 }
 
 /* Lines that touch may part within a step and be together again, lines that do not may touch. */
@@ -92,17 +95,13 @@ static double depth(const fu_model *model, const fu_coupling *coupling, const fu
  * round that end, and are on the other side than contact keeps them on. Lines that have gone past an end while they touched have not. */
 static int has_come_round(const fu_run *run, const fu_crossing *crossing)
 {
-    const double damping = crossing->law[FU_LAW_DAMPING];
-    double within = INFINITY;
+    const double left_behind = run->now.numbers[crossing->base.numbers + FU_CROSSING_LEFT_BEHIND];
     fu_closest_points points;
     fu_crossing_contact contact;
     fu_find_closest(run->model, crossing, &run->now, &points);
     fu_crossing_contact_at(crossing, &points, &contact);
-    for (int line = 0; line < FU_LINES; ++line)
-        within = fmin(within, fmin(points.s[line] - crossing->low[line], crossing->high[line] - points.s[line]));
-    if (damping > 0.0 && (1.0 / damping + contact.depth[1]) * FU_INSTANT < within) return 0;
-    if (!(run->now.numbers[crossing->base.numbers + FU_CROSSING_LEFT_BEHIND] < PARTED * contact.energy)) return 0;
-    return within < contact.depth[0] && contact.depth[0] > crossing->law[0];
+    const int at_end = fu_crossing_margin_of(crossing, &points, &contact) == way_to_ends(crossing, &points);
+    return at_end && contact.depth[0] > crossing->law[0] && left_behind < PARTED * contact.energy;
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
