@@ -5,7 +5,9 @@ import re
 import funicular as fu
 import numpy as np
 import pytest
+from funicular.model.build import build
 from funicular.results import streaming
+from funicular.solve.penetrations import penetrations
 from interrupted_runs import Killed, failing
 
 SETTINGS = {"duration": 0.8, "output_step": 0.1, "tol": 1e-5, "progress": False}
@@ -87,3 +89,18 @@ def test_lines_that_pass_through_each_other_are_told(integrator):
         run = scene.run(0.6, output_step=0.6, integrator=integrator, tol=1e-4, progress=False)
         fine = scene.run(0.6, output_step=0.001, integrator="radau", tol=1e-5, progress=False)
     assert told_depth(run) == pytest.approx(float(fine[f"{crossing.name}.penetration"].max()), rel=1e-2)
+
+
+@pytest.mark.parametrize(("force", "told"), [(0.0, 0), (5.0, 1)])
+def test_at_rest_lines_that_touch_are_told(force, told):
+    """Beyond an end of a line the other may be past its axis, and touches nothing."""
+    scene = fu.Scene()
+    wire = scene.cable("wire", start=(-1, 0, 0), end=(1, 0, 0), elements=4, element="cable12",
+                       section=fu.Circle(radius=0.005),
+                       material=fu.Material(youngs_modulus=1e7, density=1000, poisson_ratio=0.3))
+    scene.crossing(wire, None, at=(0, 0, -0.2), axis=(0, 1, 0), length=0.5, radius=0.01, stiffness=1e3)
+    crossing = np.zeros((1, 14))
+    crossing[0, 3:5] = force, 0.21
+    notes = penetrations(build(scene), {"contact": np.zeros((0, 10)), "crossing": crossing})
+    assert len(notes) == told
+    assert all("0.21 m past where its lines touch" in note for note in notes)

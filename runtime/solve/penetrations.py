@@ -9,6 +9,7 @@ import numpy as np
 
 from ..engine import Engine
 from ..model.model import Model
+from ..model.states import crossing_state
 
 DEEP = 0.1
 """Of the radius of the cable or of what is round: what is deeper than that below a surface is noted."""
@@ -59,9 +60,11 @@ class Penetrations:
 
     def see_rest(self, outputs: dict[str, np.ndarray]) -> None:
         """Take a state of rest, by the engine's numbers of each kind of coupling, (couplings, numbers)."""
-        for kind, column in (("contact", 6), ("crossing", 4)):
-            if self._limits[kind]:
-                self._take(self._limits[kind], outputs[kind][:, column])
+        if len(outputs["contact"]):
+            self._take(self._limits["contact"], outputs["contact"][:, 6])
+        if len(outputs["crossing"]):  # beyond their ends lines may be past each other's axes and not touch
+            of = crossing_state(outputs["crossing"])
+            self._take(self._limits["crossing"], np.where(of["normal_force"] > 0, of["penetration"], 0.0))
 
     def _take(self, limits: list[_Limit], depths: np.ndarray) -> None:
         """Keep the depths, in m, that are larger than those before."""

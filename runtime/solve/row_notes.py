@@ -35,7 +35,7 @@ class Watched(Noted, Protocol):
 
 
 class RowNotes:
-    """What is noted of output rows, which are seen as they come, a batch after the other."""
+    """What is noted of output rows and of steps, which are seen as they come, a batch after the other."""
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0):
         self.sensitivity, self.turns = Sensitivity(scene, model), FastTurns(model, step)
@@ -55,12 +55,12 @@ class RowNotes:
                 each.see(rows)
 
     def notes(self) -> list[str]:
-        """Return the notes on all rows that were seen."""
+        """Return the notes on all that was seen."""
         return [note for each in self._noted.values() for note in each.notes()]
 
     @property
     def found(self) -> dict[str, Any]:
-        """What rows have shown so far, as JSON takes it, for a checkpoint."""
+        """What rows and steps have shown so far, as JSON takes it, for a checkpoint."""
         return {name: each.found for name, each in self._noted.items()}
 
     def go_on(self, found: dict[str, Any]) -> None:
