@@ -355,6 +355,10 @@ cdef class Engine(Report):
             fu_outputs_at_rest(&self.model, c, &self.run.next, &view[k, 0])
         return out
 
+    def static_farthest(self, str kind):
+        """(couplings,): how far beyond the ends of its surface anything touches each of a kind in the static state, in m."""
+        return np.array([fu_beyond(&self.model, self.couplings[<int>number], &self.run.next) for number in self._of(kind)])
+
     def joint_forces(self):
         """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
         numbers = self._of("joint")

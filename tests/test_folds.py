@@ -1,11 +1,14 @@
 """Elements that are folded onto themselves: the search for rest avoids them, and results tell of them."""
 
+import warnings
+
 import numpy as np
 import pytest
 from funicular import Circle, FunicularWarning, Material, Scene
 from funicular.model.build import build
 from funicular.parts.laid import laid
 from funicular.solve.folds import Folds, folds
+from scipy.optimize import brentq
 from shared_scenes import cable_scene
 
 SOFT = Material(youngs_modulus=1e6, poisson_ratio=0.5, density=1000)
@@ -91,3 +94,33 @@ def test_a_state_of_rest_with_a_folded_element_tells_of_it():
     with pytest.warns(FunicularWarning, match="folded onto itself in element 3"):
         rest = pushed_back(-0.24).equilibrium()
     assert any("folded" in message for message in rest.messages)
+
+
+@pytest.mark.parametrize(("elements", "told"), [(4, 1), (5, 1), (6, 1), (8, 0), (20, 0)])
+def test_elements_that_turn_far_at_rest_are_told(elements, told):
+    """A rope of 30 m over a span of 10 m: the horizontal force is off by more than 7 % where that is told."""
+    scene = Scene()
+    rope = scene.cable("rope", start=(0, 0, 0), end=(10, 0, 0), rest_length=30, shape="hanging", elements=elements,
+                       element="cable12", section=Circle(radius=0.01),
+                       material=Material(youngs_modulus=1e7, poisson_ratio=0, density=2000))
+    for s in (0.0, 30.0):
+        scene.pin(rope, s=s)
+    a = brentq(lambda a: 2 * a * np.sinh(5 / a) - 30, 1, 5)
+    exact = -2000 * np.pi * 1e-4 * 9.81 * a
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FunicularWarning)
+        rest = scene.equilibrium()
+    assert sum("degrees within element" in message for message in rest.messages) == told
+    assert (abs(rest["rope@0.force"][0] / exact - 1) > 0.07) == told
+
+
+def test_a_length_that_only_few_elements_find_is_told():
+    """A rope that hangs between two pins pulls; that it pushes with 50 N is a shape that its elements alone have."""
+    scene = Scene()
+    rope = scene.cable("rope", start=(0, 0, 0), end=(10, 0, 0), rest_length=10.2, elements=10, element="cable12",
+                       section=Circle(radius=0.01),
+                       material=Material(youngs_modulus=1e7, poisson_ratio=0, density=2000))
+    for s in (0.0, 10.2):
+        scene.pin(rope, s=s)
+    with pytest.warns(FunicularWarning, match="turns by 102 degrees within element 4"):
+        scene.equilibrium(adjust=["rope.rest_length"], to={"rope@0.force.x": 50.0})

@@ -85,6 +85,9 @@ class Recorded:
     def deepest(self, kind: str) -> np.ndarray:
         return np.zeros(0)
 
+    def farthest(self, kind: str) -> np.ndarray:
+        return np.zeros(0)
+
 
 @pytest.mark.parametrize("said", SCENES)
 def test_a_checkpoint_holds_what_was_found(said):

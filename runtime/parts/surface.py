@@ -20,7 +20,7 @@ class Surface(Part):
 
     shape: a `Plane`, `HeightField`, `Sphere`, `Cylinder`, `Capsule` or `Box`; on: the body, whose axes those of the
     shape are then, the ground if not given; at: from where the shape's own places count, in m, the origin if not given.
-    A cylinder has no ends: its length is what pictures draw.
+    A cylinder has no ends: beyond its length, which pictures draw, it is touched, too, and a message tells of it.
     """
 
     kind: ClassVar[str] = "surface"

@@ -221,8 +221,9 @@ def geometry(shape: Part) -> Geometry:
         return _box(shape)
     assert isinstance(shape, Sphere | Cylinder | Capsule), f"{shape!r} is no shape of a surface"
     axis = np.zeros(3) if isinstance(shape, Sphere) else _unit(shape.axis)
-    half = shape.length / 2 if isinstance(shape, Capsule) else 0.0
-    return Geometry("capsule" if half else "round", np.array(shape.at), np.eye(3), axis, shape.radius, half)
+    half = 0.0 if isinstance(shape, Sphere) else shape.length / 2
+    word = "capsule" if half and isinstance(shape, Capsule) else "round"
+    return Geometry(word, np.array(shape.at), np.eye(3), axis, shape.radius, half)
 
 
 def _unit(v: Vector) -> np.ndarray:

@@ -32,6 +32,7 @@ from .penetrations import penetrations
 from .rest_state import Relaxation, RestState
 from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem
+from .surface_ends import beyond_ends
 
 LOG = logging.getLogger(__name__)
 
@@ -341,7 +342,8 @@ def _told(problem: StaticProblem, motion: _Motion, found: Stability, made: type[
     state = made.of(problem, found)
     state.relaxation = motion.report
     problem.messages += [*folds(problem.scene, problem.model, state.static_state["q"]),
-                         *penetrations(problem.model, state.couplings), *unseen_contact(problem.scene)]
+                         *penetrations(problem.model, state.couplings),
+                         *beyond_ends(problem.scene, problem.model, problem.engine), *unseen_contact(problem.scene)]
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=5)
     LOG.info("relaxation: %d steps, %d resets, %.3g N left over", motion.report.steps, motion.report.resets,

@@ -16,6 +16,7 @@ from .penetrations import Penetrations
 from .reduced_strain import ReducedStrain
 from .sensitivity import Sensitivity
 from .straight_struts import StraightStruts
+from .surface_ends import SurfaceEnds
 
 
 class Noted(Protocol):
@@ -34,25 +35,34 @@ class Watched(Noted, Protocol):
         """Take further output rows, by name, time first."""
 
 
+class SeenInSteps(Noted, Protocol):
+    """Sees what the engine keeps of the ends of its steps."""
+
+    def see(self, engine: Engine) -> None:
+        """Take what the engine has found."""
+
+
 class RowNotes:
     """What is noted of output rows and of steps, which are seen as they come, a batch after the other."""
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0):
         self.sensitivity, self.turns = Sensitivity(scene, model), FastTurns(model, step)
-        self._penetrations = Penetrations(model)
+        self._seen_in_steps: dict[str, SeenInSteps] = {"penetrations": Penetrations(model),
+                                                       "surface ends": SurfaceEnds(scene, model)}
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
             "sensitivity": self.sensitivity, "meeting points": MeetingPoints(scene, model),
             "fast turns": self.turns, "folds": Folds(scene, model)}
-        self._noted: dict[str, Noted] = {**self._watched, "penetrations": self._penetrations}
+        self._noted: dict[str, Noted] = {**self._watched, **self._seen_in_steps}
 
     def see(self, engine: Engine) -> None:
         """Take further rows, which the engine has, and what it has found at the ends of its steps."""
         rows = engine.rows()
-        self._penetrations.see(engine)
+        for each in self._seen_in_steps.values():
+            each.see(engine)
         if len(rows["time"]):
-            for each in self._watched.values():
-                each.see(rows)
+            for watched in self._watched.values():
+                watched.see(rows)
 
     def notes(self) -> list[str]:
         """Return the notes on all that was seen."""

@@ -25,6 +25,7 @@ from .rest_state import CriticalPoint, RestState
 from .stability import stability
 from .stable_search import find_rest
 from .static_problem import StaticProblem, fitted
+from .surface_ends import beyond_ends
 
 LOG = logging.getLogger(__name__)
 
@@ -79,7 +80,8 @@ def note(problem: StaticProblem, state: RestState) -> None:
         problem.messages.append(f"the state is {state.stability}{leaves}")
     LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
              state.iterations, state.residual)
-    problem.messages += [*penetrations(problem.model, state.couplings), *unseen_contact(problem.scene)]
+    problem.messages += [*penetrations(problem.model, state.couplings),
+                         *beyond_ends(problem.scene, problem.model, problem.engine), *unseen_contact(problem.scene)]
     state.messages = problem.messages + implausible(problem.scene)
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=4)

@@ -203,6 +203,25 @@ static double depth(const fu_model *model, const fu_coupling *coupling, const fu
     return watched_value;
 }
 
+/* Returns how far beyond the ends of its surface a point touches, m. */
+static double beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_contact *contact = of(coupling);
+    double farthest = -INFINITY;
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point point;
+            fu_contact_place(model, contact, state, e, k, &point);
+            const double far = fu_surface_beyond(model->dim, &contact->surface, &on, point.r);
+            if (far > fmax(farthest, 0.0) && fu_contact_touches(model, contact, &on, &point)) farthest = far;
+        }
+    }
+    return farthest;
+}
+
 static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
 {
     (void)model, (void)which;
@@ -324,4 +343,4 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
 }
 
 const fu_coupling_events fu_contact_events = {
-    .watches = watches, .watched = watched, .depth = depth, .sign = sign, .act = act, .begin = begin, .dip = dip};
+    .watches = watches, .watched = watched, .depth = depth, .beyond = beyond, .sign = sign, .act = act, .begin = begin, .dip = dip};

@@ -97,5 +97,20 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
+double fu_hard_beyond(const fu_model *model, const fu_hard_contact *hard, const fu_state *state)
+{
+    const fu_contact *contact = &hard->contact;
+    fu_attachment_state on;
+    fu_touch_point point;
+    fu_surface_at(model, &contact->surface, state, &on);
+    fu_contact_place(model, contact, state, 0, 0, &point);
+    return fu_surface_beyond(model->dim, &contact->surface, &on, point.r);
+}
+
+static double beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    return fu_hard_flags_of(coupling, state)->mode == FU_APART ? -INFINITY : fu_hard_beyond(model, contact_of(coupling), state);
+}
+
 const fu_coupling_events fu_hard_contact_events = {
-    .watches = watches, .watched = watched, .dip = dip, .act = act, .begin = begin};
+    .beyond = beyond, .watches = watches, .watched = watched, .dip = dip, .act = act, .begin = begin};

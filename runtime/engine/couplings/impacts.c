@@ -50,6 +50,7 @@ static void collect(fu_run *run, const fu_coupling *first, fu_touching *t)
         fu_hard_row *row = &t->row[t->n];
         fu_hard_row_at(model, contact_of(c), &run->now, row);
         if (flags->mode == FU_APART && c != first && row->g > TOUCHING * run->extent) continue;
+        fu_keep_largest(&run->farthest[c->number], fu_hard_beyond(model, contact_of(c), &run->now)); /* it may part within the step */
         t->was[t->n] = flags->mode;
         t->stuck[t->n] = flags->sticks;
         t->friction |= contact_of(c)->friction > 0.0;

@@ -299,6 +299,7 @@ cdef extern from "engine.h" nogil:
         int *late
         fu_slackness *slackness
         double *deepest
+        double *farthest
         double *passed_at
         const char **passed
         double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
@@ -349,6 +350,7 @@ cdef extern from "engine.h" nogil:
     void fu_reset(const fu_model *model, fu_state *state)
     void fu_find_pieces(const fu_model *model, fu_state *state)
     void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+    double fu_beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
     void fu_touch(const fu_model *model, fu_state *state)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)

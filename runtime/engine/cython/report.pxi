@@ -72,6 +72,10 @@ cdef class Report(Statics):
         """(couplings,): how deep each of a kind has let parts sink since the start, or a checkpoint, in m."""
         return np.array([self.run.deepest[<int>number] for number in self._of(kind)])
 
+    def farthest(self, str kind):
+        """(couplings,): how far beyond the ends of its surface anything has touched each of a kind since then, in m."""
+        return np.array([self.run.farthest[<int>number] for number in self._of(kind)])
+
     @property
     def integrator(self):
         """Name of the integrator."""

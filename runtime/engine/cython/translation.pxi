@@ -378,6 +378,7 @@ cdef class Translation(Arrays):
         a.prescribed = self._zeros(n_dof)
         run.slackness = <fu_slackness *>self._memory(<double>self.model.n_cables * sizeof(fu_slackness))
         run.deepest = self._zeros(self.model.n_couplings)
+        run.farthest = self._zeros(self.model.n_couplings)
         run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(width))
         run.psi, run.force = self._zeros(n_dof), self._zeros(n_dof)
         run.work, run.before = self._zeros(n_dof), self._zeros(n_dof)

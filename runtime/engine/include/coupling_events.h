@@ -38,6 +38,9 @@ struct fu_coupling_events {
     double (*dip)(const fu_run *run, const fu_coupling *coupling, int which, double h);
     /* How deep what touches has sunk, m, at a state where the coupling's watched number has this value. Null: it cannot sink. */
     double (*depth)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double watched);
+    /* How far beyond where its surface's shape is given (fu_surface_beyond) anything touches, m; not positive where nothing does. Null:
+     * its surface has no ends. */
+    double (*beyond)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     /* The sign that a watched number has from here on, after it has been zero and the coupling has changed: 1 or -1. Null: -1. */
     int (*sign)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which);
     /* Lets happen what follows where a watched number has passed zero to this side; returns a status. *what says in words

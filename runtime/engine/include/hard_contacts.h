@@ -57,6 +57,9 @@ fu_hard_flags *fu_hard_flags_of(const fu_coupling *coupling, const fu_state *sta
 fu_hard_numbers *fu_hard_numbers_of(const fu_coupling *coupling, const fu_state *state);
 void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, fu_hard_row *out);
 
+/* couplings/hard_contact_events.c: how far beyond the ends of its surface the point is, m. */
+double fu_hard_beyond(const fu_model *model, const fu_hard_contact *hard, const fu_state *state);
+
 /* couplings/hard_friction.c */
 void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, const fu_hard_row *row,
                       fu_hard_along *out);

@@ -40,6 +40,7 @@ struct fu_run {
     const char **passed; /* per watch: what has happened then, in words */
     fu_slackness *slackness; /* per cable */
     double *deepest;     /* per coupling: how deep it has let parts sink since the start, or a checkpoint, m */
+    double *farthest;    /* per coupling: how far beyond the ends of its surface anything has touched since then, m */
     double *watch_work;  /* n_dof + n_outputs: accelerations and a row of output that a watched number is of */
     int watch_solution;  /* what is known of these accelerations: FU_SOLVE_ANEW and the like */
     double (*call)(void *context, int watch, const fu_state *state);
@@ -125,6 +126,9 @@ int fu_start_scheme(fu_run *run, int project);
 
 /* run/depths.c */
 void fu_note_depths(fu_run *run);
+void fu_keep_largest(double *largest, double value);
+/* How far beyond the ends of its surface anything touches, m; not positive where nothing does. */
+double fu_beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 
 /* run/happenings.c */
 int fu_let_happen(fu_run *run, fu_event event);

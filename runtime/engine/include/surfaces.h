@@ -14,7 +14,7 @@ typedef struct {
     const fu_surface_kernels *kernel;
     int shape;
     double direction[3];        /* normal of a plane; axis of a cylinder or capsule, zero for a sphere */
-    double round_radius, half_length; /* m */
+    double round_radius, half_length; /* m; a cylinder goes on beyond it */
     double half_size[3];        /* of a box along its axes, m */
     int n_first, n_second;      /* knots of a terrain along its horizontal axes, m; no second in the plane */
     const double *first, *second, *heights; /* heights: 4 (or 4 x 4) coefficients of a cell's cubics, from its first knots */
@@ -30,6 +30,8 @@ typedef struct {
 
 void fu_surface_at(const fu_model *model, const fu_surface *surface, const fu_state *state, fu_attachment_state *at);
 void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, fu_distance *out);
+/* How far r is beyond the ends of a cylinder or the table of a terrain, m, where the shape goes on; negative within them. */
+double fu_surface_beyond(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r);
 /* The least that the distance of any point within `reach` of r can be, m. */
 double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach);
 /* The normal over a step on a surface that does not move: its product with the way between two points is what the distance changes by,
