@@ -20,6 +20,11 @@ static pressing press_at(const fu_contact *contact, double depth, double rate, d
     return of;
 }
 
+double fu_contact_press(const fu_contact *contact, double depth, double rate)
+{
+    return depth > 0.0 ? press_at(contact, depth, rate, depth).p : 0.0;
+}
+
 /* Makes the place of a point from its anchor, along the ground's axes. */
 static void from_anchor(int dim, const fu_attachment_state *on, const fu_touch_point *point, double *x)
 {

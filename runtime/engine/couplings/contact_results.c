@@ -39,39 +39,6 @@ double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling
     return sum;
 }
 
-/* Returns the energy that friction takes from one state to another, J: the mean force times the way along the surface that the spring
- * does not stretch by. */
-double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
-{
-    const fu_contact *contact = of(coupling);
-    const int dim = model->dim;
-    double sum = 0.0;
-    fu_attachment_state on, on_next;
-    if (contact->law.friction == 0.0) return 0.0;
-    fu_surface_at(model, &contact->surface, from, &on);
-    fu_surface_at(model, &contact->surface, to, &on_next);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_touch(model, contact, &on, from, e, 0.0) && !fu_contact_may_touch(model, contact, &on_next, to, e, 0.0)) continue;
-        for (int k = 0; k < contact->n_points; ++k) {
-            fu_touch_point now, next;
-            double f[3], g[3];
-            fu_contact_place(model, contact, from, e, k, &now);
-            fu_contact_place(model, contact, to, e, k, &next);
-            const int touched = fu_contact_touches(model, contact, &on, &now), touches = fu_contact_touches(model, contact, &on_next, &next);
-            if (!touched) memset(now.stretch, 0, sizeof now.stretch);
-            if (!touches) memset(next.stretch, 0, sizeof next.stretch);
-            if (!touched && !touches) continue;
-            for (int d = 0; d < dim; ++d) {
-                const double force = 0.5 * contact->law.tangential * (now.stretch[d] + next.stretch[d]);
-                f[d] = force;
-                g[d] = next.distance.y[d] - now.distance.y[d] - (next.stretch[d] - now.stretch[d]);
-            }
-            sum += fu_contact_weight(contact, e, k) * fu_dot(dim, f, g);
-        }
-    }
-    return sum;
-}
-
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state)
 {
     const fu_contact *contact = of(coupling);
@@ -242,9 +209,8 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
-/* Makes the gap of a point, and its rate; where it is and how it moves along the shape's axes, unless that is null. */
-static double gap_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
-                     int number, double *rate, fu_surface_end *end)
+double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+                      int number, double *rate, fu_surface_end *end)
 {
     fu_touch_point point;
     double w[3] = {0.0};
@@ -284,8 +250,8 @@ double fu_contact_pass(const fu_run *run, const fu_contact *contact, double h)
     double rate;
     fu_surface_at(model, &contact->surface, &run->now, &on);
     fu_surface_at(model, &contact->surface, &run->next, &on_next);
-    gap_of(model, contact, &on, &run->now, 0, 0, &rate, &ends[0]);
-    gap_of(model, contact, &on_next, &run->next, 0, 0, &rate, &ends[1]);
+    fu_contact_gap(model, contact, &on, &run->now, 0, 0, &rate, &ends[0]);
+    fu_contact_gap(model, contact, &on_next, &run->next, 0, 0, &rate, &ends[1]);
     return fu_surface_pass(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
 }
 
@@ -302,7 +268,7 @@ static double step_of_impact(const fu_run *run, const fu_contact *contact, doubl
     fu_surface_at(model, &contact->surface, &run->now, &on);
     for (int k = 0; k < contact->n_points; ++k) {
         double rate;
-        const double depth = -gap_of(model, contact, &on, &run->now, 0, k, &rate, 0);
+        const double depth = -fu_contact_gap(model, contact, &on, &run->now, 0, k, &rate, 0);
         if (depth < -h * fabs(rate)) continue;
         fastest = fmax(fastest, fabs(rate));
         deepest_now = fmax(deepest_now, depth);
@@ -332,8 +298,8 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
         for (int k = 0; k < contact->n_points; ++k) {
             double rate, rate_next;
             fu_surface_end ends[2];
-            const double gap = gap_of(model, contact, &on, &run->now, e, k, &rate, &ends[0]);
-            const double gap_next = gap_of(model, contact, &on_next, &run->next, e, k, &rate_next, &ends[1]);
+            const double gap = fu_contact_gap(model, contact, &on, &run->now, e, k, &rate, &ends[0]);
+            const double gap_next = fu_contact_gap(model, contact, &on_next, &run->next, e, k, &rate_next, &ends[1]);
             double found = fu_dip((fu_course){gap, rate}, (fu_course){gap_next, rate_next}, 1, h, run->round_off);
             if (found == 0.0) found = fu_surface_pass(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
             if (found > 0.0 && (first == 0.0 || found < first)) first = found;

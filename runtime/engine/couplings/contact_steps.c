@@ -210,5 +210,5 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
 double fu_contact_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
 {
     const double stored = fu_contact_energy(model, coupling, at->next) - fu_contact_energy(model, coupling, at->now);
-    return over_step(model, of(coupling), at, 0) - stored - fu_contact_lost(model, coupling, at->now, at->next);
+    return over_step(model, of(coupling), at, 0) - stored - fu_contact_lost(model, coupling, at->now, at->next, 1);
 }

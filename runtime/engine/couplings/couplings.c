@@ -183,14 +183,14 @@ double fu_coupling_dissipation(const fu_model *model, const fu_state *state, con
     return total;
 }
 
-double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to)
+double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to, int by_ends)
 {
     const fu_equations step = {.now = from, .next = to};
     const fu_couplings near = fu_acting_in_step(model, &step);
     double total = 0.0;
     for (int k = 0; k < near.n; ++k) {
         const fu_coupling *c = near.list[k];
-        if (c->type->lost_in_step) total += c->type->lost_in_step(model, c, from, to);
+        if (c->type->lost_in_step) total += c->type->lost_in_step(model, c, from, to, by_ends);
     }
     return total;
 }
@@ -240,6 +240,16 @@ void fu_reset(const fu_model *model, fu_state *state)
         const fu_coupling *c = model->couplings[k];
         if (c->type->reset) c->type->reset(c, state);
     }
+}
+
+double fu_carried_error(const fu_model *model, const fu_state *from, const fu_state *to)
+{
+    double largest = 0.0;
+    for (int k = 0; k < model->n_carrying; ++k) {
+        const fu_coupling *c = model->carrying[k];
+        if (c->type->carried_error) largest = fmax(largest, c->type->carried_error(model, c, from, to));
+    }
+    return largest;
 }
 
 void fu_carry(const fu_model *model, fu_state *state)

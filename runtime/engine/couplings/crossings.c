@@ -234,8 +234,10 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
 }
 
 /* Returns what friction that sticks takes as it slides. What contact had stored when it ended goes to heat in the step after. */
-static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                           int by_ends)
 {
+    (void)by_ends;
     const fu_crossing *crossing = crossing_of(coupling);
     fu_closest_points points;
     fu_crossing_contact contact;

@@ -328,8 +328,10 @@ static double energy_without_force(const fu_model *model, const fu_coupling *cou
     return has_none ? energy(model, coupling, state) : 0.0;
 }
 
-static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                           int by_ends)
 {
+    (void)by_ends;
     if (!coupling->is_damped || ((const fu_point_force *)coupling)->n_pieces == 1) return 0.0;
     return energy_without_force(model, coupling, from) - energy_without_force(model, coupling, to);
 }

@@ -98,9 +98,10 @@ double fu_buffer_energy(const fu_model *model, const fu_coupling *coupling, cons
     return energy_in_buffers(model, state, coupling->index, 1);
 }
 
-double fu_lost_in_buffers(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+double fu_lost_in_buffers(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends)
 {
     const int j = coupling->index;
+    (void)by_ends;
     if (!model->slides[j].resistance) return 0.0;
     return energy_in_buffers(model, from, j, 0) - energy_in_buffers(model, to, j, 0);
 }

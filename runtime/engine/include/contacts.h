@@ -48,7 +48,8 @@ typedef struct {
     int slides;
 } fu_touch_point;
 
-/* couplings/contact_points.c */
+/* couplings/contact_points.c; fu_contact_press: what presses on a point at a depth, N (a length). */
+double fu_contact_press(const fu_contact *contact, double depth, double rate);
 int fu_contact_touches(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
 void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
@@ -66,6 +67,13 @@ int fu_contact_first(const fu_model *model, const fu_contact *contact, int eleme
 void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
                           int point, const double *r, const double *force, double *f);
 void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum);
+
+/* couplings/contact_results.c: makes the gap of a point, and its rate; where it is and how it moves along the shape's axes, unless that
+ * is null. */
+double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+                      int number, double *rate, fu_surface_end *end);
+/* couplings/friction_paths.c */
+double fu_contact_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 
 /* Calls `visit` with each point that touches. */
 typedef void fu_contact_visitor(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
@@ -88,7 +96,7 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
                         const fu_accelerator *work, double *out);
 double fu_contact_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work);
-double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
+double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends);
 void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state);
 void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_state *state);

@@ -130,8 +130,12 @@ struct fu_coupling_type {
     double (*dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                           const fu_accelerator *work);
 
-    /* Returns the energy that a step from one state to another dissipates beside that power, J. */
-    double (*lost_in_step)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
+    /* Returns the energy that a step from one state to another dissipates beside that power, J; by_ends: by the forces at its ends alone, as
+     * methods of order 2 have them. */
+    double (*lost_in_step)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends);
+
+    /* Returns how far off what `carry` takes along may be after a step from one state to another, m. */
+    double (*carried_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 
     /* Returns whether a start may be off the constraints by a small gap. */
     int (*may_start_open)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);

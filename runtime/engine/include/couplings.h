@@ -36,7 +36,7 @@ void fu_coupling_external_forces(const fu_model *model, double t, const double *
 double fu_coupling_external_power(const fu_model *model, const fu_state *state);
 double fu_coupling_energy(const fu_model *model, const fu_state *state);
 double fu_coupling_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work);
-double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to);
+double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to, int by_ends);
 void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state *state);
 void fu_coupling_outputs(const fu_model *model, const fu_state *state, const double *acceleration,
                          const fu_accelerator *work, double *out);
@@ -46,6 +46,8 @@ int fu_may_start_open(const fu_model *model, const fu_state *state);
 const fu_coupling *fu_follow(const fu_model *model, fu_state *state);
 void fu_reset(const fu_model *model, fu_state *state);
 void fu_carry(const fu_model *model, fu_state *state);
+/* How far off what is carried along may be after a step, m. */
+double fu_carried_error(const fu_model *model, const fu_state *from, const fu_state *to);
 void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 void fu_touch(const fu_model *model, fu_state *state);
 int fu_is_possible(const fu_model *model, const fu_state *state);
