@@ -23,11 +23,9 @@ static void moved_since(const before *last, const fu_closest_points *points, dou
     for (int line = 0; line < FU_LINES; ++line) e[line] = points->s[line] - last->s[line];
 }
 
-void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
-                         fu_crossing_grip *out)
+static void grip_since(const fu_crossing *crossing, const before *last, const fu_closest_points *points, double press, fu_crossing_grip *out)
 {
     const int dim = crossing->kernel->dim;
-    const before *last = before_of(crossing, state);
     double e[FU_LINES];
     memset(out, 0, sizeof *out);
     moved_since(last, points, e);
@@ -38,6 +36,12 @@ void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, con
     for (int d = 0; d < dim; ++d) out->force[d] = -crossing->tangential * out->stretch[d];
     out->sticks = !out->slides && last->slid == 0.0;
     out->energy = 0.5 * crossing->tangential * fu_dot(dim, out->stretch, out->stretch);
+}
+
+void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
+                         fu_crossing_grip *out)
+{
+    grip_since(crossing, before_of(crossing, state), points, press, out);
 }
 
 void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
@@ -58,7 +62,8 @@ void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *s
                           F, F_d, F_t);
 }
 
-double fu_crossing_slid(const fu_crossing *crossing, const fu_crossing_grip *grip)
+/* Returns what friction has taken since the last place, J: the mean force times the way that the spring has not stretched by. */
+static double slid(const fu_crossing *crossing, const fu_crossing_grip *grip)
 {
     double sum = 0.0;
     for (int d = 0; d < crossing->kernel->dim; ++d)
@@ -66,28 +71,90 @@ double fu_crossing_slid(const fu_crossing *crossing, const fu_crossing_grip *gri
     return sum;
 }
 
-void fu_crossing_begin_grip(const fu_crossing *crossing, const fu_closest_points *points, fu_state *state)
+static void begin_at(const fu_crossing *crossing, const fu_closest_points *points, before *last)
 {
-    before *last = before_of(crossing, state);
     memset(last, 0, sizeof *last);
     memcpy(last->s, points->s, sizeof last->s);
     memcpy(last->way, points->d, sizeof(double) * (size_t)crossing->kernel->dim);
 }
 
+void fu_crossing_begin_grip(const fu_crossing *crossing, const fu_closest_points *points, fu_state *state)
+{
+    begin_at(crossing, points, before_of(crossing, state));
+}
+
+/* Takes the stretch of a grip along to where it is. */
+static void take_along(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
+                       const fu_crossing_grip *grip, before *last)
+{
+    const int dim = crossing->kernel->dim;
+    double across[3];
+    begin_at(crossing, points, last);
+    last->slid = grip->slides;
+    last->stretch[0] = fu_dot(dim, grip->along, grip->stretch);
+    if (dim == 2) return;
+    fu_cross(contact->normal, grip->along, across);
+    last->stretch[1] = fu_dot(dim, across, grip->stretch);
+}
+
 void fu_crossing_carry_grip(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
                             fu_state *state)
 {
-    const int dim = crossing->kernel->dim;
     fu_crossing_grip grip;
-    double across[3];
     fu_crossing_grip_at(crossing, state, points, contact->size, &grip);
-    fu_crossing_begin_grip(crossing, points, state);
-    before_of(crossing, state)->slid = grip.slides;
-    double *stretch = before_of(crossing, state)->stretch;
-    stretch[0] = fu_dot(dim, grip.along, grip.stretch);
-    if (dim == 2) return;
-    fu_cross(contact->normal, grip.along, across);
-    stretch[1] = fu_dot(dim, across, grip.stretch);
+    take_along(crossing, points, contact, &grip, before_of(crossing, state));
+}
+
+/* Grips on the way through a step: that at its end at once, that at a place within it, that at the end by this place. */
+typedef struct {
+    fu_crossing_grip once, within, twice;
+} way;
+
+/* Makes the grips from one state to another; the place within is where particles turn round on their way past each other, if `at_turn` is
+ * not zero, or half-way. Returns not zero where lines that touch have no closest points. */
+static int go_on_way(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int at_turn, way *out)
+{
+    const int dim = crossing->kernel->dim;
+    fu_moment moment = {.now = from, .next = to, .h = to->t - from->t, .x = 0.5};
+    fu_closest_points begin, within, end;
+    fu_crossing_contact contact;
+    before last = *before_of(crossing, from);
+    double s[FU_LINES];
+    fu_find_closest(model, crossing, to, &end);
+    if (!end.found || !(moment.h > 0.0)) return 1;
+    fu_crossing_contact_at(crossing, &end, &contact);
+    const double press = contact.size;
+    grip_since(crossing, &last, &end, press, &out->once);
+    fu_find_closest(model, crossing, from, &begin);
+    if (!begin.found) return 1;
+    const double before = fu_dot(dim, out->once.stretch, begin.u), after = fu_dot(dim, out->once.stretch, end.u);
+    if (at_turn && before * after < 0.0) moment.x = before / (before - after);
+    for (int line = 0; line < FU_LINES; ++line) s[line] = begin.s[line] + moment.x * (end.s[line] - begin.s[line]);
+    fu_find_closest_within(model, crossing, &moment, s, &within);
+    if (!within.found) return 1;
+    fu_crossing_contact_at(crossing, &within, &contact);
+    grip_since(crossing, &last, &within, contact.size, &out->within);
+    take_along(crossing, &within, &contact, &out->within, &last);
+    grip_since(crossing, &last, &end, press, &out->twice);
+    return 0;
+}
+
+double fu_crossing_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+{
+    const fu_crossing *crossing = (const fu_crossing *)coupling;
+    way grips;
+    if (!(crossing->friction > 0.0) || !from->flags[coupling->flags] || go_on_way(model, crossing, from, to, 1, &grips)) return 0.0;
+    return fabs(sqrt(fu_dot(model->dim, grips.once.stretch, grips.once.stretch)) -
+                sqrt(fu_dot(model->dim, grips.twice.stretch, grips.twice.stretch)));
+}
+
+double fu_crossing_slid_on_way(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int by_ends)
+{
+    way grips;
+    if (go_on_way(model, crossing, from, to, 0, &grips)) return 0.0;
+    const double once = slid(crossing, &grips.once);
+    const double twice = slid(crossing, &grips.within) + slid(crossing, &grips.twice);
+    return by_ends ? once : (4.0 * twice - once) / 3.0;
 }
 
 void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state)

@@ -237,17 +237,8 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
 static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                            int by_ends)
 {
-    (void)by_ends;
-    const fu_crossing *crossing = crossing_of(coupling);
-    fu_closest_points points;
-    fu_crossing_contact contact;
-    fu_crossing_grip grip;
     if (!from->flags[coupling->flags]) return from->numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND];
-    if (!(crossing->friction > 0.0)) return 0.0;
-    fu_find_closest(model, crossing, to, &points);
-    fu_crossing_contact_at(crossing, &points, &contact);
-    fu_crossing_grip_at(crossing, to, &points, contact.size, &grip);
-    return fu_crossing_slid(crossing, &grip);
+    return crossing_of(coupling)->friction > 0.0 ? fu_crossing_slid_on_way(model, crossing_of(coupling), from, to, by_ends) : 0.0;
 }
 
 /* Notes in the state where the closest points are, unless the lines have been parallel. */
@@ -313,4 +304,4 @@ const fu_coupling_type fu_crossing_type = {
     .n_flags = 1, .clearance = fu_crossing_clearance, .between = fu_crossing_between, .events = &fu_crossing_events, .residual = residual, .tangent = tangent,
     .step_residual = fu_crossing_step_residual, .step_tangent = step_tangent, .step_dissipation = fu_crossing_step_dissipation, .force = own_force,
     .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step,
-    .carry = carry, .reset = reset, .touch = touch};
+    .carry = carry, .carried_error = fu_crossing_carried_error, .reset = reset, .touch = touch};

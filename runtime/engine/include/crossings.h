@@ -106,8 +106,9 @@ void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, con
                          fu_crossing_grip *out);
 void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
                                   double F[3], double F_d[9], double F_t[18], double F_u[9]);
-/* Returns what friction has taken since the last step, J: the mean force times the way that the spring has not stretched by. */
-double fu_crossing_slid(const fu_crossing *crossing, const fu_crossing_grip *grip);
+/* Returns what friction takes from one state of lines that touch to another, J; by_ends: by these alone. */
+double fu_crossing_slid_on_way(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int by_ends);
+double fu_crossing_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 /* Lets the spring begin at a state, without stretch; take its stretch along to a state; begin as drawn. */
 void fu_crossing_begin_grip(const fu_crossing *crossing, const fu_closest_points *points, fu_state *state);
 void fu_crossing_carry_grip(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
