@@ -355,10 +355,9 @@ double fu_potential_energy(const fu_model *model, const double *q)
     return total + fu_bodies_potential_energy(model, q);
 }
 
-/* Returns the power that damping and friction take out, W; work: see `dissipation` in coupling.h. */
-double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
+/* Returns the power that damping of cables and bodies takes out, W. */
+double fu_internal_dissipation(const fu_model *model, const double *q, const double *v)
 {
-    const double *q = state->q, *v = state->v;
     double total = fu_bodies_dissipation(model, q, v), part[FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
@@ -375,7 +374,13 @@ double fu_dissipation(const fu_model *model, const fu_state *state, const fu_acc
             }
         }
     }
-    return total + fu_coupling_dissipation(model, state, work);
+    return total;
+}
+
+/* Returns the power that damping and friction take out, W; work: see `dissipation` in coupling.h. */
+double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
+{
+    return fu_internal_dissipation(model, state->q, state->v) + fu_coupling_dissipation(model, state, work);
 }
 
 /* Returns the length of the cable of a slide, m. */
