@@ -92,10 +92,10 @@ int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h)
     const double begin = fu_clock();
     const fu_model *model = run->model;
     fu_state *next = &run->next;
-    double *reaction = model->n_motions ? run->force : 0;
     fu_radau_configure(run, w, h);
     for (int k = 0; k < STAGES; ++k) {
         if (fu_radau_place_stage(run, w, k, h)) return 1;
+        double *reaction = fu_supports_move(model, next) ? run->force : 0;
         if (fu_accelerations(model, next, &run->accelerator, next->acceleration, reaction)) return fu_fail_eq38(run);
         memcpy(w->a + (long)k * model->n_dof, next->acceleration, sizeof(double) * (size_t)model->n_dof);
         w->powers[2 * k] = fu_coupling_dissipation(model, next, &run->accelerator);
