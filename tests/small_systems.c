@@ -56,7 +56,7 @@ static double complex_band(int n, int width, int symmetric)
     fu_complex_band_add(n, width, K, factor, U[0], U[1]);
     if (symmetric) fu_complex_band_factor(n, width, L[0], L[1]);
     else if (fu_complex_unsymmetric_factor(n, width, L, U)) return INFINITY;
-    fu_complex_band_solve(n, width, L, symmetric ? L : U, x, y);
+    fu_complex_band_solve(n, width, L, symmetric ? L : U, 0, x, y);
     for (int i = 0; i < n; ++i) {
         fu_complex left = {-bx[i], -by[i]};
         for (int j = 0; j < n; ++j) {

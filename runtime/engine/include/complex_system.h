@@ -12,7 +12,7 @@
 void fu_complex_band_factor(int n, int width, double *re, double *im);
 void fu_complex_band_add(int n, int width, const double *K, fu_complex factor, double *re, double *im);
 int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *const U[2]);
-void fu_complex_band_solve(int n, int width, double *const L[2], double *const U[2], double *x, double *y);
+void fu_complex_band_solve(int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y);
 
 /* [K B; C D] as an fu_system has it; real systems of several weights are combined to it. */
 typedef struct {

@@ -139,8 +139,6 @@ void fu_radau_account(fu_run *run, double h)
         run->dissipated += h * b[k] * w->powers[2 * k];
         run->external += h * b[k] * w->powers[2 * k + 1];
     }
-    run->dissipated_power = fu_dissipated_power(run, &run->next);
-    run->external_power = fu_external_power(run, &run->next, run->force);
     memcpy(w->last, w->Z, sizeof(double) * STAGES * (size_t)run->model->n_dof);
     w->h_last = h;
 }

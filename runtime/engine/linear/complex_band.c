@@ -84,10 +84,10 @@ FU_INLINE void factor_unsymmetric(int n, int width, double *const L[2], double *
     }
 }
 
-FU_INLINE void solve(int n, int width, double *const L[2], double *const U[2], double *x, double *y)
+FU_INLINE void solve(int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y)
 {
     const int stride = FU_COMPLEX_STRIDE(width);
-    for (int j = 0; j < n; ++j) {
+    for (int j = first; j < n; ++j) {
         const double *a = L[0] + (long)j * stride + 1, *b = L[1] + (long)j * stride + 1;
         subtract(width, a, b, (fu_complex){x[j], y[j]}, x + j + 1, y + j + 1);
     }
@@ -141,7 +141,8 @@ int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *
     return failed;
 }
 
-/* Makes x + i y = A^-1 (x + i y), of a symmetric A with L as U; both go on FU_COMPLEX_BEYOND numbers beyond n, which are finite and
- * stay. */
-FU_IN_LANES(fu_complex_band_solve, solve, (int n, int width, double *const L[2], double *const U[2], double *x, double *y),
-            (n, width, L, U, x, y))
+/* Makes x + i y = A^-1 (x + i y), which is zero before `first`, of a symmetric A with L as U; both go on FU_COMPLEX_BEYOND numbers
+ * beyond n, which are finite and stay. */
+FU_IN_LANES(fu_complex_band_solve, solve,
+            (int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y),
+            (n, width, L, U, first, x, y))

@@ -126,8 +126,8 @@ static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack
     return 0;
 }
 
-/* Makes x = K^-1 x in a chain. */
-static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int chain, fu_complex *x)
+/* Makes x = K^-1 x in a chain, where x is zero before the row `from`. */
+static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int chain, int from, fu_complex *x)
 {
     int first = s->chains[chain], n = s->chains[chain + 1] - first, width = s->width, rows = FU_BAND_ROWS(width);
     int one = 1, info;
@@ -144,7 +144,7 @@ static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu
         im[i] = i < n ? x[first + i].im : 0.0;
     }
     double *const L[2] = {c->L[0] + at, c->L[1] + at}, *const U[2] = {c->U[0] + at, c->U[1] + at};
-    fu_complex_band_solve(n, width, L, c->way[chain] == FU_SYMMETRIC ? L : U, re, im);
+    fu_complex_band_solve(n, width, L, c->way[chain] == FU_SYMMETRIC ? L : U, from - first, re, im);
     for (int i = 0; i < n; ++i) x[first + i] = (fu_complex){re[i], im[i]};
 }
 
@@ -158,8 +158,8 @@ static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapac
     fu_complex *x = c->X + s->strips[strip].at, *B = c->B + s->strips[strip].at;
     if (!of[0].end && !of[1].end) return 0;
     memcpy(x + first, B + first, sizeof(fu_complex) * (size_t)(end - first));
-    solve_chain(c, s, lapack, chain, x);
-    for (int i = first; i < end; ++i) size[i] = hypot(x[i].re, x[i].im);
+    solve_chain(c, s, lapack, chain, of[of[0].end == 0].first, x);
+    for (int i = first; i < end; ++i) size[i] = fabs(x[i].re) + fabs(x[i].im);
     return fu_pieces(s, strip, size, pieces);
 }
 
@@ -200,7 +200,7 @@ void fu_complex_system_solve(const fu_complex_system *c, const fu_system *s, con
 {
     int m = s->m, one = 1, info;
     fu_complex *x = c->x, *y = x + s->n;
-    for (int chain = 0; chain < s->n_chains && s->n; ++chain) solve_chain(c, s, lapack, chain, x);
+    for (int chain = 0; chain < s->n_chains && s->n; ++chain) solve_chain(c, s, lapack, chain, s->chains[chain], x);
     if (!m) return;
     for (int chain = 0; chain < s->n_chains; ++chain) {
         const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[chain];
