@@ -2,6 +2,8 @@
  * meet, are the border. A column of it has a solution in the chains that it touches and nowhere else. */
 #include "engine.h"
 
+#include "lanes.h"
+
 #define SYMMETRIC 1e-10 /* of the diagonals: more than rounding leaves between the two halves of a symmetric matrix */
 #define FADED 1e-32     /* of a column's largest entry: smaller ones add nothing to a solution */
 
@@ -263,17 +265,23 @@ static void solve_border(const fu_system *s, const fu_lapack *lapack, double *y)
     else lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
 }
 
-/* Takes from x, of the band, what the border's solution y adds to the right side there, K^-1 B y. */
-static void take_columns(const fu_system *s, const double *y, double *x)
+FU_INLINE void take(const fu_system *s, const double *y, double *x)
 {
     for (int c = 0; c < s->n_chains; ++c) {
         const fu_piece *columns = s->columns + FU_HALVES * s->chain_start[c];
         for (const fu_piece *p = columns; p < columns + s->n_columns[c]; ++p) {
             const double *column = s->X + s->strips[p->strip].x, scale = y[p->k];
-            for (int i = p->rows.first; i < p->rows.end; ++i) x[i] -= scale * column[i];
+            const int end = p->rows.end;
+            int i = p->rows.first;
+            for (; i + FU_LANES <= end; i += FU_LANES) *(fu_lanes *)(x + i) -= *(const fu_lanes *)(column + i) * scale;
+            for (; i < end; ++i) x[i] -= scale * column[i];
         }
     }
 }
+
+/* Takes from x, of the band, what the border's solution y adds to the right side there, K^-1 B y. */
+static void take_columns(const fu_system *s, const double *y, double *x);
+FU_IN_LANES(take_columns, take, (const fu_system *s, const double *y, double *x), (s, y, x))
 
 /* Makes zero what goes on beyond the unknowns: a step that has overflowed leaves no numbers there, and no later step would have
  * any. */
