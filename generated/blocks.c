@@ -86,6 +86,24 @@ FU_BLOCK_TARGET static void block_beam24_continuum_damping_force(int n, const fu
     }
 }
 
+FU_BLOCK_TARGET static void block_beam24_continuum_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[24];
+    fu_real v[24];
+    fu_real A[61];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 61, of->A_stride);
+        beam24_continuum_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
+    }
+}
+
 FU_BLOCK_TARGET static void block_beam24_continuum_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
     fu_real l = FU_NUMBER(*of->l);
@@ -134,6 +152,24 @@ FU_BLOCK_TARGET static void block_beam24_structural_damping_force(int n, const f
     }
 }
 
+FU_BLOCK_TARGET static void block_beam24_structural_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[24];
+    fu_real v[24];
+    fu_real A[31];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
+        beam24_structural_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
+    }
+}
+
 FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
     fu_real l = FU_NUMBER(*of->l);
@@ -179,6 +215,24 @@ FU_BLOCK_TARGET static void block_cable12_green_exact_damping_force(int n, const
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_green_exact_damping_force(l, e, v, A, tau, f);
         scatter(out + k * 12, f, 12);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable12_green_exact_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[12];
+    fu_real v[12];
+    fu_real A[2];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
+        cable12_green_exact_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
     }
 }
 
@@ -242,6 +296,24 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_damping_force(int n,
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable12_engineering_exact_damping_force(l, e, v, A, tau, f);
         scatter(out + k * 12, f, 12);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable12_engineering_exact_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[12];
+    fu_real v[12];
+    fu_real A[2];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
+        cable12_engineering_exact_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
     }
 }
 
@@ -488,6 +560,24 @@ FU_BLOCK_TARGET static void block_cable18_green_exact_damping_force(int n, const
     }
 }
 
+FU_BLOCK_TARGET static void block_cable18_green_exact_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[18];
+    fu_real v[18];
+    fu_real A[2];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
+        cable18_green_exact_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
+    }
+}
+
 FU_BLOCK_TARGET static void block_cable18_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
     fu_real l = FU_NUMBER(*of->l);
@@ -518,6 +608,24 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_damping_force(int n,
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable18_engineering_exact_damping_force(l, e, v, A, tau, f);
         scatter(out + k * 18, f, 18);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable18_engineering_exact_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[18];
+    fu_real v[18];
+    fu_real A[2];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
+        cable18_engineering_exact_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
     }
 }
 
@@ -599,6 +707,24 @@ FU_BLOCK_TARGET static void block_beam12p_continuum_damping_force(int n, const f
     }
 }
 
+FU_BLOCK_TARGET static void block_beam12p_continuum_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[12];
+    fu_real v[12];
+    fu_real A[31];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
+        beam12p_continuum_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
+    }
+}
+
 FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_force(int n, const fu_elements *of, double *out)
 {
     fu_real l = FU_NUMBER(*of->l);
@@ -677,6 +803,24 @@ FU_BLOCK_TARGET static void block_beam12p_structural_damping_force(int n, const 
     }
 }
 
+FU_BLOCK_TARGET static void block_beam12p_structural_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[12];
+    fu_real v[12];
+    fu_real A[15];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
+        beam12p_structural_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
+    }
+}
+
 FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
     fu_real l = FU_NUMBER(*of->l);
@@ -722,6 +866,24 @@ FU_BLOCK_TARGET static void block_cable8p_green_exact_damping_force(int n, const
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_green_exact_damping_force(l, e, v, A, tau, f);
         scatter(out + k * 8, f, 8);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable8p_green_exact_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[8];
+    fu_real v[8];
+    fu_real A[2];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
+        cable8p_green_exact_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
     }
 }
 
@@ -785,6 +947,24 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_damping_force(int n,
         if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
         cable8p_engineering_exact_damping_force(l, e, v, A, tau, f);
         scatter(out + k * 8, f, 8);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable8p_engineering_exact_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[8];
+    fu_real v[8];
+    fu_real A[2];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
+        cable8p_engineering_exact_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
     }
 }
 
@@ -969,36 +1149,36 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic
 }
 
 static const fu_law_blocks all[] = {
-    {"beam24_continuum", block_beam24_continuum_elastic_force, 0, block_beam24_continuum_damping_force},
-    {"beam24_continuum_curved", block_beam24_continuum_curved_elastic_force, 0, block_beam24_continuum_damping_force},
-    {"beam24_structural", block_beam24_structural_elastic_force, 0, block_beam24_structural_damping_force},
-    {"cable12_green_exact", block_cable12_green_exact_elastic_force, block_cable12_green_exact_elastic_tangent, block_cable12_green_exact_damping_force},
-    {"cable12_green_linear", block_cable12_green_linear_elastic_force, 0, block_cable12_green_exact_damping_force},
-    {"cable12_engineering_exact", block_cable12_engineering_exact_elastic_force, block_cable12_engineering_exact_elastic_tangent, block_cable12_engineering_exact_damping_force},
-    {"cable12_engineering_linear", block_cable12_engineering_linear_elastic_force, 0, block_cable12_engineering_exact_damping_force},
-    {"cable12_green_exact_assumed", block_cable12_green_exact_assumed_elastic_force, block_cable12_green_exact_assumed_elastic_tangent, block_cable12_green_exact_damping_force},
-    {"cable12_green_linear_assumed", block_cable12_green_linear_assumed_elastic_force, 0, block_cable12_green_exact_damping_force},
-    {"cable12_engineering_exact_assumed", block_cable12_engineering_exact_assumed_elastic_force, block_cable12_engineering_exact_assumed_elastic_tangent, block_cable12_engineering_exact_damping_force},
-    {"cable12_engineering_linear_assumed", block_cable12_engineering_linear_assumed_elastic_force, block_cable12_engineering_linear_assumed_elastic_tangent, block_cable12_engineering_exact_damping_force},
-    {"cable12_green_exact_curved", block_cable12_green_exact_curved_elastic_force, block_cable12_green_exact_curved_elastic_tangent, block_cable12_green_exact_damping_force},
-    {"cable12_engineering_exact_curved", block_cable12_engineering_exact_curved_elastic_force, block_cable12_engineering_exact_curved_elastic_tangent, block_cable12_engineering_exact_damping_force},
-    {"cable12_engineering_exact_tension_only", block_cable12_engineering_exact_tension_only_elastic_force, block_cable12_engineering_exact_tension_only_elastic_tangent, block_cable12_engineering_exact_damping_force},
-    {"cable18_green_exact", block_cable18_green_exact_elastic_force, 0, block_cable18_green_exact_damping_force},
-    {"cable18_engineering_exact", block_cable18_engineering_exact_elastic_force, 0, block_cable18_engineering_exact_damping_force},
-    {"cable18_green_exact_assumed", block_cable18_green_exact_assumed_elastic_force, 0, block_cable18_green_exact_damping_force},
-    {"cable18_engineering_exact_assumed", block_cable18_engineering_exact_assumed_elastic_force, 0, block_cable18_engineering_exact_damping_force},
-    {"beam12p_continuum", block_beam12p_continuum_elastic_force, block_beam12p_continuum_elastic_tangent, block_beam12p_continuum_damping_force},
-    {"beam12p_continuum_curved", block_beam12p_continuum_curved_elastic_force, block_beam12p_continuum_curved_elastic_tangent, block_beam12p_continuum_damping_force},
-    {"beam12p_structural", block_beam12p_structural_elastic_force, block_beam12p_structural_elastic_tangent, block_beam12p_structural_damping_force},
-    {"cable8p_green_exact", block_cable8p_green_exact_elastic_force, block_cable8p_green_exact_elastic_tangent, block_cable8p_green_exact_damping_force},
-    {"cable8p_green_linear", block_cable8p_green_linear_elastic_force, 0, block_cable8p_green_exact_damping_force},
-    {"cable8p_engineering_exact", block_cable8p_engineering_exact_elastic_force, block_cable8p_engineering_exact_elastic_tangent, block_cable8p_engineering_exact_damping_force},
-    {"cable8p_engineering_linear", block_cable8p_engineering_linear_elastic_force, block_cable8p_engineering_linear_elastic_tangent, block_cable8p_engineering_exact_damping_force},
-    {"cable8p_green_exact_assumed", block_cable8p_green_exact_assumed_elastic_force, block_cable8p_green_exact_assumed_elastic_tangent, block_cable8p_green_exact_damping_force},
-    {"cable8p_green_linear_assumed", block_cable8p_green_linear_assumed_elastic_force, block_cable8p_green_linear_assumed_elastic_tangent, block_cable8p_green_exact_damping_force},
-    {"cable8p_engineering_exact_assumed", block_cable8p_engineering_exact_assumed_elastic_force, block_cable8p_engineering_exact_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force},
-    {"cable8p_engineering_linear_assumed", block_cable8p_engineering_linear_assumed_elastic_force, block_cable8p_engineering_linear_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force},
-    {"cable8p_engineering_exact_tension_only", block_cable8p_engineering_exact_tension_only_elastic_force, block_cable8p_engineering_exact_tension_only_elastic_tangent, block_cable8p_engineering_exact_damping_force}
+    {"beam24_continuum", block_beam24_continuum_elastic_force, 0, block_beam24_continuum_damping_force, block_beam24_continuum_dissipation},
+    {"beam24_continuum_curved", block_beam24_continuum_curved_elastic_force, 0, block_beam24_continuum_damping_force, block_beam24_continuum_dissipation},
+    {"beam24_structural", block_beam24_structural_elastic_force, 0, block_beam24_structural_damping_force, block_beam24_structural_dissipation},
+    {"cable12_green_exact", block_cable12_green_exact_elastic_force, block_cable12_green_exact_elastic_tangent, block_cable12_green_exact_damping_force, block_cable12_green_exact_dissipation},
+    {"cable12_green_linear", block_cable12_green_linear_elastic_force, 0, block_cable12_green_exact_damping_force, block_cable12_green_exact_dissipation},
+    {"cable12_engineering_exact", block_cable12_engineering_exact_elastic_force, block_cable12_engineering_exact_elastic_tangent, block_cable12_engineering_exact_damping_force, block_cable12_engineering_exact_dissipation},
+    {"cable12_engineering_linear", block_cable12_engineering_linear_elastic_force, 0, block_cable12_engineering_exact_damping_force, block_cable12_engineering_exact_dissipation},
+    {"cable12_green_exact_assumed", block_cable12_green_exact_assumed_elastic_force, block_cable12_green_exact_assumed_elastic_tangent, block_cable12_green_exact_damping_force, block_cable12_green_exact_dissipation},
+    {"cable12_green_linear_assumed", block_cable12_green_linear_assumed_elastic_force, 0, block_cable12_green_exact_damping_force, block_cable12_green_exact_dissipation},
+    {"cable12_engineering_exact_assumed", block_cable12_engineering_exact_assumed_elastic_force, block_cable12_engineering_exact_assumed_elastic_tangent, block_cable12_engineering_exact_damping_force, block_cable12_engineering_exact_dissipation},
+    {"cable12_engineering_linear_assumed", block_cable12_engineering_linear_assumed_elastic_force, block_cable12_engineering_linear_assumed_elastic_tangent, block_cable12_engineering_exact_damping_force, block_cable12_engineering_exact_dissipation},
+    {"cable12_green_exact_curved", block_cable12_green_exact_curved_elastic_force, block_cable12_green_exact_curved_elastic_tangent, block_cable12_green_exact_damping_force, block_cable12_green_exact_dissipation},
+    {"cable12_engineering_exact_curved", block_cable12_engineering_exact_curved_elastic_force, block_cable12_engineering_exact_curved_elastic_tangent, block_cable12_engineering_exact_damping_force, block_cable12_engineering_exact_dissipation},
+    {"cable12_engineering_exact_tension_only", block_cable12_engineering_exact_tension_only_elastic_force, block_cable12_engineering_exact_tension_only_elastic_tangent, block_cable12_engineering_exact_damping_force, block_cable12_engineering_exact_dissipation},
+    {"cable18_green_exact", block_cable18_green_exact_elastic_force, 0, block_cable18_green_exact_damping_force, block_cable18_green_exact_dissipation},
+    {"cable18_engineering_exact", block_cable18_engineering_exact_elastic_force, 0, block_cable18_engineering_exact_damping_force, block_cable18_engineering_exact_dissipation},
+    {"cable18_green_exact_assumed", block_cable18_green_exact_assumed_elastic_force, 0, block_cable18_green_exact_damping_force, block_cable18_green_exact_dissipation},
+    {"cable18_engineering_exact_assumed", block_cable18_engineering_exact_assumed_elastic_force, 0, block_cable18_engineering_exact_damping_force, block_cable18_engineering_exact_dissipation},
+    {"beam12p_continuum", block_beam12p_continuum_elastic_force, block_beam12p_continuum_elastic_tangent, block_beam12p_continuum_damping_force, block_beam12p_continuum_dissipation},
+    {"beam12p_continuum_curved", block_beam12p_continuum_curved_elastic_force, block_beam12p_continuum_curved_elastic_tangent, block_beam12p_continuum_damping_force, block_beam12p_continuum_dissipation},
+    {"beam12p_structural", block_beam12p_structural_elastic_force, block_beam12p_structural_elastic_tangent, block_beam12p_structural_damping_force, block_beam12p_structural_dissipation},
+    {"cable8p_green_exact", block_cable8p_green_exact_elastic_force, block_cable8p_green_exact_elastic_tangent, block_cable8p_green_exact_damping_force, block_cable8p_green_exact_dissipation},
+    {"cable8p_green_linear", block_cable8p_green_linear_elastic_force, 0, block_cable8p_green_exact_damping_force, block_cable8p_green_exact_dissipation},
+    {"cable8p_engineering_exact", block_cable8p_engineering_exact_elastic_force, block_cable8p_engineering_exact_elastic_tangent, block_cable8p_engineering_exact_damping_force, block_cable8p_engineering_exact_dissipation},
+    {"cable8p_engineering_linear", block_cable8p_engineering_linear_elastic_force, block_cable8p_engineering_linear_elastic_tangent, block_cable8p_engineering_exact_damping_force, block_cable8p_engineering_exact_dissipation},
+    {"cable8p_green_exact_assumed", block_cable8p_green_exact_assumed_elastic_force, block_cable8p_green_exact_assumed_elastic_tangent, block_cable8p_green_exact_damping_force, block_cable8p_green_exact_dissipation},
+    {"cable8p_green_linear_assumed", block_cable8p_green_linear_assumed_elastic_force, block_cable8p_green_linear_assumed_elastic_tangent, block_cable8p_green_exact_damping_force, block_cable8p_green_exact_dissipation},
+    {"cable8p_engineering_exact_assumed", block_cable8p_engineering_exact_assumed_elastic_force, block_cable8p_engineering_exact_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force, block_cable8p_engineering_exact_dissipation},
+    {"cable8p_engineering_linear_assumed", block_cable8p_engineering_linear_assumed_elastic_force, block_cable8p_engineering_linear_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force, block_cable8p_engineering_exact_dissipation},
+    {"cable8p_engineering_exact_tension_only", block_cable8p_engineering_exact_tension_only_elastic_force, block_cable8p_engineering_exact_tension_only_elastic_tangent, block_cable8p_engineering_exact_damping_force, block_cable8p_engineering_exact_dissipation}
 };
 
 const fu_law_blocks *fu_blocks_of(const char *law)

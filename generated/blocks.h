@@ -26,6 +26,7 @@ typedef struct {
     fu_block elastic_force;
     fu_block elastic_tangent;
     fu_block damping_force;
+    fu_block dissipation;
 } fu_law_blocks;
 
 /* of a law by name; zero where compiler or machine have none */

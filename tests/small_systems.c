@@ -21,27 +21,42 @@ static double larger(double a, double b)
     return a > b ? a : b;
 }
 
-/* A complex band, factored and solved with: what is left of its equations. */
-static double complex_band(int n, int width)
+/* Makes K the lower half of A, as LAPACK has it, or the lower half of its transpose. */
+static void half_of(int n, int width, int transposed, double *K)
 {
-    static double K[FU_BAND_ROWS(WIDEST) * MOST], re[FU_COMPLEX_STRIDE(WIDEST) * MOST], im[FU_COMPLEX_STRIDE(WIDEST) * MOST];
+    for (int i = 0; i < FU_BAND_ROWS(width) * n; ++i) K[i] = 0.0;
+    for (int j = 0; j < n; ++j)
+        for (int i = j; i < n && i - j <= width; ++i)
+            K[j * FU_BAND_ROWS(width) + FU_BAND_DIAGONAL(width) + i - j] = transposed ? A[j * n + i] : A[i * n + j];
+}
+
+/* A complex band, symmetric or not, factored and solved with: what is left of its equations. */
+static double complex_band(int n, int width, int symmetric)
+{
+    static double K[FU_BAND_ROWS(WIDEST) * MOST], halves[4][FU_COMPLEX_STRIDE(WIDEST) * MOST];
+    double *const L[2] = {halves[0], halves[1]}, *const U[2] = {halves[2], halves[3]};
     const fu_complex factor = {0.3, -0.8};
     double worst = 0.0;
     for (int i = 0; i < n * n; ++i) A[i] = 0.0;
-    for (int i = 0; i < FU_BAND_ROWS(width) * n; ++i) K[i] = 0.0;
-    for (int i = 0; i < FU_COMPLEX_STRIDE(width) * n; ++i) re[i] = im[i] = 0.0;
+    for (int i = 0; i < FU_COMPLEX_STRIDE(width) * n; ++i)
+        for (int half = 0; half < 4; ++half) halves[half][i] = 0.0;
     for (int j = 0; j < n; ++j)
-        for (int i = j; i < n && i - j <= width; ++i)
-            K[j * FU_BAND_ROWS(width) + FU_BAND_DIAGONAL(width) + i - j] = A[i * n + j] = A[j * n + i] =
-                i == j ? width + 3.0 : number();
+        for (int i = j; i < n && i - j <= width; ++i) {
+            A[i * n + j] = A[j * n + i] = i == j ? width + 3.0 : number();
+            if (i > j && !symmetric) A[j * n + i] += 0.1 * number();
+        }
     for (int i = 0; i < 4 * MOST; ++i) x[i] = y[i] = 0.0;
     for (int i = 0; i < n; ++i) {
         bx[i] = x[i] = number();
         by[i] = y[i] = number();
     }
-    fu_complex_band_add(n, width, K, factor, re, im);
-    fu_complex_band_factor(n, width, re, im);
-    fu_complex_band_solve(n, width, re, im, x, y);
+    half_of(n, width, 0, K);
+    fu_complex_band_add(n, width, K, factor, L[0], L[1]);
+    half_of(n, width, 1, K);
+    fu_complex_band_add(n, width, K, factor, U[0], U[1]);
+    if (symmetric) fu_complex_band_factor(n, width, L[0], L[1]);
+    else if (fu_complex_unsymmetric_factor(n, width, L, U)) return INFINITY;
+    fu_complex_band_solve(n, width, L, symmetric ? L : U, 0, x, y);
     for (int i = 0; i < n; ++i) {
         fu_complex left = {-bx[i], -by[i]};
         for (int j = 0; j < n; ++j) {
@@ -95,15 +110,17 @@ static double small_matrix(int n)
 
 int main(void)
 {
-    double band = 0.0, inverted = 0.0, small = 0.0;
+    double band = 0.0, unsymmetric = 0.0, inverted = 0.0, small = 0.0;
     int pivot[2];
     double singular[4] = {1.0, 2.0, 2.0, 4.0};
     for (int k = 0; k < CASES; ++k) {
         const int n = 1 + rand() % MOST, width = FU_BAND_GROUP - 1 + rand() % (WIDEST - FU_BAND_GROUP);
-        band = larger(band, complex_band(n, width));
+        band = larger(band, complex_band(n, width, 1));
+        unsymmetric = larger(unsymmetric, complex_band(n, width, 0));
         inverted = larger(inverted, inverse(n, width));
         small = larger(small, small_matrix(1 + rand() % FU_SMALL_MOST));
     }
-    printf("%g %g %g %d\n", band / DBL_EPSILON, inverted / DBL_EPSILON, small / DBL_EPSILON, fu_small_factor(2, singular, pivot));
+    printf("%g %g %g %g %d\n", band / DBL_EPSILON, unsymmetric / DBL_EPSILON, inverted / DBL_EPSILON,
+           small / DBL_EPSILON, fu_small_factor(2, singular, pivot));
     return 0;
 }

@@ -47,12 +47,22 @@ def test_solves_any_newton_system(name):
     assert error < 1e-10
 
 
+def two_ropes() -> Scene:
+    """One with damping, one without."""
+    made = rope(damping_time=1e-2)
+    made.cable("other", start=(0, 1, 0), end=(2, 1, 0), elements=5, element="cable12", section=Circle(radius=0.01),
+               material=Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000))
+    made.pin("other", s=0.0)
+    return made
+
+
 @pytest.mark.parametrize(("made", "size", "how"), [
     (rope(), 1e-4, "symmetric"),
+    (two_ropes(), 1e-3, "symmetric and unpivoted"),
     (rope(damping_time=1e-2), 1e-3, "unpivoted"),  # Kelvin-Voigt: not symmetric, but for a little
     (rope(damping_time=1e-2), 1e-2, "pivoted"),
     (rope(youngs_modulus=1e9), 1e-1, "pivoted"),  # crumpled: indefinite
-], ids=["symmetric", "nearly symmetric", "unsymmetric", "indefinite"])
+], ids=["symmetric", "each by its way", "nearly symmetric", "unsymmetric", "indefinite"])
 def test_band_is_factored_as_it_allows(made, size, how):
     error, found = solution_error(started(made), 1e-3, size)
     assert found == how

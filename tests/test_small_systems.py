@@ -16,8 +16,9 @@ def test_residuals_are_rounding(tmp_path):
     subprocess.run([*compiler(), "-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{drift.folder()}",
                     f"-I{ENGINE / 'include'}", PROGRAM, *SOURCES, "-lm", "-o", program], check=True)
     done = subprocess.run([program], capture_output=True, text=True, check=True)
-    band, inverse, small, singular = map(float, done.stdout.split())
+    band, unsymmetric, inverse, small, singular = map(float, done.stdout.split())
     assert 0 < band < 10
+    assert 0 < unsymmetric < 10
     assert 0 < inverse < 10
     assert 0 < small < 50
     assert singular == 2, "the second pivot of a matrix of rank 1 is zero"

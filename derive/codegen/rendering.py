@@ -27,7 +27,7 @@ WIDTH = 120
 HEADER, REGISTRY = "kernels.h", "registry.c"
 COMMON = (HEADER, REGISTRY, "blocks.h", "blocks.c", "kernels.pyx", "__init__.py", "__main__.py")
 """Files of all families; a library has the first two."""
-BLOCKS = ("elastic_force", "elastic_tangent", "damping_force")
+BLOCKS = ("elastic_force", "elastic_tangent", "damping_force", "dissipation")
 """Kernels of a law that are compiled for several elements at once as well (blocks.c), unless ..."""
 MOST_OPERATIONS = 3000
 """... they have more operations: the tangents of beam24 would take longer to compile than all the others; or ..."""

@@ -188,7 +188,8 @@ def kinds_rows() -> list[dict]:
 COSTS = ((0.2, {"output_step": 2e-3}), (0.2, {"output_step": 1e-3}), (0.05, {"output_step": 2e-3}), (0.02, {}),
          (0.01, {}), (TOL, {}), (2e-3, {}), (0.2, {"output_step": 2e-3, "spectral_radius": 0.8}),
          (0.2, {"output_step": 1e-3, "spectral_radius": 0.8}), (0.02, {"spectral_radius": 0.8}),
-         (TOL, {"step": 1e-3}), (0.2, {"integrator": "radau"}), (0.02, {"integrator": "radau"}))
+         (TOL, {"step": 1e-3}), (3.0, {"integrator": "radau"}), (1.0, {"integrator": "radau"}),
+         (0.2, {"integrator": "radau"}), (0.02, {"integrator": "radau"}))
 """absolute_tol and other settings."""
 
 

@@ -355,27 +355,43 @@ double fu_potential_energy(const fu_model *model, const double *q)
     return total + fu_bodies_potential_energy(model, q);
 }
 
-/* Returns the power that damping and friction take out, W; work: see `dissipation` in coupling.h. */
-double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
+/* Makes the power that n elements of a cable turn to heat, one number each. */
+static void dissipations(const fu_cable *cable, int n, const fu_elements *of, double *power)
 {
-    const double *q = state->q, *v = state->v;
-    double total = fu_bodies_dissipation(model, q, v), part[FU_MAX_COORDINATES];
+    const fu_block block = cable->blocks ? cable->blocks->dissipation : 0;
+    int k = in_blocks(block, n);
+    if (k) block(k, of, power);
+    for (; k < n; ++k)
+        cable->law->dissipation(of->l[k * of->l_stride], of->e + k * of->per_node, of->v + k * of->per_node,
+                                of->A + (long)k * of->A_stride, of->tau, power + k);
+}
+
+/* Returns the power that damping of cables and bodies takes out, W. */
+double fu_internal_dissipation(const fu_model *model, const double *q, const double *v)
+{
+    double total = fu_bodies_dissipation(model, q, v), part[FU_MAX_COORDINATES], power[CHUNK];
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            if (cable->tau > 0.0) {
-                cable->law->dissipation(fu_element_length(cable, k), q + at, v + at, fu_element_constants(cable, k),
-                                        cable->tau, part);
-                total += part[0];
+            if (cable->tau > 0.0 && k % CHUNK == 0) {
+                const fu_elements of = elements_from(cable, q, v, k);
+                dissipations(cable, chunk(cable, k), &of, power);
             }
+            if (cable->tau > 0.0) total += power[k % CHUNK];
             if (cable->mass_damping > 0.0) {
                 cable->kernel->inertia_force(fu_element_mass(cable, k), v + at, part);
                 for (int i = 0; i < cable->coordinates; ++i) total += cable->mass_damping * part[i] * v[at + i];
             }
         }
     }
-    return total + fu_coupling_dissipation(model, state, work);
+    return total;
+}
+
+/* Returns the power that damping and friction take out, W; work: see `dissipation` in coupling.h. */
+double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
+{
+    return fu_internal_dissipation(model, state->q, state->v) + fu_coupling_dissipation(model, state, work);
 }
 
 /* Returns the length of the cable of a slide, m. */

@@ -26,6 +26,14 @@ double fu_signal_at(const fu_signal *signal, double t, double *rate, double *sec
     return f;
 }
 
+/* Returns whether a motion moves its dof, so that what the support gives has a power. */
+int fu_supports_move(const fu_model *model, const fu_state *state)
+{
+    for (int k = 0; k < model->n_motions; ++k)
+        if (state->v[model->motions[k].dof] != 0.0) return 1;
+    return 0;
+}
+
 /* Sets position, velocity and acceleration of the prescribed dofs at state->t; several motions of one dof add up. */
 void fu_prescribe(const fu_model *model, fu_state *state)
 {

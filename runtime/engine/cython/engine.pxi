@@ -180,11 +180,12 @@ cdef extern from "engine.h" nogil:
         int *done
         int most_numbers, most_unknowns
     ctypedef struct fu_system:
-        int n, width, m, n_chains, n_strips, n_strip_rows, definite, unpivoted
+        int n, width, m, n_chains, n_strips, n_strip_rows
         const fu_strip *strips
         const int *first_strip
         const int *chain_start
         const int *on_chain
+        int *way
         int *n_columns
         int *n_rows
         int *constant_columns

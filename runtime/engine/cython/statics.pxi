@@ -54,8 +54,8 @@ cdef class Statics(Translation):
         return -np.array([self.run.rhs[i] for i in range(total)]), self._matrix().toarray()
 
     def solve(self, right):
-        """Solve with the matrix that `linearise` has left, once: (unknowns,) to (unknowns,); and how the band was factored:
-        "symmetric", "unpivoted" or "pivoted". For tests.
+        """Solve with the matrix that `linearise` has left, once: (unknowns,) to (unknowns,); and how its chains were factored:
+        "symmetric", "unpivoted", "pivoted", or several of them. For tests.
 
         Raises ArithmeticError where the matrix is singular.
         """
@@ -68,7 +68,8 @@ cdef class Statics(Translation):
         if fu_system_factor_band(&self.run.newton, &LAPACK) or fu_system_factor_border(&self.run.newton, &LAPACK):
             raise ArithmeticError("singular")
         fu_system_solve(&self.run.newton, &LAPACK, self.run.rhs)
-        how = "symmetric" if self.run.newton.definite else "unpivoted" if self.run.newton.unpivoted else "pivoted"
+        ways = {self.run.newton.way[c] for c in range(self.run.newton.n_chains)}
+        how = " and ".join(name for k, name in enumerate(("symmetric", "unpivoted", "pivoted")) if k in ways)
         return np.array([self.run.rhs[i] for i in range(total)]), how
 
     def set_state(self, double t=0.0, q=None, s=None, force=None, multipliers=None, point_force=None, hard_contact=None,

@@ -40,6 +40,7 @@ double fu_kinetic_energy(const fu_model *model, double t, const double *q, const
 double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v);
 double fu_elastic_energy(const fu_model *model, const fu_state *state);
 double fu_potential_energy(const fu_model *model, const double *q);
+double fu_internal_dissipation(const struct fu_model *model, const double *q, const double *v);
 double fu_dissipation(const fu_model *model, const fu_state *state, const struct fu_accelerator *work);
 double fu_length(const fu_model *model, int slide);
 double fu_element_start(const fu_model *model, int slide, int element);

@@ -11,7 +11,8 @@
 
 void fu_complex_band_factor(int n, int width, double *re, double *im);
 void fu_complex_band_add(int n, int width, const double *K, fu_complex factor, double *re, double *im);
-void fu_complex_band_solve(int n, int width, const double *re, const double *im, double *x, double *y);
+int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *const U[2]);
+void fu_complex_band_solve(int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y);
 
 /* [K B; C D] as an fu_system has it; real systems of several weights are combined to it. */
 typedef struct {
@@ -22,8 +23,8 @@ typedef struct {
     fu_piece *columns; /* of X, by chain; those of C are the real system's */
     int *pivot_band, *pivot_border;
     int is_lower;      /* the band is made in L, its lower half, else in K, all of it */
-    int definite;      /* it is factored in L (complex_band.c), else in K (zgbtrf) */
-    double *L[2];      /* FU_COMPLEX_STRIDE x n, real and imaginary parts */
+    double *L[2], *U[2]; /* FU_COMPLEX_STRIDE x n, real and imaginary parts (complex_band.c) */
+    int *way;          /* n_chains: how each is factored, an fu_way: in L, in L and U, in K (zgbtrf) */
     double *right[2];  /* n + FU_COMPLEX_BEYOND: a right side of the band, likewise */
 } fu_complex_system;
 

@@ -72,14 +72,17 @@ typedef struct {
     fu_span rows;
 } fu_piece;
 
+/* How a chain is factored: in L (band.c), in L and U (unsymmetric_band.c), in K (dgbtrf). */
+typedef enum { FU_SYMMETRIC, FU_UNPIVOTED, FU_PIVOTED } fu_way;
+
 /* A banded matrix with a border: [K B; C D]. Only K is large. It consists of chains, which the border alone connects. */
 typedef struct {
     int n, width;      /* band part: size, half bandwidth */
     int m;             /* border */
     int n_chains;
     int constant;      /* of the border, from the first on, that stay */
-    int definite;      /* the band is factored in L (band.c) */
-    int unpivoted;     /* where it is not: it is factored in L and U (unsymmetric_band.c), else in K (dgbtrf) */
+    int definite;      /* all chains are factored as FU_SYMMETRIC */
+    int *way;          /* n_chains: how each is factored, an fu_way */
     int n_strips, n_strip_rows; /* n_strip_rows: the numbers of B, or of C */
     const fu_strip *strips; /* by unknown of the border, then by chain */
     const int *first_strip; /* m + 1: of each unknown of the border, and n_strips */

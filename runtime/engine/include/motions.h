@@ -28,6 +28,7 @@ typedef struct {
 } fu_motion;
 
 double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second);
+int fu_supports_move(const fu_model *model, const fu_state *state);
 void fu_prescribe(const fu_model *model, fu_state *state);
 
 #endif

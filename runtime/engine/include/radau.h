@@ -43,8 +43,11 @@ void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h);
 void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h);
 /* Makes `next` stage k, without accelerations; returns 0 where its slides were found. */
 int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h);
-/* Finds the accelerations of all stages; returns 0 where they were found. */
+/* Finds the accelerations of all stages, and the powers of their couplings and loads; returns 0 where they were found. */
 int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h);
+/* Adds what damping of cables and bodies takes to the powers of the stages, once the iteration has found them; `next` is the last
+ * of them then. */
+void fu_radau_add_internal_dissipation(fu_run *run, fu_radau_workspace *w, double h);
 /* Keeps the multipliers of the state that accelerations have just been found of, as those of stage k. */
 void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k);
 /* Adds the powers of the stages to the energy balance, and keeps the stages for the next prediction. */

@@ -113,9 +113,9 @@ static int evaluate(fu_run *run, double h)
     const tableau method = tableau_of(run);
     const int n = method.stages;
     fu_state *next = &run->next;
-    double *reaction = model->n_motions ? run->force : 0;
     for (int k = 1; k < n; ++k) {
         if (move_to(run, method.A + k * n, k, run->now.t + method.c[k] * h, h)) return 1;
+        double *reaction = fu_supports_move(model, next) ? run->force : 0;
         if (fu_accelerations(model, next, &run->accelerator, next->acceleration, reaction))
             return fu_fail_eq38(run);
         keep(run, k, next);

@@ -104,7 +104,7 @@ int fu_complete(fu_run *run, fu_state *state)
 {
     const fu_model *model = run->model;
     const int info = fu_accelerations(model, state, &run->accelerator, state->acceleration,
-                                      model->n_motions ? run->force : 0);
+                                      fu_supports_move(model, state) ? run->force : 0);
     if (!info) fu_take_forces(model, &run->accelerator, state);
     return info;
 }

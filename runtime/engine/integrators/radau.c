@@ -137,6 +137,7 @@ static int step(fu_run *run, double h)
         }
     }
     fu_radau_configure(run, w, h);
+    fu_radau_add_internal_dissipation(run, w, h);
     if (fu_radau_place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run, &run->next)) return 1;
     return fu_complete(run, &run->next) ? fu_fail_eq38(run) : 0;
 }

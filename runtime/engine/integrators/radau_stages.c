@@ -52,8 +52,8 @@ void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h)
         }
 }
 
-/* Makes `next` stage k, without accelerations; returns 0 where its slides were found. */
-int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h)
+/* Makes the time and the dofs of `next` those of stage k. */
+static void move_to_stage(fu_run *run, const fu_radau_workspace *w, int k, double h)
 {
     const fu_model *model = run->model;
     fu_state *next = &run->next;
@@ -61,9 +61,22 @@ int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h)
     for (int i = 0; i < model->n_dof; ++i) next->v[i] = run->now.v[i] + w->Z[(long)k * model->n_dof + i];
     next->t = run->now.t + fu_radau_method(run)->c[k] * h;
     if (model->n_motions) fu_prescribe(model, next);
+}
+
+int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h)
+{
+    move_to_stage(run, w, k, h);
     if (fu_find_own(run)) return 1;
     fu_choose_passages(run, k == 0);
     return 0;
+}
+
+void fu_radau_add_internal_dissipation(fu_run *run, fu_radau_workspace *w, double h)
+{
+    for (int k = 0; k < STAGES; ++k) {
+        move_to_stage(run, w, k, h);
+        w->powers[2 * k] += fu_internal_dissipation(run->model, run->next.q, run->next.v);
+    }
 }
 
 /* Keeps the multipliers of the state that accelerations have just been found of, as those of stage k. */
@@ -73,19 +86,19 @@ void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k)
     if (run->model->n_reacting) memcpy(w->multipliers + k * n, run->accelerator.multipliers, sizeof(double) * (size_t)n);
 }
 
-/* Finds the accelerations of all stages; returns 0 where they were found. */
+/* Finds the accelerations of all stages, the powers of their couplings and loads; returns 0 where they were found. */
 int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h)
 {
     const double begin = fu_clock();
     const fu_model *model = run->model;
     fu_state *next = &run->next;
-    double *reaction = model->n_motions ? run->force : 0;
     fu_radau_configure(run, w, h);
     for (int k = 0; k < STAGES; ++k) {
         if (fu_radau_place_stage(run, w, k, h)) return 1;
+        double *reaction = fu_supports_move(model, next) ? run->force : 0;
         if (fu_accelerations(model, next, &run->accelerator, next->acceleration, reaction)) return fu_fail_eq38(run);
         memcpy(w->a + (long)k * model->n_dof, next->acceleration, sizeof(double) * (size_t)model->n_dof);
-        w->powers[2 * k] = fu_dissipated_power(run, next);
+        w->powers[2 * k] = fu_coupling_dissipation(model, next, &run->accelerator);
         w->powers[2 * k + 1] = fu_external_power(run, next, reaction);
         fu_radau_keep_multipliers(run, w, k + 1);
     }
@@ -126,8 +139,6 @@ void fu_radau_account(fu_run *run, double h)
         run->dissipated += h * b[k] * w->powers[2 * k];
         run->external += h * b[k] * w->powers[2 * k + 1];
     }
-    run->dissipated_power = fu_dissipated_power(run, &run->next);
-    run->external_power = fu_external_power(run, &run->next, run->force);
     memcpy(w->last, w->Z, sizeof(double) * STAGES * (size_t)run->model->n_dof);
     w->h_last = h;
 }

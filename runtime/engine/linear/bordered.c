@@ -2,6 +2,8 @@
  * meet, are the border. A column of it has a solution in the chains that it touches and nowhere else. */
 #include "engine.h"
 
+#include "lanes.h"
+
 #define SYMMETRIC 1e-10 /* of the diagonals: more than rounding leaves between the two halves of a symmetric matrix */
 #define FADED 1e-32     /* of a column's largest entry: smaller ones add nothing to a solution */
 
@@ -70,20 +72,31 @@ int fu_pack(const fu_system *s, fu_span of, int backwards, double *L)
     return 1;
 }
 
+/* Returns whether a chain is symmetric and positive definite; then it is factored in L. */
+static int factor_symmetric(fu_system *s, const fu_lapack *lapack, int chain)
+{
+    if (fu_is_twisted(s, chain)) return !fu_twisted_factor(s, lapack, chain);
+    double *L = fu_factor_of(s, chain);
+    return fu_pack(s, (fu_span){s->chains[chain], s->chains[chain + 1]}, 0, L) &&
+           !fu_band_factor(lapack, size_of(s, chain), s->width, L);
+}
+
+/* Returns whether a chain is nearly so; then it is factored in L and U. */
+static int factor_unpivoted(fu_system *s, int chain)
+{
+    double *L = s->L + factor_at(s, chain), *U = s->U + factor_at(s, chain);
+    return fu_unsymmetric_pack(s, chain, L, U) && !fu_unsymmetric_factor(size_of(s, chain), s->width, L, U);
+}
+
+/* Factors each chain by the quickest way that it has; returns 0, or 1 + the row at which the band is singular. */
 int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
 {
     int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     s->definite = 1;
-    for (int c = 0; c < s->n_chains && s->definite; ++c)
-        s->definite = fu_is_twisted(s, c) ? !fu_twisted_factor(s, lapack, c)
-                                          : fu_pack(s, (fu_span){s->chains[c], s->chains[c + 1]}, 0, fu_factor_of(s, c)) &&
-                                                !fu_band_factor(lapack, size_of(s, c), width, fu_factor_of(s, c));
-    s->unpivoted = !s->definite;
-    for (int c = 0; c < s->n_chains && s->unpivoted; ++c) {
-        double *L = s->L + factor_at(s, c), *U = s->U + factor_at(s, c);
-        s->unpivoted = fu_unsymmetric_pack(s, c, L, U) && !fu_unsymmetric_factor(size_of(s, c), width, L, U);
-    }
-    for (int c = 0; c < s->n_chains && !s->definite && !s->unpivoted; ++c) {
+    for (int c = 0; c < s->n_chains; ++c) {
+        s->way[c] = factor_symmetric(s, lapack, c) ? FU_SYMMETRIC : factor_unpivoted(s, c) ? FU_UNPIVOTED : FU_PIVOTED;
+        s->definite &= s->way[c] == FU_SYMMETRIC;
+        if (s->way[c] != FU_PIVOTED) continue;
         int n = size_of(s, c), first = s->chains[c];
         lapack->dgbtrf(&n, &n, &width, &width, s->K + (long)first * rows, &rows, s->pivot_band + first, &info);
         if (info) return first + info;
@@ -120,9 +133,9 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
 {
     int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
     if (s->inverted) multiply_chain(s, chain, (fu_span){of.first - start, of.end - start}, x + start);
-    else if (s->definite && fu_is_twisted(s, chain)) fu_twisted_solve(s, chain, of, x);
-    else if (s->definite) fu_band_solve(n, width, fu_factor_of(s, chain), of.first - start, x + start);
-    else if (s->unpivoted) {
+    else if (s->way[chain] == FU_SYMMETRIC && fu_is_twisted(s, chain)) fu_twisted_solve(s, chain, of, x);
+    else if (s->way[chain] == FU_SYMMETRIC) fu_band_solve(n, width, fu_factor_of(s, chain), of.first - start, x + start);
+    else if (s->way[chain] == FU_UNPIVOTED) {
         fu_band_forward(n, width, s->L + factor_at(s, chain), of.first - start, x + start);
         if (n) fu_band_backward(n, width, s->U + factor_at(s, chain), x + start);
     } else
@@ -252,17 +265,23 @@ static void solve_border(const fu_system *s, const fu_lapack *lapack, double *y)
     else lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
 }
 
-/* Takes from x, of the band, what the border's solution y adds to the right side there, K^-1 B y. */
-static void take_columns(const fu_system *s, const double *y, double *x)
+FU_INLINE void take(const fu_system *s, const double *y, double *x)
 {
     for (int c = 0; c < s->n_chains; ++c) {
         const fu_piece *columns = s->columns + FU_HALVES * s->chain_start[c];
         for (const fu_piece *p = columns; p < columns + s->n_columns[c]; ++p) {
             const double *column = s->X + s->strips[p->strip].x, scale = y[p->k];
-            for (int i = p->rows.first; i < p->rows.end; ++i) x[i] -= scale * column[i];
+            const int end = p->rows.end;
+            int i = p->rows.first;
+            for (; i + FU_LANES <= end; i += FU_LANES) *(fu_lanes *)(x + i) -= *(const fu_lanes *)(column + i) * scale;
+            for (; i < end; ++i) x[i] -= scale * column[i];
         }
     }
 }
+
+/* Takes from x, of the band, what the border's solution y adds to the right side there, K^-1 B y. */
+static void take_columns(const fu_system *s, const double *y, double *x);
+FU_IN_LANES(take_columns, take, (const fu_system *s, const double *y, double *x), (s, y, x))
 
 /* Makes zero what goes on beyond the unknowns: a step that has overflowed leaves no numbers there, and no later step would have
  * any. */

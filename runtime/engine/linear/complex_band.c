@@ -1,15 +1,18 @@
-/* Complex symmetric band matrices, factored without pivots: A = L D L'.
+/* Complex band matrices that are symmetric, or but for a little, factored without pivots: A = L D L', or A = L D U'.
  *
  * The stages of Radau IIA have A = M + z D + z^2 K with z = h/L and an argument of -49 degrees. Times conj(z)/|z|, the real part of
  * A is cos 49 (M + |z|^2 K) + |z| D, and positive definite where the real system's M + s D + s^2 K is, as |z| < s = h/gamma and
  * D takes energy. The values x* A x then lie in a sector of less than a half plane. So do those of the inverse, of its
- * diagonal blocks, and of their inverses, the Schur complements: no pivot is small beside its column.
+ * diagonal blocks, and of their inverses, the Schur complements: no pivot is small beside its column. What is not symmetric must be
+ * small, as in unsymmetric_band.c.
  *
  * Storage: columns of the lower triangle from the diagonal down, FU_COMPLEX_STRIDE numbers each with zeros beyond the band, real
- * and imaginary parts apart. */
+ * and imaginary parts apart; those of the upper one, transposed, likewise. */
 #include "complex_system.h"
 
 #include "lanes.h"
+
+#define LEAST_PIVOT 1e-8 /* of the diagonal: what elimination must leave of it where the matrix is not symmetric */
 
 /* Returns 1 / d. */
 static fu_complex inverse_of(double re, double im)
@@ -27,6 +30,18 @@ FU_INLINE void subtract(int n, const double *a_re, const double *a_im, fu_comple
     }
 }
 
+/* Makes a column that below the diagonal has `below` entries one of L or of U. */
+FU_INLINE void scale_column(int below, fu_complex scale, double *re, double *im)
+{
+    for (int k = 1; k <= below; ++k) {
+        const fu_complex scaled = fu_complex_product((fu_complex){re[k], im[k]}, scale);
+        re[k] = scaled.re;
+        im[k] = scaled.im;
+    }
+    re[0] = scale.re;
+    im[0] = scale.im;
+}
+
 FU_INLINE void factor(int n, int width, double *re, double *im)
 {
     const int stride = FU_COMPLEX_STRIDE(width);
@@ -39,25 +54,45 @@ FU_INLINE void factor(int n, int width, double *re, double *im)
             double *other_re = a + (long)k * stride, *other_im = b + (long)k * stride;
             subtract(width + 1 - k, a + k, b + k, scaled, other_re, other_im);
         }
-        for (int k = 1; k <= below; ++k) {
-            const fu_complex scaled = fu_complex_product((fu_complex){a[k], b[k]}, scale);
-            a[k] = scaled.re;
-            b[k] = scaled.im;
-        }
-        a[0] = scale.re;
-        b[0] = scale.im;
+        scale_column(below, scale, a, b);
     }
 }
 
-FU_INLINE void solve(int n, int width, const double *re, const double *im, double *x, double *y)
+/* The diagonal of U keeps that of A until its column is reached. */
+FU_INLINE void factor_unsymmetric(int n, int width, double *const L[2], double *const U[2], int *failed)
 {
     const int stride = FU_COMPLEX_STRIDE(width);
+    *failed = 0;
     for (int j = 0; j < n; ++j) {
-        const double *a = re + (long)j * stride + 1, *b = im + (long)j * stride + 1;
+        const long at = (long)j * stride;
+        double *a = L[0] + at, *b = L[1] + at, *c = U[0] + at, *d = U[1] + at;
+        const int below = n - 1 - j < width ? n - 1 - j : width;
+        if (!(a[0] * a[0] + b[0] * b[0] > LEAST_PIVOT * LEAST_PIVOT * (c[0] * c[0] + d[0] * d[0]))) {
+            *failed = 1;
+            return;
+        }
+        const fu_complex scale = inverse_of(a[0], b[0]);
+        for (int k = 1; k <= below; ++k) {
+            const fu_complex by_upper = fu_complex_product((fu_complex){c[k], d[k]}, scale);
+            const fu_complex by_lower = fu_complex_product((fu_complex){a[k], b[k]}, scale);
+            const long other = (long)k * stride;
+            subtract(width + 1 - k, a + k, b + k, by_upper, a + other, b + other);
+            subtract(width - k, c + k + 1, d + k + 1, by_lower, c + other + 1, d + other + 1);
+        }
+        scale_column(below, scale, a, b);
+        scale_column(below, scale, c, d);
+    }
+}
+
+FU_INLINE void solve(int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y)
+{
+    const int stride = FU_COMPLEX_STRIDE(width);
+    for (int j = first; j < n; ++j) {
+        const double *a = L[0] + (long)j * stride + 1, *b = L[1] + (long)j * stride + 1;
         subtract(width, a, b, (fu_complex){x[j], y[j]}, x + j + 1, y + j + 1);
     }
     for (int j = n - 1; j >= 0; --j) {
-        const double *a = re + (long)j * stride, *b = im + (long)j * stride;
+        const double *a = U[0] + (long)j * stride, *b = U[1] + (long)j * stride;
         fu_lanes sum_re = {0.0}, sum_im = {0.0};
         for (int i = 1; i <= width; i += FU_LANES) {
             const fu_lanes l_re = *(const fu_lanes *)(a + i), l_im = *(const fu_lanes *)(b + i);
@@ -94,6 +129,20 @@ FU_IN_LANES(fu_complex_band_add, add, (int n, int width, const double *K, fu_com
 /* Factors in place: L below the diagonal, 1/D on it. */
 FU_IN_LANES(fu_complex_band_factor, factor, (int n, int width, double *re, double *im), (n, width, re, im))
 
-/* Makes x + i y = A^-1 (x + i y); both go on FU_COMPLEX_BEYOND numbers beyond n, which are finite and stay. */
-FU_IN_LANES(fu_complex_band_solve, solve, (int n, int width, const double *re, const double *im, double *x, double *y),
-            (n, width, re, im, x, y))
+static void unsymmetric_in_lanes(int n, int width, double *const L[2], double *const U[2], int *failed);
+FU_IN_LANES(unsymmetric_in_lanes, factor_unsymmetric, (int n, int width, double *const L[2], double *const U[2], int *failed),
+            (n, width, L, U, failed))
+
+/* Factors in place: L and U' below the diagonal, 1/D on both; returns not zero where a pivot is too small. */
+int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *const U[2])
+{
+    int failed;
+    unsymmetric_in_lanes(n, width, L, U, &failed);
+    return failed;
+}
+
+/* Makes x + i y = A^-1 (x + i y), which is zero before `first`, of a symmetric A with L as U; both go on FU_COMPLEX_BEYOND numbers
+ * beyond n, which are finite and stay. */
+FU_IN_LANES(fu_complex_band_solve, solve,
+            (int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y),
+            (n, width, L, U, first, x, y))

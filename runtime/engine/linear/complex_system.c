@@ -29,6 +29,7 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->x = take(scratch, taken, n + m);
     c->columns = (fu_piece *)fu_take(scratch, taken, FU_DOUBLES(pieces, fu_piece));
     c->n_columns = (int *)fu_take(scratch, taken, FU_DOUBLES((long)s->n_chains, int));
+    c->way = (int *)fu_take(scratch, taken, FU_DOUBLES((long)s->n_chains, int));
     c->pivot_band = (int *)fu_take(scratch, taken, FU_DOUBLES(n, int));
     c->pivot_border = (int *)fu_take(scratch, taken, FU_DOUBLES(m, int));
     c->factors = *real;
@@ -42,6 +43,7 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->is_lower = 1;
     for (int part = 0; part < 2; ++part) {
         c->L[part] = fu_take(scratch, taken, FU_COMPLEX_STRIDE((long)s->width) * n);
+        c->U[part] = fu_take(scratch, taken, FU_COMPLEX_STRIDE((long)s->width) * n);
         c->right[part] = fu_take(scratch, taken, n + FU_COMPLEX_BEYOND(s->width));
     }
 }
@@ -61,10 +63,11 @@ void fu_complex_system_clear(fu_complex_system *c, const fu_system *s)
 /* Adds the real matrix times a factor. */
 void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_complex factor)
 {
-    const long band = (long)FU_BAND_ROWS(s->width) * s->n, corner = s->fronts->size;
+    const long rows = storage_rows(s), corner = s->fronts->size;
     if (c->is_lower) fu_complex_band_add(s->n, s->width, s->K, factor, c->L[0], c->L[1]);
     else
-        for (long i = 0; i < band; ++i) fu_complex_add(&c->K[i], factor, s->K[i]);
+        for (long column = 0; column < s->n * rows; column += rows)
+            for (long i = column + s->width; i < column + rows; ++i) fu_complex_add(&c->K[i], factor, s->K[i]);
     for (int strip = 0; strip < s->n_strips; ++strip)
         for (int half = FU_HALVES * strip; half < FU_HALVES * (strip + 1); ++half) {
             const fu_span right = s->span_B[half], below = s->span_C[half];
@@ -75,49 +78,61 @@ void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_c
     for (long i = 0; i < corner; ++i) fu_complex_add(&c->D[i], factor, s->D[i]);
 }
 
-/* Makes the lower half of the band as complex_band.c wants it. */
-static void pack(fu_complex_system *c, const fu_system *s)
+/* Makes the lower half of a chain, or the upper one, transposed, as complex_band.c wants it. next: from an entry of a column, or
+ * of a row, to the next one. */
+static void pack(const fu_complex_system *c, const fu_system *s, int chain, long next, double *const half[2])
 {
-    const int n = s->n, width = s->width, stride = FU_COMPLEX_STRIDE(width);
-    for (int j = 0; j < n; ++j) {
-        const fu_complex *below = c->K + storage_rows(s) * j + FU_BAND_DIAGONAL(width);
-        double *re = c->L[0] + (long)j * stride, *im = c->L[1] + (long)j * stride;
-        const int most = n - 1 - j < width ? n - 1 - j : width;
-        for (int i = 0; i <= most; ++i) {
-            re[i] = below[i].re;
-            im[i] = below[i].im;
+    const int end = s->chains[chain + 1], width = s->width, stride = FU_COMPLEX_STRIDE(width);
+    for (int j = s->chains[chain]; j < end; ++j) {
+        const fu_complex *entry = c->K + storage_rows(s) * j + FU_BAND_DIAGONAL(width);
+        double *re = half[0] + (long)j * stride, *im = half[1] + (long)j * stride;
+        const int most = end - 1 - j < width ? end - 1 - j : width;
+        for (int i = 0; i <= most; ++i, entry += next) {
+            re[i] = entry->re;
+            im[i] = entry->im;
         }
         for (int i = most + 1; i < stride; ++i) re[i] = im[i] = 0.0;
     }
 }
 
-/* Factors the band: without pivots where the real one was definite, as the complex one is then; else all of it must be there.
- * Returns 0, or not 0 where it is singular. */
+/* Factors a chain without pivots in L, or in L and U; returns not zero where a pivot is too small. */
+static int factor_unpivoted(fu_complex_system *c, const fu_system *s, int chain)
+{
+    const int first = s->chains[chain], n = s->chains[chain + 1] - first;
+    const long at = (long)first * FU_COMPLEX_STRIDE(s->width);
+    double *const L[2] = {c->L[0] + at, c->L[1] + at}, *const U[2] = {c->U[0] + at, c->U[1] + at};
+    if (!c->is_lower) pack(c, s, chain, 1, c->L);
+    if (c->way[chain] == FU_SYMMETRIC) {
+        fu_complex_band_factor(n, s->width, L[0], L[1]);
+        return 0;
+    }
+    pack(c, s, chain, storage_rows(s) - 1, c->U);
+    return fu_complex_unsymmetric_factor(n, s->width, L, U);
+}
+
+/* Factors the band: a chain without pivots where the real one was so, as the complex one has none that are small then; but
+ * for symmetric ones all of it must be there. Returns 0, or not 0 where it is singular. */
 static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack)
 {
     int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
-    c->definite = s->definite;
-    if (c->definite) {
-        if (!c->is_lower) pack(c, s);
-        fu_complex_band_factor(s->n, width, c->L[0], c->L[1]); /* nothing lies between chains */
-        return 0;
-    }
     for (int chain = 0; chain < s->n_chains; ++chain) {
         int first = s->chains[chain], n = s->chains[chain + 1] - first;
-        if (n)
+        c->way[chain] = s->way[chain];
+        if (c->way[chain] != FU_PIVOTED && factor_unpivoted(c, s, chain)) c->way[chain] = FU_PIVOTED;
+        if (n && c->way[chain] == FU_PIVOTED)
             lapack->zgbtrf(&n, &n, &width, &width, c->K + first * storage_rows(s), &rows, c->pivot_band + first, &info);
         if (info) return first + info;
     }
     return 0;
 }
 
-/* Makes x = K^-1 x in a chain. */
-static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int chain, fu_complex *x)
+/* Makes x = K^-1 x in a chain, where x is zero before the row `from`. */
+static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int chain, int from, fu_complex *x)
 {
     int first = s->chains[chain], n = s->chains[chain + 1] - first, width = s->width, rows = FU_BAND_ROWS(width);
     int one = 1, info;
     if (!n) return;
-    if (!c->definite) {
+    if (c->way[chain] == FU_PIVOTED) {
         lapack->zgbtrs("N", &n, &width, &width, &one, c->K + first * storage_rows(s), &rows, c->pivot_band + first,
                        x + first, &n, &info);
         return;
@@ -128,7 +143,8 @@ static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu
         re[i] = i < n ? x[first + i].re : 0.0;
         im[i] = i < n ? x[first + i].im : 0.0;
     }
-    fu_complex_band_solve(n, width, c->L[0] + at, c->L[1] + at, re, im);
+    double *const L[2] = {c->L[0] + at, c->L[1] + at}, *const U[2] = {c->U[0] + at, c->U[1] + at};
+    fu_complex_band_solve(n, width, L, c->way[chain] == FU_SYMMETRIC ? L : U, from - first, re, im);
     for (int i = 0; i < n; ++i) x[first + i] = (fu_complex){re[i], im[i]};
 }
 
@@ -142,8 +158,8 @@ static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapac
     fu_complex *x = c->X + s->strips[strip].at, *B = c->B + s->strips[strip].at;
     if (!of[0].end && !of[1].end) return 0;
     memcpy(x + first, B + first, sizeof(fu_complex) * (size_t)(end - first));
-    solve_chain(c, s, lapack, chain, x);
-    for (int i = first; i < end; ++i) size[i] = hypot(x[i].re, x[i].im);
+    solve_chain(c, s, lapack, chain, of[of[0].end == 0].first, x);
+    for (int i = first; i < end; ++i) size[i] = fabs(x[i].re) + fabs(x[i].im);
     return fu_pieces(s, strip, size, pieces);
 }
 
@@ -184,7 +200,7 @@ void fu_complex_system_solve(const fu_complex_system *c, const fu_system *s, con
 {
     int m = s->m, one = 1, info;
     fu_complex *x = c->x, *y = x + s->n;
-    for (int chain = 0; chain < s->n_chains && s->n; ++chain) solve_chain(c, s, lapack, chain, x);
+    for (int chain = 0; chain < s->n_chains && s->n; ++chain) solve_chain(c, s, lapack, chain, s->chains[chain], x);
     if (!m) return;
     for (int chain = 0; chain < s->n_chains; ++chain) {
         const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[chain];

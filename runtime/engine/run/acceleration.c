@@ -223,9 +223,13 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     fu_internal_forces(model, state->q, state->v, work->force);
     fu_coupling_forces(model, state, work->force);
     fu_external_forces(model, state->t, state->q, work->force);
-    for (int k = 0; k < model->n_motions; ++k)
-        prescribed[model->motions[k].dof] = state->acceleration[model->motions[k].dof];
-    if (model->n_motions) fu_mass_times(model, state->q, prescribed, work->work);
+    int accelerated = 0;
+    for (int k = 0; k < model->n_motions; ++k) {
+        const int dof = model->motions[k].dof;
+        prescribed[dof] = state->acceleration[dof];
+        accelerated |= prescribed[dof] != 0.0;
+    }
+    if (accelerated) fu_mass_times(model, state->q, prescribed, work->work);
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i] - work->work[i];
     if (solve_friction(model, state, work, acceleration)) return 1;
     reacted(model, state, work, lambda);

@@ -26,7 +26,7 @@ double fu_dissipated_power(const fu_run *run, const fu_state *state)
 }
 
 /* Returns the power of the loads; of what drives constraints, by the last call of fu_accelerations; and of the motions, with the
- * forces that the supports give, W. */
+ * forces that the supports give, which are not looked at where no support moves, W. */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
     const fu_model *model = run->model;
@@ -38,7 +38,7 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
     }
     for (int k = 0; k < model->n_motions; ++k) {
         const int i = model->motions[k].dof;
-        if (model->motions[k].first) power += reaction[i] * state->v[i];
+        if (model->motions[k].first && state->v[i] != 0.0) power += reaction[i] * state->v[i];
     }
     return power;
 }
