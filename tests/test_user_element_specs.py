@@ -31,6 +31,8 @@ def refused(file: Path, out: Path) -> str:
     ([("(1, x,", "(x, ")], "no rigid motion: the basis has no constant"),
     ([("1, x, x**2, x**3", "1, x**2, x**3, x**4")], "no constant strain: the basis has no x"),
     ([("x**3)", "x**2)")], "basis[3] = x**2 stands twice"),
+    ([("1, x, x**2, x**3", "1, x"), ('"r", "r_x"', '"r",')],
+     "law green_linear resists bending, but no function of the basis is curved along x"),
     ([("x**3)", "x**4)")], "the basis has x**4 without x**3"),
     ([("x**3)", "x**3, x**4)")],
      "the nodal conditions are singular (4 conditions, 5 functions): undetermined: x**2 - 2*x**3/l + x**4/l**2"),

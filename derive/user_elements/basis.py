@@ -168,6 +168,9 @@ def _law_on_basis(element: Element, law: str | type) -> Iterator[tuple[str, str]
             more = ", ".join(sorted(map(str, across)))
             yield (f"law {name} knows the centreline alone, but the basis has {more}: "
                    "nothing resists the deformation of the section", "take the law continuum")
+        if isinstance(law, str) and all(sp.diff(sp.sympify(f), x, 2) == 0 for f in element.basis):
+            yield (f"law {name} resists bending, but no function of the basis is curved along x: elements would be "
+                   "straight, with hinges between them", "add x**2 and x**3, and r_x to the nodal vectors")
         return
     if len(across) < element.dim - 1:
         missing = ", ".join(str(v) for v in (y, z)[: element.dim - 1] if v not in across)
