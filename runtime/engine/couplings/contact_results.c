@@ -176,6 +176,7 @@ static double beyond(const fu_model *model, const fu_coupling *coupling, const f
     const fu_contact *contact = of(coupling);
     double farthest = -INFINITY;
     fu_attachment_state on;
+    if (!fu_surface_has_ends(&contact->surface)) return farthest;
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
         if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;

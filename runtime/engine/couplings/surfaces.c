@@ -165,16 +165,21 @@ static double beyond_knots(int n, const double *knots, double x)
     return fmax(knots[0] - x, x - knots[n - 1]);
 }
 
+int fu_surface_has_ends(const fu_surface *surface)
+{
+    return surface->shape == FU_TERRAIN || (surface->shape == FU_ROUND && surface->half_length > 0.0);
+}
+
 double fu_surface_beyond(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r)
 {
     double y[3] = {0.0, 0.0, 0.0};
+    if (!fu_surface_has_ends(surface)) return -INFINITY;
     local(dim, at, r, y);
     if (surface->shape == FU_TERRAIN) {
         const double along = beyond_knots(surface->n_first, surface->first, y[0]);
         return dim == 2 ? along : fmax(along, beyond_knots(surface->n_second, surface->second, y[2]));
     }
-    return surface->shape == FU_ROUND && surface->half_length > 0.0 ? fabs(fu_dot(dim, surface->direction, y)) - surface->half_length
-                                                                    : -INFINITY;
+    return fabs(fu_dot(dim, surface->direction, y)) - surface->half_length;
 }
 
 double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach)

@@ -32,6 +32,8 @@ void fu_surface_at(const fu_model *model, const fu_surface *surface, const fu_st
 void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, fu_distance *out);
 /* How far r is beyond the ends of a cylinder or the table of a terrain, m, where the shape goes on; negative within them. */
 double fu_surface_beyond(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r);
+/* Whether a surface has such ends. */
+int fu_surface_has_ends(const fu_surface *surface);
 /* The least that the distance of any point within `reach` of r can be, m. */
 double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach);
 /* The normal over a step on a surface that does not move: its product with the way between two points is what the distance changes by,
