@@ -153,6 +153,18 @@ def test_scene_files_say_the_same():
     assert fu.Scene.from_toml(text).to_toml() == text and "polar = {angle = [-3.14159" in text
 
 
+@pytest.mark.parametrize("column", ["drag", "lift", "moment"])
+def test_a_polar_closes_within_rounding(column):
+    angle = np.linspace(-pi, pi, 181)
+    values = 1.0 + np.sin(angle)  # the ends differ by 2.4e-16
+    assert values[0] != values[-1]
+    made = fu.Polar(**{"angle": angle, "drag": [1.0] * 181, "lift": [0.0] * 181, column: values})
+    assert np.all(made.coefficients(np.array(-pi)) == made.coefficients(np.array(pi)))
+    values[-1] += 1e-8
+    with pytest.raises(fu.SceneError, match=f"{column} must be the same at both ends"):
+        fu.Polar(**{"angle": angle, "drag": [1.0] * 181, "lift": [0.0] * 181, column: values})
+
+
 REFUSED = {
     "no span": (lambda s: s.drag("A", area=1, lift=1), "span is missing"),
     "no chord": (lambda s: s.drag("A", area=1, polar=plate(), span=(0, 0, 1)), "chord is missing"),
