@@ -85,6 +85,13 @@ cdef class Engine(Report):
     """
 
     cdef object watcher, error
+    cdef bint has_started
+
+    cdef int _check_started(self) except -1:
+        """Refuse what has arrays to work on after `start` alone."""
+        if not self.has_started:
+            raise RuntimeError("the engine has not started; call start first")
+        return 0
 
     def _take_integrator(self, method):
         """Let the run take an integrator (package integrators): its parameters, its work space, what it keeps."""
@@ -111,6 +118,8 @@ cdef class Engine(Report):
         """Let so many threads share the work; how many there are, one where the system has none to give. Call it once."""
         cdef int i
         m = &self.model
+        if m.threads:
+            raise RuntimeError("the engine has its threads already; make another one of the model")
         if threads < 2 or not fu_has_threads():
             return 1
         largest = [self.cables[i].n_elements * self.cables[i].coordinates ** 2 for i in range(m.n_cables)]
@@ -182,10 +191,14 @@ cdef class Engine(Report):
 
         knots: times at which steps end, increasing, and what jumps there; see model/knots.py. absolute_tol in m, negative:
         by the scene's size; controlled: weights (n_dof,) of what tol is the error of, the model's where all is.
-        Returns a status where that failed, else None, and the change of velocities that the joints asked for.
+        Returns a status where that failed, else None, and the change of velocities that the joints asked for. Raises
+        RuntimeError in a second call: state, rows and history are those of one run.
         """
         cdef int k
         cdef fu_array array
+        if self.has_started:
+            raise RuntimeError("the engine has started already; make another one of the model")
+        self.has_started = True
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
@@ -223,6 +236,7 @@ cdef class Engine(Report):
         calls stream.pause(); otherwise stream.between() now and then, which may take rows.
         """
         cdef int status = FU_RUNNING
+        self._check_started()
         run = &self.run
         run.most_evaluations = most_evaluations
         try:
@@ -279,6 +293,7 @@ cdef class Engine(Report):
 
     def checkpoint(self):
         """Bytes from which `restore` goes on exactly; at a pause only."""
+        self._check_started()
         cdef bytearray taken = bytearray(fu_save(&self.run, NULL))
         fu_save(&self.run, taken)
         return bytes(taken)
@@ -288,6 +303,7 @@ cdef class Engine(Report):
 
         Raises ValueError for one of another model, or of a run that could not have paused there; it must not go on then.
         """
+        self._check_started()
         if len(checkpoint) != fu_save(&self.run, NULL):
             raise ValueError("the checkpoint is of another model")
         if fu_restore(&self.run, checkpoint, rows):
