@@ -6,7 +6,10 @@ import funicular as fu
 import numpy as np
 import pytest
 from choice import farthest, motion, references, simulate
+from funicular.integrators import Explicit, Radau
 from funicular.results import streaming
+from funicular.solve import trial_run
+from funicular.solve.integrator_choice import Rival
 from hard_cases.case import positions
 from pendulum import pendulum
 from ringing import run_of
@@ -115,3 +118,17 @@ def test_an_exception_in_a_trial_leaves_the_older_file(tmp_path):
         long_trial().run(1.0, output_step=0.02, tol=1e-4, save=path, progress=fail)
     assert path.read_bytes() == before
     assert sorted(each.name for each in tmp_path.iterdir()) == ["run.nc"]
+
+
+def test_work_beyond_any_count_is_no_error():
+    """The rival of an absurdly stiff scene costs more evaluations than a number of C holds."""
+    class Rated:
+        time, given = 0.0, []
+
+        def advance(self, follow, every, stream, most_evaluations):
+            assert most_evaluations < 2**63
+            return "completed"
+
+    for cost in (1e30, float("inf")):
+        found = trial_run.on_trial(Rated(), Rival(Explicit(), cost), Radau(), 1.0, 1, None, None)
+        assert found == ("completed", "")

@@ -24,6 +24,9 @@ SHARE = 0.05
 SETTLED = 4
 """Shares after which the rate counts as it is: the motion may begin with a shock."""
 
+MOST_WORK = 1e15
+"""Evaluations that no trial comes to: a count of more, as of absurd stiffnesses, is none that C can hold."""
+
 CLEARLY = 10.0
 """Times the other's cost that what remains must take before."""
 
@@ -36,7 +39,7 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
     Returns the status that the run has come to, "running" where there is more of it, and why the rival is the cheaper
     one, or "" where it is not. The first share of the cost, in which steps find their size, does not count.
     """
-    share = max(1, int(SHARE * rival.cost / method.cost_of_evaluation))
+    share = max(1, int(min(SHARE * rival.cost / method.cost_of_evaluation, MOST_WORK)))
     before, shares = engine.time, 0
     while True:
         shares += 1
