@@ -74,7 +74,8 @@ def test_an_interrupted_call_does_not_count(tmp_path):
     program, tests = tmp_path / "part_timing", Path(__file__).parent
     engine = tests.parent / "runtime" / "engine"
     subprocess.run([*compiler(), "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{drift.folder()}",
-                    f"-I{engine / 'include'}", f"-I{engine}", tests / "part_timing.c", "-lm", "-o", program], check=True)
+                    f"-I{engine / 'include'}", f"-I{engine}", tests / "part_timing.c", "-lm", "-o", program],
+                   check=True)
     done = subprocess.run([program], capture_output=True, text=True, check=True)
     assert float(done.stdout) == pytest.approx(4e-6, rel=1e-6)
 
