@@ -68,6 +68,7 @@ def test_its_kernels_are_those_of_the_same_element_here(made):
 
 def test_its_kernels_say_what_they_take(made):
     force = load_library(made).kernels.mine8p_green_linear_elastic_force
+    assert force.shapes == {"l": (), "e": (4, 2), "A": (2,), "f": (4, 2)}
     with pytest.raises(TypeError, match=re.escape("mine8p_green_linear_elastic_force takes (l, e, A)")):
         force(0.7, np.zeros(8))
     with pytest.raises(ValueError, match=re.escape("argument e must have shape (4, 2), got (7,)")):

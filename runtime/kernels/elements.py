@@ -21,7 +21,8 @@ class LawTraits:
     membrane           how a cable represents its axial strain: "full", "assumed" or "tension_only"; else empty
     straight           where the law is for a curved stress-free shape: the law for a straight one; else empty
     takes_shape        whether its kernels take the stress-free shape
-    damped_like        the law whose damping it has; empty where it has its own
+    shared             by kernel, the family (ELEMENT_LAW) whose kernel it takes in place of one of its own, as the
+                       engine's table of kernels has it
     discrete_gradient  whether its energy has one, which the integrator "energy" needs
     """
 
@@ -32,7 +33,7 @@ class LawTraits:
     membrane: str
     straight: str
     takes_shape: bool
-    damped_like: str
+    shared: dict[str, str]
     discrete_gradient: bool
 
 
@@ -49,6 +50,12 @@ class ElementKind:
     def is_cable(self) -> bool:
         """Return whether its laws know the section by its axial and bending stiffness alone."""
         return all(law.kind == "cable" for law in self.laws.values())
+
+    def law_kernel(self, element: str, law: str, kernel: str) -> str:
+        """Return the name of a kernel of a law on this element, of that name: its own, or the one that it takes from
+        another law.
+        """
+        return f"{self.laws[law].shared.get(kernel, f'{element}_{law}')}_{kernel}"
 
     def law_for_curved_shape(self, law: str) -> str | None:
         """Return the law that stands for a law where the stress-free shape is curved; None if the element has none."""

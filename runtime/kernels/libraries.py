@@ -92,6 +92,7 @@ class Kernel:
         self.__name__, self.__doc__ = name, f"{entry['doc']} ({entry['source']})."
         self._inputs = [(a["name"], tuple(a["shape"])) for a in entry["inputs"]]
         self._outputs = [tuple(a["shape"]) for a in entry["outputs"]]
+        self.shapes = {a["name"]: tuple(a["shape"]) for a in entry["inputs"] + entry["outputs"]}
         self._function = getattr(shared, name)
         self._function.restype = None
         self._function.argtypes = [*(ctypes.c_void_p if shape else ctypes.c_double for _, shape in self._inputs),

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.sparse import csr_array
 
-from ..kernels.libraries import kernels_of
+from ..kernels.libraries import kernels_of, of_library
 from ..kernels.mesh import Mesh
 from ..parts.body_shape import Shape
 from ..parts.plane_axes import PlaneAxes
@@ -74,6 +74,11 @@ class CableModel:
     def kernel(self, name: str) -> Kernel:
         """Return a kernel of its element."""
         return getattr(kernels_of(self.library), f"{self.element}_{name}")
+
+    def law_kernel(self, name: str) -> Kernel:
+        """Return a kernel of its law, the one that the engine takes."""
+        kind = of_library(self.library)[self.element]
+        return getattr(kernels_of(self.library), kind.law_kernel(self.element, self.law, name))
 
 
 @dataclass

@@ -48,13 +48,14 @@ def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) ->
 def internal(cable: CableModel, at: Instants) -> np.ndarray:
     """Return (T, elements, vectors, dim): elastic forces, those of Kelvin-Voigt and of mass damping."""
     e, v = element_coordinates(cable, at.q), element_coordinates(cable, at.v)
-    law = f"{cable.law}_"
     moving = cable.tau > 0 and np.any(v)
 
     def forces(length: float, e: np.ndarray, v: np.ndarray, A: np.ndarray) -> np.ndarray:
-        found = rows(cable.kernel(law + "elastic_force"), len(e), length, e, A)
+        found = rows(cable.law_kernel("elastic_force"), len(e), length, e, A)
         if moving:
-            found = found + rows(cable.kernel(law + "damping_force"), len(e), length, e, v, A, cable.tau)
+            damping = cable.law_kernel("damping_force")
+            of_damping = A[: damping.shapes["A"][0]]  # the law that it is taken from has the first constants alone
+            found = found + rows(damping, len(e), length, e, v, of_damping, cable.tau)
         return found
 
     if len(cable.A) == 1:

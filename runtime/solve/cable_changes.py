@@ -33,7 +33,7 @@ STEP = 1e-6
 
 def elastic_force(model: CableModel, A: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Return (coordinates,): dU/dq of a cable with constants A (1 or elements, n) of its elements, at q (n_q,)."""
-    kernel = model.kernel(f"{model.law}_elastic_force")
+    kernel = model.law_kernel("elastic_force")
     return assembled(model, kernel.rows(model.n_elements, *_given(model, A, q)))
 
 
@@ -100,7 +100,7 @@ def _slopes(model: CableModel) -> np.ndarray:
 def _stiffness_times(model: CableModel, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:
     """Return (coordinates,): d2U/dq2 times the chosen (vectors,) of the nodal vectors at q (n_q,)."""
     lengths, e, A = _given(model, model.A, q)
-    K = model.kernel(f"{model.law}_elastic_tangent").rows(model.n_elements, lengths, e, A)
+    K = model.law_kernel("elastic_tangent").rows(model.n_elements, lengths, e, A)
     along = np.where(np.tile(chosen, 2)[:, None], e, 0.0).reshape(len(e), -1)
     return assembled(model, np.einsum("eij,ej->ei", K, along).reshape(e.shape))
 
