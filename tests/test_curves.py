@@ -118,7 +118,7 @@ def test_a_rest_length_makes_it_taut_or_slack(ratio):
     assert_allclose(wire.rest_nodal_vectors[:, 1], as_drawn.nodal_vectors[:, 1], atol=1e-14)
     assert_allclose(wire.rest_nodal_vectors[-1, 0], ratio * np.array(arc(1.0)), atol=1e-14)
     assert_allclose(wire.point(wire.length), arc(1.0), atol=1e-14)
-    assert_allclose(wire.nearest_s(arc(0.5)), wire.length / 2, rtol=1e-9)
+    assert_allclose(wire.nearest_s(arc(0.5))[0], wire.length / 2, rtol=1e-9)
 
 
 def test_a_straight_cable_under_tension():

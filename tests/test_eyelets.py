@@ -4,6 +4,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from expectations import refused
+from funicular.kernels.element_line import ElementLine
 
 
 def cable_through(eyelet, element="cable8p", frame="point", **given):
@@ -66,3 +67,88 @@ def test_written_to_a_file_and_read_back():
 def test_refused(given, message):
     with refused(message):
         cable_through(True).slide(**{"along": "wire", "s": 0.5} | given)
+
+
+ROPE = {"element": "cable8p", "rest": "straight", "section": fu.Circle(radius=0.01),
+        "material": fu.Material(youngs_modulus=1e9, poisson_ratio=0, density=8000)}
+
+
+def hill(eye=(5, 1, 0), points=((0, 0, 0), (5, 1, 0), (10, 0, 0)), **slide):
+    """A rope over a hill, pinned at its ends, through an eyelet at its top."""
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    rope = scene.cable("rope", points=points, elements=10, **ROPE)
+    scene.pin(rope, s=0)
+    scene.pin(rope, s=rope.length)
+    scene.slide(eye, along=rope, name="eye", **slide)
+    return scene
+
+
+def test_the_nearest_place_is_taken_where_s_is_left_out():
+    """By symmetry, half of the length; an eyelet elsewhere finds its own."""
+    scene = hill()
+    assert abs(scene.slides["eye"].s - scene.cables["rope"].length / 2) < 1e-9
+    assert fu.Scene.from_toml(scene.to_toml()).slides["eye"].s == scene.slides["eye"].s
+    moved = scene.replace("eye", body=tuple(scene.cables["rope"].point(2.0)))
+    assert moved.slides["eye"].s == pytest.approx(2.0, abs=1e-9)
+    half, whole = hill(), hill(s=scene.cables["rope"].length / 2)
+    assert half.equilibrium()["eye.force"] == pytest.approx(whole.equilibrium()["eye.force"], rel=1e-9)
+
+
+def test_riders_find_their_place_too():
+    scene = hill()
+    scene.rigid_body("car", mass=1, inertia=(1, 1, 1), position=scene.cables["rope"].point(2.0) - (0.1, 0, 0))
+    assert scene.slide("car", along="rope", at=(0.1, 0, 0)).s == pytest.approx(2.0, abs=1e-9)
+    scene.rigid_body("drone", mass=1, inertia=(1, 1, 1), position=scene.cables["rope"].point(3.0))
+    assert scene.slide("drone", along="rope", drive=fu.Ramp(start=0, end=1, before=3, after=4)).s == 3.0
+    scene.rigid_body("crab", mass=1, inertia=(1, 1, 1), position=scene.cables["rope"].point(4.0))
+    faster = fu.Ramp(start=0, end=1, before=0, after=0.1)
+    assert scene.slide("crab", along="rope", velocity=faster).s == pytest.approx(4.0, abs=1e-9)
+    assert scene.run(duration=0.5, output_step=0.1)["crab_on_rope.s"][-1] > 4.005
+
+
+@pytest.mark.parametrize("off", [1e-6, 1e-5, 1e-3])
+def test_an_eyelet_off_its_place_along_the_cable_is_placed(off):
+    """The state at rest is that of the eyelet on its cable; the note says how far off it was."""
+    length = hill().cables["rope"].length
+    with pytest.warns(fu.FunicularWarning) as told:
+        scene = hill(s=length / 2 + off)
+    note, = (str(each.message) for each in told)
+    assert note == (f'slide "eye": the point of the ground at (5, 1, 0) m is {off:g} m away from cable "rope" at '
+                    f's = {length / 2 + off:.9g} m; it starts from the nearest place, s = {length / 2:.9g} m')
+    assert scene.equilibrium()["eye.force"] == pytest.approx(hill().equilibrium()["eye.force"], rel=1e-9)
+    run = scene.run(duration=0.01, output_step=0.01)
+    assert run.status == "completed" and run["eye.residual"].max() < 1e-12
+
+
+def test_an_eyelet_beside_its_cable_is_told_how_far():
+    with pytest.warns(fu.FunicularWarning, match=r"nearest place, s = 5\.13\d* m, 0\.001 m away; they are brought"):
+        scene = hill(eye=(5, 1.001, 0), s=hill().cables["rope"].length / 2 + 1e-4)
+    run = scene.run(duration=0.01, output_step=0.01)
+    assert run["eye.residual"].max() < 1e-9 and any("gaps of joints" in each for each in run.report["messages"])
+    line = ElementLine(None, "cable8p", scene.cables["rope"].mesh, scene.equilibrium()["rope.nodal_vectors"][:, :, :2])
+    assert line.point(float(scene.equilibrium()["eye.s"])) == pytest.approx([5, 1.001, 0], abs=1e-9)
+
+
+def test_a_place_that_is_not_clear_is_refused():
+    loop = [(0, 0, 0), (2, 0, 0), (3, 1, 0), (2, 2, 0), (1, 1, 0), (2, -0.1, 0), (4, 0, 0)]
+    scene = fu.Scene()
+    rope = scene.cable("rope", points=loop, elements=40, **ROPE)
+    crossing = crossing_of(rope)
+    with pytest.raises(fu.SceneError, match=r'"rope" passes the point of the ground .* at s = .* and .* m; give s'):
+        scene.slide(tuple(crossing), along=rope)
+    assert scene.slide(tuple(crossing), along=rope, s=rope.nearest_s(crossing).max()).s > 2
+    with pytest.raises(fu.SceneError, match=r"at s = \d\.\d* m, the nearest place; draw one through the other"):
+        scene.slide((2, 1, 0), along=rope, name="inside")
+
+
+def crossing_of(rope):
+    """Return the point at which a rope with one loop crosses itself: of arcs, those that end at one point."""
+    from scipy.optimize import fsolve
+
+    s = np.linspace(0, rope.length, 400)
+    points = rope.points_at(s)
+    apart = np.linalg.norm(points[:, None] - points[None], axis=-1) + 10.0 * (np.abs(s[:, None] - s[None]) < 1.0)
+    i, j = np.unravel_index(np.argmin(apart), apart.shape)
+    one, other = fsolve(lambda x: (rope.point(x[0]) - rope.point(x[1]))[:2], [s[i], s[j]], xtol=1e-14)
+    assert abs(one - other) > 1.0
+    return rope.point(one)

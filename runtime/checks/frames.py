@@ -84,7 +84,7 @@ def slide_axes(scene: SceneData, slide: Slide) -> JointAxes:
     `cable_frame` with the slide's up, at every s; with roll "free" the turn about z is free.
     """
     along = scene.cables[slide.along]
-    frame = (section_frame(along, slide.s) if slide.frame == "section" and draws_section(along)
-             else cable_frame(along, slide.s, slide.up))
+    frame = (section_frame(along, slide.arc_length) if slide.frame == "section" and draws_section(along)
+             else cable_frame(along, slide.arc_length, slide.up))
     order = np.eye(3)[:, [1, 2, 0]]
     return JointAxes(order, end_frame(scene, slide.rider).T @ frame @ order)

@@ -20,6 +20,8 @@ from .placement import cable_at, placed_attachment
 
 MOVABLE = 1e-3
 """A rider nearer to its cable than this part of the cable's length is moved onto it at the start."""
+UNLIKE = 10.0
+"""Times the least distance: a place of the cable farther from the rider's point than that is not the one meant."""
 
 
 def placed_slide(scene: SceneData, slide: Slide) -> Slide:
@@ -28,10 +30,12 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
         raise SceneError(slide.where, f'cable "{slide.body}" rides and needs the arc-length of its point',
                          f'give body=("{slide.body}", s)')
     rider = placed_attachment(scene, slide.rider, slide.where, "body: ")
-    cable = cable_at(scene, slide.along, slide.where, slide.s)
-    place = {"body_s": rider.s} if rider.at is None else {"body_s": None, "at": rider.at}
-    slide = slide.completed({"s": min(max(slide.s, 0.0), cable.length)} | place)
+    slide = slide.completed({"body_s": rider.s} if rider.at is None else {"body_s": None, "at": rider.at})
+    cable = cable_at(scene, slide.along, slide.where, 0.0)
     _check_rider(scene, slide)
+    s = _start(scene, slide, cable) if slide.s is None else slide.s
+    cable_at(scene, slide.along, slide.where, s)
+    slide = slide.completed({"s": min(max(s, 0.0), cable.length)})
     slide = _framed(scene, slide, cable)
     _check_drive(slide, cable)
     for name in ("at_start", "at_end"):
@@ -39,16 +43,32 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
         if isinstance(stop, Buffer) and stop.length > cable.length * (1 + EXACT):
             raise SceneError(slide.where, f"{name}: the buffer's length must not exceed that of cable "
                              f'"{cable.name}", {show(cable.length, "m")}, got {show(stop.length, "m")}')
-    _seat(scene, slide, cable)
-    return slide
+    return _seated(scene, slide, cable)
 
 
 def check_on_cable(scene: SceneData, slide: Slide) -> None:
-    """Raise SceneError where a rider is not on its cable any more, since others moved it."""
-    gap = _gap(scene, slide)
-    if gap > (EXACT if slide.body_s is None else MOVABLE) * scene.cables[slide.along].length:
+    """Raise SceneError where a body is not on its cable any more, since others moved it."""
+    gap, moved = _gap(scene, slide), isinstance(scene.bodies.get(slide.body or ""), RigidBody)
+    if gap > (EXACT if moved else MOVABLE) * scene.cables[slide.along].length:
         raise SceneError(slide.where, _away(scene, slide, gap),
                          f"{_carrier(slide)} is on more than one slide: it cannot be moved for each")
+
+
+def _start(scene: SceneData, slide: Slide, cable: Cable) -> float:
+    """Return the arc-length, in m, from which a slide starts that names none. Raises SceneError where it is not clear.
+    """
+    if slide.drive is not None:
+        return float(slide.drive.value(0.0))
+    point = point_of(scene, slide.rider)
+    places = cable.nearest_s(point)
+    gaps = np.linalg.norm(cable.points_at(places) - point, axis=-1)
+    if gaps[0] > MOVABLE * cable.length:
+        raise SceneError(slide.where, _away(scene, slide.completed({"s": places[0]}), gaps[0]) + ", the nearest place",
+                         "draw one through the other")
+    if len(near := places[gaps <= max(UNLIKE * gaps[0], EXACT * cable.length)]) > 1:
+        raise SceneError(slide.where, f'cable "{cable.name}" passes the point of {_carrier(slide)} at '
+                         f"{show(point, 'm')} at s = {' and '.join(f'{s:.6g}' for s in np.sort(near))} m", "give s")
+    return float(places[0])
 
 
 def _check_rider(scene: SceneData, slide: Slide) -> None:
@@ -62,8 +82,7 @@ def _check_rider(scene: SceneData, slide: Slide) -> None:
                              f'puts the same point of {_carrier(slide)} on cable "{slide.along}" as slide '
                              f'"{other.name}"', "leave one of them out, or give them different points "
                              + ("at" if slide.body_s is None else "body_s"))
-        both = slide.prescribed is not None and other.prescribed is not None
-        if both and slide.body in scene.bodies:
+        if slide.is_driven and other.is_driven and slide.body in scene.bodies:
             raise SceneError(slide.where, f'drives body "{slide.body}" along cable "{slide.along}", as slide '
                              f'"{other.name}" does', "leave one of the drives out")
 
@@ -93,7 +112,7 @@ def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
     if up is None:
         size = np.linalg.norm(scene.gravity)
         up = tuple((-np.array(scene.gravity) / size + 0.0).tolist()) if size > 0 else cable.height_direction
-    check_up(up, cable_frame(cable, slide.s)[:, 0], f'cable "{cable.name}"', slide.where)
+    check_up(up, cable_frame(cable, slide.arc_length)[:, 0], f'cable "{cable.name}"', slide.where)
     return slide.completed({"up": up})
 
 
@@ -104,41 +123,60 @@ def _check_drive(slide: Slide, cable: Cable) -> None:
     start = float(slide.drive.value(0.0))
     if not -EXACT * cable.length <= start <= (1 + EXACT) * cable.length:
         raise SceneError(slide.where, f"drive is {show(start, 'm')} at t = 0, off the cable, [0, {cable.length:.9g}] m",
-                         f"let it start at s = {show(slide.s, 'm')}")
-    if abs(start - slide.s) > EXACT * cable.length:
+                         f"let it start at s = {show(slide.arc_length, 'm')}")
+    if abs(start - slide.arc_length) > EXACT * cable.length:
         raise SceneError(slide.where, f"drive is {show(start, 'm')} at t = 0, but the slide starts at s = "
-                         f"{show(slide.s, 'm')}", "let both start at one place")
+                         f"{show(slide.arc_length, 'm')}", "let both start at one place")
 
 
 def _gap(scene: SceneData, slide: Slide) -> float:
     """Return the distance in m from the rider's point to its place on the cable."""
-    return float(np.linalg.norm(point_of(scene, slide.rider) - scene.cables[slide.along].point(slide.s)))
+    return float(np.linalg.norm(point_of(scene, slide.rider) - scene.cables[slide.along].point(slide.arc_length)))
 
 
 def _away(scene: SceneData, slide: Slide, gap: float) -> str:
     """Return a sentence on that distance."""
     rider = f'the point of {_carrier(slide)} at {show(point_of(scene, slide.rider), "m")}'
-    return f'{rider} is {gap:.6g} m away from cable "{slide.along}" at s = {slide.s:.9g} m'
+    return f'{rider} is {gap:.6g} m away from cable "{slide.along}" at s = {slide.arc_length:.9g} m'
 
 
-def _seat(scene: SceneData, slide: Slide, cable: Cable) -> None:
-    """Bring the rider's point onto the cable by a small move, refuse a large one."""
+def _seated(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
+    """Return the slide with its rider's point on the cable, brought there by a small move; refuse a large one."""
     gap = _gap(scene, slide)
     if gap <= EXACT * cable.length:
-        return
+        return slide
     where = _away(scene, slide, gap)
-    start = point_of(scene, slide.rider)
-    body, onto = scene.bodies.get(slide.body or ""), cable.point(slide.s) - start
+    point = point_of(scene, slide.rider)
+    body, onto = scene.bodies.get(slide.body or ""), cable.point(slide.arc_length) - point
     body = body if isinstance(body, RigidBody) else None
     if gap > MOVABLE * cable.length:
-        remedy = f"slide from s = {cable.nearest_s(start):.6g} m"
+        remedy = f"slide from s = {cable.nearest_s(point)[0]:.6g} m"
         if body is not None:
             remedy = f"start the body at position {show(body.position + onto, 'm')}, or {remedy}"
         raise SceneError(slide.where, where, remedy)
-    if body is None:
-        message = f"{slide.where}: {where}; they are brought together"
-    else:
+    if body is not None:
         scene.bodies[body.name] = body.model_copy(update={"position": tuple((body.position + onto).tolist())})
         message = f'{slide.where}: body "{body.name}" was moved by {gap:.6g} m onto cable "{cable.name}"'
+    else:
+        slide, nearest = _nearest(scene, slide, cable, gap)
+        message = f"{slide.where}: {where}{nearest}"
     scene.messages.append(message)
     warnings.warn(message, FunicularWarning, stacklevel=5)
+    return slide
+
+
+def _nearest(scene: SceneData, slide: Slide, cable: Cable, gap: float) -> tuple[Slide, str]:
+    """Return the slide at the place nearest to its rider's point, in m around the one that it names, and what to say
+    of the move; a point of another cable keeps the place, as cables give way.
+    """
+    together = "; they are brought together"
+    if slide.body_s is not None:
+        return slide, together
+    places = cable.nearest_s(point_of(scene, slide.rider))
+    s = float(places[np.argmin(np.abs(places - slide.arc_length))])
+    if not EXACT * cable.length < abs(s - slide.arc_length) <= UNLIKE * gap:
+        return slide, together
+    slide = slide.completed({"s": min(max(s, 0.0), cable.length)})
+    left = _gap(scene, slide)
+    near = f"; it starts from the nearest place, s = {slide.arc_length:.9g} m"
+    return slide, near if left <= EXACT * cable.length else f"{near}, {left:.6g} m away{together}"

@@ -20,7 +20,7 @@ import funicular as fu
 
 scene = fu.load_scene("cable_car")
 for slide in scene.slides.values():
-    print(f"{slide.name} rides {slide.along} from s = {slide.s:.2f} m, {'driven' if slide.prescribed else 'free'}")
+    print(f"{slide.name} rides {slide.along} from s = {slide.s:.2f} m, {'driven' if slide.is_driven else 'free'}")
 rope = scene.cables["track"]
 print(f"rope: {rope.length:.2f} m in {rope.elements} elements of {rope.element}")
 

@@ -114,7 +114,7 @@ class AttachmentBuilder:
     def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> AttachmentModel:
         """Return the cable's frame where a slide is."""
         section = slide.frame == "section" and draws_section(self.scene.cables[slide.along])
-        found = self._on_cable(slide.along, slide.s, self._axes(axes), slide.up, section)
+        found = self._on_cable(slide.along, slide.arc_length, self._axes(axes), slide.up, section)
         found.slide = number
         if not section and found.slopes[1] == UP and slide.roll == "free":
             found.slopes = (0, CARRIED)

@@ -28,19 +28,19 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
                 signal: Callable[[Signal], int]) -> SlideModel:
     """Make the model of a slide; signal(s): number of a signal."""
     along, dim = scene.cables[slide.along], scene.dim
-    axes = along.axes_at(slide.s)
-    node = along.node_at(slide.s)
+    axes = along.axes_at(slide.arc_length)
+    node = along.node_at(slide.arc_length)
     body = scene.bodies.get(slide.body or "")
     rider_is_rigid = isinstance(body, RigidBody)
-    element = along.element_at(slide.s)
+    element = along.element_at(slide.arc_length)
     if node is not None:  # on a node: the element that the rider moves into
         forward = body is None or np.dot(axes[0], body.velocity) >= 0
         element = node if forward else node - 1
     rider = attachments.model(slide.rider)
-    driven, ends, friction = slide.prescribed is not None, (slide.at_start, slide.at_end), slide.friction
+    driven, ends, friction = slide.is_driven, (slide.at_start, slide.at_end), slide.friction
     may_be_locked = (driven or (friction is not None and friction.sticks)
                      or any(isinstance(end, HardStop) for end in ends))
-    mass = rider.mass or attachments.model(Attachment(on=slide.along, s=slide.s)).mass  # the ground has none
+    mass = rider.mass or attachments.model(Attachment(on=slide.along, s=slide.arc_length)).mass  # the ground has none
     resists = friction is not None or any(isinstance(end, Buffer) for end in ends)
     return SlideModel(
         f"slide_{along.element}_{BODIES[dim][0] if rider_is_rigid else RIDERS[dim]}",
@@ -48,7 +48,7 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
         rider,
         rider_is_rigid,
         dim == 3 and not along.kind_of_element.director,
-        slide.s,
+        slide.arc_length,
         min(max(element, 0), along.elements - 1),
         axes[1],
         RESISTANCES[dim] * resists,

@@ -72,9 +72,9 @@ class Line:
         """Return the curvature vectors at arc-lengths s: zero."""
         return np.zeros((*np.shape(s), 3))
 
-    def nearest(self, point: Iterable[float]) -> float:
-        """Return the arc-length of the nearest point."""
-        return float(np.clip(np.dot(np.asarray(point) - self.start, self.tangent(0.0)), 0, self.length))
+    def nearest(self, point: Iterable[float]) -> np.ndarray:
+        """Return the arc-length (1,) of the nearest point."""
+        return np.clip([np.dot(np.asarray(point) - self.start, self.tangent(0.0))], 0, self.length)
 
 
 class Spline:
@@ -172,10 +172,14 @@ class Spline:
         square = np.sum(slope * slope, axis=-1, keepdims=True)
         return (second - slope * np.sum(slope * second, axis=-1, keepdims=True) / square) / square
 
-    def nearest(self, point: Iterable[float]) -> float:
-        """Return the arc-length of the nearest point, to a ten-thousandth of the length."""
+    def nearest(self, point: Iterable[float]) -> np.ndarray:
+        """Return the arc-lengths (n,) of the points whose distance to ``point`` is a local minimum, each to a
+        ten-thousandth of the length.
+        """
         s = np.linspace(0, self.length, 10001)
-        return float(s[np.argmin(np.linalg.norm(self.point(s) - np.asarray(point), axis=-1))])
+        distance = np.concatenate([[np.inf], np.linalg.norm(self.point(s) - np.asarray(point), axis=-1), [np.inf]])
+        return s[(distance[1:-1] < distance[:-2]) & (distance[1:-1] <= distance[2:])]
+
 
 
 def points(value: Any) -> tuple[tuple[float, ...], ...]:

@@ -21,7 +21,8 @@ from .validation import Name, Reference, Vector, direction, finite, one_of, xyz
 class Slide(Part):
     """A point of a body, of another cable or of the ground that rides the centreline of a cable.
 
-    body, along: what rides, and the cable; s: the arc-length where it starts, in m; at: the rider's point in body
+    body, along: what rides, and the cable; s: the arc-length where it starts, in m, if not given where ``drive``
+    starts, else the place of the drawn cable nearest to the rider's point; at: the rider's point in body
     axes, in m; of a cable that rides, ``body_s`` (m) instead, its point's arc-length: body=("link", 0.5) gives both.
     A point (x, y, z) of the ground as the body is an eyelet, through which the cable slides.
 
@@ -52,7 +53,7 @@ class Slide(Part):
     body: Annotated[Reference | None, GivenAs(attachment_schema("or the point [x, y, z] of the ground"))]
     body_s: Annotated[float, finite("m")] | None = None
     along: Reference
-    s: Annotated[float, finite("m")]
+    s: Annotated[float, finite("m")] | None = None
     at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
     name: Name = Field(default_factory=lambda data: f"{data['body'] or 'ground'}_on_{data['along']}")
     frame: Annotated[str, one_of(("point", "tangent", "section"))] = "point"
@@ -94,7 +95,7 @@ class Slide(Part):
         if self.drive is not None and self.velocity is not None:
             raise ValueError("drive and velocity are given", "give one of the two")
         for name in ("at_start", "at_end"):
-            if self.prescribed is not None and isinstance(getattr(self, name), Stop):
+            if self.is_driven and isinstance(getattr(self, name), Stop):
                 raise ValueError(f"is driven, and a stop {name} would act against that", "leave one of them out")
         return self
 
@@ -115,9 +116,20 @@ class Slide(Part):
         return Attachment(on=self.body, at=self.at) if self.body_s is None else Attachment(on=self.body, s=self.body_s)
 
     @property
+    def arc_length(self) -> float:
+        """Return s in m, of a slide that a scene has completed."""
+        assert self.s is not None, f"{self.where} is not complete"
+        return self.s
+
+    @property
+    def is_driven(self) -> bool:
+        """Return whether s follows a signal."""
+        return self.drive is not None or self.velocity is not None
+
+    @property
     def prescribed(self) -> Signal | None:
         """Return s over time in m, where it is driven."""
-        return self.drive if self.velocity is None else Integral(rate=self.velocity, start=self.s)
+        return self.drive if self.velocity is None else Integral(rate=self.velocity, start=self.arc_length)
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""

@@ -240,7 +240,7 @@ def regularised_decay(scene: SceneData, slide: Slide) -> float:
     creep.
     """
     friction = slide.friction
-    if friction is None or friction.sticks or slide.prescribed is not None:
+    if friction is None or friction.sticks or slide.is_driven:
         return 0.0
     return friction.sliding * float(np.linalg.norm(scene.gravity)) / friction.velocity
 

@@ -115,7 +115,7 @@ def _fewer(model: Model) -> str:
 
 
 def _without_friction(scene: SceneData) -> list[str]:
-    slides = [f'"{slide.name}"' for slide in scene.slides.values() if slide.friction and slide.prescribed is None]
+    slides = [f'"{slide.name}"' for slide in scene.slides.values() if slide.friction and not slide.is_driven]
     return [f"modes leave out the friction of slide{'s' * (len(slides) > 1)} {', '.join(slides)}"] if slides else []
 
 

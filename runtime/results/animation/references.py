@@ -38,7 +38,7 @@ def slide_reference(frames: Frames, name: str) -> np.ndarray | None:
     if not frames.has(f"{name}.s"):
         return None
     s = frames.value(f"{name}.s")
-    if slide.rider.on not in _riders(frames.scene) and (s != slide.s).any():
+    if slide.rider.on not in _riders(frames.scene) and (s != slide.arc_length).any():
         return None
     return moving(frames.scene.cables[slide.along], s, frames.reference(f"{slide.along}.nodal_vectors")[None])
 

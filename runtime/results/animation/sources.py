@@ -41,7 +41,7 @@ def drawn(scene: SceneData) -> dict[str, np.ndarray]:
         if isinstance(body, ModalBody):
             found |= {f"{name}.modal_coordinates": np.zeros(body.shape.n),
                       f"{name}.nodes": position + rotate(orientation, body.shape.nodes)}
-    return found | {f"{name}.s": np.array(slide.s) for name, slide in scene.slides.items()}
+    return found | {f"{name}.s": np.array(slide.arc_length) for name, slide in scene.slides.items()}
 
 
 def _frames(scene: SceneData, time: np.ndarray, found: Mapping[str, np.ndarray], load: np.ndarray,
