@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#define TOUCHING 1e-12 /* of the extent: distances at which points touch */
+#define TOUCHING 1e-12 /* of the largest length: distances at which points touch */
 #define ROUNDING 1e-11 /* of velocities, or of accelerations: less is none */
 #define SLOW 1e-3      /* of the velocity below which a point comes to rest: what parts more slowly stays, if it is pressed */
 #define STILL 1e-6     /* of the velocity below which a point comes to rest: the same */
@@ -49,7 +49,7 @@ static void collect(fu_run *run, const fu_coupling *first, fu_touching *t)
         fu_hard_flags *flags = fu_hard_flags_of(c, &run->now);
         fu_hard_row *row = &t->row[t->n];
         fu_hard_row_at(model, contact_of(c), &run->now, row);
-        if (flags->mode == FU_APART && c != first && row->g > TOUCHING * run->extent) continue;
+        if (flags->mode == FU_APART && c != first && row->g > TOUCHING * fu_largest_length(run)) continue;
         fu_keep_largest(&run->farthest[c->number], fu_hard_beyond(model, contact_of(c), &run->now)); /* it may part within the step */
         t->was[t->n] = flags->mode;
         t->stuck[t->n] = flags->sticks;

@@ -214,7 +214,7 @@ cdef class Translation(Arrays):
         cdef int k
         if field.kind == FU_INTEGER:
             (<int *>to)[0] = value
-        elif field.kind == FU_REAL:
+        elif field.kind == FU_REAL or field.kind == FU_LENGTH:
             (<double *>to)[0] = value
         elif field.kind == FU_INTEGERS:
             (<const int **>to)[0] = self._ints(value)

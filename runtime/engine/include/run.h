@@ -52,6 +52,7 @@ struct fu_run {
     long most_evaluations; /* after which fu_advance returns; 0: after any number */
     double duration, output_step, fixed_step, tol;
     double absolute_tol; /* m: error allowed beside tol times the motion; negative until the start: a part of the scene's size */
+    double lever; /* m: the longest length from which couplings compute positions; distances are rounded relative to it */
     const double *controlled; /* n_dof: model->weight of what tol is the error of, 0 of the rest */
     fu_state now, next;
     fu_system newton;
@@ -92,6 +93,12 @@ struct fu_run {
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 };
 
+/* Returns the largest length that distances in the scene are rounded relative to, m. */
+static inline double fu_largest_length(const fu_run *run)
+{
+    return fmax(run->lever, fmax(run->extent, run->motion));
+}
+
 /* Returns the coupling whose own a watch is; null where it is another one. */
 static inline const fu_coupling *fu_own_coupling(const fu_run *run, int watch)
 {
@@ -103,6 +110,7 @@ double fu_largest_motion(const fu_model *model, const double *from, const double
 double fu_controlled_motion(const fu_run *run);
 double fu_extent(const fu_model *model, const double *origin, const double *q);
 double fu_scene_size(const fu_model *model, const double *origin, const double *q);
+double fu_longest_lever(const fu_model *model);
 
 /* run/step_control.c */
 double fu_fit_step(double remaining, double want);

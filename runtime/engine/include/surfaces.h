@@ -67,11 +67,11 @@ extern const char *const fu_surface_shapes[], *const fu_surface_role[];
     FU_SURFACE_FIELD(structure, kernel, FU_KERNELS, fu_surface_role),                                                    \
     FU_SURFACE_FIELD(structure, shape, FU_WORD, fu_surface_shapes),                                                      \
     {"direction", FU_REAL, offsetof(structure, surface.direction), 3, sizeof(double), NULL},                            \
-    FU_SURFACE_FIELD(structure, round_radius, FU_REAL, 0), FU_SURFACE_FIELD(structure, half_length, FU_REAL, 0),         \
-    {"half_size", FU_REAL, offsetof(structure, surface.half_size), 3, sizeof(double), NULL},                            \
+    FU_SURFACE_FIELD(structure, round_radius, FU_LENGTH, 0), FU_SURFACE_FIELD(structure, half_length, FU_LENGTH, 0),     \
+    {"half_size", FU_LENGTH, offsetof(structure, surface.half_size), 3, sizeof(double), NULL},                          \
     FU_SURFACE_FIELD(structure, n_first, FU_INTEGER, 0), FU_SURFACE_FIELD(structure, n_second, FU_INTEGER, 0),           \
     FU_SURFACE_FIELD(structure, first, FU_REALS, 0), FU_SURFACE_FIELD(structure, second, FU_REALS, 0),                   \
-    FU_SURFACE_FIELD(structure, heights, FU_REALS, 0), FU_SURFACE_FIELD(structure, highest, FU_REAL, 0),                 \
+    FU_SURFACE_FIELD(structure, heights, FU_REALS, 0), FU_SURFACE_FIELD(structure, highest, FU_LENGTH, 0),               \
     FU_SURFACE_FIELD(structure, steepest, FU_REAL, 0), FU_SURFACE_FIELD(structure, bend, FU_REAL, 0),                    \
     {"on", FU_ATTACHMENT, offsetof(structure, surface.on), 1, sizeof(fu_attachment), NULL}
 

@@ -6,8 +6,8 @@
 
 #define MOST_PROJECTIONS 10 /* of positions, each of second order, before a state has no way back onto its joints */
 #define SHORT_STEP 1e-3     /* of the usual step: in a shorter one rounding over h^2 would rule accelerations */
-#define CLOSED 1e-13        /* of the extent: smaller gaps at the start are rounding */
-#define PROBED 1e-12        /* of the extent: gaps with which a probed mechanism is back on its joints */
+#define CLOSED 1e-13        /* of the largest length: smaller gaps at the start are rounding */
+#define PROBED 1e-12        /* of the largest length: gaps with which a probed mechanism is back on its joints */
 
 /* Notes that a coupling's own coordinates do not follow from the others; returns 1. */
 static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
@@ -58,7 +58,7 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
  * converged. */
 int fu_close(fu_run *run)
 {
-    const double rounding = CLOSED * run->extent;
+    const double rounding = CLOSED * fu_largest_length(run);
     if (fu_project_positions(run->model, &run->now, &run->accelerator, run->work)) return 1;
     run->closed = fu_size(run->model, run->work);
     return run->closed > rounding && close_gaps(run, &run->now, rounding);
@@ -93,7 +93,7 @@ int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     for (int i = 0; i < model->n_dof && size > most; ++i) run->work[i] *= most / size;
     fu_move(model, next->q, run->work);
     if (fu_follow(model, next)) return 1;
-    if (close_gaps(run, next, PROBED * run->extent)) return 1;
+    if (close_gaps(run, next, PROBED * fu_largest_length(run))) return 1;
     fu_gaps(model, next, left);
     return 0;
 }

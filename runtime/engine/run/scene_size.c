@@ -110,3 +110,28 @@ double fu_scene_size(const fu_model *model, const double *origin, const double *
     for (int d = 0; d < model->dim; ++d) largest = fmax(largest, high[d] - low[d]);
     return largest;
 }
+
+/* Returns the length of one item of a field, m: itself, or how far a point is from the origin of its axes. */
+static double length_of(int dim, const fu_field *field, const char *item)
+{
+    if (field->kind == FU_LENGTH) return fabs(*(const double *)item);
+    const fu_attachment *on = (const fu_attachment *)item;
+    const double *place = on->modal.x ? on->modal.x : on->u;
+    return sqrt(fu_dot(dim, place, place));
+}
+
+/* Returns the longest length from which the couplings compute positions, m: points in the axes of bodies and of the ground,
+ * sizes of shapes. A distance between two of them is rounded relative to it, however close to the origin the scene is. */
+double fu_longest_lever(const fu_model *model)
+{
+    double longest = 0.0;
+    for (int c = 0; c < model->n_couplings; ++c) {
+        const char *structure = (const char *)model->couplings[c];
+        for (const fu_field *field = model->couplings[c]->type->fields; field->name; ++field) {
+            if (field->kind != FU_LENGTH && field->kind != FU_ATTACHMENT) continue;
+            for (int i = 0; i < field->most; ++i)
+                longest = fmax(longest, length_of(model->dim, field, structure + field->offset + (size_t)i * field->stride));
+        }
+    }
+    return longest;
+}

@@ -37,6 +37,7 @@ int fu_prepare(fu_run *run)
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
     memset(run->first, 0, sizeof(double) * (size_t)model->n_q);
     run->extent = fu_extent(model, run->first, now->q);
+    run->lever = fu_longest_lever(model);
     run->size = fu_scene_size(model, run->first, now->q);
     return FU_RUNNING;
 }

@@ -15,7 +15,7 @@
 #define WORTH_WHILE 1.4    /* growth below which a step keeps its size, and its factored matrix */
 #define AFTER_FAILURE 0.5  /* of a step that could not be made: what the next is */
 #define ROUNDED 1e-9       /* of a number of steps: what rounding may add to it */
-#define ROUND_OFF 4e-16    /* of a coordinate: two units in its last place */
+#define ROUND_OFF 4e-16    /* of a coordinate or a lever: two units in its last place */
 #define NEWTON_PART 0.1    /* of what is allowed, times the step over the duration: what Newton may leave */
 #define NEWTON_MOST 1e-10  /* of the extent: what Newton may leave at most */
 #define FIXED_PART 1e-2    /* of the last step's error, times the step over the duration: what Newton may leave of a fixed step */
@@ -71,7 +71,7 @@ double fu_allowed_elsewhere(const fu_run *run)
 /* Sets the tolerances of a step: of its error, of Newton, and where rounding begins. Returns the first, m. */
 double fu_allow(fu_run *run, double h)
 {
-    run->round_off = ROUND_OFF * fmax(run->extent, run->motion);
+    run->round_off = ROUND_OFF * fu_largest_length(run);
     const double scale = fmax(run->motion, run->least_motion);
     /* Of what is allowed until t, relative to the motion until then, a step gets the part h/t: local errors then add up
      * to tol times the logarithm of the times at most. With h/duration the first instants, in which hardly anything has
