@@ -17,6 +17,7 @@ import typer
 
 from .errors import ConvergenceError, EndOfCableError, FunicularError, FunicularWarning
 from .scene_file import bundled_scenes, load_scene
+from .written_files import write_text
 
 if TYPE_CHECKING:
     from .results.run import Run
@@ -154,7 +155,7 @@ def choose(
                                   free=free, unequal=unequal)
         print(chosen)
         if output is not None:
-            output.write_text(chosen.scene.to_toml(), encoding="utf-8")
+            write_text(output, chosen.scene.to_toml())
             print(f"written: {output}")
 
 
@@ -333,7 +334,8 @@ def schema(
     if output is None:
         print(text, end="")
     else:
-        output.write_text(text, encoding="utf-8")
+        with _reported_without_traceback():
+            write_text(output, text)
 
 
 @app.command()

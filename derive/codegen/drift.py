@@ -8,6 +8,8 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from funicular.written_files import write_text
+
 from . import rendering as emit
 from . import sharing
 from .family import Family
@@ -48,7 +50,7 @@ def write(files: dict[str, str]) -> list[str]:
     folder().mkdir(exist_ok=True)
     changed = [name for name, text in files.items() if current(name) != text]
     for name in changed:
-        (folder() / name).write_text(files[name], encoding="utf-8", newline="\n")
+        write_text(folder() / name, files[name])
     return changed
 
 

@@ -7,6 +7,8 @@ import sys
 import time
 from pathlib import Path
 
+from funicular.written_files import write_text
+
 from ..catalogue import families
 from ..elements import ELEMENTS
 from .check import faults, measure
@@ -42,8 +44,7 @@ def build(name: str, folder: Path) -> tuple[list[Path], list[str]]:
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for file, text in texts.items():
-        paths.append(folder / file)
-        paths[-1].write_text(text, encoding="utf-8")
+        paths.append(write_text(folder / file, text))
     return paths, faults(made, *texts.values())
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,9 +14,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ..errors import ResultFileError
 from ..results.trajectories import unit
+from ..view.files import folder_for_pictures
 from ..view.plot import STYLE
+from ..written_files import write_text, write_whole
 from .bench import COUNTS, Bench, Row
 
 if TYPE_CHECKING:
@@ -91,18 +94,15 @@ def record(result: Bench, row: Row) -> dict[str, object]:
 def save(result: Bench, directory: Path, name: str) -> list[Path]:
     """Write ``name``.csv and ``name``.png into the directory; returns the paths. Raises ResultFileError."""
     table, picture = directory / f"{name}.csv", directory / f"{name}.png"
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        rows = [record(result, row) for row in result.rows]
-        with table.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, rows[0])
-            writer.writeheader()
-            writer.writerows(rows)
-        if not any(row.failed is None for row in result.rows):
-            return [table]
-        draw(result, picture)
-    except OSError as error:
-        raise ResultFileError(f"{directory}: the results cannot be written here: {error.strerror}") from error
+    folder_for_pictures(directory)
+    rows, text = [record(result, row) for row in result.rows], io.StringIO()
+    writer = csv.DictWriter(text, rows[0])
+    writer.writeheader()
+    writer.writerows(rows)
+    write_text(table, text.getvalue(), "the results")
+    if not any(row.failed is None for row in result.rows):
+        return [table]
+    write_whole(picture, partial(draw, result), "the results")
     return [table, picture]
 
 

@@ -11,8 +11,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import FunicularError, ResultFileError, near, shown_path
-from ..view.files import unwritable
+from ..errors import FunicularError, near
+from ..view.files import folder_for_pictures, save_figure
 from ..view.plot import STYLE, shape_figure
 from . import charts
 from .animation.clips import of_run
@@ -63,17 +63,10 @@ def save_plots(run: Recorded, directory: str | os.PathLike, prefix: str = "", fo
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    directory, written = Path(directory), []
-    if "\0" in os.fspath(directory):
-        raise ResultFileError(f"{shown_path(directory)}: the pictures cannot be written here: this is no path")
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        for name, draw in drawers(run, forces).items():
-            with rc_context(STYLE):
-                figure = Figure()
-                if draw(run, figure):
-                    written.append(directory / f"{prefix}{name}.png")
-                    figure.savefig(written[-1])
-    except OSError as error:
-        raise unwritable(directory, error) from error
+    directory, written = folder_for_pictures(directory), []
+    for name, draw in drawers(run, forces).items():
+        with rc_context(STYLE):
+            figure = Figure()
+            if draw(run, figure):
+                written.append(save_figure(figure, directory / f"{prefix}{name}.png"))
     return written

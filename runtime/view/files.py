@@ -13,8 +13,8 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ResultFileError, shown_path
 from ..notebook import in_notebook
+from ..written_files import unwritable, write_whole
 from .plot import STYLE
 
 if TYPE_CHECKING:
@@ -24,10 +24,18 @@ SMALL = 80
 """Dots an inch of a picture in a notebook's table."""
 
 
-def unwritable(path: str | os.PathLike, error: OSError | ValueError) -> ResultFileError:
-    """Return what is raised where a picture cannot be written."""
-    reason = getattr(error, "strerror", None) or str(error) or "this is no path"
-    return ResultFileError(f"{shown_path(path)}: the pictures cannot be written here: {reason}")
+PICTURES = "the pictures"
+"""What is written, in messages."""
+
+
+def folder_for_pictures(path: str | os.PathLike) -> Path:
+    """Return a folder, which is made where there is none. Raises ResultFileError."""
+    folder = Path(path)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        raise unwritable(path, PICTURES, error) from error
+    return folder
 
 
 def new_figure() -> Figure:
@@ -45,12 +53,8 @@ def save_figure(figure: Figure, path: str | os.PathLike) -> Path:
     """Write a figure to a file of the kind that its name ends in, and return its path. Raises ResultFileError."""
     from matplotlib import rc_context
 
-    try:
-        with rc_context(STYLE):
-            figure.savefig(os.fspath(path))
-    except (OSError, ValueError) as error:
-        raise unwritable(path, error) from error
-    return Path(path)
+    with rc_context(STYLE):
+        return write_whole(path, figure.savefig, PICTURES)
 
 
 def image_tag(figure: Figure) -> str:

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ResultFileError, shown_path
+from ..written_files import write_text
 from .animation import Animation, BodyShape, CableShape, Clip, Mark, Segment
 from .decimation import decimated
 from .page_arrays import FLOAT_BITS, Packer, power_of_two
@@ -32,14 +32,7 @@ VALUE_STEPS = 2**14  # steps of a quantity up to its largest value
 
 def write_page(animation: Animation, path: str | os.PathLike) -> Path:
     """Write the page of an animation to ``path`` and return that. Raises ResultFileError."""
-    path = Path(path)
-    text = page(animation)
-    try:
-        path.write_text(text, encoding="utf-8", newline="\n")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "this is no path"
-        raise ResultFileError(f"{shown_path(path)}: the page cannot be written here: {reason}") from error
-    return path
+    return write_text(path, page(animation), "the page")
 
 
 def page(animation: Animation) -> str:

@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import FunicularError, shown_path
+from ..written_files import write_whole
 from .animation import Animation, Clip
 from .extras import extra
-from .files import unwritable
+from .files import PICTURES
 from .film import Film, period
 from .plot import STYLE
 
@@ -48,11 +49,7 @@ def write_video(animation: Animation, path: str | os.PathLike, speed: float | No
     with rc_context(settings):
         pictures = chain.from_iterable(Film(animation, clips, colour, pace).pictures(times)
                                        for clips, (times, pace) in zip(together, timings, strict=True))
-        try:
-            write(path, pictures)
-        except (OSError, ValueError) as error:
-            raise unwritable(path, error) from error
-    return path
+        return write_whole(path, lambda part: write(part, pictures), PICTURES)
 
 
 def film_times(clips: tuple[Clip, ...], speed: float | None) -> tuple[np.ndarray, float]:
@@ -96,3 +93,22 @@ def _write_mp4(path: Path, pictures: Iterator[np.ndarray]) -> None:
             writer.send(picture.tobytes())
     finally:
         writer.close()
+    if not _is_whole(path):  # ffmpeg tells nobody that the disk was full
+        raise OSError(0, "the film was cut short; make room")
+
+
+def _is_whole(path: Path) -> bool:
+    """Return whether an MP4 has all its boxes (ISO/IEC 14496-12, 4.2): the index of the film comes last."""
+    kinds, left = set(), path.stat().st_size
+    with path.open("rb") as file:
+        while left >= 8:
+            size, kind = int.from_bytes(file.read(4), "big"), file.read(4)
+            head = 8
+            if size == 1:
+                size, head = int.from_bytes(file.read(8), "big"), 16
+            if not head <= size <= left:
+                return False
+            kinds.add(kind)
+            left -= size
+            file.seek(size - head, os.SEEK_CUR)
+    return left == 0 and {b"moov", b"mdat"} <= kinds

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
@@ -10,9 +11,10 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from ..errors import FunicularError
+from ..written_files import write_text, write_whole
 from .animation import Animation, Clip
 from .extras import extra
-from .files import unwritable
+from .files import PICTURES, folder_for_pictures
 from .placed import placed_surface
 
 
@@ -24,22 +26,18 @@ def write_vtk(animation: Animation, folder: str | os.PathLike) -> Path:
     they are of, cables first. Raises ResultFileError; FunicularError.
     """
     meshio = extra("meshio", "vtk")
-    folder = Path(folder)
+    folder = folder_for_pictures(folder)
     named = folder / f"{folder.name or 'frames'}.pvd"
     lines = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "<Collection>"]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for part, clip in enumerate(animation.clips):
-            digits = len(str(len(clip.time) - 1))
-            for frame, time in enumerate(clip.time):
-                file = f"part{part}_frame{frame:0{digits}}.vtu"
-                points, cells, data = frame_arrays(clip, frame)
-                meshio.write(folder / file, meshio.Mesh(points, cells, point_data=data))
-                lines.append(f'<DataSet timestep="{float(time)!r}" group="" part="{part}" file={quoteattr(file)}/>')
-        named.write_text("\n".join([*lines, "</Collection>", "</VTKFile>", ""]), encoding="utf-8")
-    except (OSError, ValueError) as error:
-        raise unwritable(folder, error) from error
-    return named
+    for part, clip in enumerate(animation.clips):
+        digits = len(str(len(clip.time) - 1))
+        for frame, time in enumerate(clip.time):
+            file = f"part{part}_frame{frame:0{digits}}.vtu"
+            points, cells, data = frame_arrays(clip, frame)
+            mesh = meshio.Mesh(points, cells, point_data=data)
+            write_whole(folder / file, partial(meshio.write, mesh=mesh), PICTURES)
+            lines.append(f'<DataSet timestep="{float(time)!r}" group="" part="{part}" file={quoteattr(file)}/>')
+    return write_text(named, "\n".join([*lines, "</Collection>", "</VTKFile>", ""]), PICTURES)
 
 
 def frame_arrays(clip: Clip, frame: int) -> tuple[np.ndarray, list[tuple[str, np.ndarray]], dict[str, np.ndarray]]:
