@@ -1,13 +1,18 @@
-"""Velocities that jump, in words: of motions that start at another rate than their cable, or whose rate jumps later."""
+"""Velocities that jump, in words: of motions that start at another rate than their cable, of driven slides that start
+at another rate than their rider, and of both where the rate jumps later.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 import numpy as np
 
+from ..parts.attachment import Attachment
+from ..parts.locations import velocity_of
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal
+from ..parts.slide import Slide
 from ..parts.support import Motion
 from ..parts.validation import show
 
@@ -15,30 +20,64 @@ SMALL = 1e-4
 """Of the largest rate in the run: a jump that is smaller sends a shock that is nothing beside the motion."""
 SAMPLES = 200
 """Instants of the run at which rates are looked at."""
+VELOCITIES = "velocity", "angular_velocity", "nodal_velocity"
+"""Results that say how fast bodies and cables are."""
 
 
-def velocity_jumps(scene: SceneData, duration: float) -> list[str]:
-    """Return a message for each motion whose velocity jumps as the run starts, or within its duration, s."""
+def velocity_jumps(scene: SceneData, duration: float, given: Container[str] = ()) -> list[str]:
+    """Return a message for each motion and driven slide whose velocity jumps as the run starts, or within its duration,
+    s.
+
+    given: names of results that the run starts with, which are not as drawn.
+    """
     found = []
     for motion in scene.motions:
+        where = f"{motion.where} at s = {show(motion.s, 'm')}"
         for what, signal, own, unit in _rates(scene, motion):
             rates = signal.value(np.linspace(0, duration, SAMPLES), 1)
-            given, least = rates[0], SMALL * max(np.abs(rates).max(), abs(own))
-            if abs(given - own) > least:
+            start, least = rates[0], SMALL * max(np.abs(rates).max(), abs(own))
+            if abs(start - own) > least:
                 found.append(
-                    f"{motion.where} at s = {show(motion.s, 'm')}: {what} starts at {show(given, unit)}, but its node "
+                    f"{where}: {what} starts at {show(start, unit)}, but its node "
                     f"at {show(own, unit)}; this jump sends a shock along the cable, which depends on the mesh. Let "
                     "the signal start at the node's rate (a Ramp starts at 0), or give the cable that velocity")
-            jumps = [(t, jump) for t, jump in jumps_of_rate(signal) if 0 < t < duration and abs(jump) > least]
-            if jumps:
-                t, jump = jumps[0]
-                times = f", and at {len(jumps) - 1} later times" if len(jumps) > 1 else ""
-                found.append(
-                    f"{motion.where} at s = {show(motion.s, 'm')}: the rate of {what} jumps by {show(jump, unit)} at "
-                    f"t = {show(t, 's')}{times}; each jump sends a shock along the cable, which depends on the mesh. "
-                    "Take a signal of a continuous rate: a Ramp, or between its ends a TableSignal, "
-                    'interpolation="cubic"')
+            found += _later(where, f"the rate of {what}", signal, unit, duration, least)
+    for slide in scene.slides.values():
+        if slide.prescribed is not None:
+            found += _of_slide(scene, slide, slide.prescribed, duration, given)
     return found
+
+
+def _of_slide(scene: SceneData, slide: Slide, signal: Signal, duration: float, given: Container[str]) -> Iterator[str]:
+    """Yield a message where a driven slide starts at another rate than its rider, and where its rate jumps later."""
+    cable = scene.cables[slide.along]
+    slope = cable.slope(slide.arc_length)
+    relative = velocity_of(scene, slide.rider) - velocity_of(scene, Attachment(on=slide.along, s=slide.s))
+    own = float(relative @ slope / (slope @ slope))
+    rates = signal.value(np.linspace(0, duration, SAMPLES), 1)
+    least = SMALL * max(np.abs(rates).max(), abs(own))
+    as_drawn = not any(f"{part}.{name}" in given for part in (slide.body, slide.along) for name in VELOCITIES)
+    if as_drawn and abs(jump := float(rates[0]) - own) > least:
+        body = scene.bodies.get(slide.body or "")
+        rider = "the eyelet" if slide.body is None else f'{"cable" if body is None else "body"} "{slide.body}"'
+        begin = "Let"
+        if body is not None:
+            begin = f"Start {rider} at velocity {show(body.velocity + jump * slope, 'm/s')}, or let"
+        yield (f'{slide.where}: moves along cable "{slide.along}" at {show(float(rates[0]), "m/s")} from t = 0, but '
+               f"{rider} is drawn at {show(own, 'm/s')} along it; this jump is a blow to rider and cable, which "
+               f"depends on the mesh. {begin} the rate begin at {show(own, 'm/s')}, as that of a Ramp does")
+    yield from _later(slide.where, "the rate of s", signal, "m/s", duration, least)
+
+
+def _later(where: str, what: str, signal: Signal, unit: str, duration: float, least: float) -> Iterator[str]:
+    """Yield a message where a rate jumps by more than the least within the duration, s."""
+    jumps = [(t, jump) for t, jump in jumps_of_rate(signal) if 0 < t < duration and abs(jump) > least]
+    if jumps:
+        t, jump = jumps[0]
+        times = f", and at {len(jumps) - 1} later times" if len(jumps) > 1 else ""
+        yield (f"{where}: {what} jumps by {show(jump, unit)} at t = {show(t, 's')}{times}; each jump sends a shock "
+               "along the cable, which depends on the mesh. Take a signal of a continuous rate: a Ramp, or between its "
+               'ends a TableSignal, interpolation="cubic"')
 
 
 def jumps_of_rate(signal: Signal) -> list[tuple[float, float]]:

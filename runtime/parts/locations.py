@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..rotations import cross
 from .attachment import Attachment
 from .scene_data import SceneData
 from .support import Support, Tie
@@ -51,3 +52,15 @@ def point_of(scene: SceneData, end: Attachment) -> np.ndarray:
     if end.on in scene.bodies:
         return scene.bodies[end.on].point(end.point)
     return scene.cables[end.on].point(end.arc_length)
+
+
+def velocity_of(scene: SceneData, end: Attachment) -> np.ndarray:
+    """Return (3,): the velocity, in m/s, with which a complete end is drawn."""
+    if end.on is None:
+        return np.zeros(3)
+    if end.on in scene.bodies:
+        body = scene.bodies[end.on]
+        turning, arm = body.axes @ body.angular_velocity, body.point(end.point) - body.frame[0]
+        return body.velocity + cross(turning, arm)
+    cable = scene.cables[end.on]
+    return cable.velocity + cross(cable.angular_velocity, cable.point(end.arc_length) - cable.point(0.0))

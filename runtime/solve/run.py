@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 import warnings
+from collections.abc import Container
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -110,7 +111,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         elif stream is not None:
             stream.settled()
     messages += run.changed.gaps + _warned([*_broken_velocities(run.model, run.changed.velocities),
-                                            *velocity_jumps(scene.as_drawn, settings.duration),
+                                            *velocity_jumps(scene.as_drawn, settings.duration, _given(initial)),
                                             *unresolved(scene.as_drawn, settings), *unseen_contact(scene)])
     started, status = run.began - begin - set_up, run.status
     if status in (None, "running"):
@@ -131,6 +132,12 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     for message in messages:
         LOG.info("run: %s", message)
     return Simulation(run.model, run.engine, run.watcher, status, messages, reason, set_up, started, noted, total, cpu)
+
+
+def _given(initial: Start | None) -> Container[str]:
+    """Return the names of results that a state to start from is made of; none of one at rest, which keeps velocities.
+    """
+    return initial if isinstance(initial, Container) else ()
 
 
 def _warned(messages: list[str]) -> list[str]:
