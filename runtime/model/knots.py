@@ -31,16 +31,18 @@ ONE_INSTANT = 1e-12
 def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tuple[np.ndarray, np.ndarray]:
     """Return the times of the knots that count, in s, increasing, and what jumps at each.
 
-    turns: whether the instants at which tables turn round are among them.
+    turns: whether the instants at which tables turn round are among them. A knot at the end of the run is one of them:
+    the last row is of the instant before it.
     """
     driving, inertial = driving_signals(model), {drag.signal for drag in model.drags if drag.has_inertia}
     found = [each for number, signal in enumerate(model.signals)
-             for each in [*_of_signal(signal, number in driving, number in inertial, tol),
-                          *(_turns(signal.breaks, signal.coefficients[:, 0], tol) if turns else [])]
-             if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
+             for each in _of_signal(signal, number in driving, number in inertial, tol)]
     if model.drags:
-        found += [each for each in _of_tables(model)
-                  if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
+        found += _of_tables(model)
+    if turns:
+        found += [each for signal in model.signals for each in _turns(signal.breaks, signal.coefficients[:, 0], tol)
+                  if each[0] < (1 - ONE_INSTANT) * duration]
+    found = [each for each in found if ONE_INSTANT < each[0] / duration < 1 + ONE_INSTANT]
     times: list[float] = []
     jumps: list[float] = []
     for time, jump in sorted(found):

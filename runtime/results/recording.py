@@ -23,7 +23,7 @@ from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..solve.diagnosis import stopped
 from ..solve.meeting_points import MeetingPoints
-from ..solve.run import Simulation
+from ..solve.run import FAILED, Simulation
 
 
 @dataclass
@@ -111,7 +111,7 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
     }
     return Recording(
         **vars(rows),
-        status="no_convergence" if status in ("singular", "unstable") else status,
+        status="no_convergence" if status in FAILED else status,
         message=_message(simulation, scene, settings),
         report=report,
     )
@@ -141,7 +141,7 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
                 f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; '
                 "what was computed up to there is kept"
             )
-        case "no_convergence" | "singular" | "unstable":
+        case _ if status in FAILED:
             now, q, *_ = engine.now()
             points = MeetingPoints(scene, model)
             points.see({"time": np.array([now]), "q": q[None]})

@@ -41,6 +41,9 @@ from .unseen_errors import unseen_errors
 
 LOG = logging.getLogger(__name__)
 
+FAILED = "no_convergence", "singular", "unstable"
+"""How runs end that could not go on: their message says why, and no note says what their results are worth."""
+
 MOST_OUTPUT = 4e9
 """Bytes of results that a run may keep in memory."""
 
@@ -122,7 +125,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     cpu, ended = clock() - cpu, time.perf_counter()
     run.row_notes.see(run.engine)
     messages += _controlled_alone(run.engine, settings)
-    if status == "completed":
+    if status not in FAILED:
         grows = [] if settings.estimate else [*sensitive(run.engine, settings, run.row_notes.sensitivity),
                                               *unseen_errors(scene, run.engine, settings, run.row_notes.turns)]
         messages += _warned([*notes(run.engine, settings), *trapped(scene, run.engine), *run.row_notes.notes(), *grows])

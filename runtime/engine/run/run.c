@@ -5,6 +5,12 @@
 
 #define BEFORE 1e-15 /* of a knot: a step ends so much before it, where the signal is still that of the step */
 
+/* Returns whether the run ends on a knot: its last row is of the instant before. */
+static int ends_on(const fu_run *run, const fu_knot *knot)
+{
+    return knot->t >= run->duration * (1.0 - FU_AT_ONCE);
+}
+
 /* Steps once towards an output time, or towards the first knot on the way there; returns a status. */
 static int approach(fu_run *run, double target)
 {
@@ -12,6 +18,7 @@ static int approach(fu_run *run, double target)
     if (!knot) return fu_step_towards(run, target);
     const int status = fu_step_towards(run, knot->t * (1.0 - BEFORE));
     if ((status && status != FU_EVENT) || run->now.t < knot->t - FU_AT_ONCE * run->duration) return status;
+    if (ends_on(run, knot)) return status;
     const int passed = fu_pass_knot(run, knot, status == FU_EVENT);
     return passed ? passed : status;
 }
@@ -24,6 +31,20 @@ int fu_has_worked(const fu_run *run)
     return run->most_evaluations && (done->evaluations ? done->evaluations : done->newton_iterations) >= run->most_evaluations;
 }
 
+/* Records the row of an output time, at which signals are those of the step that ended there; returns a status. */
+static int record(fu_run *run, double target)
+{
+    fu_record *r = &run->record;
+    if (run->n_knots && target == run->duration && ends_on(run, &run->knots[run->n_knots - 1])) {
+        run->now.t = target * (1.0 - BEFORE);
+        const int recorded = fu_record_row(run);
+        if (!recorded) run->now.t = run->recorded = r->time[r->n - 1 - r->first] = target;
+        return recorded;
+    }
+    run->now.t = target;
+    return fu_record_row(run);
+}
+
 static int advance(fu_run *run, double seconds)
 {
     const double until = fu_clock() + seconds;
@@ -32,8 +53,7 @@ static int advance(fu_run *run, double seconds)
         double target = run->record.n * run->output_step;
         if (target > run->duration * (1.0 - FU_AT_ONCE)) target = run->duration;
         if (run->now.t >= target - FU_AT_ONCE * run->duration) {
-            run->now.t = target;
-            const int recorded = fu_record_row(run);
+            const int recorded = record(run, target);
             if (recorded) return recorded;
             if (target == run->duration) return FU_DONE;
             if (run->record.n == run->record.pause || fu_clock() > until) return FU_RUNNING;
