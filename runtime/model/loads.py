@@ -39,6 +39,10 @@ class SignalModel:
         """Return the signal, or a derivative of it, at the times ``time``, s."""
         return value_at(self, self.breaks, self.coefficients, time, derivative)
 
+    def at(self, time: float) -> float:
+        """Return the signal at a time in s."""
+        return float(self.value(np.asarray(time)))
+
 
 @dataclass
 class DeadLoadModel(CouplingModel):

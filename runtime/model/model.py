@@ -218,6 +218,15 @@ class Model:
         return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags, *self.crossings,
                 *self.contacts, *self.hard_contacts]
 
+    def prescribed_at(self, t: float) -> dict[int, float]:
+        """Return what motions make of their dofs at the time t in s, by dof."""
+        found: dict[int, float] = {}
+        for m in self.motions:
+            f = self.signals[m.signal].at(t)
+            value = m.base + m.linear * f + m.cosine * np.cos(f) + m.sine * np.sin(f)
+            found[m.dof] = found.get(m.dof, 0.0) + value
+        return found
+
     def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return results of a part by quantity, in three dimensions, along the ground's axes."""
         axes = self.plane_axes

@@ -142,8 +142,8 @@ class Motion(Support):
 
     displacement: three signals in m, from where the node is drawn, or numbers, 0 for a direction that is held; None, or
     "free", leaves a direction free. Without it the position stays free. rotation: an axis and a signal in rad, by which
-    the section turns from where it is drawn (of cables r_x, whose length is held, too; of beams r_y and r_z); without
-    it the section stays free.
+    the section turns from where it is drawn, by any number of turns (of cables r_x, whose length is held, too; of beams
+    r_y and r_z); without it the section stays free.
     """
 
     kind: ClassVar[str] = "motion"

@@ -85,7 +85,7 @@ def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
     engine = Engine(model)
     drop_redundant_rows(model, engine)
     if about is not None:
-        about.check_supports(model)
+        about.check_supports(model, scene)
     engine.set_state(0.0, **({} if about is None else about.static_state))
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]

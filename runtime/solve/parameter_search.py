@@ -34,6 +34,7 @@ from .rest_state import RestState
 from .snapshots import Reader, Snapshots
 from .stability import Stability
 from .static_problem import StaticProblem, StaticState, fitted
+from .turned_rest import turned_rest
 
 STEP = 1e-6
 """Of a parameter, to either side: where the residual is differenced; of the scene's size: where values are."""
@@ -222,12 +223,14 @@ class ParameterSearch(Generic[S]):
         """Return the state of rest beside another one, or why there is none, in words."""
         p = at.p + step
         try:
-            problem = StaticProblem(self.laid(self.parameters.scene_at(p)), self.settings)
+            problem = StaticProblem(self.laid(self.parameters.scene_at(p)), self.settings, at.problem.turns.reached)
         except SceneError as error:
             return str(error)
         problem.iterations = at.problem.iterations
         problem.restore(fitted(at.problem.keep(), problem.model))
-        problem.move(rates @ step)
-        if not problem.newton():
+        is_near = problem.turns.fraction == 1.0
+        if is_near:
+            problem.move(rates @ step)
+        if not (problem.newton() if is_near else turned_rest(problem) is not None):
             return "no state of rest was found there"
         return AtRest(problem, p, self.reader.values(problem))

@@ -33,6 +33,7 @@ from .rest_state import Relaxation, RestState
 from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem
 from .surface_ends import beyond_ends
+from .turned_rest import turned_rest
 
 LOG = logging.getLogger(__name__)
 
@@ -134,7 +135,7 @@ class _Motion:
         energy = float(rows["elastic"][0] + rows["potential"][0])
         for load in self.model.loads:
             if isinstance(load, DeadLoadModel):
-                scale = 1.0 if load.signal < 0 else float(self.model.signals[load.signal].value(np.zeros(1))[0])
+                scale = 1.0 if load.signal < 0 else self.model.signals[load.signal].at(0.0)
                 energy -= scale * float(np.dot(load.values, q[load.dofs]))
         return energy
 
@@ -197,12 +198,27 @@ class _Search(Generic[S]):
 
     def __init__(self, scene: SceneData, settings: RelaxationSettings, made: type[S]):
         self.settings, self.made = settings, made
-        self.problem = StaticProblem(scene, EquilibriumSettings())
+        self.problem = StaticProblem(scene, EquilibriumSettings(), {})
         self.motion = _Motion(scene, self.problem)
+        if self.problem.turns.fraction < 1.0:
+            self._turn()
         self.sticking = [n for n, slide in scene.slides.items() if slide.friction is not None]
         self.last: _Place | None = None
         self.near, self.pushes, self.force = NEAR, 0, np.zeros(0)
         self.branch: dict | None = None
+
+    def _turn(self) -> None:
+        """Begin where prescribed angles have been followed, without loads."""
+        problem = self.problem
+        problem.load(0.0)
+        found = turned_rest(problem)
+        problem.load(1.0)
+        if found is None:
+            why = f"{problem.turns}; {problem.turns.lost}" if problem.turns.lost else str(problem.turns)
+            raise EquilibriumError(f"the scene did not come to rest without loads, where the motion begins: {why}",
+                                   self.made.of(problem, stability(problem)), 0.0)
+        turned = problem.keep()
+        self.motion.put(turned["q"], turned["s"])
 
     def found(self) -> S:
         """Return the state at rest, or raise EquilibriumError."""

@@ -14,13 +14,17 @@ from ..named_arrays import NamedArrays
 from ..parts.paths import path_of, value_at
 from ..parts.plane import called
 from ..parts.scene_data import SceneData
+from ..parts.validation import show
 from .stability import Stability
 from .static_problem import StaticState
+from .turns import prescribed_angles
 
 SAME = 1e-12
 """Of an adjusted value: what rounding may change."""
 MOVED = 1e-6
 """Of the scene's size: what is taken for the same place."""
+
+OTHER_VALUE = "let its signal start at the value of the state, or take the equilibrium of this scene"
 
 
 def in_loads(fraction: float) -> str:
@@ -110,6 +114,7 @@ class RestState(NamedArrays):
     load_fraction of all loads, in their order, this one last: what a curve of load and displacement is drawn from;
     critical_points of that path; gravity_fraction: how much of gravity is on, all of it where scale_gravity is off;
     messages: what the search passed, adjusted or left out; relaxation: how `Scene.relax` came to the state, else None;
+    turned: the angles of motions and driven joints that it has, whole turns counted, in rad by label;
     adjustment: what the search changed in the scene for given values of the state, else None; ``scene`` is the one with
     the values found, then.
     """
@@ -131,6 +136,7 @@ class RestState(NamedArrays):
     critical_points: list[CriticalPoint] = field(default_factory=list)
     messages: list[str] = field(default_factory=list)
     layout: dict[str, list] = field(default_factory=dict, repr=False)
+    turned: dict[str, float] = field(default_factory=dict, repr=False)
     relaxation: Relaxation | None = None
     adjustment: Adjustment | None = None
 
@@ -146,7 +152,7 @@ class RestState(NamedArrays):
                     problem.fraction if problem.settings.scale_gravity else 1.0,
                     {kind: engine.static_outputs(kind) for kind in AT_REST}, heading)
         state.quantities = state._quantities()
-        state.path, state.layout = [state], layout(scene)
+        state.path, state.layout, state.turned = [state], layout(scene), problem.turns.reached
         return state
 
     def __repr__(self) -> str:
@@ -215,9 +221,9 @@ class RestState(NamedArrays):
                 raise SceneError("scene", f"the state to start from is at rest with {name} = {value:.9g}, to which it "
                                  f"was adjusted, here it is {here}", "take the state's own scene: rest.scene")
 
-    def check_supports(self, model: Model) -> None:
-        """Raise SceneError where supports or ends of joints are drawn elsewhere in a freshly built model than they are
-        in this state.
+    def check_supports(self, model: Model, scene: SceneData) -> None:
+        """Raise SceneError where supports or ends of joints are elsewhere in a freshly built model of a scene than they
+        are in this state, drawn there or prescribed to be there at t = 0.
         """
         q, size = self.static_state["q"][None], max(float(np.abs(model.q).max(initial=0.0)), 1.0)
         for was, joint in zip(self.model.joints, model.joints, strict=True):
@@ -239,10 +245,23 @@ class RestState(NamedArrays):
             if np.max(moved) > MOVED * max(cable.mesh.total for cable in model.cables):
                 raise SceneError("scene", f"the state to start from has a support {np.max(moved):.3g} m from where it "
                                  "is here", "take an equilibrium of this scene")
+        self._check_prescribed(model, scene)
+
+    def _check_prescribed(self, model: Model, scene: SceneData) -> None:
+        """Raise SceneError where motions or angles of joints prescribe other values at t = 0 than the state has."""
+        for label, angle in prescribed_angles(scene, model).items():
+            if abs(angle - self.turned.get(label, angle)) > MOVED * (1 + abs(angle)):
+                raise SceneError("scene", f'the angle of "{label}" is {show(angle, "rad")} at t = 0, but the state to '
+                                 f'start from has {show(self.turned[label], "rad")}', OTHER_VALUE)
+        moved = {dof: abs(value - self.static_state["q"][dof]) * model.weight[dof]
+                 for dof, value in model.prescribed_at(0.0).items()}
+        if moved and (most := max(moved.values())) > MOVED * max(cable.mesh.total for cable in model.cables):
+            raise SceneError("scene", f"a motion begins {show(most, 'm')} from where the state to start from has it",
+                             OTHER_VALUE)
 
     def start(self, model: Model, scene: SceneData) -> None:
         """Put a freshly built model of the scene into this state. Raises SceneError where supports are elsewhere."""
-        self.check_supports(model)
+        self.check_supports(model, scene)
         model.q = self.static_state["q"].copy()
         for slide, s in zip(model.slides, self.static_state["s"], strict=True):
             slide.place_at(float(s), model.cables[slide.cable])

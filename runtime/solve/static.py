@@ -23,9 +23,9 @@ from .path_following import Critical, Point, follow
 from .penetrations import penetrations
 from .rest_state import CriticalPoint, RestState
 from .stability import stability
-from .stable_search import find_rest
 from .static_problem import StaticProblem, fitted
 from .surface_ends import beyond_ends
+from .turned_rest import turned_rest
 
 LOG = logging.getLogger(__name__)
 
@@ -47,7 +47,7 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
 
     Raises SceneError, EquilibriumError.
     """
-    problem = StaticProblem(scene, settings)
+    problem = StaticProblem(scene, settings, {} if start is None else start.turned)
     if start is not None:
         problem.restore(fitted(carried(start.static_state, start.model, problem.model, problem.keep()), problem.model))
     search = _Search(problem, made)
@@ -59,6 +59,8 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
                   if settings.method == "arc_length" else
                   "; smaller steps of the load do not converge either: something may be free to move away, or it is a "
                   'limit point, which method="arc_length" passes; or take more load_steps or max_iterations')
+        if problem.turns.fraction < 1.0:
+            remedy = f"; {problem.turns}" + (f"; {problem.turns.lost}" if problem.turns.lost else remedy)
         raise EquilibriumError(
             f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
             f"{remedy}; the state there is kept in .state", state, reached)
@@ -116,11 +118,14 @@ class _Search(Generic[S]):
         problem, steps = self.problem, self.problem.settings.load_steps
         begin, reached, step = problem.keep(), 0.0, 1.0 / steps
         if steps == 1:
-            if (found := find_rest(problem)) is not None:
+            if (found := turned_rest(problem)) is not None:
                 self.remember(self.made.of(problem, found))
                 return 1.0
             step = 0.5
             problem.restore(begin)
+            if problem.turns.lost:
+                self.state = self.made.of(problem, stability(problem))
+                return 0.0
         if not self.without_loads():
             return 0.0
         largest = step
@@ -129,7 +134,7 @@ class _Search(Generic[S]):
             if target > 1.0 - SMALLEST_STEP / 2:  # a sum of steps is not 1 to the last digit
                 target = 1.0
             problem.load(target)
-            if (found := find_rest(problem)) is not None:
+            if (found := turned_rest(problem)) is not None:
                 reached, step = target, min(2 * step, largest)
                 self.remember(self.made.of(problem, found))
                 continue
@@ -145,7 +150,7 @@ class _Search(Generic[S]):
         problem = self.problem
         drawn = problem.keep()
         problem.load(0.0)
-        found = find_rest(problem)
+        found = turned_rest(problem)
         if found is None:
             problem.restore(drawn)
         self.state = self.made.of(problem, found or stability(problem))
@@ -163,7 +168,7 @@ class _Search(Generic[S]):
         problem = self.problem
         free = problem.keep()
         problem.load(FEW)
-        if (found := find_rest(problem)) is None:
+        if (found := turned_rest(problem)) is None:
             problem.restore(free)
             problem.load(0.0)
             return 0.0
@@ -185,7 +190,8 @@ class _Search(Generic[S]):
         else:
             reached, heading = start.load_fraction, start.heading
             problem.load(reached)
-            if not problem.newton():
+            is_turned = problem.turns.fraction == 1.0
+            if not (problem.newton() if is_turned else turned_rest(problem) is not None):
                 self.state = self.made.of(problem, stability(problem))
                 return reached
             self.state = self.made.of(problem, stability(problem))

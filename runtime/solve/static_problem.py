@@ -6,7 +6,7 @@ also for loads that turn with what they act on: a load's components are multipli
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -22,6 +22,7 @@ from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from .condensation import condensed, fastest
 from .moved_supports import with_moved_supports
+from .turns import Turns
 
 GROWTH = 1e3
 """Of a correction over the least one before: Newton diverges."""
@@ -34,12 +35,15 @@ FREE = 1e-14
 class StaticState:
     """The engine's static state and its residual; `load` says how much load is on."""
 
-    def __init__(self, scene: SceneData, settings: EquilibriumSettings, model: Model | None = None):
-        """model: of the scene, where it is at hand."""
+    def __init__(self, scene: SceneData, settings: EquilibriumSettings, model: Model | None = None,
+                 turned: Mapping[str, float] | None = None):
+        """model: of the scene, where it is at hand; turned: prescribed angles that the state begins with, see `Turns`.
+        """
         self.scene, self.settings = scene, settings
         self.model = build(scene) if model is None else model
         self.engine = Engine(self.model)
         drop_redundant_rows(self.model, self.engine)
+        self.turns = Turns(scene, self.model, self.engine, turned)
         self.engine.set_state(0.0)
         self.load(1.0)
         unknown = self.model.unknown_of_dof
@@ -75,8 +79,8 @@ class StaticState:
 class StaticProblem(StaticState):
     """A static state with its tangent, the scales of the scene, and Newton's method."""
 
-    def __init__(self, scene: SceneData, settings: EquilibriumSettings):
-        super().__init__(scene, settings)
+    def __init__(self, scene: SceneData, settings: EquilibriumSettings, turned: Mapping[str, float] | None = None):
+        super().__init__(scene, settings, turned=turned)
         self.restore(with_moved_supports(self.model, self.keep()))
         drawn = self.residual()
         self.size = self._extent()

@@ -6,6 +6,7 @@ cdef class Statics(Translation):
     cdef object spreads
     cdef object corner  # rows and columns of the border's entries
     cdef dict weight  # gravity's forces as the model has them
+    cdef dict held  # of signals that are held: pieces, amplitude, angular frequency and phase as the model has them
 
     cdef _entries(self):
         """Rows, columns and values of the entries of the unfactored Newton matrix that are not zero, each once."""
@@ -139,6 +140,13 @@ cdef class Statics(Translation):
         for i in range(m.n_bodies):
             for k in range(3):
                 self.shapes[i].g[k] = weight * self.weight["shapes"][i][k]
+
+    def hold(self, int signal, value):
+        """Give a signal one value at all times; None: what the model says."""
+        cdef fu_signal *g = &self.signals[signal]
+        self.held = self.held or {}
+        own = self.held.setdefault(signal, (g.n, g.amplitude, g.angular_frequency, g.phase))
+        g.n, g.amplitude, g.angular_frequency, g.phase = own if value is None else (0, value, 0.0, M_PI_2)  # sine is 1
 
     def stiffen(self, int cable, A):
         """Give a cable other constants of its law: A (1 or elements, constants), as in the model."""
