@@ -191,7 +191,8 @@ cdef class Engine(Report):
         """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: one of integrators/.
 
         knots: times at which steps end, increasing, and what jumps there; see model/knots.py. absolute_tol in m, negative:
-        by the scene's size; controlled: weights (n_dof,) of what tol is the error of, the model's where all is.
+        by the scene's size; controlled: two arrays of weights (n_dof,), of what tol is the error of, and of each error
+        that counts; the model's where all do.
         Returns a status where that failed, else None, and the change of velocities that the joints asked for. Raises
         RuntimeError in a second call: state, rows and history are those of one run.
         """
@@ -204,7 +205,9 @@ cdef class Engine(Report):
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
         run.absolute_tol = absolute_tol
-        run.controlled = self.model.weight if controlled is None else self._doubles(controlled)
+        run.controlled = run.counted = self.model.weight
+        if controlled is not None:
+            run.controlled, run.counted = self._doubles(controlled[0]), self._doubles(controlled[1])
         self._knots(*knots)
         self._take_integrator(method)
         rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if capacity is None else capacity

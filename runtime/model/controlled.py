@@ -8,6 +8,7 @@ import numpy as np
 
 from ..checks.event_placement import AXES
 from ..errors import SceneError, near
+from ..parts.connections import connected
 from ..parts.scene_data import SceneData
 from .model import BodyModel, CableModel, Model, SlideModel
 
@@ -35,6 +36,47 @@ def controlled_weights(quantities: Sequence[str], scene: SceneData, model: Model
         else:
             _count_body(model, model.bodies[list(scene.bodies).index(name)], what, axis, weights)
     return weights
+
+
+def counted_weights(quantities: Sequence[str], controlled: np.ndarray, scene: SceneData, model: Model) -> np.ndarray:
+    """Return the weight (n_dof,) of each degree of freedom in the error that counts, m: `controlled_weights` of what is
+    named, less elsewhere.
+
+    An error of a part of mass m that is connected with a named one of mass M counts m/M times, and at most once: by so
+    much it displaces the named part as their momentum is kept. Parts that nothing connects with a named one count
+    nothing.
+    """
+    weights, masses = controlled.copy(), _masses(scene)
+    named = {part for quantity in quantities for part in _parts_of(_parsed(quantity, scene)[0], scene)}
+    for name in named:
+        for other in connected(scene, name) - named:
+            dofs = _dofs(model, other)
+            share = min(1.0, masses[other] / masses[name])
+            weights[dofs] = np.maximum(weights[dofs], share * model.weight[dofs])
+    return weights
+
+
+def _parts_of(name: str, scene: SceneData) -> list[str]:
+    """Return the cables and bodies that a named part is, or that a slide is between."""
+    if name not in scene.slides:
+        return [name]
+    slide = scene.slides[name]
+    return [each for each in (slide.along, slide.rider.on) if each is not None]
+
+
+def _masses(scene: SceneData) -> dict[str, float]:
+    """Return the masses of cables and bodies, kg."""
+    return {**{name: cable.length * cable.material.density * cable.section.mass_moments()[0]
+               for name, cable in scene.cables.items()}, **{name: body.mass for name, body in scene.bodies.items()}}
+
+
+def _dofs(model: Model, name: str) -> slice:
+    """Return the degrees of freedom of a cable or body."""
+    for cable in model.cables:
+        if cable.name == name:
+            return cable.coordinates
+    body = next(body for body in model.bodies if body.name == name)
+    return slice(body.dof, body.dof + (6 if model.dim == 3 else 3) + body.modes)
 
 
 def nameable(scene: SceneData) -> list[str]:

@@ -18,7 +18,7 @@ from ..engine import Engine
 from ..errors import FunicularWarning, SceneError
 from ..integrators import Integrator
 from ..model.build import build
-from ..model.controlled import controlled_weights
+from ..model.controlled import controlled_weights, counted_weights
 from ..model.knots import knots
 from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
@@ -241,7 +241,10 @@ def _control(settings: RunSettings, scene: SceneData, model: Model) -> dict[str,
 
     Raises SceneError for a quantity whose error is not estimated.
     """
-    weights = None if settings.quantities is None else controlled_weights(settings.quantities, scene, model)
+    weights = None
+    if settings.quantities is not None:
+        weights = controlled_weights(settings.quantities, scene, model)
+        weights = weights, counted_weights(settings.quantities, weights, scene, model)
     if settings.step is not None:
         return {}
     return {"absolute_tol": -1.0 if settings.absolute_tol is None else settings.absolute_tol, "controlled": weights}

@@ -312,6 +312,7 @@ cdef extern from "engine.h" nogil:
         long most_evaluations
         double duration, output_step, fixed_step, tol, absolute_tol
         const double *controlled
+        const double *counted
         fu_state now, next
         fu_system newton
         fu_accelerator accelerator

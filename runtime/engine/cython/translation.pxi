@@ -58,7 +58,7 @@ cdef class Translation(Arrays):
         m.n_band, m.n_border_dof = model.n_band, model.n_border_dof
         m.n_extra, m.n_multipliers = model.n_extra, model.n_multipliers
         m.unknown_of_dof, m.weight, m.lapack = self._ints(model.unknown_of_dof), self._doubles(model.weight), &LAPACK
-        self.run.controlled = m.weight
+        self.run.controlled = self.run.counted = m.weight
         m.combination_start = self._ints(model.combinations.indptr)
         m.combination_unknown = self._ints(model.combinations.indices)
         m.combination_value = self._doubles(model.combinations.data)

@@ -54,6 +54,7 @@ struct fu_run {
     double absolute_tol; /* m: error allowed beside tol times the motion; negative until the start: a part of the scene's size */
     double lever; /* m: the longest length from which couplings compute positions; distances are rounded relative to it */
     const double *controlled; /* n_dof: model->weight of what tol is the error of, 0 of the rest */
+    const double *counted;    /* n_dof: the weight of each in the error, that of what acts on it included */
     fu_state now, next;
     fu_system newton;
     fu_accelerator accelerator;

@@ -53,13 +53,13 @@ double fu_allowed_error(const fu_run *run)
     return run->tol * fmax(run->controlled_motion, run->least_motion) + run->absolute_tol;
 }
 
-/* Returns the size of a step's error of the dofs, m: of what tol is the error of, and of the rest over what that may err by
- * (others, m), so that both are compared to run->allowed. */
+/* Returns the size of a step's error of the dofs, m: of what tol is the error of and what acts on it, and of the rest over what
+ * that may err by (others, m), so that both are compared to run->allowed. */
 double fu_error_size(const fu_run *run, const double *error, double others)
 {
     const fu_model *model = run->model;
     if (run->controlled == model->weight) return fu_size(model, error);
-    return fmax(fu_weighted_size(model, run->controlled, error), fu_size(model, error) * run->allowed / others);
+    return fmax(fu_weighted_size(model, run->counted, error), fu_size(model, error) * run->allowed / others);
 }
 
 /* Returns what a step may err by in what is not named, m. */
