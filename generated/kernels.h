@@ -1500,11 +1500,11 @@ void surface_push_hertz(fu_real depth, fu_real depth_rate, const fu_real *law, f
  * 3[N (a length)]; f_y 3x3[N/m (a length)]; f_w 3x3[N s/m (a length)] */
 void surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, fu_real *f, fu_real *f_y, fu_real *f_w);
 /* friction that sticks, and its derivatives: n 3[1]; H 3x3[1/m]; x 3[m]; k_t [N/m (a length)] -> f 3[N (a length)];
- * f_y 3x3[N/m (a length)]; t 3[m] */
-void surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t);
+ * f_y 3x3[N/m (a length)]; t 3[m]; f_x 3x3[N/m (a length)] */
+void surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t, fu_real *f_x);
 /* friction that slides, and its derivatives: n 3[1]; H 3x3[1/m]; w 3[m/s]; press 3[N, N/m, N s/m (a length)]; x
- * 3[m]; mu [1] -> f 3[N (a length)]; f_y 3x3[N/m (a length)]; f_w 3x3[N s/m (a length)] */
-void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w);
+ * 3[m]; mu [1] -> f 3[N (a length)]; f_y 3x3[N/m (a length)]; f_w 3x3[N s/m (a length)]; f_x 3x3[N/m (a length)] */
+void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
 
 /* planar_surface: surfaces and contact with them in the plane */
 /* distance from a plane, and its gradient: y 2[m]; normal 2[1] -> g 1[m]; g_y 2[1] */
@@ -1526,11 +1526,11 @@ void planar_surface_push_hertz(fu_real depth, fu_real depth_rate, const fu_real 
  * 2[N (a length)]; f_y 2x2[N/m (a length)]; f_w 2x2[N s/m (a length)] */
 void planar_surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, fu_real *f, fu_real *f_y, fu_real *f_w);
 /* friction that sticks, and its derivatives: n 2[1]; H 2x2[1/m]; x 2[m]; k_t [N/m (a length)] -> f 2[N (a length)];
- * f_y 2x2[N/m (a length)]; t 2[m] */
-void planar_surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t);
+ * f_y 2x2[N/m (a length)]; t 2[m]; f_x 2x2[N/m (a length)] */
+void planar_surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t, fu_real *f_x);
 /* friction that slides, and its derivatives: n 2[1]; H 2x2[1/m]; w 2[m/s]; press 3[N, N/m, N s/m (a length)]; x
- * 2[m]; mu [1] -> f 2[N (a length)]; f_y 2x2[N/m (a length)]; f_w 2x2[N s/m (a length)] */
-void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w);
+ * 2[m]; mu [1] -> f 2[N (a length)]; f_y 2x2[N/m (a length)]; f_w 2x2[N s/m (a length)]; f_x 2x2[N/m (a length)] */
+void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
 
 /* spring: spring and damper between two points in space */
 /* stored energy: parameters 3[N/m, N s/m, m]; gap 3[m] -> U 1[J] */
@@ -1774,8 +1774,8 @@ typedef struct {
     void (*push)(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
     void (*push_hertz)(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
     void (*pressing)(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, fu_real *f, fu_real *f_y, fu_real *f_w);
-    void (*sticking)(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t);
-    void (*sliding)(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w);
+    void (*sticking)(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t, fu_real *f_x);
+    void (*sliding)(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
 } fu_surface_kernels;
 
 /* What the engine needs of a point_law. */

@@ -751,16 +751,16 @@ static const fu_point_law_kernels point_laws[] = {
     X(surface_push, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(surface_push_hertz, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(surface_pressing, a[0], a[1], a[2], a[3], out[0], out[1], out[2]) \
-    X(surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2]) \
-    X(surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2]) \
+    X(surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2], out[3]) \
+    X(surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]) \
     X(planar_surface_flat, a[0], a[1], out[0], out[1]) \
     X(planar_surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
     X(planar_surface_terrain, a[0], a[1], out[0], out[1], out[2]) \
     X(planar_surface_push, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(planar_surface_push_hertz, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(planar_surface_pressing, a[0], a[1], a[2], a[3], out[0], out[1], out[2]) \
-    X(planar_surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2]) \
-    X(planar_surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2]) \
+    X(planar_surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2], out[3]) \
+    X(planar_surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]) \
     X(spring_energy, a[0], a[1], out[0]) \
     X(spring_dissipation, a[0], a[1], a[2], out[0]) \
     X(spring_force, a[0], a[1], a[2], out[0]) \

@@ -246,8 +246,8 @@ CEILINGS = {
                  "step": 129},
     "planar_crossing": {"closest": 12, "contact": 59, "force": 309, "stretch": 40, "sticking": 171, "sliding": 414,
                         "step": 101},
-    "surface": {"flat": 5, "rounded": 61, "terrain": 116, "push": 12, "push_hertz": 29, "pressing": 90, "sticking": 155,
-                "sliding": 360},
+    "surface": {"flat": 5, "rounded": 61, "terrain": 116, "push": 12, "push_hertz": 29, "pressing": 90, "sticking": 185,
+                "sliding": 468},
     "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "pressing": 40,
-                       "sticking": 75, "sliding": 170},
+                       "sticking": 89, "sliding": 170},
 }

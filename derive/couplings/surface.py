@@ -192,6 +192,18 @@ def sticking(dim: int) -> Program:
     p.output("f", f, "N (a length)", "force on the point")
     p.output("f_y", np.stack([d.array(f) for d in by], axis=-1), "N/m (a length)", "derivatives by its place")
     p.output("t", t, "m", "the part of x along the surface")
+    return _by_stretch(p, _along_each(p, dim, f, x))
+
+
+def _along_each(p: Program, dim: int, f: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Return (dim, dim): the derivatives of f by x."""
+    by = [DirectionalDerivative(p, f"dx{j}", {x[i]: sp.Integer(i == j) for i in range(dim)}) for j in range(dim)]
+    return np.stack([d.array(f) for d in by], axis=-1)
+
+
+def _by_stretch(p: Program, f_x: np.ndarray) -> Program:
+    """Add the derivatives by x alone: a sphere that rolls changes it and stays in its place."""
+    p.output("f_x", f_x, "N/m (a length)", "derivatives by x alone")
     return p
 
 
@@ -204,4 +216,6 @@ def sliding(dim: int) -> Program:
     p.stage("friction")
     t = _across(p, dim, n, x)
     f = sliding_force(p, t, mu * press)
-    return _outputs(p, f, _moving(p, dim, press, n, H, w, by_d, by_rate, x))
+    _outputs(p, f, _moving(p, dim, press, n, H, w, by_d, by_rate, x))
+    # in the plane friction that slides has one direction, whatever the stretch is
+    return _by_stretch(p, np.zeros((dim, dim), dtype=int) if dim == 2 else _along_each(p, dim, f, x))

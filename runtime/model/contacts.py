@@ -22,6 +22,8 @@ from .quadrature import along_elements
 GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 KERNELS = {2: "planar_surface", 3: "surface"}
 NONE = np.zeros(0)
+MARK_NUMBERS, AXES_NUMBERS, MARK_PLACE = 9, 9, slice(3, 6)
+"""That a state keeps of friction: of a point, of a body's axes; places among them (engine/include/contacts.h)."""
 
 
 @dataclass(kw_only=True)
@@ -65,7 +67,7 @@ class ContactModel(CouplingModel, SurfaceModel):
     n_hull: int = 0
     hull: np.ndarray = field(default_factory=lambda: NONE)
     spread: np.ndarray = field(default_factory=lambda: NONE)
-    anchors: np.ndarray = field(default_factory=lambda: NONE)
+    marks: np.ndarray = field(default_factory=lambda: NONE)
     attachments: list[AttachmentModel] = field(default_factory=list)
 
 
@@ -108,10 +110,23 @@ def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilde
         model.attachments, model.spread, drawn = attachments.once(
             (part.a, points), lambda: _on_body(part.a, points, scene, attachments))
     if part.friction_coefficient:
-        on = scene.bodies.get(surface.on or "")
-        model.anchors = surface.geometry.into(surface.in_axes(on, drawn))[:, : scene.dim].copy()
-        model.n_numbers = model.anchors.size
+        model.marks = _marks(part, scene, surface, drawn)
+        model.n_numbers = model.marks.size
     return model
+
+
+def _marks(part: Contact, scene: SceneData, surface: Surface, drawn: np.ndarray) -> np.ndarray:
+    """Return the numbers (n,) of a state as drawn that friction begins with, of points drawn at (m, 3), in m."""
+    on, body = scene.bodies.get(surface.on or ""), scene.bodies.get(part.a)
+    points = np.zeros((len(drawn), MARK_NUMBERS))
+    points[:, MARK_PLACE][:, : scene.dim] = surface.geometry.into(surface.in_axes(on, drawn))[:, : scene.dim]
+    axes = np.zeros(AXES_NUMBERS)
+    if body is not None:
+        ends = np.array([body.point(tuple(point)) for point in np.vstack([np.zeros(3), np.eye(3)])])
+        ends = surface.geometry.into(surface.in_axes(on, ends))
+        turned = (ends[1:] - ends[0]).T[: scene.dim, : scene.dim]
+        axes[: turned.size] = turned.ravel()
+    return np.concatenate([points.ravel(), axes])
 
 
 def _on_body(name: str, points: tuple[Vector, ...], scene: SceneData,
@@ -119,6 +134,8 @@ def _on_body(name: str, points: tuple[Vector, ...], scene: SceneData,
     """Return points of a body, (1,) how far they are from its centre at most, and (n, 3) where they are drawn, in m."""
     body = scene.bodies[name]
     on = [attachments.model(Attachment(on=name, at=point)) for point in points]
+    for each in on:
+        each.axes = np.eye(scene.dim)  # those of the body, by whose turning spheres roll
     assert not isinstance(body, ModalBody), f"{body.where} touches no surfaces"
     farthest = np.linalg.norm([body.arm(point) for point in points], axis=1).max()
     return on, np.array([farthest]), np.array([body.point(point) for point in points])

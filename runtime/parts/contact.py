@@ -44,7 +44,8 @@ class Contact(Part):
     back with, 0 to 1 (Newton). What would come back by less than rest_velocity, in m/s, stays.
     friction: Coulomb's coefficient, or a `Friction` with model "stick". What sticks is kept by a spring of
     tangential_stiffness, that of the normal force if not given, and slides where that exceeds friction. In statics
-    friction is against the way from the places drawn.
+    friction is against the way from the places drawn. On spheres about a body's points friction acts where they touch,
+    with its moment, and is stretched as they roll; along cables it acts on the axis.
     """
 
     kind: ClassVar[str] = "contact"

@@ -98,12 +98,17 @@ def _forces(dim: int) -> list[Relation]:
             return k(kernel, s, press=press)["f"]
         return path
 
+    def by_stretch(kernel: str) -> Any:
+        return lambda k, s, t, j: k(kernel, s, x=s["x"] + t * unit(s["x"], j))["f"]
+
     return [Relation("pressing", "f", "at 50 digits", 0, from_kernel("pressing", "f")),
             Relation("pressing", "f_y", "df by the place", 1, by_place("pressing", False, True), dim),
             Relation("pressing", "f_w", "df by the velocity", 1, by_rate("pressing"), dim),
             Relation("sticking", "f", "at 50 digits", 0, from_kernel("sticking", "f")),
             Relation("sticking", "t", "at 50 digits", 0, from_kernel("sticking", "t")),
             Relation("sticking", "f_y", "df by the place", 1, by_place("sticking", True, False), dim),
+            Relation("sticking", "f_x", "df by the stretch", 1, by_stretch("sticking"), dim),
             Relation("sliding", "f", "at 50 digits", 0, from_kernel("sliding", "f")),
             Relation("sliding", "f_y", "df by the place", 1, by_place("sliding", True, True), dim),
+            Relation("sliding", "f_x", "df by the stretch", 1, by_stretch("sliding"), dim),
             Relation("sliding", "f_w", "df by the velocity", 1, by_rate("sliding"), dim)]

@@ -25,11 +25,15 @@ double fu_contact_press(const fu_contact *contact, double depth, double rate)
     return depth > 0.0 ? press_at(contact, depth, rate, depth).p : 0.0;
 }
 
-/* Makes the place of a point from its anchor, along the ground's axes. */
-static void from_anchor(int dim, const fu_attachment_state *on, const fu_touch_point *point, double *x)
+/* Makes the stretch of friction's spring as it is without sliding, along the ground's axes. */
+static void without_sliding(int dim, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point, double *x)
 {
-    double own[3] = {0.0};
-    for (int d = 0; d < dim; ++d) own[d] = point->distance.y[d] - point->anchor[d];
+    double own[3] = {0.0}, normal[3] = {0.0}, roll[3] = {0.0};
+    if (fu_contact_rolls(contact)) {
+        fu_surface_into(dim, on, point->distance.n, normal);
+        fu_contact_roll(dim, contact, point->turn, normal, point->mark, roll);
+    }
+    for (int d = 0; d < dim; ++d) own[d] = point->mark->stretch[d] + point->distance.y[d] - point->mark->place[d] + roll[d];
     fu_surface_out(dim, on, own, x);
 }
 
@@ -39,7 +43,7 @@ static void map_stretch(const fu_model *model, const fu_contact *contact, const 
     const int dim = model->dim;
     const double *n = point->distance.n, most = contact->law.friction * point->press;
     double x[3];
-    from_anchor(dim, on, point, x);
+    without_sliding(dim, contact, on, point, x);
     const double along = fu_dot(dim, n, x) / fu_dot(dim, n, n);
     for (int d = 0; d < dim; ++d) x[d] -= along * n[d];
     point->slides = fu_limit_stretch(dim, contact->law.tangential, most, x);
@@ -68,7 +72,9 @@ int fu_contact_touches(const fu_model *model, const fu_contact *contact, const f
     memset(point->friction, 0, sizeof point->friction);
     memset(point->f, 0, sizeof point->f);
     for (int d = 0; d < dim; ++d) point->f[d] = of.p * point->distance.n[d];
-    if (point->anchor) map_stretch(model, contact, on, point);
+    if (!point->mark) return 1;
+    for (int d = 0; d < dim && fu_contact_rolls(contact); ++d) point->arm[d] = -contact->radius * point->distance.n[d];
+    map_stretch(model, contact, on, point);
     return 1;
 }
 
@@ -83,48 +89,53 @@ void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, co
     const pressing of = press_at(contact, point->depth, -fu_dot(dim, at->n, w), point->depth);
     const double law[3] = {of.p, of.by_depth, of.by_rate};
     kernel->pressing(at->n, at->H, w, law, f, point->by_place, point->by_rate);
-    if (!point->anchor || of.p == 0.0) return;
-    from_anchor(dim, on, point, x);
+    memset(point->by_stretch, 0, sizeof point->by_stretch);
+    if (!point->mark || of.p == 0.0) return;
+    without_sliding(dim, contact, on, point, x);
     memset(by_rate, 0, sizeof by_rate);
-    if (point->slides) kernel->sliding(at->n, at->H, w, law, x, contact->law.friction, f, by_place, by_rate);
-    else kernel->sticking(at->n, at->H, x, contact->law.tangential, f, by_place, t);
+    if (point->slides) kernel->sliding(at->n, at->H, w, law, x, contact->law.friction, f, by_place, by_rate, point->by_stretch);
+    else kernel->sticking(at->n, at->H, x, contact->law.tangential, f, by_place, t, point->by_stretch);
     for (int i = 0; i < dim * dim; ++i) {
         point->by_place[i] += by_place[i];
         point->by_rate[i] += by_rate[i];
     }
 }
 
-/* Adds to f friction over a step: that of the mean stretch, which at the end is as what presses allows. */
-static void add_step_friction(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double press,
-                              const fu_touch_point *now, const fu_touch_point *next, double f[3], double by_next[9])
+/* Makes friction over a step: that of the mean stretch, which at the end is as what presses allows. */
+static void step_friction(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double press,
+                          const fu_touch_point *now, const fu_touch_point *next, double f[3], double by_stretch[9])
 {
     const int dim = model->dim;
     fu_touch_point end = *next, begin = *now;
-    end.anchor = begin.anchor = now->anchor;
+    end.mark = begin.mark = now->mark;
     end.press = press;
     begin.press = INFINITY; /* what is carried into the step is as long as it may be */
     memset(end.f, 0, sizeof end.f);
     memset(begin.f, 0, sizeof begin.f);
     if (now->depth > 0.0) map_stretch(model, contact, on, &begin);
     map_stretch(model, contact, on, &end);
-    for (int d = 0; d < dim; ++d) f[d] += 0.5 * (begin.f[d] + end.f[d]);
+    for (int d = 0; d < dim; ++d) f[d] = 0.5 * (begin.f[d] + end.f[d]);
     if (!end.slides)
         for (int d = 0; d < dim; ++d)
             for (int e = 0; e < dim; ++e)
-                by_next[d * dim + e] -= 0.5 * contact->law.tangential * ((d == e) - end.distance.n[d] * end.distance.n[e]);
+                by_stretch[d * dim + e] = -0.5 * contact->law.tangential * ((d == e) - end.distance.n[d] * end.distance.n[e]);
 }
 
-/* Makes the force over a step of h, s, between two places of a point in axes where the surface stays, and what it does by the one at
- * the end: of the normal force's elastic part a discrete gradient (Gonzalez 1996). Returns the energy that its damping takes, J. */
+/* Makes the normal force and friction over a step of h, s, between two places of a point in axes where the surface stays, and what they
+ * do by the place, and by the stretch alone, at the end: of the normal force's elastic part a discrete gradient (Gonzalez 1996). Returns
+ * the energy that its damping takes, J. */
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
-                       const fu_touch_point *now, const fu_touch_point *next, double f[3], double by_next[9])
+                       const fu_touch_point *now, const fu_touch_point *next, double f[3], double friction[3], double by_next[9],
+                       double by_stretch[9])
 {
     const int dim = model->dim;
     const double from = fmax(now->depth, 0.0), to = fmax(next->depth, 0.0), sunk = next->depth - now->depth;
     double n[3];
     fu_distance at;
     memset(f, 0, sizeof(double[3]));
+    memset(friction, 0, sizeof(double[3]));
     memset(by_next, 0, sizeof(double[9]));
+    memset(by_stretch, 0, sizeof(double[9]));
     if (from == 0.0 && to == 0.0) return 0.0;
     fu_surface_step_normal(dim, &contact->surface, on, now->r, next->r, -sunk, &at, n);
     const double part = from > 0.0 && to > 0.0 ? 1.0 : (to - from) / sunk, rate = sunk / h;
@@ -138,6 +149,8 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
         f[d] = press * n[d];
         for (int e = 0; e < dim; ++e) by_next[d * dim + e] = 0.5 * press * at.H[d * dim + e] - by_depth * n[d] * next->distance.n[e];
     }
-    if (now->anchor && press > 0.0) add_step_friction(model, contact, on, press, now, next, f, by_next);
+    if (!now->mark || !(press > 0.0)) return (press - elastic) * sunk;
+    step_friction(model, contact, on, press, now, next, friction, by_stretch);
+    for (int i = 0; i < dim * dim; ++i) by_next[i] += by_stretch[i];
     return (press - elastic) * sunk;
 }

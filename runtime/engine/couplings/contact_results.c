@@ -42,10 +42,10 @@ double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state)
 {
     const fu_contact *contact = of(coupling);
-    if (coupling->n_numbers) memcpy(state->numbers + coupling->numbers, contact->anchors, sizeof(double) * (size_t)coupling->n_numbers);
+    if (coupling->n_numbers) memcpy(state->numbers + coupling->numbers, contact->marks, sizeof(double) * (size_t)coupling->n_numbers);
 }
 
-/* Takes the anchors along: to where friction's springs begin as they are stretched; of what does not touch they are where it is. */
+/* Takes the marks along: the stretch of friction's springs, and where the points are; what does not touch has no stretch. */
 void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_contact *contact = of(coupling);
@@ -56,11 +56,15 @@ void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_sta
     for (int e = 0; e < fu_contact_elements(model, contact); ++e)
         for (int k = 0; k < contact->n_points; ++k) {
             fu_touch_point point;
-            fu_contact_place(model, contact, state, e, k, &point);
+            fu_contact_place(model, contact, &on, state, e, k, &point);
             const int touches = fu_contact_touches(model, contact, &on, &point);
-            double *anchor = state->numbers + coupling->numbers + ((long)e * contact->n_points + k) * dim;
-            for (int d = 0; d < dim; ++d) anchor[d] = point.distance.y[d] - (touches ? point.stretch[d] : 0.0);
+            fu_friction_mark *mark = fu_contact_mark(contact, state, e, k);
+            memset(mark, 0, sizeof *mark);
+            if (touches) memcpy(mark->stretch, point.stretch, sizeof(double) * (size_t)dim);
+            memcpy(mark->place, point.distance.y, sizeof(double) * (size_t)dim);
+            fu_surface_into(dim, &on, point.distance.n, mark->normal);
         }
+    if (fu_contact_rolls(contact)) fu_contact_axes(model, contact, &on, state, fu_contact_axes_of(contact, state));
 }
 
 /* Sums over the points of a contact in their order, and the ends of what touches: what is between two points is linear. */
@@ -103,7 +107,7 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
         for (int k = 0; k < contact->n_points; ++k) {
             fu_touch_point point;
             const double weight = fu_contact_weight(contact, e, k);
-            fu_contact_place(model, contact, state, e, k, &point);
+            fu_contact_place(model, contact, &on, state, e, k, &point);
             const int touches = fu_contact_touches(model, contact, &on, &point);
             if (contact->cable >= 0) take_into_length(&sum, contact->arc[(long)e * contact->n_points + k], point.depth);
             if (!touches) continue;
@@ -126,7 +130,7 @@ void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, co
     for (int e = 0; e < fu_contact_elements(model, contact); ++e)
         for (int k = 0; k < contact->n_points; ++k, out += 3) {
             fu_touch_point point;
-            fu_contact_place(model, contact, state, e, k, &point);
+            fu_contact_place(model, contact, &on, state, e, k, &point);
             const int touches = fu_contact_touches(model, contact, &on, &point);
             for (int d = 0; d < 3; ++d) out[d] = touches && d < model->dim ? point.f[d] : 0.0;
         }
@@ -143,7 +147,7 @@ static double deepest(const fu_model *model, const fu_contact *contact, const fu
         for (int k = 0; k < contact->n_points; ++k) {
             fu_touch_point point;
             fu_distance at;
-            fu_contact_place(model, contact, state, e, k, &point);
+            fu_contact_place(model, contact, &on, state, e, k, &point);
             fu_surface_distance(model->dim, &contact->surface, &on, point.r, &at);
             depth = fmax(depth, contact->radius - at.g);
         }
@@ -182,7 +186,7 @@ static double beyond(const fu_model *model, const fu_coupling *coupling, const f
         if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             fu_touch_point point;
-            fu_contact_place(model, contact, state, e, k, &point);
+            fu_contact_place(model, contact, &on, state, e, k, &point);
             const double far = fu_surface_beyond(model->dim, &contact->surface, &on, point.r);
             if (far > fmax(farthest, 0.0) && fu_contact_touches(model, contact, &on, &point)) farthest = far;
         }
@@ -215,7 +219,7 @@ double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu
 {
     fu_touch_point point;
     double w[3] = {0.0};
-    fu_contact_place(model, contact, state, element, number, &point);
+    fu_contact_place(model, contact, on, state, element, number, &point);
     fu_surface_distance(model->dim, &contact->surface, on, point.r, &point.distance);
     fu_surface_past(model->dim, on, point.r, point.v, w);
     *rate = fu_dot(model->dim, point.distance.n, w);

@@ -21,10 +21,12 @@ typedef struct {
     fu_attachment_state ends[2], mean, frame;
 } surface_step;
 
-/* A point over a step: at both ends in the surface's frame, and its mean place in the ground's axes. */
+/* A point over a step: at both ends in the surface's frame, and its mean place in the ground's axes. Where its sphere touches, if it
+ * rolls: the same of the particle of the body that is there in the mean, and the attachment to it. */
 typedef struct {
     fu_touch_point now, next;
-    double middle[3];
+    double middle[3], from[3], to[3], touched[3];
+    fu_attachment particle;
 } point_step;
 
 static void surface_over_step(const fu_model *model, const fu_contact *contact, const fu_equations *at, surface_step *out)
@@ -64,19 +66,53 @@ static void place_along_shape(int dim, const fu_attachment_state *end, fu_touch_
     fu_surface_into(dim, end, from, point->r);
 }
 
+/* Makes the particle of a body that its sphere touches with in the mean of the step, and the arm to it, along the ground's axes. */
+static void particle_over_step(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int number,
+                               point_step *out)
+{
+    const int dim = model->dim;
+    const fu_state *states[2] = {at->now, at->next};
+    const fu_touch_point *points[2] = {&out->now, &out->next};
+    fu_touch_point ends[2];
+    fu_attachment_state body;
+    double u[3] = {0.0};
+    out->particle = contact->attachments[number];
+    for (int e = 0; e < 2; ++e) {
+        double arm[3] = {0.0}, own[3];
+        for (int d = 0; d < dim; ++d) own[d] = -contact->radius * points[e]->distance.n[d];
+        if (on->moves) fu_surface_out(dim, &on->ends[e], own, arm);
+        else memcpy(arm, own, sizeof arm);
+        fu_attachment_at(model, &contact->attachments[number], states[e], 0.0, FU_AXES, &body);
+        fu_surface_into(dim, &body, arm, own);
+        for (int d = 0; d < dim; ++d) u[d] += 0.5 * own[d];
+    }
+    for (int d = 0; d < dim; ++d) out->particle.u[d] += fu_dot(dim, out->particle.axes + d * dim, u);
+    for (int e = 0; e < 2; ++e) {
+        fu_attachment_at(model, &out->particle, states[e], 0.0, FU_POINT, &body);
+        memcpy(ends[e].r, body.p, sizeof body.p);
+        for (int d = 0; d < dim; ++d) out->touched[d] += 0.5 * body.p[d];
+        if (on->moves) place_along_shape(dim, &on->ends[e], &ends[e]);
+    }
+    memcpy(out->from, ends[0].r, sizeof out->from);
+    memcpy(out->to, ends[1].r, sizeof out->to);
+}
+
 /* Makes a point over a step; returns whether it may touch in it. */
 static int point_over_step(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int element,
                            int number, point_step *out)
 {
-    fu_contact_place(model, contact, at->now, element, number, &out->now);
-    fu_contact_place(model, contact, at->next, element, number, &out->next);
+    fu_contact_place(model, contact, &on->ends[0], at->now, element, number, &out->now);
+    fu_contact_place(model, contact, &on->ends[1], at->next, element, number, &out->next);
     for (int d = 0; d < 3; ++d) out->middle[d] = 0.5 * (out->now.r[d] + out->next.r[d]);
     if (on->moves) {
         place_along_shape(model->dim, &on->ends[0], &out->now);
         place_along_shape(model->dim, &on->ends[1], &out->next);
     }
     const int touched = fu_contact_touches(model, contact, &on->frame, &out->now);
-    return fu_contact_touches(model, contact, &on->frame, &out->next) || touched;
+    const int touches = fu_contact_touches(model, contact, &on->frame, &out->next) || touched;
+    memset(out->touched, 0, sizeof out->touched);
+    if (touches && fu_contact_rolls(contact)) particle_over_step(model, contact, on, at, number, out);
+    return touches;
 }
 
 /* Makes the derivative of a force by the place along the shape's axes that by the place along the ground's. */
@@ -111,16 +147,16 @@ static void add_reaction(const fu_model *model, const fu_contact *contact, const
     fu_contact_add_along(dim, on->ends[0].n, on->ends[0].at, P, force, weight, f);
 }
 
-/* Adds a force over a step on a point, and its reaction, to what stands on the left of the equations. */
+/* Adds a force over a step on a point, `to` of a body, and its reaction, to what stands on the left of the equations. */
 static void add_step_force(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int element,
-                           int number, const point_step *point, const double *own, double *f)
+                           int number, const fu_attachment *to, const double *middle, const double *own, double *f)
 {
     const int dim = model->dim;
     const double weight = fu_contact_weight(contact, element, number);
     double force[3] = {own[0], own[1], dim == 3 ? own[2] : 0.0};
     if (on->moves) {
         fu_surface_out(dim, &on->mean, own, force);
-        add_reaction(model, contact, on, at, point->middle, force, weight, f);
+        add_reaction(model, contact, on, at, middle, force, weight, f);
     }
     if (contact->cable >= 0) {
         const int n = model->cables[contact->cable].coordinates / dim, first = fu_contact_first(model, contact, element);
@@ -129,7 +165,6 @@ static void add_step_force(const fu_model *model, const fu_contact *contact, con
             for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
         return;
     }
-    const fu_attachment *to = &contact->attachments[number];
     fu_attachment_state end;
     fu_attachment_at(model, to, at->now, 0.0, FU_POINT, &end);
     fu_discrete_point(model, to, at->now, at->next, end.P);
@@ -140,7 +175,7 @@ static void add_step_force(const fu_model *model, const fu_contact *contact, con
  * f may be null. */
 static double over_step(const fu_model *model, const fu_contact *contact, const fu_equations *at, double *f)
 {
-    const int dim = model->dim;
+    const int dim = model->dim, rolls = fu_contact_rolls(contact);
     double lost = 0.0;
     surface_step on;
     surface_over_step(model, contact, at, &on);
@@ -148,12 +183,17 @@ static double over_step(const fu_model *model, const fu_contact *contact, const 
         if (!may_touch(model, contact, &on, at, e)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             point_step point;
-            double force[3], by_next[9];
+            double force[3], friction[3], unused[2][9];
             if (!point_over_step(model, contact, &on, at, e, k, &point)) continue;
-            fu_contact_step(model, contact, &on.frame, at->h, &point.now, &point.next, force, by_next);
+            fu_contact_step(model, contact, &on.frame, at->h, &point.now, &point.next, force, friction, unused[0], unused[1]);
             const double weight = fu_contact_weight(contact, e, k);
-            for (int d = 0; d < dim; ++d) lost -= weight * force[d] * (point.next.r[d] - point.now.r[d]);
-            if (f) add_step_force(model, contact, &on, at, e, k, &point, force, f);
+            for (int d = 0; d < dim; ++d) {
+                if (rolls) lost -= weight * friction[d] * (point.to[d] - point.from[d]);
+                else force[d] += friction[d];
+                lost -= weight * force[d] * (point.next.r[d] - point.now.r[d]);
+            }
+            if (f) add_step_force(model, contact, &on, at, e, k, &contact->attachments[k], point.middle, force, f);
+            if (f && rolls) add_step_force(model, contact, &on, at, e, k, &point.particle, point.touched, friction, f);
         }
     }
     return lost;
@@ -183,18 +223,24 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
         for (int k = 0; k < contact->n_points; ++k) {
             point_step point;
             fu_touch_point *next = &point.next;
-            double force[3];
+            double force[3], friction[3];
             if (!point_over_step(model, contact, &on, at, e, k, &point)) continue;
-            fu_contact_step(model, contact, &on.frame, at->h, &point.now, next, force, next->by_place);
-            for (int i = 0; i < dim * dim; ++i) next->by_place[i] *= 2.0;
+            fu_contact_step(model, contact, &on.frame, at->h, &point.now, next, force, friction, next->by_place, next->by_stretch);
+            for (int i = 0; i < dim * dim; ++i) {
+                next->by_place[i] *= 2.0;
+                next->by_stretch[i] *= 2.0;
+            }
+            for (int d = 0; d < dim; ++d) force[d] += friction[d];
             memset(next->by_rate, 0, sizeof next->by_rate);
             memcpy(next->f, force, sizeof next->f);
             if (on.moves) {
                 fu_surface_out(dim, &on.mean, force, next->f);
                 turn_derivative(dim, &on.mean, next->by_place);
+                turn_derivative(dim, &on.mean, next->by_stretch);
             }
             if (on.moves || !n) {
                 memcpy(next->r, point.middle, sizeof next->r);
+                for (int d = 0; d < dim && fu_contact_rolls(contact); ++d) next->arm[d] = point.touched[d] - point.middle[d];
                 fu_contact_add_derivatives(model, contact, &on_middle, at->middle, e, k, next, 0, at->weights, system);
                 continue;
             }

@@ -29,6 +29,12 @@ const double *fu_contact_shapes(const fu_contact *contact, int n, int element, i
     return contact->N + ((long)element * contact->stride + point) * n;
 }
 
+fu_friction_mark *fu_contact_mark(const fu_contact *contact, const fu_state *state, int element, int point)
+{
+    const long number = (long)element * contact->n_points + point;
+    return (fu_friction_mark *)(state->numbers + contact->base.numbers + number * FU_FRICTION_MARK);
+}
+
 /* Returns the first dof of an element. */
 int fu_contact_first(const fu_model *model, const fu_contact *contact, int element)
 {
@@ -79,14 +85,20 @@ int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const
     return fu_surface_clearance(dim, &contact->surface, on, middle, sqrt(square)) <= contact->radius + below;
 }
 
-/* Makes the place and the velocity of a point, and its anchor. */
-void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_state *state, int element, int point, fu_touch_point *out)
+/* Makes the place and the velocity of a point, its mark, and the turn since then. */
+void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+                      int point, fu_touch_point *out)
 {
     const int dim = model->dim;
-    const long number = (long)element * contact->n_points + point;
-    out->anchor = contact->law.friction > 0.0 ? state->numbers + contact->base.numbers + number * dim : 0;
+    out->mark = contact->law.friction > 0.0 ? fu_contact_mark(contact, state, element, point) : 0;
     memset(out->r, 0, sizeof out->r);
     memset(out->v, 0, sizeof out->v);
+    memset(out->arm, 0, sizeof out->arm);
+    if (fu_contact_rolls(contact)) {
+        double axes[9];
+        fu_contact_axes(model, contact, on, state, axes);
+        fu_turn_between(dim, fu_contact_axes_of(contact, state), axes, out->turn);
+    }
     if (contact->cable < 0) {
         fu_attachment_state end;
         fu_attachment_at(model, &contact->attachments[point], state, 0.0, FU_POINT, &end);
@@ -111,27 +123,30 @@ void fu_contact_add_along(int dim, int n, const int *at, const double *P, const 
         for (int i = 0; i < n; ++i) sum[at[i]] += factor * P[d * n + i] * f[d];
 }
 
-/* Adds the force on a point at r, and its reaction on the body that the surface is on, to what stands on the left of the equations. */
+/* Adds the force where a point touches, and its reaction on the body that the surface is on, to what stands on the left of the
+ * equations. */
 void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
-                          int point, const double *r, const double *force, double *f)
+                          int number, const fu_touch_point *point, double *f)
 {
     const int dim = model->dim;
-    const double weight = fu_contact_weight(contact, element, point);
-    double P[3 * FU_ATTACHMENT_COORDINATES];
+    const double weight = fu_contact_weight(contact, element, number), *force = point->f;
+    double P[3 * FU_ATTACHMENT_COORDINATES], r[3] = {0.0};
+    for (int d = 0; d < dim; ++d) r[d] = point->r[d] + point->arm[d];
     if (on->n) {
         fu_surface_motion(dim, on, r, P);
         fu_contact_add_along(dim, on->n, on->at, P, force, weight, f);
     }
     if (contact->cable >= 0) {
         const int n = model->cables[contact->cable].coordinates / dim, first = fu_contact_first(model, contact, element);
-        const double *N = fu_contact_shapes(contact, n, element, point);
+        const double *N = fu_contact_shapes(contact, n, element, number);
         for (int k = 0; k < n; ++k)
             for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
         return;
     }
     fu_attachment_state end;
-    fu_attachment_at(model, &contact->attachments[point], state, 0.0, FU_POINT, &end);
-    fu_contact_add_along(dim, end.n, end.at, end.P, force, -weight, f);
+    fu_attachment_at(model, &contact->attachments[number], state, 0.0, FU_POINT | FU_AXES, &end);
+    fu_surface_motion(dim, &end, r, P);
+    fu_contact_add_along(dim, end.n, end.at, P, force, -weight, f);
 }
 
 void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state, fu_contact_visitor *visit, void *context)
@@ -142,7 +157,7 @@ void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu
         if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             fu_touch_point point;
-            fu_contact_place(model, contact, state, e, k, &point);
+            fu_contact_place(model, contact, &on, state, e, k, &point);
             if (fu_contact_touches(model, contact, &on, &point)) visit(model, contact, &on, e, k, &point, context);
         }
     }
@@ -158,7 +173,7 @@ static void add_force(const fu_model *model, const fu_contact *contact, const fu
                       const fu_touch_point *point, void *context)
 {
     const forces *to = context;
-    fu_contact_add_force(model, contact, to->state, on, element, number, point->r, point->f, to->f);
+    fu_contact_add_force(model, contact, to->state, on, element, number, point, to->f);
 }
 
 static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
@@ -186,7 +201,7 @@ static void matrix(const fu_model *model, const fu_contact *contact, const fu_st
         const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;
         for (int k = 0; k < contact->n_points; ++k) {
             fu_touch_point point;
-            fu_contact_place(model, contact, state, e, k, &point);
+            fu_contact_place(model, contact, &on, state, e, k, &point);
             if (!fu_contact_touches(model, contact, &on, &point)) continue;
             fu_contact_derivatives(model, contact, &on, &point);
             if (!alone) {
@@ -226,7 +241,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_contact, n_hull, FU_INTEGER, 0),
     FU_FIELD(fu_contact, hull, FU_REALS, 0),
     FU_FIELD(fu_contact, spread, FU_REALS, 0),
-    FU_FIELD(fu_contact, anchors, FU_REALS, 0),
+    FU_FIELD(fu_contact, marks, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_contact, attachments, FU_ATTACHMENT),
     {0},
 };

@@ -10,7 +10,7 @@
 typedef struct {
     double h, rates[2];
     fu_surface_end ends[2];
-    const double *anchor;
+    double anchor[3];
 } way;
 
 /* A place on the way: the stretch of friction's spring, and the anchor that it has there, along the shape's axes, m. */
@@ -103,10 +103,13 @@ static double visit_ways(const fu_model *model, const fu_contact *contact, const
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
         if (!fu_contact_may_touch(model, contact, &on[0], from, e, 0.0) && !fu_contact_may_touch(model, contact, &on[1], to, e, 0.0)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
-            of.anchor = from->numbers + contact->base.numbers + ((long)e * contact->n_points + k) * dim;
+            const fu_friction_mark *mark = fu_contact_mark(contact, from, e, k);
+            for (int d = 0; d < dim; ++d) of.anchor[d] = mark->place[d] - mark->stretch[d];
             fu_contact_gap(model, contact, &on[0], from, e, k, &of.rates[0], &of.ends[0]);
             fu_contact_gap(model, contact, &on[1], to, e, k, &of.rates[1], &of.ends[1]);
             if (!(of.ends[0].gap < 0.0) && !(of.ends[1].gap < 0.0)) continue;
+            fu_contact_roll_on(model, contact, &on[0], from, from, mark, &of.ends[0]);
+            fu_contact_roll_on(model, contact, &on[1], from, to, mark, &of.ends[1]);
             const double value = visit(dim, contact, &of);
             found = largest ? fmax(found, value) : found + fu_contact_weight(contact, e, k) * value;
         }

@@ -205,7 +205,7 @@ static void tangent_of_closed(const fu_model *model, const fu_coupling *coupling
     }
     if (has_friction(coupling)) friction_tangent(model, coupling, at, row, system);
     fu_add(model, system, own, own, -unit * compliance(coupling, at->weights) / at->weights.stiffness);
-    fu_contact_place(model, &contact->contact, at->next, 0, 0, &point);
+    fu_contact_place(model, &contact->contact, &on, at->next, 0, 0, &point);
     for (int d = 0; d < dim; ++d) point.f[d] = -multiplier * row->normal[d];
     for (int i = 0; i < dim * dim; ++i) point.by_place[i] = -multiplier * row->curvature[i];
     fu_contact_add_derivatives(model, &contact->contact, &on, at->next, 0, 0, &point, psi, at->weights, system);

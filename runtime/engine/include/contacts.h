@@ -9,11 +9,20 @@
 #define FU_CONTACT_OUTPUTS 10
 
 /* What presses, by its depth d: stiffness d^e (1 + damping d'), e 3/2 where hertz is not zero. Friction has the coefficient
- * `friction` and a spring along the surface, from anchors in the numbers of a state, dim for each point, along the shape's axes. */
+ * `friction` and a spring along the surface, whose stretch is among the numbers of a state: fu_friction_mark. */
 typedef struct {
     double stiffness, damping, friction, tangential;
     int hertz;
 } fu_contact_law;
+
+/* What a state keeps of friction since the last step. Of each point, along the shape's axes: the stretch of the spring, the place, the
+ * normal (zero as drawn, where it is not known). After those of all points, of the contact: the axes of the body along the shape's. */
+typedef struct {
+    double stretch[3], place[3], normal[3];
+} fu_friction_mark;
+#define FU_FRICTION_MARK 9 /* numbers of a point */
+#define FU_FRICTION_AXES 9 /* numbers of a contact */
+_Static_assert(sizeof(fu_friction_mark) == FU_FRICTION_MARK * sizeof(double), "numbers of a state are doubles");
 
 /* Points of a cable are those of quadrature on its elements, with weights in m; those of a body have the weight 1. */
 typedef struct {
@@ -30,20 +39,22 @@ typedef struct {
     const double *hull;
     const double *spread; /* of each vector of an element: the largest share of it in a point of the hull; of a body: how far from its
                            * origin its points are at most, m */
-    const double *anchors; /* as drawn */
+    const double *marks; /* numbers of a state as drawn */
     fu_attachment attachments[FU_CONTACT_POINTS];
 } fu_contact;
 extern const fu_coupling_type fu_contact_type;
 extern const fu_coupling_events fu_contact_events;
 
-/* A point that may touch: where it is, how it moves; its anchor, null without friction; and how it touches: how deep it is, the
- * normal, the force on it (a length) with its part that is friction, derivatives by its place and by its velocity past the surface,
+/* A point that may touch: where it is, how it moves; its mark, null without friction; the turn of its body past the surface since the
+ * mark, along the shape's axes; and how it touches: how deep it is, the normal, the way from it to where its sphere touches, the force
+ * on it (a length) with its part that is friction, derivatives by its place, by its velocity past the surface and by the stretch alone,
  * the stored energy and the power that goes to heat in the normal force, what friction's spring is stretched by, along the shape's
  * axes, and whether friction slides. */
 typedef struct {
     double r[3], v[3];
-    const double *anchor;
-    double depth, press, f[3], friction[3], by_place[9], by_rate[9], energy, power, stretch[3];
+    const fu_friction_mark *mark;
+    double turn[3], arm[3];
+    double depth, press, f[3], friction[3], by_place[9], by_rate[9], by_stretch[9], energy, power, stretch[3];
     fu_distance distance;
     int slides;
 } fu_touch_point;
@@ -53,20 +64,34 @@ double fu_contact_press(const fu_contact *contact, double depth, double rate);
 int fu_contact_touches(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
 void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
-                       const fu_touch_point *now, const fu_touch_point *next, double f[3], double by_next[9]);
+                       const fu_touch_point *now, const fu_touch_point *next, double f[3], double friction[3], double by_next[9],
+                       double by_stretch[9]);
 
 /* couplings/contacts.c */
 int fu_contact_elements(const fu_model *model, const fu_contact *contact);
 int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
                          double below);
 double fu_contact_weight(const fu_contact *contact, int element, int point);
-void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_state *state, int element, int point, fu_touch_point *out);
-
+fu_friction_mark *fu_contact_mark(const fu_contact *contact, const fu_state *state, int element, int point);
+void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+                      int point, fu_touch_point *out);
 const double *fu_contact_shapes(const fu_contact *contact, int n, int element, int point);
 int fu_contact_first(const fu_model *model, const fu_contact *contact, int element);
 void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
-                          int point, const double *r, const double *force, double *f);
+                          int number, const fu_touch_point *point, double *f);
 void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum);
+
+/* couplings/contact_rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the shape's; how far
+ * these have turned from others, along the shape's axes; how a point of a sphere moves, by how its centre does and turns: P (dim x n). */
+int fu_contact_rolls(const fu_contact *contact);
+void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double axes[9]);
+void fu_turn_between(int dim, const double *from, const double *to, double turn[3]);
+double *fu_contact_axes_of(const fu_contact *contact, const fu_state *state);
+/* Adds to where a point is, and how it moves, what its sphere's turning since `from` adds of where it touches. */
+void fu_contact_roll_on(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *from,
+                        const fu_state *state, const fu_friction_mark *mark, fu_surface_end *end);
+/* Makes what the point where a sphere touches has moved by its turning alone, along the shape's axes. */
+void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal, const fu_friction_mark *mark, double out[3]);
 
 /* couplings/contact_results.c: makes the gap of a point, and its rate; where it is and how it moves along the shape's axes, unless that
  * is null. */
