@@ -256,8 +256,9 @@ class Scene(Viewable, DescribedScene):
     ) -> Equilibrium:
         """Find the static equilibrium under all loads at t = 0; see `EquilibriumSettings` for the defaults.
 
-        Settings not given here are the scene file's, if it gave them. The state is stable unless it says otherwise, in
-        ``stable``, in ``messages`` and by a `FunicularWarning`; friction of slides is left out. start: a state of this
+        Settings not given here are the scene file's, if it gave them. The state is stable, unless the
+        settings ask for others, which say so in ``stable``, in ``messages`` and by a `FunicularWarning`; friction of
+        slides is left out. start: a state of this
         scene, under the same loads or others, also on other meshes of the same elements, from which the search begins
         instead of as drawn; method "arc_length" goes on from its load_fraction in its sense, or, from a state under all
         its loads, anew from rest without loads, and needs the same mesh.
@@ -383,7 +384,9 @@ def _at_rest(initial: str, scene: Scene, start: Equilibrium | None) -> Equilibri
             return scene.equilibrium(start=start)
         except EquilibriumError:  # the path from the drawn state may reach what this one does not
             pass
-    return scene.equilibrium()
+    state = scene.equilibrium()
+    state.check_stable()
+    return state
 
 
 def _fits(scene: Scene, start: Equilibrium) -> bool:

@@ -163,7 +163,8 @@ class EquilibriumSettings(Part):
     which ends in a stable state, or "arc_length", which follows the path of equilibria, also where the load falls again
     and where they are unstable; largest_step of such a path: what two states that follow each other differ by at most,
     of the load fraction, and of positions relative to the size of the scene; seek_stable: whether "newton" goes on
-    where it has come to an unstable state, which else is returned with its label; scale_gravity: whether a load
+    where it has come to an unstable state, and ends in an error if it finds no stable one; else that state is returned
+    with its label; scale_gravity: whether a load
     fraction p is p times gravity, too, or whether gravity is whole from the start; adjust: parameters of the scene, by
     the paths that sweeps have, such as "dropper.length", with their limits (low, high) or "free", that are changed
     until the state has the values ``to``, by name, such as "A.position.y" or "wire@12.5.tension"; tolerance is that of

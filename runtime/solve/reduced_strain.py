@@ -32,7 +32,17 @@ class ReducedStrain:
 
     def notes(self) -> list[str]:
         """Return a note for each cable that was compressed too much."""
-        return [f'cable "{name}" was compressed by {-strain:.2g} of its length at t = {time:.4g} s: '
-                f'membrane="reduced" keeps the lengths of its slopes stable up to {STABILISATION:g} alone; take '
-                'membrane="assumed" or "full"'
+        return [_note(name, "was", strain, f" at t = {time:.4g} s")
                 for name, (strain, time) in self.found.items() if strain < -STABILISATION]
+
+
+def compressed(scene: SceneData, model: Model, q: np.ndarray) -> list[str]:
+    """Return a note for each cable that is compressed too much in a state of rest, q (n_q,)."""
+    strains = ReducedStrain(scene, model)
+    strains.see({"q": q[None], "time": np.zeros(1)})
+    return [_note(name, "is", strain, "") for name, (strain, _) in strains.found.items() if strain < -STABILISATION]
+
+
+def _note(name: str, verb: str, strain: float, when: str) -> str:
+    return (f'cable "{name}" {verb} compressed by {-strain:.2g} of its length{when}: membrane="reduced" keeps the '
+            f'lengths of its slopes stable up to {STABILISATION:g} alone; take membrane="assumed" or "full"')

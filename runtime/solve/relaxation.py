@@ -21,7 +21,6 @@ from ..checks.plausibility import implausible
 from ..engine import Engine
 from ..errors import EquilibriumError, FunicularWarning
 from ..integrators import GeneralisedAlpha
-from ..model.build import build
 from ..model.model import DeadLoadModel, LoadModel
 from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
@@ -31,7 +30,7 @@ from .folds import folds
 from .penetrations import penetrations
 from .rest_state import Relaxation, RestState
 from .stability import Stability, lowest_direction, stability
-from .static_problem import StaticProblem
+from .static_problem import StaticProblem, static_model
 from .surface_ends import beyond_ends
 from .turned_rest import turned_rest
 
@@ -102,7 +101,7 @@ class _Motion:
     """The damped motion of a scene: `model.q`, `model.v` and slides are where it is; `leg` goes on."""
 
     def __init__(self, scene: SceneData, problem: StaticProblem):
-        self.problem, self.model = problem, build(scene)
+        self.problem, self.model = problem, static_model(scene)
         self.model.v[:] = 0.0
         unknown = self.model.unknown_of_dof
         self.free = unknown >= 0
@@ -190,7 +189,9 @@ def relax(scene: SceneData, settings: RelaxationSettings, made: type[S]) -> S:
 
     made: what the state is. Raises EquilibriumError, which keeps the state reached.
     """
-    return _Search(scene, settings, made).found()
+    state = _Search(scene, settings, made).found()
+    state.check_stable()
+    return state
 
 
 class _Search(Generic[S]):

@@ -1,8 +1,9 @@
 """The search for a stable state of rest under the load that is on, from wherever the state is.
 
 Newton's method ends at any state of rest, on unstable branches too: a slack cable drawn straight stays straight, under
-compression. Where the inertia of the stiffness says so, the search starts again, from the same state, by two ways that
-descend: `stiffen`, for scenes with cables, and `relax`.
+compression. Such cables are therefore first put into the shape of strings (`string_start`). Where Newton's method ends
+at an unstable state, or at none, the search starts again: from the shape of strings for all cables, and by two methods
+that descend from the first state, `stiffen`, for scenes with cables, and `relax`.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import numpy as np
 from .softening import Softening
 from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem
+from .string_start import hang
 
 MOST_RELAXATIONS = 400
 LARGEST_MOVE = 0.2
@@ -36,12 +38,16 @@ def find_rest(problem: StaticProblem) -> Stability | None:
     """
     begin, passed = problem.keep(), None
     passed_at, problem.pushed = begin, False
+    if problem.settings.seek_stable and hang(problem, every=False):
+        if problem.newton() and not (found := stability(problem)).unstable:
+            return found
+        problem.restore(begin)
     if problem.newton():
         found = stability(problem)
         if not found.unstable or not problem.settings.seek_stable:
             return found
         passed, passed_at = found, problem.keep()
-    for descend in (stiffen, relax) if problem.settings.seek_stable else (relax,):
+    for descend in (from_strings, stiffen, relax) if problem.settings.seek_stable else (relax,):
         problem.restore(begin)
         if (stable := descend(problem)) is not None:
             if passed is not None:
@@ -51,6 +57,17 @@ def find_rest(problem: StaticProblem) -> Stability | None:
     if passed is not None:
         problem.restore(passed_at)
     return passed
+
+
+def from_strings(problem: StaticProblem) -> Stability | None:
+    """Find a stable state by Newton's method, or `relax`, from where cables are that hang as strings do; else None."""
+    if not hang(problem, every=True):
+        return None
+    hung = problem.keep()
+    if problem.newton() and not (found := stability(problem)).unstable:
+        return found
+    problem.restore(hung)
+    return relax(problem)
 
 
 def relax(problem: StaticProblem) -> Stability | None:

@@ -21,6 +21,7 @@ from .carried_states import carried
 from .folds import folds
 from .path_following import Critical, Point, follow
 from .penetrations import penetrations
+from .reduced_strain import compressed
 from .rest_state import CriticalPoint, RestState
 from .stability import stability
 from .static_problem import StaticProblem, fitted
@@ -64,6 +65,8 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
         raise EquilibriumError(
             f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
             f"{remedy}; the state there is kept in .state", state, reached)
+    if settings.seek_stable and settings.method == "newton":
+        state.check_stable()
     return state
 
 
@@ -73,6 +76,7 @@ def note(problem: StaticProblem, state: RestState) -> None:
         names = " and ".join(f'"{name}"' for name in rubbing)
         problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
     problem.messages += folds(problem.scene, problem.model, state.static_state["q"])
+    problem.messages += compressed(problem.scene, problem.model, state.static_state["q"])
     problem.messages += outside_tables(problem.model, state.static_state["q"])
     if rough := [contact.where for contact in problem.scene.contacts.values()
                  if contact.is_hard and contact.friction_coefficient]:

@@ -40,7 +40,7 @@ class StaticState:
         """model: of the scene, where it is at hand; turned: prescribed angles that the state begins with, see `Turns`.
         """
         self.scene, self.settings = scene, settings
-        self.model = build(scene) if model is None else model
+        self.model = static_model(scene) if model is None else model
         self.engine = Engine(self.model)
         drop_redundant_rows(self.model, self.engine)
         self.turns = Turns(scene, self.model, self.engine, turned)
@@ -187,6 +187,14 @@ class StaticProblem(StaticState):
         s = self.engine.state()["s"]
         past = np.maximum(-s, s - ends)
         return bool(np.all(past <= self.settings.tolerance * self.size))
+
+
+def static_model(scene: SceneData) -> Model:
+    """Return the model of a scene for statics: without the mass that fluids add, on which no state of rest depends."""
+    model = build(scene)
+    for drag in model.drags:
+        drag.has_inertia = False
+    return model
 
 
 def fitted(kept: dict, model: Model) -> dict:

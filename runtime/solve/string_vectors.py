@@ -1,0 +1,75 @@
+"""Nodal vectors of a cable that is laid along a string: slopes, and sections that turn with it and do not twist."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def slopes(r: np.ndarray, length: np.ndarray, ends: tuple[np.ndarray | None, np.ndarray | None]) -> np.ndarray:
+    """Return (n, dim): r_x at nodes r (n, dim) of links of these lengths (n - 1,), by parabolas through neighbours.
+
+    ends: unit vectors at the ends where these are known.
+    """
+    stretch = np.linalg.norm(np.diff(r, axis=0), axis=1) / length
+    along = np.diff(r, axis=0) / (length * stretch)[:, None]
+    found = np.empty_like(r)
+    found[1:-1] = along[:-1] * length[1:, None] + along[1:] * length[:-1, None]
+    for end, first, second in ((0, 0, 1), (-1, -1, -2)):
+        known = ends[end]
+        if known is None:
+            known = along[first] if len(along) == 1 else 1.5 * along[first] - 0.5 * along[second]
+        found[end] = known
+    size = np.concatenate([stretch[:1], (stretch[:-1] + stretch[1:]) / 2, stretch[-1:]])
+    return found * (size / np.maximum(np.linalg.norm(found, axis=1), np.finfo(float).tiny))[:, None]
+
+
+def laid_vectors(names: tuple[str, ...], was: np.ndarray, r: np.ndarray, slope: np.ndarray, s: np.ndarray,
+                 end_is_held: bool) -> np.ndarray:
+    """Return (n, vectors, dim): nodal vectors of a cable along r (n, dim) with slopes (n, dim); was: those before.
+
+    s (n,): arc-lengths, m. end_is_held: whether the section at the end keeps its attitude: twist is spread evenly then.
+    """
+    found, given = was.copy(), {name: was[:, k] for k, name in enumerate(names)}
+    laid = {"r": r, "r_x": slope}
+    if "r_xx" in names:
+        laid["r_xx"] = np.gradient(slope, s, axis=0)
+    if "r_z" in names:
+        laid |= dict(zip(("r_y", "r_z"), _sections(given, slope, s, end_is_held), strict=True))
+    elif "r_y" in names:
+        height = given["r_y"]
+        side = np.sign(given["r_x"][:, 0] * height[:, 1] - given["r_x"][:, 1] * height[:, 0])
+        laid["r_y"] = _of_length(np.stack([-slope[:, 1], slope[:, 0]], axis=1) * side[:, None], height)
+    for k, name in enumerate(names):
+        found[:, k] = laid[name]
+    return found
+
+
+def _of_length(directions: np.ndarray, like: np.ndarray) -> np.ndarray:
+    lengths = [np.linalg.norm(of, axis=-1, keepdims=True) for of in (like, directions)]
+    return directions * lengths[0] / lengths[1]
+
+
+def _sections(given: dict[str, np.ndarray], slope: np.ndarray, s: np.ndarray,
+              end_is_held: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Return r_y and r_z (n, 3) square to the slopes, carried from node to node without a turn about these."""
+    along = slope / np.linalg.norm(slope, axis=1, keepdims=True)
+    before = given["r_x"][0] / np.linalg.norm(given["r_x"][0])
+    height, heights = given["r_y"][0], np.empty_like(slope)
+    for k, after in enumerate(along):
+        height = _turned(height, before, after)
+        heights[k], before = height, after
+    widths = np.cross(along, heights)
+    if end_is_held:
+        held = given["r_y"][-1]
+        angle = np.arctan2(held @ widths[-1], held @ heights[-1]) * (s / s[-1])[:, None]
+        heights, widths = (np.cos(angle) * heights + np.sin(angle) * widths,
+                           np.cos(angle) * widths - np.sin(angle) * heights)
+    return _of_length(heights, given["r_y"]), _of_length(widths, given["r_z"])
+
+
+def _turned(vector: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Return a vector turned as the least turn does that takes one unit vector to another."""
+    axis, cosine = np.cross(before, after), float(before @ after)
+    if cosine < -1 + 1e-12:
+        return vector
+    return vector + np.cross(axis, vector) + np.cross(axis, np.cross(axis, vector)) / (1 + cosine)

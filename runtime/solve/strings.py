@@ -1,0 +1,276 @@
+"""The shape at rest of strings: links that bear tension alone, bend elastically, and lie on planes.
+
+Its potential energy is convex. A link of length l has the Green strain energy EA l/2 max(0, (d²/l² - 1)/2)² of the
+distance d of its nodes; bending has EI/2 |r''|², without the division by |r'|, and loads are constant. There is one
+minimum, whatever shape the search begins from, and where all links are in tension it is a stable state of rest of lines
+that resist compression, too. The multipliers of the links are their tensions, so that stiff links cost no more than
+soft ones.
+
+The method is a primal-dual one of interior points (Wright, Primal-Dual Interior-Point Methods, SIAM 1997, ch. 1; for
+convex constraints Boyd & Vandenberghe, Convex Optimization, ch. 11.7). A link is the constraint
+
+    c = (1 - d²/l²)/2 + x/(EA l) >= 0, whose multiplier x >= 0 is tension times length,
+
+and a node over a plane the constraint that its height, with what the plane gives way by, is not negative.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import LinAlgError, solveh_banded
+
+TOLERANCE = 1e-8
+"""Of all loads together: forces left over, and tensions of links that are not taut."""
+MOST_ITERATIONS = 60
+TO_BOUNDARY = 0.95
+"""Of the way to where a constraint or a multiplier becomes zero: a step goes no further."""
+FIRST_CENTRING = 0.2
+CENTRING = ((0.9, 0.05), (0.7, 0.1), (0.3, 0.3), (0.0, 0.7))
+"""Step, and factor of the mean complementarity that the next one aims at after a step at least as long."""
+SLACK = 1e-4
+"""Of half the squared length: by which a link is slack."""
+TINY = 1e-300
+
+
+@dataclass
+class Strings:
+    """Nodes, what holds them together, and what acts on them.
+
+    r (n, dim): where nodes are, in m, from which fixed coordinates (n, dim) are taken; load (n, dim) in N. links
+    (m, 2): their nodes; length (m,) of them unstretched, in m; axial (m,): EA in N. bends (b, 3): nodes; their
+    positions times the factors (b, 3) in 1/m², less natural (b, dim) in 1/m, are a curvature; bending (b,): EI times
+    the length that has it, N m³. resting (k,): nodes over planes of unit normals (k, dim) at heights (k,) along them in
+    m; the planes give way by compliances (k,) in m/N.
+    """
+
+    r: np.ndarray
+    fixed: np.ndarray
+    load: np.ndarray
+    links: np.ndarray
+    length: np.ndarray
+    axial: np.ndarray
+    bends: np.ndarray
+    factors: np.ndarray
+    natural: np.ndarray
+    bending: np.ndarray
+    resting: np.ndarray
+    normals: np.ndarray
+    heights: np.ndarray
+    compliances: np.ndarray
+
+    @property
+    def width(self) -> int:
+        """Return how far the numbers of nodes are apart that a link or a bend has in common."""
+        return max(int(np.ptp(nodes, axis=1).max(initial=0)) for nodes in (self.links, self.bends))
+
+    def renumbered(self, order: np.ndarray) -> Strings:
+        """Return the same with node order[k] as its k-th."""
+        number = np.empty_like(order)
+        number[order] = np.arange(len(order))
+        return replace(self, r=self.r[order], fixed=self.fixed[order], load=self.load[order], links=number[self.links],
+                       bends=number[self.bends], resting=number[self.resting])
+
+    def stretched_evenly(self) -> np.ndarray:
+        """Return (n, dim): where nodes are if links are alike springs, all else left out: chains become straight."""
+        system = _Banded(self)
+        stiffness = np.broadcast_to((1 / self.length)[:, None, None], (len(self.links), 1, 1)) * np.eye(self.r.shape[1])
+        start = np.where(self.fixed, self.r, 0.0)
+        force = np.zeros_like(start)
+        pull = (start[self.links[:, 1]] - start[self.links[:, 0]]) / self.length[:, None]
+        np.add.at(force, self.links[:, 0], pull)
+        np.add.at(force, self.links[:, 1], -pull)
+        return start + system.solve(system.of_links(stiffness) + system.held, force)
+
+
+@dataclass
+class Rest:
+    """Where nodes rest (n, dim), in m; whether links are taut (m,), to about the tolerance; after how many iterations.
+    """
+
+    r: np.ndarray
+    taut: np.ndarray
+    iterations: int
+
+
+class _Banded:
+    """Symmetric matrices over the coordinates of nodes, by their upper diagonals, zero where a coordinate is fixed."""
+
+    def __init__(self, strings: Strings):
+        n, dim = strings.r.shape
+        self.n, self.above = n * dim, (strings.width + 1) * dim - 1
+        self.free = ~strings.fixed.ravel()
+        self.strings = strings
+        self._axis = np.arange(dim)
+        row, column = np.divmod(np.arange(dim * dim), dim)
+        upper = row <= column
+        i, j = np.sort(strings.links, axis=1).T
+        self._link_blocks = np.concatenate([np.flatnonzero(upper)] * 2 + [np.arange(dim * dim)])
+        sign = np.where(np.arange(len(self._link_blocks)) < 2 * upper.sum(), 1.0, -1.0)
+        self._link_at, self._link_mask = self._places(
+            np.concatenate([np.add.outer(i * dim, row[upper]), np.add.outer(j * dim, row[upper]),
+                            np.add.outer(i * dim, row)], axis=1),
+            np.concatenate([np.add.outer(i * dim, column[upper]), np.add.outer(j * dim, column[upper]),
+                            np.add.outer(j * dim, column)], axis=1), sign)
+        self._upper = np.flatnonzero(upper)
+        on = strings.resting * dim
+        self._rest_at, self._rest_mask = self._places(np.add.outer(on, row[upper]), np.add.outer(on, column[upper]),
+                                                      np.ones(len(self._upper)))
+
+    def _places(self, rows: np.ndarray, columns: np.ndarray, sign: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        at = (self.above + rows - columns) * self.n + columns
+        return at.ravel(), sign * (self.free[rows] & self.free[columns])
+
+    def _filled(self, at: np.ndarray, values: np.ndarray) -> np.ndarray:
+        return np.bincount(at, values.ravel(), minlength=(self.above + 1) * self.n)
+
+    @property
+    def held(self) -> np.ndarray:
+        """Return the matrix that is one where a coordinate is fixed, else zero."""
+        return self._filled(self.above * self.n + np.flatnonzero(~self.free), np.ones(np.count_nonzero(~self.free)))
+
+    def of_links(self, blocks: np.ndarray) -> np.ndarray:
+        """Return the matrix of blocks (links, dim, dim), symmetric, over the differences of the links' nodes."""
+        values = blocks.reshape(len(blocks), -1)[:, self._link_blocks]
+        return self._filled(self._link_at, self._link_mask * values)
+
+    def of_planes(self, stiffness: np.ndarray) -> np.ndarray:
+        """Return the matrix of stiffnesses (k,) along the normals of planes, in N/m."""
+        normals = self.strings.normals
+        blocks = (normals[:, :, None] * normals[:, None]).reshape(len(normals), -1)[:, self._upper]
+        return self._filled(self._rest_at, self._rest_mask * stiffness[:, None] * blocks)
+
+    def of_bends(self) -> np.ndarray:
+        """Return the matrix of the bending energy."""
+        strings, found = self.strings, np.zeros((self.above + 1) * self.n)
+        dim = len(self._axis)
+        for a in range(3):
+            for b in range(3):
+                use = strings.bends[:, a] <= strings.bends[:, b]
+                values = (strings.bending * strings.factors[:, a] * strings.factors[:, b])[use]
+                rows = np.add.outer(strings.bends[use, a] * dim, self._axis)
+                columns = np.add.outer(strings.bends[use, b] * dim, self._axis)
+                at, mask = self._places(rows, columns, np.ones(dim))
+                found += self._filled(at, mask * values[:, None])
+        return found
+
+    def solve(self, matrix: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """Return (n, dim): displacements under forces (n, dim). Raises LinAlgError where the matrix is not definite."""
+        right = np.where(self.free, force.ravel(), 0.0)
+        found = solveh_banded(matrix.reshape(self.above + 1, self.n), right, check_finite=False)
+        return found.reshape(force.shape)
+
+
+class _Search:
+    """The state of the iteration: places, and of each constraint its value and its multiplier.
+
+    Constraints have no unit, multipliers that of energy: heights are over the mean length of links.
+    """
+
+    def __init__(self, strings: Strings):
+        self.strings, self.system = strings, _Banded(strings)
+        self.scale = float(np.abs(strings.load).sum())
+        self.constant = self.system.of_bends() + self.system.held
+        self.unit = float(strings.length.mean())
+        self.gives = 1 / (strings.length * strings.axial)
+        self.yields = strings.compliances / self.unit**2
+        self.r = strings.stretched_evenly()
+        self.tension = np.full(len(strings.links), self.scale * strings.length)
+        self.pressure = np.full(len(strings.resting), 0.1 * self.scale * self.unit)
+        self._look()
+        short = self.slack <= 0  # links that are too short at first bear what stretches them by more
+        self.tension[short] += 1.5 * (1e-12 - self.slack[short]) / self.gives[short]
+        below = self.height <= 0
+        self.pressure[below] += 1.5 * (1e-3 - self.height[below]) / np.maximum(self.yields[below], TINY)
+        self._look()
+
+    def _look(self) -> None:
+        strings = self.strings
+        self.d = self.r[strings.links[:, 1]] - self.r[strings.links[:, 0]]
+        self.along = self.d / (strings.length**2)[:, None]
+        self.slack = (1 - (self.d * self.along).sum(axis=1)) / 2 + self.gives * self.tension
+        above = (self.r[strings.resting] * strings.normals).sum(axis=1) - strings.heights
+        self.height = above / self.unit + self.yields * self.pressure
+
+    def out_of_balance(self) -> np.ndarray:
+        """Return (n, dim): loads less what holds them, in N; zero where a coordinate is fixed."""
+        strings = self.strings
+        force = strings.load.copy()
+        curvature = np.einsum("bk,bkd->bd", strings.factors, self.r[strings.bends]) - strings.natural
+        np.add.at(force, strings.bends, -(strings.bending[:, None] * curvature)[:, None] * strings.factors[:, :, None])
+        self._add(force, self.tension, -self.pressure)
+        force[strings.fixed] = 0.0
+        return force
+
+    def _add(self, force: np.ndarray, tension: np.ndarray, pressure: np.ndarray) -> None:
+        """Add forces of multipliers: links pull, planes push where theirs are negative."""
+        strings, pull = self.strings, tension[:, None] * self.along
+        np.add.at(force, strings.links[:, 0], pull)
+        np.add.at(force, strings.links[:, 1], -pull)
+        np.add.at(force, strings.resting, -pressure[:, None] * strings.normals / self.unit)
+
+    def step(self, centring: float) -> float:
+        """Go on to a part of the mean complementarity; returns the length of the step, of Newton's."""
+        strings, system = self.strings, self.system
+        left = self.out_of_balance()
+        aim = centring * self.mean()
+        of_links, of_planes = (self.slack + self.gives * self.tension, self.height + self.yields * self.pressure)
+        stiff, hard = self.tension / of_links, self.pressure / of_planes
+        pull, push = (aim - self.tension * self.slack) / of_links, (aim - self.pressure * self.height) / of_planes
+        self._add(left, pull, -push)
+        blocks = ((self.tension / strings.length**2)[:, None, None] * np.eye(strings.r.shape[1])
+                  + stiff[:, None, None] * self.along[:, :, None] * self.along[:, None])
+        matrix = self.constant + system.of_links(blocks)
+        if len(hard):
+            matrix += system.of_planes(hard / self.unit**2)
+        x = system.solve(matrix, left)
+        apart = x[strings.links[:, 1]] - x[strings.links[:, 0]]
+        closing = -(self.along * apart).sum(axis=1)
+        more = pull - stiff * closing
+        rise = (x[strings.resting] * strings.normals).sum(axis=1) / self.unit
+        harder = push - hard * rise
+        size = self._length(apart, closing + self.gives * more, more, rise + self.yields * harder, harder)
+        self.r, self.tension, self.pressure = (self.r + size * x, self.tension + size * more,
+                                               self.pressure + size * harder)
+        self._look()
+        return size
+
+    def _length(self, apart: np.ndarray, closing: np.ndarray, more: np.ndarray, rise: np.ndarray,
+                harder: np.ndarray) -> float:
+        """Return how much of a step leaves constraints and multipliers positive; those of links fall by a square, too.
+        """
+        square = (apart * apart).sum(axis=1) / (2 * self.strings.length**2)
+        far = TO_BOUNDARY * self.slack
+        parts = [2 * far / np.maximum(np.sqrt(closing**2 + 4 * square * far) - closing, TINY)]
+        parts += [TO_BOUNDARY * value / np.maximum(-rate, TINY)
+                  for value, rate in ((self.tension, more), (self.height, rise), (self.pressure, harder))]
+        return min(1.0, *(float(part.min(initial=1.0)) for part in parts))
+
+    def mean(self) -> float:
+        """Return the mean of constraints times multipliers, J."""
+        return float(self.tension @ self.slack + self.pressure @ self.height) / (len(self.tension) + len(self.pressure))
+
+    def is_at_rest(self) -> bool:
+        """Return whether forces balance, and slack links have no tension."""
+        loose = (self.tension * self.slack / self.strings.length).max(initial=0.0)
+        return bool(max(np.abs(self.out_of_balance()).max(), loose) < TOLERANCE * self.scale)
+
+
+def rest_of(strings: Strings) -> Rest | None:
+    """Return strings at rest; None where nothing loads them, nothing holds them, or rest was not found."""
+    if not np.abs(strings.load).sum() > 0:
+        return None
+    with np.errstate(all="ignore"):  # of what nothing holds in a direction, which is found at the end of a step
+        try:
+            search, centring = _Search(strings), FIRST_CENTRING
+            for iteration in range(MOST_ITERATIONS):
+                if search.is_at_rest():
+                    return Rest(search.r, search.slack < SLACK, iteration)
+                length = search.step(centring)
+                if not np.isfinite(search.mean()):
+                    return None
+                centring = next(factor for least, factor in CENTRING if length >= least)
+        except LinAlgError:
+            pass
+    return None

@@ -1,0 +1,143 @@
+"""Slack lines drawn straight come to rest from no other shape: in parts, in water, on a bed, by any mesh and membrane.
+
+References are those of tests/benchmarks/slack_lines.py, which prints them beside the time that they take.
+"""
+
+import warnings
+
+import funicular as fu
+import numpy as np
+import pytest
+from catenary import end_forces
+from scipy.optimize import fsolve
+from slack_lines import LAZY_WAVES, MESHES, largest_curvature, lazy_wave, rope, tied_ropes, wire_on_bed
+
+pytestmark = pytest.mark.filterwarnings("ignore:contact .* below its surface:funicular.FunicularWarning",
+                                         "ignore:the state is unstable:funicular.FunicularWarning")
+W = 9.80665
+
+
+def pull(rest: fu.Equilibrium, cable: str) -> float:
+    """Return the force at the start of a cable, of a state that must be stable."""
+    assert rest.stable
+    return float(np.linalg.norm(rest[f"{cable}@0.force"]))
+
+
+@pytest.mark.parametrize("mesh", [100, 200, *(pytest.param(n, marks=pytest.mark.slow) for n in (450, 600, 1000))])
+@pytest.mark.parametrize("name", LAZY_WAVES)
+def test_lazy_waves(name, mesh):
+    """Another program's forces and curvatures; 450 and 600 elements had ended at unstable states."""
+    data = LAZY_WAVES[name]
+    rest = lazy_wave(data, MESHES[mesh]).equilibrium()
+    assert pull(rest, "upper") == pytest.approx(data.force, rel=1e-3)
+    assert largest_curvature(rest) == pytest.approx(data.curvature, rel=5e-3)
+
+
+def test_the_state_depends_on_no_added_mass():
+    of = [lazy_wave(LAZY_WAVES["80 m"], MESHES[100], added_mass=added).equilibrium() for added in (None, 0.3, 1.0)]
+    for name in ("upper", "buoyant", "lower"):
+        for other in of[1:]:
+            assert np.array_equal(other[f"{name}.nodal_vectors"], of[0][f"{name}.nodal_vectors"])
+    assert len({rest.iterations for rest in of}) == 1
+
+
+@pytest.mark.parametrize("elements", [30, pytest.param(150, marks=pytest.mark.slow)])
+def test_two_tied_ropes(elements):
+    """As one rope of 140 m: Irvine's catenary, off which bending takes 1e-4 of the force; 150 had 1,373,955 N."""
+    weight = 9.81 * 5000 * np.pi * 0.05**2
+    expected = np.hypot(*end_forces(100, 0, 140, weight, 1e9 * np.pi * 0.05**2))
+    found = pull(tied_ropes(elements).equilibrium(), "a")
+    assert found == pytest.approx(expected, rel=5e-3)
+    assert found == pytest.approx(29953.453, rel=1e-4 if elements == 30 else 1e-7)
+
+
+def on_bed(density: float) -> float:
+    """Return the force at the top of the wire of `wire_on_bed` by the elastic catenary that ends on a rigid bed, N."""
+    weight, axial, span, drop, length = 0.08 * density * W, 0.08e10, 300.0, 80.0, 330.0
+
+    def gaps(unknown):
+        H, hanging = np.exp(unknown[0]), unknown[1]
+        along = H / weight * np.arcsinh(weight * hanging / H) + H * hanging / axial
+        down = H / weight * (np.hypot(1, weight * hanging / H) - 1) + weight * hanging**2 / (2 * axial)
+        return along + (length - hanging) * (1 + H / axial) - span, down - drop
+
+    logarithm, hanging = fsolve(gaps, [np.log(weight * drop), 200.0], xtol=1e-12)
+    return float(np.hypot(np.exp(logarithm), weight * hanging))
+
+
+@pytest.mark.parametrize("changed", [{}, {"bending": 2400.0}, {"density": 888.0}, {"density": 1100.0}, {"elements": 20},
+                                     {"elements": 60}, {"elements": 100}, {"anchor": -79.999}, {"membrane": "full"}],
+                         ids=str)
+def test_a_wire_on_a_bed(changed):
+    """Small changes had made the state unstable, its force 280 times too large. The rigid bed takes 1e-4 of it."""
+    rest = wire_on_bed(**{"elements": 45} | changed).equilibrium()
+    assert pull(rest, "wire") == pytest.approx(on_bed(changed.get("density", 900.0)), rel=1e-3)
+    assert not any("compressed" in message for message in rest.messages)
+
+
+@pytest.mark.parametrize("elements", [10, 20, 40])
+def test_a_rope_needs_few_iterations(elements):
+    """They were 71, 79 and 89, through states of softer ropes."""
+    rest = rope(elements).equilibrium()
+    assert rest.iterations <= 7
+    assert not rest.messages
+    assert pull(rest, "rope") == pytest.approx(np.hypot(*end_forces(50, 0, 60, 7850 * np.pi * 1e-4 * 9.81,
+                                                                    np.pi * 1e-4 * 1e11)), rel=3e-3)
+
+
+@pytest.mark.parametrize(("element", "law"), [("cable8p", {}), ("beam12p", {"law": "structural"}),
+                                              ("beam24", {"law": "structural"}), ("cable18", {})])
+def test_other_elements(element, law):
+    """Clamped level at one end: the same state as cable12's, which Newton's method finds from the same start."""
+    def state(element, law):
+        scene = fu.Scene()
+        scene.cable("rope", start=(0, 0, 0), end=(8, 0, 0), rest_length=10, elements=24, element=element, **law,
+                    section=fu.Rectangle(height=0.04, width=0.04),
+                    material=fu.Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1500))
+        scene.clamp("rope", s=0)
+        scene.pin("rope", s=10)
+        return scene.equilibrium()
+
+    rest, other = state(element, law), state("cable12", {})
+    assert rest.stable
+    assert rest.iterations <= 12
+    np.testing.assert_allclose(rest["rope.position"], other["rope.position"], atol=2e-2)
+
+
+def bead_on_an_arch() -> fu.Scene:
+    """Return a body on top of a stiff arch, at rest there, and nowhere else: it runs off either end."""
+    scene = fu.Scene()
+    u = np.linspace(-1, 1, 21)[:, None]
+    scene.cable("arch", points=np.hstack([u, 0.2 * (1 - u**2), 0 * u]), elements=8, element="beam12p",
+                law="structural", section=fu.Rectangle(height=0.1, width=0.1),
+                material=fu.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=1000))
+    length = scene.cables["arch"].length
+    for s in (0.0, length):
+        scene.clamp("arch", s=s)
+    scene.rigid_body("bead", mass=1, inertia=(1e-3, 1e-3, 1e-3), position=scene.cables["arch"].point(length / 2))
+    scene.slide("bead", along="arch", s=length / 2)
+    return scene
+
+
+def test_no_unstable_state_is_returned_unless_asked_for():
+    with pytest.raises(fu.EquilibriumError, match=r"no stable equilibrium .* unstable: 1 .*=False") as error:
+        bead_on_an_arch().equilibrium()
+    assert error.value.state.unstable_directions == 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        assert bead_on_an_arch().equilibrium(seek_stable=False).unstable_directions == 1
+
+
+def test_no_run_goes_on_from_an_unstable_state():
+    """Not even where the scene's settings ask `equilibrium` for such a state."""
+    scene = bead_on_an_arch()
+    for settings in ({}, {"seek_stable": False}):
+        scene.equilibrium_settings = settings
+        with pytest.raises(fu.EquilibriumError, match="no stable equilibrium was found"):
+            scene.run(0.01, step=1e-3, initial="equilibrium")
+
+
+def test_a_reduced_strain_that_is_compressed_at_rest_is_told():
+    scene = wire_on_bed(20)
+    with pytest.warns(fu.FunicularWarning, match='cable "wire" is compressed by .* take membrane="assumed" or "full"'):
+        scene.equilibrium(seek_stable=False)
