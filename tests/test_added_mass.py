@@ -105,7 +105,7 @@ def test_a_pendulum_in_water_swings_with_the_weight_and_the_inertia_that_the_wat
     length, angle = 1.0, pi / 3
     scene = fu.Scene()
     scene.fluid(density=WATER)
-    scene.rigid_body("ball", mass=8.0, inertia=(1e-9, 1e-9, 1e-9),
+    scene.rigid_body("ball", mass=8.0, inertia=(1e-6, 1e-6, 1e-6),
                      position=(length * np.sin(angle), -length * np.cos(angle), 0))
     scene.joint("spherical", ("ball", (-length * np.sin(angle), length * np.cos(angle), 0)), (0, 0, 0))
     scene.drag("ball", volume=1e-3, added_mass=(0.5, 0.5, 0.5))
