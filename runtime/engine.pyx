@@ -17,6 +17,7 @@ from libc.stdlib cimport calloc, free, realloc
 from libc.string cimport memcpy
 
 from funicular.generated import kernels
+from funicular.interruptions import check_interrupted
 from funicular.operating_system import machine_memory
 from scipy.linalg import cython_lapack
 
@@ -256,7 +257,6 @@ cdef class Engine(Report):
                         stream.pause()
                 if stream is not None:
                     stream.between()
-                PyErr_CheckSignals()
                 if status == FU_EVENT and run.event.kind in (FU_ACTED, FU_PASSED, FU_GAVE_WAY):
                     self._tell()
                     status = FU_RUNNING
@@ -268,6 +268,9 @@ cdef class Engine(Report):
                             status = fu_stop(run)
                         break
                     status = FU_RUNNING
+                if status == FU_RUNNING:
+                    PyErr_CheckSignals()
+                    check_interrupted()
                 on_progress(run.now.t)
                 if status == FU_RUNNING and fu_has_worked(run):
                     return "running"

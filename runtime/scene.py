@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from typing import TYPE_CHECKING, Any, Never, Self, cast
 
@@ -20,6 +20,7 @@ from .errors import (
     enough_memory,
     near,
 )
+from .interruptions import interruptible, uninterrupted, was_interrupted
 from .parts.laid import laid
 from .parts.settings import EquilibriumSettings, ModeSettings, RelaxationSettings, RunSettings, overridden
 from .parts.validation import show, shown
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from .choice.choice import Choice
     from .results.equilibrium import Equilibrium
     from .results.modes import Modes
+    from .results.streaming import Stream
     from .solve.run import Start
     from .solve.shared_trials import SharedTrials
     from .view.animation import Animation
@@ -196,17 +198,14 @@ class Scene(Viewable, DescribedScene):
                    progress: bool | Callable[[float], None] | None, chosen: Choice | None = None,
                    trials: SharedTrials | None = None) -> Run:
         """Return the run with these settings, however it ended, from a state or as the settings say."""
-        from .results.streaming import Stream  # brings SciPy and the engine
+        from .results.recording import recorded  # brings SciPy and the engine
+        from .solve.run import simulate
 
-        saving = nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume,
-                                                                    self.from_toml)
-        given = state
-        with saving as stream, one_blas_thread, enough_memory():
+        with uninterrupted(), self._saving(settings, resume) as stream, one_blas_thread, enough_memory():
+            given = state
             if settings.initial in ("equilibrium", "relaxed") and state is None:
-                state = _at_rest(settings.initial, self, None if chosen is None else chosen.rest)
-            from .results.recording import recorded  # likewise
-            from .solve.run import simulate
-
+                with interruptible():
+                    state = _at_rest(settings.initial, self, None if chosen is None else chosen.rest)
             flat = laid(self)
             with progress_bar(settings.duration, progress) as on_progress:
                 simulation = simulate(flat, settings, on_progress, initial=state, stream=stream, trials=trials)
@@ -220,22 +219,41 @@ class Scene(Viewable, DescribedScene):
                 self._estimate(run, settings, given)
                 if stream:
                     stream.add_to_report(run.report)
+            if was_interrupted() and run.status != "interrupted":  # what is done is not lost
+                warnings.warn("the run had come to its end when it was interrupted", FunicularWarning, stacklevel=5)
             return run
 
+    def _saving(self, settings: RunSettings, resume: bool) -> AbstractContextManager[Stream | None]:
+        """Return what writes the file of a run, if one is asked for."""
+        from .results.streaming import Stream  # as above
+
+        return nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume, self.from_toml)
+
     def _estimate(self, run: Run, settings: RunSettings, state: Start | None) -> None:
-        """Add the errors of a run, of its steps and of its mesh, to its report; state: what it was given to start."""
+        """Add the errors of a run, of its steps and of its mesh, to its report, unless Ctrl-C ends that; state: what it
+        was given to start.
+        """
         from .results.error_estimate import error_estimate  # brings SciPy
 
         def again(scene: Self, changes: dict[str, Any]) -> Run:
             other = scene.copied()
             kept = {name: getattr(settings, name) for name in settings.model_fields_set - {"estimate", "save"}}
             other.run_settings = {}
-            return other.run(**kept | changes | ({} if state is None else {"initial": state}), progress=False)
+            made = other.run(**kept | changes | ({} if state is None else {"initial": state}), progress=False)
+            if made.status == "interrupted":
+                raise KeyboardInterrupt
+            return made
 
         if run.status != "completed":
             run.report["messages"].append(f"the run's errors are not estimated: it ended with status \"{run.status}\"")
             return
-        found = error_estimate(self, run, settings, state is not None, again)
+        try:
+            with interruptible():
+                found = error_estimate(self, run, settings, state is not None, again)
+        except KeyboardInterrupt:
+            run.report["messages"].append("the run's errors are not estimated: that was interrupted")
+            warnings.warn(run.report["messages"][-1], FunicularWarning, stacklevel=6)
+            return
         run.report["errors"] = found.as_report()
         run.report["messages"] += found.messages
 
@@ -283,7 +301,7 @@ class Scene(Viewable, DescribedScene):
         from .results.equilibrium import Equilibrium  # brings SciPy
         from .solve.static import equilibrium
 
-        with one_blas_thread, enough_memory():
+        with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
             if settings.adjust is None:
                 return equilibrium(laid(self), settings, begin, Equilibrium)
 
@@ -312,7 +330,7 @@ class Scene(Viewable, DescribedScene):
         from .solve.relaxation import relax
 
         check_comes_to_rest(self)
-        with one_blas_thread, enough_memory():
+        with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
             return relax(laid(self), settings, Equilibrium)
 
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
@@ -329,7 +347,7 @@ class Scene(Viewable, DescribedScene):
         from .results.modes import Modes  # brings SciPy
         from .solve.modes import modes
 
-        with one_blas_thread, enough_memory():
+        with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
             return Modes.of(modes(laid(self), settings.n, state), self, state)
 
     def animation(self, title: str | None = None) -> Animation:

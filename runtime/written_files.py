@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
+import secrets
 import shutil
-import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -29,6 +29,7 @@ def write_whole(path: str | os.PathLike, write: Callable[[Path], object], what: 
             raise PermissionError(0, "the file is write-protected")
         with uninterrupted():
             part = _beside(target)
+            os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))  # follows no link
             try:
                 with interruptible():
                     write(part)
@@ -54,7 +55,7 @@ def write_text(path: str | os.PathLike, text: str, what: str = "the file") -> Pa
 
 
 def _beside(path: Path) -> Path:
-    """Return a name in the same folder with the same ending, by which libraries choose a format; a name of its own for
-    each thread, short where that of the file is long.
+    """Return a new name in the same folder that nobody can foresee, with the same ending, by which libraries choose a
+    format.
     """
-    return path.with_name(f".{path.stem[:32]}-{os.getpid()}-{threading.get_ident()}.part{path.suffix}")
+    return path.with_name(f".{path.stem[:32]}-{secrets.token_hex(8)}.part{path.suffix}")

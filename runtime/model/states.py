@@ -165,7 +165,7 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
     if attachment.cable >= 0:
         cable = model.cables[attachment.cable]
         start = cable.first + attachment.element * cable.shape[1] * model.dim
-        vectors = q[:, start : start + len(attachment.N) * model.dim].reshape(len(q), -1, model.dim)
+        vectors = q[:, start : start + len(attachment.N) * model.dim].reshape(len(q), len(attachment.N), model.dim)
         return spatial(np.einsum("k,tkd->td", attachment.N, vectors))
     if attachment.body >= 0:
         body = model.bodies[attachment.body]

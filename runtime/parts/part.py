@@ -138,6 +138,15 @@ class Part(BaseModel, metaclass=_TranslatingType):
         given = {keyword: getattr(self, field) for keyword, field in self.keywords().items()}
         return {keyword: value for keyword, value in given.items() if value is not None}
 
+    def field_values(self, given: bool = False) -> dict[str, Any]:
+        """Return its values by field; given: those that were given alone.
+
+        As pydantic's model_dump does of a part without parts in it, which turns Ctrl-C within it into an error of its
+        own (PydanticSerializationError).
+        """
+        return {name: getattr(self, name) for name in type(self).model_fields
+                if not given or name in self.model_fields_set}
+
     def remade(self, changes: Mapping[str, Any]) -> Self:
         """Return a part like this one but for some changes, by keyword; None leaves an entry out."""
         return type(self)(**self.entries_with(changes))

@@ -214,7 +214,7 @@ def _settings(name: str, table: Any) -> dict:
     """Return what a table of settings sets, checked."""
     if not isinstance(table, dict):
         raise SceneError(f"[{name}]", "must be a table")
-    settings = SETTINGS[name](**table).model_dump(exclude_unset=True)
+    settings = SETTINGS[name](**table).field_values(given=True)
     save = settings.get("save")
     if save is not None and not save.endswith(".nc"):  # lest a scene file replace any file of its reader's
         raise SceneError(f"[{name}]", f'save = "{save}" in a scene file must end in .nc',

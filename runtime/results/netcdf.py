@@ -52,6 +52,14 @@ class File:
             descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | BYTES)
         self.descriptor = descriptor
         self.close = weakref.finalize(self, os.close, self.descriptor)
+        try:
+            self._look()
+        except BaseException:
+            self.close()
+            raise
+
+    def _look(self) -> None:
+        """Read the header and what follows from it. Raises OSError, ValueError."""
         size = os.fstat(self.descriptor).st_size
         self.rows, self.attributes, places, self.entries = self._head(size)
         self._report_at = places.get("report", (0, 0))
@@ -249,7 +257,8 @@ def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: M
     """Return a new file, without rows yet; of the variables over time only shapes count.
 
     attributes: but for the report, a JSON object, which can grow by `spare` bytes; descriptor: of a
-    file of that path which is open already, and becomes this one; along: the dimension of the rows.
+    file of that path which is open already, and becomes this one, or is closed where that fails; along: the dimension
+    of the rows.
     """
     checksum = Variable((along,), np.zeros(0), "1", "checksum of the row")
     header = header_of({**coords, **variables, ROW_CHECKSUM: checksum},
@@ -258,9 +267,13 @@ def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: M
     at, size = places[HEADER_CHECKSUM]
     header = header[:at] + header_checksum(header, places).encode() + header[at + size :]
     descriptor = created(path) if descriptor is None else descriptor
-    os.ftruncate(descriptor, 0)
-    with open(descriptor, "wb", closefd=False) as file:
-        file.write(header)
+    try:
+        os.ftruncate(descriptor, 0)
+        with open(descriptor, "wb", closefd=False) as file:
+            file.write(header)
+    except BaseException:
+        os.close(descriptor)
+        raise
     return File(path, descriptor=descriptor)
 
 

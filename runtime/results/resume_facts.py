@@ -24,7 +24,7 @@ def facts_of(scene: SceneData, settings: RunSettings) -> dict:
     """Return what is known of a run before it starts, as `Facts` of a checkpoint have it."""
     alone = copy(scene)
     alone.run_settings = {}
-    said = {name: value for name, value in settings.model_dump().items() if name not in ("save", "estimate")}
+    said = {name: value for name, value in settings.field_values().items() if name not in ("save", "estimate")}
     return {"scene": _digest(dumps(alone).encode()), "settings": json.loads(json.dumps(said, default=str)),
             "programs": programs_of(scene.libraries)}
 

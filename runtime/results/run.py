@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import threading
 import warnings
 from collections.abc import Iterable, Mapping
 from functools import cached_property
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from ..errors import FunicularWarning, ResultFileError, UnknownResultError, near
+from ..errors import FunicularWarning, UnknownResultError, near
 from ..named_arrays import NamedArrays
 from ..parts.cable import Cable
 from ..parts.laid import laid
@@ -20,6 +19,7 @@ from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.slide import Slide
+from ..written_files import write_whole
 from .quantities import ENERGIES, Variable, labelled
 from .viewable import Viewable
 
@@ -103,7 +103,7 @@ class Run(Viewable, NamedArrays):
             "status": recording.status,
             "message": recording.message,
             "messages": [*scene.messages, *recording.report.get("messages", [])],
-            "settings": settings.model_dump(),
+            "settings": settings.field_values(),
         }
         return cls(variables, coords, report, SceneText(scene.copied(), read_scene, scene.libraries))
 
@@ -241,24 +241,21 @@ class Run(Viewable, NamedArrays):
 
         path = check_writable(path)
         check_free(path)
-        part = path.with_name(f".{path.name}.{os.getpid()}-{threading.get_ident()}.part")
         report = file_text(self.report, len(self.time))
-        try:
+
+        def write(part: Path) -> None:
             if isinstance(self.variables, Stored):
                 described = self.variables.file.described(over_time=True)
                 fixed = {name: v for name, v in self.coords.items() if name != "time"}
                 create_file(part, fixed, described, self.scene_toml, report).copy_rows(self.variables.file)
-            else:
-                file = create_file(part, self.coords, self.variables, self.scene_toml, report)
-                rows = over_time(self.coords, self.variables)
-                block = max(1, _BLOCK // file.row_bytes)
-                for first in range(0, len(self.time), block):
-                    file.write(first, {name: values[first : first + block] for name, values in rows.items()})
-            part.replace(path)
-        except OSError as error:
-            raise ResultFileError(f"{path}: the results could not be written: {error}") from error
-        finally:
-            part.unlink(missing_ok=True)
+                return
+            file = create_file(part, self.coords, self.variables, self.scene_toml, report)
+            rows = over_time(self.coords, self.variables)
+            block = max(1, _BLOCK // file.row_bytes)
+            for first in range(0, len(self.time), block):
+                file.write(first, {name: values[first : first + block] for name, values in rows.items()})
+
+        write_whole(path, write, "the results")
 
     def energy_balance(self) -> EnergyBalance:
         """Return how well the energy balance closes; see `EnergyBalance`."""

@@ -211,7 +211,7 @@ class Stream:
 
     def _unfinished(self) -> dict:
         return {"status": "unfinished", "message": "the run goes on, or was killed", "resumed_at_s": self._resumed,
-                "messages": self._scene.messages, "settings": self._settings.model_dump()}
+                "messages": self._scene.messages, "settings": self._settings.field_values()}
 
     def _name(self) -> None:
         """Give the rows so far the name of the file, in place of an older one, and write the first checkpoint."""

@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 
 from ..errors import FunicularWarning, enough_memory
+from ..interruptions import interruptible, uninterrupted
 from ..model.build import build
 from ..model.model import CableModel
 from ..parts.body_shape import Shape
@@ -29,7 +30,7 @@ def of_mesh(body: ModalBody) -> Shape:
         still = 0
     else:
         still = 3 if cable.dim == 2 else 6 if cable.kind_of_element.director else 5
-    with warnings.catch_warnings(), one_blas_thread, enough_memory():
+    with warnings.catch_warnings(), uninterrupted(), one_blas_thread, enough_memory(), interruptible():
         warnings.simplefilter("ignore", FunicularWarning)  # that rounding may hide the rigid motions, which are known
         found = modes(scene, body.modes + still)
     elastic, error = found.angular_frequency[still:], found.uncertainty[still:]

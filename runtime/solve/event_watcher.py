@@ -10,6 +10,7 @@ import numpy as np
 
 from ..checks.event_placement import AXES
 from ..errors import SceneError, near
+from ..interruptions import interruptible
 from ..model.middle_strain import middle_strain
 from ..model.model import Model
 from ..model.states import body_rates, body_state, spatial
@@ -111,7 +112,8 @@ class EventWatcher:
         """Return the function of an event at a state. Raises SceneError where it fails or gives no number."""
         event = self.watches[which].event
         try:
-            value = float((event.function or self._of_quantity(event))(time, State(self.model, q, v, s)))
+            with interruptible():
+                value = float((event.function or self._of_quantity(event))(time, State(self.model, q, v, s)))
         except Exception as error:
             raise SceneError(event.where, f"its function failed at t = {time:.6g} s: {type(error).__name__}: {error}",
                              "it gets (time, state) and must give a number") from error

@@ -9,6 +9,7 @@ from collections import deque
 from ..engine import Engine
 from ..errors import FunicularWarning
 from ..integrators import INTEGRATORS, stable_at
+from ..interruptions import interruptible
 from ..model.model import Model
 from ..parts.settings import RunSettings
 from .diagnosis import damping, describe_dof
@@ -41,7 +42,8 @@ class LongRun:
 
     def __call__(self, reached: float) -> None:
         """Show the progress; where the run will be long, its rate and end, and once a warning that says why."""
-        self._meter(reached)
+        with interruptible():
+            self._meter(reached)
         now = time.monotonic()
         self._marks.append((now, reached, self._steps))
         if self._steps < PREDICTED_AFTER:

@@ -17,6 +17,7 @@ from ..checks.velocity_jumps import velocity_jumps
 from ..engine import Engine
 from ..errors import FunicularWarning, SceneError
 from ..integrators import Integrator
+from ..interruptions import interruptible
 from ..model.build import build
 from ..model.controlled import controlled_weights, counted_weights
 from ..model.knots import knots
@@ -89,14 +90,16 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     what is returned; trials: of other scenes of this shape.
     """
     begin = time.perf_counter()
-    ready = _prepared(scene, settings, initial)
+    with interruptible():
+        ready = _prepared(scene, settings, initial)
     _check_size(ready.engine.row_bytes, settings, stream)
     pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
     messages = implausible(scene) + ready.messages
     if initial is not None:
         messages += [f"state to start from: {message}" for message in initial.messages]
     messages += _divided_step(settings)
-    choice = choose(settings, scene, ready.model, ready.engine, stream.integrator if stream else None)
+    with interruptible():
+        choice = choose(settings, scene, ready.model, ready.engine, stream.integrator if stream else None)
     method, reason, rival = choice if trials is None else trials.of(scene, *choice)
     set_up, clock = time.perf_counter() - begin, time.thread_time if settings.threads == 1 else time.process_time
     cpu = clock()

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from ..errors import FunicularError
+from ..interruptions import interruptible, uninterrupted
 from ..results.run import Run
 from ..scene import Scene
 from ..solve.threads import one_blas_thread
@@ -36,7 +37,7 @@ def run_points(scenes: Sequence[Scene], keep: Keep) -> list[Outcome]:
 
     An error of one does not stop the rest; Ctrl-C does, as KeyboardInterrupt.
     """
-    with one_blas_thread:  # for all at once: each would set and reset it
+    with uninterrupted(), one_blas_thread, interruptible():  # for all at once: each would set and reset it
         return [_run_point(scene, keep) for scene in scenes]
 
 

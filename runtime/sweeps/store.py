@@ -107,14 +107,23 @@ def stored(path: str | os.PathLike, facts: Mapping[str, Any]) -> Store | None:
     except (OSError, ValueError) as error:
         raise ResultFileError(f"{resolved}: there is a file that is no sweep of funicular, or a damaged one: {error}; "
                               "delete it, or give another name") from None
+    try:
+        return _going_on(file, facts)
+    except BaseException:
+        file.close()  # which gives its lock back
+        raise
+
+
+def _going_on(file: File, facts: Mapping[str, Any]) -> Store:
+    """Return the sweep in an open file. Raises ResultFileError where it is another one."""
     old = facts_in(file)
     for name, what in DIFFERENCES.items():
         if old[name] != facts[name]:
-            raise ResultFileError(f"{resolved}: holds a sweep of {what}; delete it, or give another name")
+            raise ResultFileError(f"{file.path}: holds a sweep of {what}; delete it, or give another name")
     try:
         finished = whole_rows(file, int(old["number"]))
     except OSError as error:
-        raise ResultFileError(f"{resolved}: cannot be read: {error}; delete it, or give another name") from None
+        raise ResultFileError(f"{file.path}: cannot be read: {error}; delete it, or give another name") from None
     return Store(file, old, finished)
 
 
@@ -146,6 +155,7 @@ def new_store(path: str | os.PathLike | None, layout: Layout, facts: Mapping[str
         raise ResultFileError(f"{resolved}: {number} points of {layout.row_bytes} bytes do not fit in the {free:.3g} "
                               "bytes that are free; keep less, or save elsewhere")
     attributes: dict[str, str | int] = {FORMAT: SWEEP_FORMAT, "scene": scene}
+    file = None
     try:
         file = create(part, layout.coords, layout.for_file(), attributes, json.dumps(facts), 0, descriptor, POINT)
         file.reserve(number)
@@ -153,7 +163,12 @@ def new_store(path: str | os.PathLike | None, layout: Layout, facts: Mapping[str
             os.unlink(part)
         else:
             file.rename(resolved)
-    except OSError as error:
+    except BaseException as error:
+        if file is not None:
+            file.close()
+        Path(part).unlink(missing_ok=True)
+        if not isinstance(error, OSError):
+            raise
         raise ResultFileError(f"{resolved}: the results cannot be written here: {error.strerror}") from error
     return Store(file, facts, np.zeros(number, bool))
 

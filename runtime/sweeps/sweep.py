@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import FunicularError, FunicularWarning, ResultFileError, SceneError, near
+from ..interruptions import interruptible, uninterrupted
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.validation import shown
@@ -141,7 +142,7 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
     """
     _check_workers(workers, cluster, batch)
     plan = Plan.of(subject, parameters, keep, method, samples, seed, settings, record_invalid)
-    with _begun(plan, save, retry_failed) as (store, layout, missing, sampled):
+    with uninterrupted(), _begun(plan, save, retry_failed) as (store, layout, missing, sampled):
         cost = _cost(plan, layout, len(missing), sampled, workers)
         tell = on_cost or (lambda cost: None)
         alone = cluster is None and workers is None and cost.points * cost.point_seconds[1] < NOT_WORTH_WORKERS
@@ -150,8 +151,9 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
                 with workers_of(0 if alone else workers, cluster) as computing:
                     cost = replace(cost, workers=computing.number)
                     LOG.info("sweep: %s", cost)
-                    tell(cost)
-                    _compute(plan, store, layout, missing, cost, computing, batch, progress)
+                    with interruptible():
+                        tell(cost)
+                        _compute(plan, store, layout, missing, cost, computing, batch, progress)
             else:
                 tell(cost)
         except KeyboardInterrupt:
@@ -200,8 +202,9 @@ def _begun(plan: Plan, save: str | os.PathLike | None,
     store = None if save is None else stored(save, facts)
     if store is None:
         missing = np.arange(plan.points.number)
-        sampled = sample(plan.subject, plan.points, missing)
-        layout = plan.layout(sampled)
+        with interruptible():
+            sampled = sample(plan.subject, plan.points, missing)
+            layout = plan.layout(sampled)
         if save is None and layout.row_bytes * plan.points.number > MOST_IN_MEMORY:
             raise ResultFileError(f"sweep: {plan.points.number} points of {layout.row_bytes} bytes are more than the "
                                   f"{MOST_IN_MEMORY:.3g} that a sweep may keep in memory; name a file with save")
@@ -209,7 +212,12 @@ def _begun(plan: Plan, save: str | os.PathLike | None,
     else:
         layout = Layout.in_file(store.file, [*plan.points.columns])
         missing = np.sort(np.concatenate([store.missing, store.failed()])) if retry_failed else store.missing
-        sampled = sample(plan.subject, plan.points, missing)
+        try:
+            with interruptible():
+                sampled = sample(plan.subject, plan.points, missing)
+        except BaseException:
+            store.close()
+            raise
     try:
         numbers = np.array([*sampled], int)
         if len(numbers):
@@ -239,7 +247,8 @@ def _compute(plan: Plan, store: Store, layout: Layout, missing: np.ndarray, cost
         batches = Batches(plan.points, missing, layout.row_bytes, computing.number, cost.point_seconds[1], batch)
         done = total - len(missing)
         for each, came in computing.compute(task, batches, lost):
-            store.put(each.numbers, came.rows)
+            with uninterrupted():
+                store.put(each.numbers, came.rows)
             batches.learn(len(each.numbers), came.seconds)
             done, failed = done + len(each.numbers), failed + came.failed
             show(done, failed)

@@ -25,6 +25,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..errors import FunicularError
+from ..interruptions import interruptible
 from ..solve.threads import available
 from .batches import Batch, Batches, Done
 
@@ -95,7 +96,8 @@ def workers_of(number: int | None, cluster: str | None) -> Iterator[Workers]:
 @contextmanager
 def _closing(workers: DaskWorkers) -> Iterator[DaskWorkers]:
     try:
-        workers.connect()
+        with interruptible():
+            workers.connect()
         yield workers
     finally:
         workers.close()
@@ -120,7 +122,8 @@ def local_cluster(number: int) -> Iterator[str]:
             running = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                        start_new_session=True)  # Ctrl-C is for this process alone
             try:
-                _await_workers(cluster, running, number, log)
+                with interruptible():
+                    _await_workers(cluster, running, number, log)
                 yield cluster.scheduler_address
             finally:
                 with suppress(ProcessLookupError):
