@@ -32,6 +32,7 @@ class LawTraits:
     straight           where the law is for a curved stress-free shape: the law for a straight one; else empty
     takes_shape        whether its kernels take the stress-free shape e0
     damped_like        the law whose damping kernels it takes; empty where it has its own
+    relaxed_like       the law whose algorithmic forces it takes; empty where that is damped_like
     """
 
     kind: str
@@ -41,6 +42,7 @@ class LawTraits:
     straight: str = ""
     takes_shape: bool = False
     damped_like: str = ""
+    relaxed_like: str = ""
 
 
 @dataclass(frozen=True)

@@ -527,6 +527,42 @@ FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic
     }
 }
 
+FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_damping_force(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[12];
+    fu_real v[12];
+    fu_real A[4];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real f[12];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable12_engineering_exact_tension_only_damping_force(l, e, v, A, tau, f);
+        scatter(out + k * 12, f, 12);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[12];
+    fu_real v[12];
+    fu_real A[4];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable12_engineering_exact_tension_only_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
+    }
+}
+
 FU_BLOCK_TARGET static void block_cable18_green_exact_elastic_force(int n, const fu_elements *of, double *out)
 {
     fu_real l = FU_NUMBER(*of->l);
@@ -1148,6 +1184,42 @@ FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic
     }
 }
 
+FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_damping_force(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[8];
+    fu_real v[8];
+    fu_real A[4];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real f[8];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable8p_engineering_exact_tension_only_damping_force(l, e, v, A, tau, f);
+        scatter(out + k * 8, f, 8);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_dissipation(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(*of->l);
+    fu_real e[8];
+    fu_real v[8];
+    fu_real A[4];
+    fu_real tau = FU_NUMBER(of->tau);
+    fu_real P[1];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        if (of->l_stride) gather(&l, of->l + k, 1, 1);
+        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
+        gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
+        cable8p_engineering_exact_tension_only_dissipation(l, e, v, A, tau, P);
+        scatter(out + k * 1, P, 1);
+    }
+}
+
 static const fu_law_blocks all[] = {
     {"beam24_continuum", block_beam24_continuum_elastic_force, 0, block_beam24_continuum_damping_force, block_beam24_continuum_dissipation},
     {"beam24_continuum_curved", block_beam24_continuum_curved_elastic_force, 0, block_beam24_continuum_damping_force, block_beam24_continuum_dissipation},
@@ -1162,7 +1234,7 @@ static const fu_law_blocks all[] = {
     {"cable12_engineering_linear_assumed", block_cable12_engineering_linear_assumed_elastic_force, block_cable12_engineering_linear_assumed_elastic_tangent, block_cable12_engineering_exact_damping_force, block_cable12_engineering_exact_dissipation},
     {"cable12_green_exact_curved", block_cable12_green_exact_curved_elastic_force, block_cable12_green_exact_curved_elastic_tangent, block_cable12_green_exact_damping_force, block_cable12_green_exact_dissipation},
     {"cable12_engineering_exact_curved", block_cable12_engineering_exact_curved_elastic_force, block_cable12_engineering_exact_curved_elastic_tangent, block_cable12_engineering_exact_damping_force, block_cable12_engineering_exact_dissipation},
-    {"cable12_engineering_exact_tension_only", block_cable12_engineering_exact_tension_only_elastic_force, block_cable12_engineering_exact_tension_only_elastic_tangent, block_cable12_engineering_exact_damping_force, block_cable12_engineering_exact_dissipation},
+    {"cable12_engineering_exact_tension_only", block_cable12_engineering_exact_tension_only_elastic_force, block_cable12_engineering_exact_tension_only_elastic_tangent, block_cable12_engineering_exact_tension_only_damping_force, block_cable12_engineering_exact_tension_only_dissipation},
     {"cable18_green_exact", block_cable18_green_exact_elastic_force, 0, block_cable18_green_exact_damping_force, block_cable18_green_exact_dissipation},
     {"cable18_engineering_exact", block_cable18_engineering_exact_elastic_force, 0, block_cable18_engineering_exact_damping_force, block_cable18_engineering_exact_dissipation},
     {"cable18_green_exact_assumed", block_cable18_green_exact_assumed_elastic_force, 0, block_cable18_green_exact_damping_force, block_cable18_green_exact_dissipation},
@@ -1178,7 +1250,7 @@ static const fu_law_blocks all[] = {
     {"cable8p_green_linear_assumed", block_cable8p_green_linear_assumed_elastic_force, block_cable8p_green_linear_assumed_elastic_tangent, block_cable8p_green_exact_damping_force, block_cable8p_green_exact_dissipation},
     {"cable8p_engineering_exact_assumed", block_cable8p_engineering_exact_assumed_elastic_force, block_cable8p_engineering_exact_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force, block_cable8p_engineering_exact_dissipation},
     {"cable8p_engineering_linear_assumed", block_cable8p_engineering_linear_assumed_elastic_force, block_cable8p_engineering_linear_assumed_elastic_tangent, block_cable8p_engineering_exact_damping_force, block_cable8p_engineering_exact_dissipation},
-    {"cable8p_engineering_exact_tension_only", block_cable8p_engineering_exact_tension_only_elastic_force, block_cable8p_engineering_exact_tension_only_elastic_tangent, block_cable8p_engineering_exact_damping_force, block_cable8p_engineering_exact_dissipation}
+    {"cable8p_engineering_exact_tension_only", block_cable8p_engineering_exact_tension_only_elastic_force, block_cable8p_engineering_exact_tension_only_elastic_tangent, block_cable8p_engineering_exact_tension_only_damping_force, block_cable8p_engineering_exact_tension_only_dissipation}
 };
 
 const fu_law_blocks *fu_blocks_of(const char *law)

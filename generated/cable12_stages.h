@@ -175,7 +175,7 @@
     k[14] = K_r_2_r_x2_xx; \
     k[15] = K_r_x2_r_x2_xx;
 
-/* strain vectors and their rates: of cable12_green_exact_damping_force and 7 more */
+/* strain vectors and their rates: of cable12_green_exact_damping_force and 10 more */
 #define CABLE12_STRAIN_VECTORS_AND_THEIR_RATES \
     fu_real chord2[3], t1[3], t2[3], chordd2[3], dt1[3], dt2[3]; \
     const fu_real w = 1.0/l; \
@@ -193,7 +193,7 @@
     FU_EACH(i, 3, f_t1[i] = -0.5773502691896257*F1_b[0][i] + 0.5773502691896257*F1_b[1][i] + F2_b[0][i] + F2_b[1][i] - 0.7745966692414834*F_0[i] + 0.7745966692414834*F_2[i];) \
     FU_EACH(i, 3, f_t2[i] = -1.7320508075688772*F2_b[0][i] + 1.7320508075688772*F2_b[1][i] + 0.40000000000000013*F_0[i] - 0.5*F_1[i] + 0.40000000000000013*F_2[i];)
 
-/* rate of curvature at the quadrature points: of cable12_green_exact_damping_tangent and 3 more */
+/* rate of curvature at the quadrature points: of cable12_green_exact_damping_tangent and 5 more */
 #define CABLE12_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
     fu_real r1_b0[3], d1_b0[3], r2_b0[3], d2_b0[3], i_b0[3], di_b0[3], rate_b0[3], r1_b1[3], d1_b1[3], r2_b1[3], \
         d2_b1[3], i_b1[3], di_b1[3], rate_b1[3]; \
@@ -227,7 +227,7 @@
         across_b1 = di_b1[0]*r2_b1[0] + di_b1[1]*r2_b1[1] + di_b1[2]*r2_b1[2]; \
     FU_EACH(i, 3, rate_b1[i] = across_b1*i_b1[i] - along_b1*di_b1[i] + d2_b1[i];)
 
-/* blocks over strain vectors: of cable12_green_exact_damping_tangent and 1 more */
+/* blocks over strain vectors: of cable12_green_exact_damping_tangent and 2 more */
 #define CABLE12_BLOCKS_OVER_STRAIN_VECTORS_2 \
     fu_real K_t_t0[3][3][3], K_t_t1[3][3][3], K_t_t2[3][3][3]; \
     FU_PAIRS(i, j, 3, K_t_t0[0][i][j] = K_1[i][j] + sum11_d10[i][j] + sum_d20[0][i][j];) \
@@ -240,7 +240,7 @@
     FU_PAIRS(i, j, 3, K_t_t1[2][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[2][i][j];) \
     FU_PAIRS(i, j, 3, K_t_t2[2][i][j] = 0.25*K_1[i][j] + 0.16000000000000011*sum11_d10[i][j] + 2.9999999999999996*sum_d20[3][i][j];)
 
-/* over nodal vectors: K T: of cable12_green_exact_damping_tangent and 1 more */
+/* over nodal vectors: K T: of cable12_green_exact_damping_tangent and 2 more */
 #define CABLE12_OVER_NODAL_VECTORS_K_T_3 \
     fu_real KT_t_r_x1[3][3][3], KT_t_r_2[3][3][3], KT_t_r_x2[3][3][3]; \
     FU_EACH(g, 3, \
@@ -248,7 +248,7 @@
         FU_PAIRS(i, j, 3, KT_t_r_2[g][i][j] = w*(K_t_t0[g][i][j] - K_t_t2[g][i][j]);) \
         FU_PAIRS(i, j, 3, KT_t_r_x2[g][i][j] = 0.5*K_t_t1[g][i][j] + 0.5*K_t_t2[g][i][j];))
 
-/* over nodal vectors: T' K T: of cable12_green_exact_damping_tangent and 1 more */
+/* over nodal vectors: T' K T: of cable12_green_exact_damping_tangent and 2 more */
 #define CABLE12_OVER_NODAL_VECTORS_T_K_T_3 \
     fu_real K_r_x1_r_2[3][3], K_r_2_r_x1[3][3], K_r_2_r_2[3][3], K_r_2_r_x2[3][3], K_r_x2_r_2[3][3]; \
     FU_PAIRS(i, j, 3, K[12*i + j + 39] = -0.5*KT_t_r_x1[1][i][j] + 0.5*KT_t_r_x1[2][i][j];) \

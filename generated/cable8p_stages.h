@@ -145,7 +145,7 @@
     k[14] = K_r_2_r_x2_xx; \
     k[15] = K_r_x2_r_x2_xx;
 
-/* strain vectors and their rates: of cable8p_green_exact_damping_force and 5 more */
+/* strain vectors and their rates: of cable8p_green_exact_damping_force and 7 more */
 #define CABLE8P_STRAIN_VECTORS_AND_THEIR_RATES \
     const fu_real \
         w = 1.0/l, \
@@ -172,7 +172,7 @@
         f_t2_x = -1.7320508075688772*F2_b_x[0] + 1.7320508075688772*F2_b_x[1] + 0.40000000000000013*F_0_x - 0.5*F_1_x + 0.40000000000000013*F_2_x, \
         f_t2_y = -1.7320508075688772*F2_b_y[0] + 1.7320508075688772*F2_b_y[1] + 0.40000000000000013*F_0_y - 0.5*F_1_y + 0.40000000000000013*F_2_y;
 
-/* strain vectors and their rates: of cable8p_green_exact_damping_tangent and 1 more */
+/* strain vectors and their rates: of cable8p_green_exact_damping_tangent and 2 more */
 #define CABLE8P_STRAIN_VECTORS_AND_THEIR_RATES_2 \
     fu_real chord2[2], t1[2], t2[2], chordd2[2], dt1[2], dt2[2]; \
     const fu_real w = 1.0/l; \
@@ -183,7 +183,7 @@
     FU_EACH(i, 2, dt1[i] = -0.5*v[i + 2] + 0.5*v[i + 6];) \
     FU_EACH(i, 2, dt2[i] = -chordd2[i] + 0.5*v[i + 2] + 0.5*v[i + 6];)
 
-/* rate of curvature at the quadrature points: of cable8p_green_exact_damping_tangent and 1 more */
+/* rate of curvature at the quadrature points: of cable8p_green_exact_damping_tangent and 2 more */
 #define CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
     fu_real r1_b0[2], d1_b0[2], r2_b0[2], d2_b0[2], i_b0[2], di_b0[2], rate_b0[2], r1_b1[2], d1_b1[2], r2_b1[2], \
         d2_b1[2], i_b1[2], di_b1[2], rate_b1[2]; \
@@ -217,7 +217,7 @@
         across_b1 = di_b1[0]*r2_b1[0] + di_b1[1]*r2_b1[1]; \
     FU_EACH(i, 2, rate_b1[i] = across_b1*i_b1[i] - along_b1*di_b1[i] + d2_b1[i];)
 
-/* blocks over strain vectors: of cable8p_green_exact_damping_tangent and 1 more */
+/* blocks over strain vectors: of cable8p_green_exact_damping_tangent and 2 more */
 #define CABLE8P_BLOCKS_OVER_STRAIN_VECTORS_2 \
     fu_real K_t_t0[3][2][2], K_t_t1[3][2][2], K_t_t2[3][2][2]; \
     FU_PAIRS(i, j, 2, K_t_t0[0][i][j] = K_1[i][j] + sum11_d10[i][j] + sum_d20[0][i][j];) \
@@ -230,7 +230,7 @@
     FU_PAIRS(i, j, 2, K_t_t1[2][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[2][i][j];) \
     FU_PAIRS(i, j, 2, K_t_t2[2][i][j] = 0.25*K_1[i][j] + 0.16000000000000011*sum11_d10[i][j] + 2.9999999999999996*sum_d20[3][i][j];)
 
-/* over nodal vectors: K T: of cable8p_green_exact_damping_tangent and 1 more */
+/* over nodal vectors: K T: of cable8p_green_exact_damping_tangent and 2 more */
 #define CABLE8P_OVER_NODAL_VECTORS_K_T_3 \
     fu_real KT_t_r_x1[3][2][2], KT_t_r_2[3][2][2], KT_t_r_x2[3][2][2]; \
     FU_EACH(g, 3, \
@@ -238,7 +238,7 @@
         FU_PAIRS(i, j, 2, KT_t_r_2[g][i][j] = w*(K_t_t0[g][i][j] - K_t_t2[g][i][j]);) \
         FU_PAIRS(i, j, 2, KT_t_r_x2[g][i][j] = 0.5*K_t_t1[g][i][j] + 0.5*K_t_t2[g][i][j];))
 
-/* over nodal vectors: T' K T: of cable8p_green_exact_damping_tangent and 1 more */
+/* over nodal vectors: T' K T: of cable8p_green_exact_damping_tangent and 2 more */
 #define CABLE8P_OVER_NODAL_VECTORS_T_K_T_3 \
     fu_real K_r_x1_r_2[2][2], K_r_2_r_x1[2][2], K_r_2_r_2[2][2], K_r_2_r_x2[2][2], K_r_x2_r_2[2][2]; \
     FU_PAIRS(i, j, 2, K[8*i + j + 18] = -0.5*KT_t_r_x1[1][i][j] + 0.5*KT_t_r_x1[2][i][j];) \
@@ -251,7 +251,7 @@
     FU_PAIRS(i, j, 2, K_r_x2_r_2[i][j] = K[8*i + j + 52] = 0.5*KT_t_r_2[1][i][j] + 0.5*KT_t_r_2[2][i][j];) \
     FU_PAIRS(i, j, 2, K[8*i + j + 54] = 0.5*KT_t_r_x2[1][i][j] + 0.5*KT_t_r_x2[2][i][j];)
 
-/* rate of curvature at the quadrature points: of cable8p_green_exact_dissipation and 1 more */
+/* rate of curvature at the quadrature points: of cable8p_green_exact_dissipation and 2 more */
 #define CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
     const fu_real \
         EI_tau = 2.0*A[1]*tau*w, \

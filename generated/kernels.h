@@ -460,6 +460,14 @@ void cable12_engineering_exact_tension_only_discrete_force(fu_real l, const fu_r
 /* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 4[N, N m^2, 1,
  * 1] -> k 4x4[N/m, N, N m] */
 void cable12_engineering_exact_tension_only_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+/* minus the Kelvin-Voigt damping force Q_d: l [m]; e 4x3[m, 1]; v 4x3[m/s, 1/s]; A 4[N, N m^2, 1, 1]; tau [s] -> f
+ * 4x3[N, N m] */
+void cable12_engineering_exact_tension_only_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+/* df/de + rate df/dv of the damping force f = -Q_d: l [m]; e 4x3[m, 1]; v 4x3[m/s, 1/s]; A 4[N, N m^2, 1, 1]; tau
+ * [s]; rate [1/s] -> K 12x12[N/m, N, N m] */
+void cable12_engineering_exact_tension_only_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+/* power dissipated by the damping force: l [m]; e 4x3[m, 1]; v 4x3[m/s, 1/s]; A 4[N, N m^2, 1, 1]; tau [s] -> P 1[W] */
+void cable12_engineering_exact_tension_only_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 4[N, N m^2, 1, 1] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_exact_tension_only_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -800,6 +808,14 @@ void cable8p_engineering_exact_tension_only_discrete_force(fu_real l, const fu_r
 /* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 4[N, N m^2, 1,
  * 1] -> k 4x4[N/m, N, N m] */
 void cable8p_engineering_exact_tension_only_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+/* minus the Kelvin-Voigt damping force Q_d: l [m]; e 4x2[m, 1]; v 4x2[m/s, 1/s]; A 4[N, N m^2, 1, 1]; tau [s] -> f
+ * 4x2[N, N m] */
+void cable8p_engineering_exact_tension_only_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+/* df/de + rate df/dv of the damping force f = -Q_d: l [m]; e 4x2[m, 1]; v 4x2[m/s, 1/s]; A 4[N, N m^2, 1, 1]; tau
+ * [s]; rate [1/s] -> K 8x8[N/m, N, N m] */
+void cable8p_engineering_exact_tension_only_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+/* power dissipated by the damping force: l [m]; e 4x2[m, 1]; v 4x2[m/s, 1/s]; A 4[N, N m^2, 1, 1]; tau [s] -> P 1[W] */
+void cable8p_engineering_exact_tension_only_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 4[N, N m^2, 1, 1] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_exact_tension_only_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);

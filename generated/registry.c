@@ -75,8 +75,8 @@ static const fu_law_kernels laws[] = {
     {"cable12_engineering_exact_tension_only", 9, 1, cable12_engineering_exact_tension_only_energy,
      cable12_engineering_exact_tension_only_elastic_force, cable12_engineering_exact_tension_only_elastic_tangent,
      cable12_engineering_exact_tension_only_discrete_force, cable12_engineering_exact_tension_only_step_stiffness,
-     cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
+     cable12_engineering_exact_tension_only_damping_force, cable12_engineering_exact_tension_only_damping_tangent,
+     cable12_engineering_exact_tension_only_dissipation, cable12_engineering_exact_algorithmic_force},
     {"cable18_green_exact", 17, 1, cable18_green_exact_energy, cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent, cable18_green_exact_discrete_force, cable18_green_exact_step_stiffness,
      cable18_green_exact_damping_force, cable18_green_exact_damping_tangent, cable18_green_exact_dissipation,
@@ -147,8 +147,8 @@ static const fu_law_kernels laws[] = {
     {"cable8p_engineering_exact_tension_only", 7, 0, cable8p_engineering_exact_tension_only_energy,
      cable8p_engineering_exact_tension_only_elastic_force, cable8p_engineering_exact_tension_only_elastic_tangent,
      cable8p_engineering_exact_tension_only_discrete_force, cable8p_engineering_exact_tension_only_step_stiffness,
-     cable8p_engineering_exact_damping_force, cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
+     cable8p_engineering_exact_tension_only_damping_force, cable8p_engineering_exact_tension_only_damping_tangent,
+     cable8p_engineering_exact_tension_only_dissipation, cable8p_engineering_exact_algorithmic_force},
 };
 
 static const fu_body_kernels bodys[] = {
@@ -417,6 +417,9 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable12_engineering_exact_tension_only_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_tension_only_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_engineering_exact_tension_only_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_tension_only_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable12_engineering_exact_tension_only_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(cable12_engineering_exact_tension_only_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
     X(cable12_engineering_exact_tension_only_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable18_green_exact_stiffness, *a[0], a[1], out[0]) \
     X(cable18_green_exact_energy, *a[0], a[1], a[2], out[0]) \
@@ -542,6 +545,9 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable8p_engineering_exact_tension_only_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_exact_tension_only_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_engineering_exact_tension_only_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_exact_tension_only_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable8p_engineering_exact_tension_only_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(cable8p_engineering_exact_tension_only_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
     X(cable8p_engineering_exact_tension_only_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(rigid_place, a[0], a[1], out[0], out[1]) \
     X(rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \

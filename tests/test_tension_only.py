@@ -158,3 +158,55 @@ def test_a_slack_rope_comes_to_rest_by_a_damped_motion():
         at_rest.pin("wire", s=s)
     relaxed, found = at_rest.relax(), at_rest.equilibrium()
     assert relaxed["wire.position"] == pytest.approx(found["wire.position"], abs=1e-6)
+
+
+def shortened(element="cable8p", speed=-1.0, damping_time=1e-3, membrane="tension_only", pull=0.0,
+              radius=0.005):
+    """Return a straight rope of 1 m without gravity whose end a mass of 1 kg moves along it, drawn longer by pull."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.cable("rope", start=(0, 0, 0), end=(1 + pull, 0, 0), elements=2, element=element, strain="engineering",
+                membrane=membrane, rest_length=1.0, section=fu.Circle(radius=radius),
+                material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=0.1, damping_time=damping_time))
+    scene.pin("rope", s=0.0)
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(1 + pull, 0, 0), velocity=(speed, 0, 0))
+    scene.joint("spherical", ("rope", 1.0), "A", name="end")
+    return scene
+
+
+SLACK_EA = 1e7 * np.pi * 0.005**2
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize(("element", "integrator"), [
+    ("cable8p", "radau"), ("cable8p", "genalpha"), ("cable8p", "explicit"), ("cable12", "radau")])
+def test_a_slack_rope_is_damped_by_the_part_that_it_resists_with(element, integrator):
+    """At a strain of 0.3 both forces are 1e-4 of the full law's; EA tau strain' was in full."""
+    run = shortened(element).run(duration=0.3, tol=1e-6, output_step=0.05, integrator=integrator)
+    elastic, damping = LEFT * SLACK_EA * 0.3, LEFT * SLACK_EA * 1e-3
+    assert run["end.force"][-1, 0] == pytest.approx(elastic + damping + SLACK_EA * TRANSITION / 4, rel=0.01)
+    by_balance, by_law = (run.section_forces("rope", s=[0.25, 0.75], method=method).tension[-1]
+                          for method in ("balance", "constitutive"))
+    assert np.asarray(by_balance) == pytest.approx(np.asarray(by_law), rel=0.01)
+    assert run["energy.dissipated"][-1] == pytest.approx(LEFT * SLACK_EA * 1e-3 * 0.3, rel=0.1)
+    total = sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "dissipated"))
+    assert np.ptp(total) < 1e-6
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+def test_a_taut_rope_is_damped_as_with_the_full_law():
+    """It vibrates beside a stretch of 0.1, far beyond the transition strain."""
+    lost = {membrane: shortened(speed=0.3, membrane=membrane, pull=0.1).run(
+        duration=0.04, tol=1e-7, output_step=0.02, integrator="radau")["energy.dissipated"][-1]
+        for membrane in ("full", "tension_only")}
+    assert lost["tension_only"] == pytest.approx(lost["full"], rel=1e-4)
+    assert lost["full"] > 1e-3
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+def test_a_straight_slack_rope_is_said_to_bear_what_is_left():
+    """The note on buckling had the force of the full law, 63 N."""
+    run = shortened(damping_time=0.0, radius=0.002).run(duration=0.5, tol=1e-6, output_step=0.05)
+    [note] = [message for message in run.report["messages"] if "perfectly straight" in message]
+    said = float(note.partition("under a compression of ")[2].partition(" N")[0])
+    assert said == pytest.approx(-run.section_forces("rope", s=0.5, method="constitutive").tension[-1].item(), rel=0.01)
+    assert said == pytest.approx(LEFT * SLACK_EA * 0.16 * 0.5, rel=0.01)

@@ -246,7 +246,8 @@ def _element(family: Family, every: list[Derived]) -> dict:
 def _law(family: Family) -> dict:
     """Return what a scene needs to know of a law: its traits, and whose section stiffness and kernels it takes."""
     assert family.traits is not None
-    traits = {name: value for name, value in asdict(family.traits).items() if name != "damped_like"}
+    traits = {name: value for name, value in asdict(family.traits).items()
+              if name not in ("damped_like", "relaxed_like")}
     return {"stiffness_of": family.stiffness_of, **traits, "shared": family.shared,
             "discrete_gradient": "discrete_force" not in family.missing}
 

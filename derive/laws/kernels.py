@@ -49,8 +49,9 @@ def taken(element: Element, law: str | type) -> dict[str, str]:
     if not isinstance(law, str):  # a law of the user's has its own
         return {}
     traits, found = law_traits(law), {}
-    if traits.damped_like in element.laws:
-        found = dict.fromkeys((*DAMPING, *ALGORITHMIC), traits.damped_like)
+    for kernels, like in (DAMPING, traits.damped_like), (ALGORITHMIC, traits.relaxed_like or traits.damped_like):
+        if like in element.laws:
+            found |= dict.fromkeys(kernels, like)
     if traits.kind == "cable":
         alike = (other for other in element.laws if isinstance(other, str)
                  and (law_traits(other).kind, law_traits(other).membrane) == ("cable", traits.membrane))

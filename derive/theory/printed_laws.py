@@ -252,7 +252,13 @@ def cable_damping(scope: Scope) -> list[Line]:
                       rf"\left( \dot{{{i}}} \cdot {b} \right) {i}"))
     lines += [*_rule(("P", "p"), law.degree), *_rule(("B", "b"), law.degree - 1)]
     lines += [_at(r"\dot{\varepsilon}", "P", "j"), _at(r"\mathbf{D}", "B", "k")]
-    power = (rf"\frac{{l}}{{2}} \mathrm{{EA}} \sum_{{j=1}}^{{{law.degree}}} p_{{j}} \dot{{\varepsilon}}_{{j}}^{{2}} + "
+    share = ""
+    if traits.membrane == "tension_only":
+        u = r"\frac{\varepsilon}{\sqrt{\varepsilon^{2} + \varepsilon_{t}^{2}}}"
+        lines += [Line(rf"u = {u}"), _at("u", "P", "j")]
+        share = (r" \left( \rho + \frac{1 - \rho}{4} \left( 1 + u_{j} \right)^{2} \left( 2 - u_{j} \right) \right)")
+    power = (rf"\frac{{l}}{{2}} \mathrm{{EA}} \sum_{{j=1}}^{{{law.degree}}} p_{{j}}{share} "
+             r"\dot{\varepsilon}_{j}^{2} + "
              rf"\frac{{l}}{{2}} \mathrm{{EI}} \sum_{{k=1}}^{{{law.degree - 1}}} b_{{k}} "
              r"\left( \mathbf{D}_{k} \cdot \mathbf{D}_{k} \right)")
     lines.append(Line(rf"P = \tau \left( {power} \right)", output="dissipation.P"))

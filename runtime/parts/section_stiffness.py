@@ -126,6 +126,12 @@ def _tension_only(section: Section, material: Material, dim: int) -> np.ndarray:
     return np.array([*_cable(section, material, dim), RESIDUAL_STIFFNESS, TRANSITION_STRAIN])
 
 
+def compressive_stiffness(membrane: str, section: Section, material: Material) -> float:
+    """Return the axial stiffness of a cable in compression, in N: EA, or the part of it that is left."""
+    left = RESIDUAL_STIFFNESS if membrane == "tension_only" else 1.0
+    return left * float(_cable(section, material, 3)[0])
+
+
 def _reduced(section: Section, material: Material, dim: int) -> np.ndarray:
     """Return the same with what keeps the lengths of the slopes stable."""
     EA, EI = _cable(section, material, dim)

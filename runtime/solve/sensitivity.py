@@ -24,7 +24,7 @@ from ..model.states import attachment_points, body_rates, body_state, joint_stat
 from ..parts.cable import Cable
 from ..parts.joint import Joint
 from ..parts.scene_data import SceneData
-from ..parts.section_stiffness import RESIDUAL_STIFFNESS
+from ..parts.section_stiffness import compressive_stiffness
 from ..parts.settings import RunSettings
 from ..rotations import rotate
 
@@ -98,9 +98,8 @@ class Sensitivity:
         vectors = q[:, cable.coordinates].reshape(-1, *cable.shape)
         strain = stretches(cable, vectors[:, :-1], vectors[:, 1:], np.arange(cable.n_elements), SIMPSON) - 1
         E, moments = part.material.youngs_modulus, part.section.moments()
-        EA, EI = E * moments[0], E * (moments[1] if self._model.dim == 2 else min(moments[1:3]))
-        if part.traits.membrane == "tension_only":
-            EA *= RESIDUAL_STIFFNESS
+        EA = compressive_stiffness(part.traits.membrane, part.section, part.material)
+        EI = E * (moments[1] if self._model.dim == 2 else min(moments[1:3]))
         mass = part.material.density * part.section.mass_moments()[0]
         N = EA * np.maximum(-strain, 0.0)
         k = np.clip(np.sqrt(N / (2 * EI)), np.pi / part.length, np.pi / cable.mesh.lengths)

@@ -13,6 +13,7 @@ import numpy as np
 from ..engine import Engine
 from ..model.model import CableModel, Model
 from ..parts.scene_data import SceneData
+from ..parts.section_stiffness import compressive_stiffness
 from .condensation import condensed
 from .inertia import inertia
 
@@ -46,7 +47,8 @@ class StraightStruts:
             at = np.flatnonzero(straight & np.append(before, straight[:-1]))  # else something bends it
             if len(at):
                 shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.mesh.lengths
-                forces = part.material.youngs_modulus * part.section.moments()[0] * shortening.max(axis=1)
+                stiffness = compressive_stiffness(part.traits.membrane, part.section, part.material)
+                forces = stiffness * shortening.max(axis=1)
                 k, force = at[np.argmax(forces)], float(forces.max())
                 length = cable.mesh.total
                 weakest = part.material.youngs_modulus * min(part.section.moments()[1:3])

@@ -1,4 +1,7 @@
-"""Kelvin-Voigt damping of a cable: EA tau strain'^2 + EI tau |D_t r''|^2 along the centreline.
+"""Kelvin-Voigt damping of a cable: N_strain tau strain'^2 + EI tau |D_t r''|^2 along the centreline.
+
+N_strain is the axial stiffness at the strain there: EA, or of a law that gives way in compression the derivative of its
+force, so that a slack cable is damped by as little as it resists.
 
 D_t is the rate as seen from the tangent, which turns with i x di/dt and does not spin about itself: smooth where the
 cable is straight (the rate of |r''| is not). A bent cable that spins as a whole about its own tangent is braked,
@@ -52,15 +55,25 @@ class Damping:
         degree = sum(sp.sympify(monomial).free_symbols <= {x} for monomial in element.basis) - 1
         return {"rates": degree + (degree - 1) * element.dim, "spins": int(element.dim == 3)}
 
+    def stiffness_share(self, program: Program, tag: str, A: np.ndarray,
+                        r: np.ndarray) -> tuple[sp.Expr, sp.Expr] | None:
+        """Return the axial stiffness at a point over EA, and its derivative by the strain; None where it is EA.
+
+        A: the constants of the law; r (dim,): r' there.
+        """
+        return None
+
     def _points(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
-                w: sp.Expr) -> list[AxialPoint | BendingPoint]:
-        """Return the quadrature points with the rates there, in two stages."""
+                w: sp.Expr, is_full: bool = False) -> list[AxialPoint | BendingPoint]:
+        """Return the quadrature points with the rates there, in two stages; is_full: with EA at any strain."""
         program.stage("rate of axial strain at the quadrature points")
         viscosity = program.define("EA_tau", tau * A[0] / (2 * w))
-        axial: list[AxialPoint | BendingPoint] = [
-            AxialPoint(program, f"{g}", point, point.weight * viscosity,
-                       self._at_point(program, f"{g}", "1", point.value, c, dc), self.strain == "engineering")
-            for g, point in enumerate(self.points(self.degree))]
+        axial: list[AxialPoint | BendingPoint] = []
+        for g, point in enumerate(self.points(self.degree)):
+            r = self._at_point(program, f"{g}", "1", point.value, c, dc)
+            share = None if is_full else self.stiffness_share(program, f"_{g}", A, r[0])
+            axial.append(AxialPoint(program, f"{g}", point, point.weight * viscosity, r, self.strain == "engineering",
+                                    share))
         program.stage("rate of curvature at the quadrature points")
         viscosity = program.define("EI_tau", 2 * tau * A[1] * w)
         return axial + [BendingPoint(program, f"b{g}", point, point.weight * viscosity,
@@ -87,7 +100,7 @@ class Damping:
         """Return the forces on strain vectors of the stiffnesses times weight dE - relaxed_strain, and dE, the rates
         that dc makes.
         """
-        points = self._points(program, A, sp.S.One, c, dc, w)
+        points = self._points(program, A, sp.S.One, c, dc, w, is_full=True)
         program.stage("forces at the quadrature points")
         forces: list[tuple[AxialPoint | BendingPoint, list[np.ndarray]]] = []
         dE: list[sp.Expr] = []
@@ -130,11 +143,16 @@ class Damping:
 class AxialPoint:
     """Rate of the axial strain where it is integrated.
 
-    series: factors of the strain vectors in r'; viscosity: times the weight; rates: of the strain.
+    series: factors of the strain vectors in r'; viscosity: times the weight; rates: of the strain; share: see
+    `Damping.stiffness_share`.
     """
 
-    def __init__(self, program: Program, tag: str, point: Point, viscosity: sp.Expr, r1: Pair, engineering: bool):
-        self.program, self.tag, self.viscosity, self.series = program, tag, viscosity, [point.value]
+    def __init__(self, program: Program, tag: str, point: Point, viscosity: sp.Expr, r1: Pair, engineering: bool,
+                 share: tuple[sp.Expr, sp.Expr] | None = None):
+        self.program, self.tag, self.series = program, tag, [point.value]
+        self.viscosity, self.change = viscosity, sp.S.Zero  # of the viscosity by the strain
+        if share is not None:
+            self.viscosity, self.change = program.define(f"viscosity_{tag}", viscosity * share[0]), viscosity * share[1]
         self.r, self.d = r1
         self.inverse = sp.S.One
         if engineering:
@@ -159,6 +177,8 @@ class AxialPoint:
             along = self._vector("i", self.inverse * self.r)
             turn = self._vector("di", self.inverse * (self.d - self.rates[0] * along))
             across = self.viscosity * (turn + rate * along) - N * along
+        if self.change != 0:  # the strain changes by along . dr
+            across = across + self.program.define(f"change_{self.tag}", self.change * self.rates[0]) * along
         return {(0, 0): named_block(self.program, f"K_{self.tag}",
                                     N * eye + np.outer(along, self._vector("by", across)))}
 

@@ -8,6 +8,10 @@ s = sqrt(strain^2 + strain_t^2), twice the energy per length over EA is
 which is nil at strain 0 and grows to both sides. Beyond a few transition strains the force is EA strain in tension, and
 in compression rho EA strain, each less (1 - rho)/4 EA strain_t: the most that an ideal cable, of rho = 0, bears in
 compression. Bending is that of the full law.
+
+Damping is that of Kelvin and Voigt with the stiffness at the strain, the second derivative of the energy: a slack cable
+is damped by the part rho. It never feeds energy, as the stiffness is nowhere negative: with u = strain/s it is
+EA (rho + (1 - rho)/4 (1 + u)^2 (2 - u)).
 """
 
 from __future__ import annotations
@@ -16,18 +20,18 @@ import numpy as np
 import sympy as sp
 
 from ...algebra.gram import Gram
-from ...codegen.program import Program
+from ...codegen.program import Program, jacobian
 from ...spec import LawTraits
 from .cable import Cable
 
 
 def traits(strain: str, curvature: str) -> LawTraits:
-    """Return what the law with these measures is; it is damped like the full law with the same strain."""
-    return LawTraits("cable", strain, curvature, membrane="tension_only", damped_like=f"{strain}_exact")
+    """Return what the law with these measures is; algorithmic dissipation has the stiffness of the full law."""
+    return LawTraits("cable", strain, curvature, membrane="tension_only", relaxed_like=f"{strain}_exact")
 
 
 class TensionOnlyCable(Cable):
-    """The law over an element's strain vectors; the damping is that of the law that resists compression, too."""
+    """The law over an element's strain vectors."""
 
     stiffness_units = "N, N m^2, 1, 1"
     stiffness_doc = "axial and bending stiffness EA, EI; part of EA that is left in compression; transition strain"
@@ -45,3 +49,12 @@ class TensionOnlyCable(Cable):
         smooth = program.define(f"smooth{tag}", sp.sqrt(strain**2 + square))
         inverse = program.define(f"inv_smooth{tag}", 1 / (smooth + A[3]))
         return stiffness * strain**2 * (A[2] + lost * (1 + strain * inverse))
+
+    def stiffness_share(self, program: Program, tag: str, A: np.ndarray, r: np.ndarray) -> tuple[sp.Expr, sp.Expr]:
+        """Return the second derivative of the energy by the strain over EA, and the third."""
+        strain = self._axial_strain(program, tag, program.define(f"a1{tag}", r.dot(r) - 1))
+        smooth = program.define(f"smooth{tag}", sp.sqrt(strain**2 + program.define_once("transition2", A[3] ** 2)))
+        u = program.define(f"u{tag}", strain * program.define(f"inv_smooth{tag}", 1 / smooth))
+        quarter = program.define_once("quarter_lost", (1 - A[2]) / 4)
+        share = program.define(f"share{tag}", A[2] + quarter * (1 + u) ** 2 * (2 - u))
+        return share, jacobian(program, np.array([share]), [strain])[0, 0]

@@ -118,7 +118,7 @@ def _damping(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
             yield "rigid velocity is not damped", max(relative(f_rigid, scale), relative(P, scale)), 64 * EPS
     if not twisted:
         yield "damping: no net moment", relative(_moment(s["e"], f, positions), scale_f), 64 * EPS
-    if "algorithmic_force" not in family.missing:
+    if "algorithmic_force" not in family.not_own:
         pull = k("algorithmic_force", s)["f"]
         scale = max(_stiffness(family, s) / s["l"], np.max(np.abs(pull)))
         yield "algorithmic dissipation: no net force", relative(positions @ pull, scale), 64 * EPS

@@ -92,14 +92,16 @@ def strain_modes(element: Element, law: str, s: Any) -> list[tuple]:
 
 
 def dissipation(element: Element, law: str, s: Any) -> Any:
-    """Return EA tau strain'^2 + EI tau |D_t r''|^2, D_t the rate as seen from a frame that turns with the tangent."""
-    strain = TRAITS[law].strain
-    EA, EI = s["S"][:2]
+    """Return W_strain,strain tau strain'^2 + EI tau |D_t r''|^2, W the energy per length of the strain, D_t the rate as
+    seen from a frame that turns with the tangent.
+    """
+    strain, EI = TRAITS[law].strain, s["S"][1]
     degree = max(p[0] for p in Shape(element, s["l"].item()).powers)
     total = mp.mpf(0)
     for weight, r_x, _, v_x, _ in _along(element, s, degree):
         rate = r_x.dot(v_x) / (1 if strain == "green" else mp.sqrt(r_x.dot(r_x)))
-        total += weight * EA * rate**2
+        stiffness = mp.diff(lambda at: membrane_energy(law, at, s), axial_strain(strain, r_x), 2)
+        total += weight * stiffness * rate**2
     for weight, r_x, r_xx, v_x, v_xx in _along(element, s, degree - 1):
         seen = v_xx - cross(cross(r_x, v_x) / r_x.dot(r_x), r_xx)  # the tangent turns with r' x dr'/dt / r'.r'
         total += weight * EI * seen.dot(seen)
