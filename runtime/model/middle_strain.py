@@ -39,7 +39,12 @@ def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:
 
     nodal_vectors: (T, nodes, vectors, 2 or 3).
     """
-    N, vectors = slopes(cable, 0.5), cable.shape[1]
+    return strain_at(cable, nodal_vectors, 0.5)
+
+
+def strain_at(cable: CableModel, nodal_vectors: np.ndarray, part: float) -> np.ndarray:
+    """Return (T, elements): the same at a part of the length of each element."""
+    N, vectors = slopes(cable, part), cable.shape[1]
     slope = (np.einsum("ek,tekd->ted", np.broadcast_to(N[:, :vectors], (cable.n_elements, vectors)),
                        nodal_vectors[:, :-1])
              + np.einsum("ek,tekd->ted", np.broadcast_to(N[:, vectors:], (cable.n_elements, vectors)),

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..rotations import cross
 from .attachment import Attachment
+from .load import DistributedForce
 from .scene_data import SceneData
 from .support import Support, Tie
 
@@ -64,3 +65,19 @@ def velocity_of(scene: SceneData, end: Attachment) -> np.ndarray:
         return body.velocity + cross(turning, arm)
     cable = scene.cables[end.on]
     return cable.velocity + cross(cable.angular_velocity, cable.point(end.arc_length) - cable.point(0.0))
+
+
+def attached(scene: SceneData, name: str) -> list[float]:
+    """Return the arc-lengths, in m, of a cable at which something that stays there is attached to it, its ends too."""
+    places: list[float | None] = []
+    for load in scene.loads.values():
+        if isinstance(load, DistributedForce):
+            places += [load.start, load.stop] if load.cable == name else []
+        elif load.on == name:
+            places.append(load.s)
+    attachments = [*(slide.rider for slide in scene.slides.values()), *scene.attachments()]
+    places += [attachment.s for attachment in attachments if attachment.on == name]
+    places += [support.s for support in scene.supports if support.cable == name]
+    for tie in scene.ties.values():
+        places += [s for on, s in ((tie.cable, tie.s), (tie.to, tie.at)) if on == name]
+    return [float(s) for s in places if s is not None]

@@ -12,7 +12,7 @@ from ..kernels.libraries import kernels_of
 from ..model.model import Model
 from ..parts.cable import Cable
 from ..parts.laid import laid
-from ..parts.load import DistributedForce
+from ..parts.locations import attached
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
 from ..parts.slide import Slide
@@ -156,19 +156,8 @@ def rest_instants(state: RestState) -> Instants:
 def jumps(scene: SceneData, name: str) -> np.ndarray:
     """Return the arc-lengths of the cable at which something fixed to it is attached: inside, in order."""
     cable = scene.cables[name]
-    places: list[float | None] = []
-    for load in scene.loads.values():
-        if isinstance(load, DistributedForce):
-            places += [load.start, load.stop] if load.cable == name else []
-        elif load.on == name:
-            places.append(load.s)
-    attachments = [*(slide.rider for slide in scene.slides.values()), *scene.attachments()]
-    places += [attachment.s for attachment in attachments if attachment.on == name]
-    places += [support.s for support in scene.supports if support.cable == name]
-    for tie in scene.ties.values():
-        places += [s for on, s in ((tie.cable, tie.s), (tie.to, tie.at)) if on == name]
     beside = BESIDE * cable.length
-    return np.array(sorted({float(s) for s in places if s is not None and beside < s < cable.length - beside}))
+    return np.array(sorted({s for s in attached(scene, name) if beside < s < cable.length - beside}))
 
 
 def even(cable: Cable) -> np.ndarray:

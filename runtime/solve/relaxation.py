@@ -25,6 +25,8 @@ from ..model.model import DeadLoadModel, LoadModel
 from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings, RelaxationSettings
+from .coarse_meshes import coarse
+from .coarse_slides import coarse_at_slides
 from .diagnosis import describe_dof
 from .folds import folds
 from .penetrations import penetrations
@@ -359,6 +361,8 @@ def _told(problem: StaticProblem, motion: _Motion, found: Stability, made: type[
     state = made.of(problem, found)
     state.relaxation = motion.report
     problem.messages += [*folds(problem.scene, problem.model, state.static_state["q"]),
+                         *coarse(problem.scene, problem.model, state.static_state["q"]),
+                         *coarse_at_slides(problem.scene, problem.model, state.static_state),
                          *penetrations(problem.model, state.couplings),
                          *beyond_ends(problem.scene, problem.model, problem.engine), *unseen_contact(problem.scene)]
     for message in problem.messages:

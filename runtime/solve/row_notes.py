@@ -9,6 +9,8 @@ import numpy as np
 from ..engine import Engine
 from ..model.model import Model
 from ..parts.scene_data import SceneData
+from .coarse_meshes import CoarseMeshes
+from .coarse_slides import CoarseSlides
 from .fast_turns import FastTurns
 from .folds import Folds
 from .meeting_points import MeetingPoints
@@ -51,6 +53,7 @@ class RowNotes:
                                                        "surface ends": SurfaceEnds(scene, model)}
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
+            "coarse meshes": CoarseMeshes(scene, model), "coarse slides": CoarseSlides(scene, model),
             "sensitivity": self.sensitivity, "meeting points": MeetingPoints(scene, model),
             "fast turns": self.turns, "folds": Folds(scene, model)}
         self._noted: dict[str, Noted] = {**self._watched, **self._seen_in_steps}

@@ -18,6 +18,8 @@ from ..model.drag_forces import outside_tables
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
 from .carried_states import carried
+from .coarse_meshes import coarse
+from .coarse_slides import coarse_at_slides
 from .folds import folds
 from .path_following import Critical, Point, follow
 from .penetrations import penetrations
@@ -77,6 +79,8 @@ def note(problem: StaticProblem, state: RestState) -> None:
         problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
     problem.messages += folds(problem.scene, problem.model, state.static_state["q"])
     problem.messages += compressed(problem.scene, problem.model, state.static_state["q"])
+    problem.messages += coarse(problem.scene, problem.model, state.static_state["q"])
+    problem.messages += coarse_at_slides(problem.scene, problem.model, state.static_state)
     problem.messages += outside_tables(problem.model, state.static_state["q"])
     if rough := [contact.where for contact in problem.scene.contacts.values()
                  if contact.is_hard and contact.friction_coefficient]:
