@@ -196,6 +196,8 @@ def view(
     path: Annotated[bool, typer.Option("--path", help="of a scene, the load path to its state of rest")] = False,
     modes: Annotated[int | None, typer.Option(help="of a scene, so many modes; about its rest with --equilibrium")
                      ] = None,
+    as_drawn: Annotated[bool, typer.Option("--as-drawn", help="of --modes, also where forces do not balance as drawn")
+                        ] = False,
     png: Annotated[Path | None, typer.Option(help="a picture with several views, instead of the page")] = None,
     gif: Annotated[Path | None, typer.Option(help="a film, instead of the page")] = None,
     mp4: Annotated[Path | None, typer.Option(help="a film, instead of the page")] = None,
@@ -210,7 +212,7 @@ def view(
 
     outputs = Outputs(output, png, [film for film in (gif, mp4) if film], vtk, speed, colour)
     with _reported_without_traceback():
-        written = write(files, Wanted(equilibrium, relaxed, path, modes), outputs, open_it, library or ())
+        written = write(files, Wanted(equilibrium, relaxed, path, modes, as_drawn), outputs, open_it, library or ())
     for file in written:
         print(f"written: {file}")
 

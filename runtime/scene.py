@@ -333,12 +333,13 @@ class Scene(Viewable, DescribedScene):
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
             return relax(laid(self), settings, Equilibrium)
 
-    def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
-        """Return the ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from
-        `equilibrium`.
+    def modes(self, n: int, about: Equilibrium | None = None, *, as_drawn: bool = False) -> Modes:
+        """Return the ``n`` lowest natural frequencies and shapes, about a state from `equilibrium`, or about the scene
+        as drawn where forces balance there.
 
-        As drawn, joints and slides bear nothing yet: what swings by its weight does so about its equilibrium alone.
-        Damping and friction are left out; what rounding hides is reported, as in `Modes`. Raises SceneError.
+        as_drawn: also where they do not; joints and slides bear nothing then, so that what swings by its weight has
+        0 Hz. Damping and friction are left out; what rounding hides, and a state that is not stable, is reported, as in
+        `Modes`. Raises SceneError, which names the force left over.
         """
         settings = ModeSettings(n=n)
         state = None if about is None else _equilibrium_state(self, about)
@@ -348,7 +349,7 @@ class Scene(Viewable, DescribedScene):
         from .solve.modes import modes
 
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
-            return Modes.of(modes(laid(self), settings.n, state), self, state)
+            return Modes.of(modes(laid(self), settings.n, state, as_drawn), self, state)
 
     def animation(self, title: str | None = None) -> Animation:
         """Return the scene as it is drawn, before it runs, as pictures show it; see `Viewable.animation`."""

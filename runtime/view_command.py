@@ -24,12 +24,16 @@ LOAD_STEPS = 10
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is shown of a scene: as drawn, its state of rest or the one that it relaxes to, the load path, or modes."""
+    """What is shown of a scene: as drawn, its state of rest or the one that it relaxes to, the load path, or modes.
+
+    as_drawn: modes also of what is not in balance.
+    """
 
     equilibrium: bool = False
     relaxed: bool = False
     path: bool = False
     modes: int | None = None
+    as_drawn: bool = False
 
     @property
     def of_scenes(self) -> bool:
@@ -58,7 +62,7 @@ def seen(file: str, wanted: Wanted, libraries: Iterable[str | os.PathLike]) -> V
         return load_run(file, libraries)
     scene = load_scene(file, libraries)
     if not (wanted.equilibrium or wanted.relaxed or wanted.path):
-        return scene if wanted.modes is None else scene.modes(wanted.modes)
+        return scene if wanted.modes is None else scene.modes(wanted.modes, as_drawn=wanted.as_drawn)
     steps = LOAD_STEPS if wanted.path and not {"method", "load_steps"} & set(scene.equilibrium_settings) else None
     rest = scene.relax() if wanted.relaxed else scene.equilibrium(load_steps=steps)
     if wanted.modes is not None:

@@ -381,7 +381,7 @@ def test_short_forms():
                            "1 distributed force, 1 spring>")
     assert repr(fu.Scene()) == "<funicular.Scene: empty>"
     small = fu.load_scene("paper51")
-    rest, modes = small.equilibrium(), small.modes(2)
+    rest, modes = small.equilibrium(), small.modes(2, as_drawn=True)
     assert repr(rest) == "<funicular.Equilibrium: stable, under all loads, 8 results>"
     assert repr(modes) == "<funicular.Modes: 2, 0 to 0 Hz, 4 shapes>"
     assert repr(small.equilibrium(load_steps=2).load_path) == "<funicular.LoadPath: 2 states, 0.5 to 1 times the loads>"
@@ -429,7 +429,8 @@ def test_pictures_are_called_by_the_file_of_their_scene(tmp_path):
     path.write_text(fu.load_scene("paper51").to_toml(), encoding="utf-8")
     scene = fu.load_scene(path)
     rest = scene.equilibrium(load_steps=2)
-    shown = (scene, scene.replace("wire", elements=4), rest, rest.load_path, scene.modes(1), scene.modes(1, about=rest))
+    shown = (scene, scene.replace("wire", elements=4), rest, rest.load_path, scene.modes(1, as_drawn=True),
+             scene.modes(1, about=rest))
     assert [each.animation().title for each in shown] == [
         "small", "small", "small, at rest", "small, load path", "small, modes as drawn", "small, modes about rest"]
     scene.title = ""
@@ -441,7 +442,7 @@ def test_modes_as_drawn_say_that_weight_does_not_act_yet():
     """The cabin of a cable car is a pendulum about its equilibrium alone."""
     scene = fu.load_scene("cable_car")
     note = "what swings by its weight has 0 Hz"
-    assert any(note in each for each in scene.modes(1).animation().notes)
+    assert any(note in each for each in scene.modes(1, as_drawn=True).animation().notes)
     assert not any(note in each for each in scene.modes(1, about=scene.equilibrium()).animation().notes)
 
 

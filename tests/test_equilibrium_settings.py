@@ -32,8 +32,8 @@ def solvers(monkeypatch):
         calls.static.append(settings)
         return State()
 
-    def modes(scene, n, about):
-        calls.modal.append((n, about))
+    def modes(scene, n, about, as_drawn):
+        calls.modal.append((n, about, as_drawn))
         return "modes"
 
     def simulate(scene, settings, on_progress, **start):
@@ -84,8 +84,8 @@ def test_a_motion_may_start_off_its_place_in_an_equilibrium(solvers):
 def test_modes(solvers):
     scene = load_scene("paper51")
     state = scene.equilibrium()
-    assert scene.modes(3) == scene.modes(4, about=state) == "modes"
-    assert solvers.modal == [(3, None), (4, state)]
+    assert scene.modes(3) == scene.modes(4, about=state) == scene.modes(5, as_drawn=True) == "modes"
+    assert solvers.modal == [(3, None, False), (4, state, False), (5, None, True)]
 
 
 @pytest.mark.parametrize(("call", "complaint"), [

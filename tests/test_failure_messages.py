@@ -127,7 +127,7 @@ def test_a_shape_of_modes_that_there_is_not():
     scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0))
     scene.spring("A", (0, 5, 0), stiffness=1)
     with pytest.raises(fu.UnknownResultError, match=r'no shape "A.position"; did you mean "A.rotation"\?'):
-        scene.modes(1)["A.position"]
+        scene.modes(1, as_drawn=True)["A.position"]
 
 
 def test_energy_that_grows_without_damping_is_told_to_take_some():

@@ -87,7 +87,7 @@ def test_rotary_inertia_apart_from_the_stiffness():
     material = Material(youngs_modulus=2e11, shear_modulus=8e10, density=7850)
 
     def turning(**rotary):
-        modes = cable(section=GeneralSection(**stiff, **rotary), material=material, elements=8).modes(14)
+        modes = cable(section=GeneralSection(**stiff, **rotary), material=material, elements=8).modes(14, as_drawn=True)
         moves, turns = (np.abs(modes["wire.nodal_vectors"][:, -1, vector]).max(axis=1) for vector in (0, 2))
         return modes.angular_frequency[np.flatnonzero(turns > 1e6 * moves)[0]]
 

@@ -217,7 +217,7 @@ def test_view_of_two_runs(funicular, tmp_path):
     assert "a and b" in (tmp_path / "both.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("options", [(), ("--equilibrium",), ("--path",), ("--modes", 2),
+@pytest.mark.parametrize("options", [(), ("--equilibrium",), ("--path",), ("--modes", 2, "--as-drawn"),
                                      ("--modes", 2, "--equilibrium")])
 def test_view_of_a_scene(funicular, tmp_path, options):
     found = funicular("paper51", *options)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,9 +16,6 @@ if TYPE_CHECKING:
     from ..view.animation import Animation
 
 __all__ = ["Modes"]
-
-AS_DRAWN = ("these are modes of the scene as drawn, where joints and slides bear nothing: what swings by its weight "
-            "has 0 Hz; take --equilibrium, or about=scene.equilibrium()")
 
 
 @dataclass(repr=False)
@@ -51,9 +48,7 @@ class Modes(Viewable, solved.Modes):
         assert self.scene is not None, "modes are made by Scene.modes"
         about = drawn(self.scene) if self.about is None else self.about.quantities
         state = "as drawn" if self.about is None else "about rest"
-        made = of_modes(self, self.scene, about, title or titled(self.scene, f"modes {state}") or f"modes {state}")
-        bearing = self.scene.joints or self.scene.slides
-        return replace(made, notes=(*made.notes, AS_DRAWN)) if self.about is None and bearing else made
+        return of_modes(self, self.scene, about, title or titled(self.scene, f"modes {state}") or f"modes {state}")
 
     def overview(self) -> list[tuple[str, str]]:
         """Return the frequencies for a notebook; see `Viewable.overview`."""

@@ -13,14 +13,17 @@ from ..engine import Engine
 from ..errors import FunicularWarning, SceneError, UnknownResultError, near
 from ..model.build import build
 from ..model.model import BodyModel, Model
-from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import body_state, modal_state, spatial
 from ..named_arrays import NamedArrays
 from ..parts.scene_data import SceneData
+from ..parts.settings import EquilibriumSettings
 from ..rotations import rotate
+from .balance import balance
 from .condensation import condensed, fastest
 from .rest_state import RestState
 from .spectrum import RELATIVE, ROUNDING, IncompleteError, Pencil, basis
+from .stability import count
+from .static_problem import StaticState, units_of
 
 ASYMMETRY, LEAST_ASYMMETRY = 1e-9, 1e-13
 """Of the stiffness of two coordinates, and of the largest: what rounding leaves; more comes from loads that turn."""
@@ -76,17 +79,15 @@ class Modes(NamedArrays):
         return len(self.angular_frequency)
 
 
-def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
+def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bool = False) -> Modes:
     """Return the n lowest modes about a state, as drawn if none is given; damping and friction are left out.
 
-    What is left out or uncertain is reported in ``messages``, and by a FunicularWarning. Raises SceneError.
+    as_drawn: also where forces do not balance as drawn, which else is refused. What is left out or uncertain is
+    reported in ``messages``, and by a FunicularWarning. Raises SceneError.
     """
-    model = build(scene)
-    engine = Engine(model)
-    drop_redundant_rows(model, engine)
-    if about is not None:
-        about.check_supports(model, scene)
-    engine.set_state(0.0, **({} if about is None else about.static_state))
+    static = StaticState(scene, EquilibriumSettings(), build(scene))
+    model, engine = static.model, static.engine
+    notes = _begin(static, about, as_drawn)
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
     M = engine.matrix(1.0, 0.0, 0.0)[:size, :size]
@@ -103,10 +104,44 @@ def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
     dofs = np.array([engine.spread(np.append(x, np.zeros(model.n_band + model.n_border_dof + model.n_extra - len(x))))
                      for x in vectors.T])
     found = _named(model, engine.state()["q"], np.where(np.abs(squares) <= error, 0.0, squares), dofs, error)
+    found.messages += notes + _unstable(found, about, K, constraints, static)
     found.messages += _without_friction(scene) + _uncertain(found, np.sqrt(max(after, 0.0)), _fewer(model))
     for message in found.messages:
         warnings.warn(message, FunicularWarning, stacklevel=3)
     return found
+
+
+def _begin(static: StaticState, about: RestState | None, as_drawn: bool) -> list[str]:
+    """Go to the state that modes are about; return what is to be said of it. Raises SceneError, see `modes`."""
+    if about is not None:
+        about.check_supports(static.model, static.scene)
+        static.restore(about.static_state)
+        return []
+    left = balance(static)
+    if left.at_rest:
+        return []
+    if not as_drawn:
+        raise SceneError("modes", f"the scene as drawn is not in balance: {left}",
+                         "take about=scene.equilibrium() (--equilibrium in a shell), or as_drawn=True (--as-drawn) for "
+                         "the modes of what is not at rest")
+    return [f"these are modes of the scene as drawn, which is not in balance: {left}; joints and slides bear nothing, "
+            "so that what swings by its weight has 0 Hz"]
+
+
+def _unstable(modes: Modes, about: RestState | None, K: csc_array, constraints: csc_array,
+              static: StaticState) -> list[str]:
+    """Return a message where the modes are about a state that is not stable."""
+    growing = np.flatnonzero(modes.growth_rate)
+    if about is not None and not (about.stable or growing.size):
+        return [f"the modes are about a state that is {about.stability}"]
+    if not growing.size:
+        return []
+    known = about.stability if about is not None and about.stability.known else count(
+        K, constraints, units_of(static.weight, static.model))
+    state = f"the state is {known}" if known.unstable else "the state is unstable"
+    which = ", ".join(str(k + 1) for k in growing[:5]) + ", ..." * (len(growing) > 5)
+    grows = "mode {} grows" if growing.size == 1 else "modes {} grow"
+    return [f"{state}; {grows.format(which)}, by up to {modes.growth_rate.max():.4g} 1/s"]
 
 
 def _fewer(model: Model) -> str:

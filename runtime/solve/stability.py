@@ -55,6 +55,11 @@ def stability(problem: StaticProblem) -> Stability:
     K, C, units = problem.stiffness()
     if not K.shape[0]:
         return Stability(0, 0)
+    return count(K, C, units)
+
+
+def count(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
+    """Count for a stiffness K on constraints C; units: how far a unit of each coordinate moves a point, m."""
     try:
         return _counted(K, C, units)
     except ArithmeticError:

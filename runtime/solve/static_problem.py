@@ -75,6 +75,20 @@ class StaticState:
         if self.model.slides:
             self.engine.set_state(0.0, **self.engine.state(), prescribe=False)
 
+    def load_vector(self) -> np.ndarray:
+        """Return -dR/dp (n,) at the static state, p the fraction of the loads."""
+        fraction = self.fraction
+        self.load(0.0)
+        without = self.residual()
+        self.load(1.0)
+        with_all = self.residual()
+        self.load(fraction)
+        return without - with_all
+
+    def tangent(self) -> csc_array:
+        """Return the tangent stiffness dR/dx over the unknowns, (n, n), sparse."""
+        return self.engine.matrix(0.0, 0.0, 1.0)
+
 
 class StaticProblem(StaticState):
     """A static state with its tangent, the scales of the scene, and Newton's method."""
@@ -90,9 +104,7 @@ class StaticProblem(StaticState):
         points = np.flatnonzero(self.weight == 1.0)
         stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
         self.fastest = max(fastest(stiffness, self.mass, points), self._falls(drawn, points))
-        n = self.model.n_band + self.model.n_border_dof
-        own = [n + k for coupling in self.model.couplings for k in coupling.free_coordinates]
-        self.coordinates = np.append(np.arange(n), np.array(own, dtype=int))
+        self.coordinates = coordinates_of(self.model)
         self.point_entries = _point_entries(self.model)
         self.pushed = False  # off an unstable branch, in a direction that nothing prefers
         self.messages: list[str] = []
@@ -112,26 +124,12 @@ class StaticProblem(StaticState):
                 for force in model.point_forces]
         return max([*lengths, *(float(np.linalg.norm(gap)) for gap in gaps)], default=0.0) or 1.0
 
-    def load_vector(self) -> np.ndarray:
-        """Return -dR/dp (n,) at the static state, p the fraction of the loads."""
-        fraction = self.fraction
-        self.load(0.0)
-        without = self.residual()
-        self.load(1.0)
-        with_all = self.residual()
-        self.load(fraction)
-        return without - with_all
-
-    def tangent(self) -> csc_array:
-        """Return the tangent stiffness dR/dx over the unknowns, (n, n), sparse."""
-        return self.engine.matrix(0.0, 0.0, 1.0)
-
     def stiffness(self) -> tuple[csc_array, csc_array, np.ndarray]:
         """Return K over the coordinates, constraints C on them, and how far a unit of each moves a point
         (coordinates,).
         """
         K, C = condensed(self.tangent(), self.model)
-        return K, C, np.where(self.weight[self.coordinates] > 0, self.weight[self.coordinates], 1.0)
+        return K, C, units_of(self.weight, self.model)
 
     def curvature(self, change: np.ndarray, mass: float) -> float:
         """Return the curvature of the energy along a change, with this much mass, less a tenth of what the mass has in
@@ -195,6 +193,19 @@ def static_model(scene: SceneData) -> Model:
     for drag in model.drags:
         drag.has_inertia = False
     return model
+
+
+def coordinates_of(model: Model) -> np.ndarray:
+    """Return the unknowns that are coordinates, those of couplings last."""
+    n = model.n_band + model.n_border_dof
+    own = [n + k for coupling in model.couplings for k in coupling.free_coordinates]
+    return np.append(np.arange(n), np.array(own, dtype=int))
+
+
+def units_of(weight: np.ndarray, model: Model) -> np.ndarray:
+    """Return (coordinates,): how far a unit of each moves a point, in m; weight: of all unknowns, see `StaticState`."""
+    of_coordinates = weight[coordinates_of(model)]
+    return np.where(of_coordinates > 0, of_coordinates, 1.0)
 
 
 def fitted(kept: dict, model: Model) -> dict:
