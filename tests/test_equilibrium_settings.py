@@ -21,6 +21,9 @@ class State(Equilibrium):
     def check_fits(self, scene, any_mesh=False):
         pass
 
+    def check_stable(self):
+        pass
+
 
 @pytest.fixture
 def solvers(monkeypatch):
