@@ -101,6 +101,33 @@ def test_at_rest_lines_that_touch_are_told(force, told):
     scene.crossing(wire, None, at=(0, 0, -0.2), axis=(0, 1, 0), length=0.5, radius=0.01, stiffness=1e3)
     crossing = np.zeros((1, 14))
     crossing[0, 3:5] = force, 0.21
-    notes = penetrations(build(scene), {"contact": np.zeros((0, 10)), "crossing": crossing})
+    notes = penetrations(scene, build(scene), {"contact": np.zeros((0, 10)), "crossing": crossing})
     assert len(notes) == told
     assert all("0.21 m past where its lines touch" in note for note in notes)
+
+
+@pytest.mark.parametrize("shape", [
+    fu.Plane(point=(0, 0.25, 0)), fu.Cylinder(radius=0.5, length=4, axis=(0, 0, 1), at=(0, -0.3, 0)),
+    fu.Sphere(radius=0.5, at=(0, -0.3, 0)), fu.Capsule(radius=0.5, length=1, axis=(0, 0, 1), at=(0, -0.3, 0)),
+    fu.Box(size=(1, 0.4, 1)), fu.HeightField.of(lambda x: 0.24 + 0.01 * np.cos(x), np.linspace(-3, 3, 25))],
+    ids=lambda shape: shape.kind)
+def test_a_centreline_lies_on_every_surface(shape):
+    """With the radius 0, and 1e-6 as those wrote it who thought that 0 is refused: one state, and no note on depths."""
+    def on_bed(radius):
+        scene = fu.Scene(gravity=(0, -9.81, 0))
+        line = scene.cable("line", start=(-2, 0.3, 0.01), end=(2, 0.3, 0.01), elements=40, element="cable12",
+                           section=fu.GeneralSection(area=3e-4, second_moment_about_z=1e-9,
+                                                     second_moment_about_y=1e-9),
+                           material=fu.Material(youngs_modulus=1e8, poisson_ratio=0, density=7800, damping_time=1e-2))
+        scene.pin(line, s=0)
+        scene.pin(line, s=4)
+        scene.surface("bed", shape)
+        scene.contact(line, "bed", radius=radius, stiffness=2e3, name="c")
+        return scene
+
+    zero, tiny = (on_bed(radius).equilibrium() for radius in (0.0, 1e-6))
+    assert zero["c.penetration"] > 1e-3  # a thousand times the tiny radius
+    assert tiny["c.penetration"] == pytest.approx(zero["c.penetration"], abs=2e-6)
+    notes = [*zero.messages, *tiny.messages, *on_bed(0.0).run(0.01, output_step=0.01).report["messages"]]
+    assert not any("e-06 m" in note for note in notes)
+    assert "radius = 0.0" in on_bed(0.0).to_toml()

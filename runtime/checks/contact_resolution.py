@@ -16,6 +16,18 @@ APART = float(np.diff(np.polynomial.legendre.leggauss(GAUSS_POINTS)[0]).max()) /
 """Of an element: how far points of its quadrature are from each other at most; across a node they are closer."""
 SUNK = 1e-2
 """Of the radius of a surface: how far a cable without a radius may sink in unseen before that is noted."""
+NONE = 0.01
+"""Of the radius of a circle of the section's area: a smaller radius of contact is that of the centreline."""
+
+
+def radius_of(scene: SceneData, contact: Contact) -> float:
+    """Return the radius, in m, that depths of a contact are measured by: 0 where it is that of the centreline, since it
+    is none beside the section of the cable.
+    """
+    assert contact.radius is not None, f"{contact.where} is not complete"
+    cable = scene.cables.get(contact.a)
+    least = 0.0 if cable is None else NONE * float(np.sqrt(cable.section.moments()[0] / np.pi))
+    return contact.radius if contact.radius > least else 0.0
 
 
 def unseen_contact(scene: SceneData) -> Iterator[str]:
@@ -23,15 +35,14 @@ def unseen_contact(scene: SceneData) -> Iterator[str]:
     for contact in scene.contacts.values():
         cable, surface = scene.cables.get(contact.a), scene.surfaces[contact.b]
         if cable is not None:
-            yield from _between_points(contact, cable, surface)
+            yield from _between_points(contact, cable, surface, radius_of(scene, contact))
 
 
-def _between_points(contact: Contact, cable: Cable, surface: Surface) -> Iterator[str]:
-    assert contact.radius is not None, f"{contact.where} is not complete"
-    apart, bend = APART * float(cable.mesh.lengths.max()), _bend_radius(surface, contact.radius)
+def _between_points(contact: Contact, cable: Cable, surface: Surface, radius: float) -> Iterator[str]:
+    apart, bend = APART * float(cable.mesh.lengths.max()), _bend_radius(surface, radius)
     if not np.isfinite(bend):
         return
-    allowed = min(contact.radius or SUNK * bend, bend)
+    allowed = min(radius or SUNK * bend, bend)
     chord = 2 * np.sqrt(allowed * (2 * bend - allowed))  # whose height the cable may sink by
     if apart > chord:
         yield (f'{contact.where}: "{contact.a}" touches by points that are up to {apart:.3g} m apart; between them it '

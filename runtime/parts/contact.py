@@ -38,8 +38,8 @@ class Contact(Part):
     each pair, and a name given gets a number. The depth d by which it is below the surface gives the force
     ``stiffness d^exponent (1 + damping d')`` a length of a cable, or on each point of a body, with the exponent 1 or
     1.5 (Hertz) and the damping in s/m (Hunt and Crossley). stiffness in N/m a length in m, or in N/m; if not given,
-    that which the weight sinks by 1 % of the radius. radius in m: of the cable, that of its section if not given; of
-    spheres about a body's points. points: of a body, in its axes, in m; its origin if not given.
+    that which the weight sinks by 1 % of the radius. radius in m: of the cable, that of its section if not given, 0 for
+    its centreline; of spheres about a body's points. points: of a body, in its axes, in m; its origin if not given.
     restitution: of hard contact of a body's points, which do not sink in: what part of the normal velocity they come
     back with, 0 to 1 (Newton). What would come back by less than rest_velocity, in m/s, stays.
     friction: Coulomb's coefficient, or a `Friction` with model "stick". What sticks is kept by a spring of

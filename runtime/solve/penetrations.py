@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from ..checks.contact_resolution import radius_of
 from ..engine import Engine
 from ..model.model import Model
 from ..model.states import crossing_state
+from ..parts.scene_data import SceneData
 
 DEEP = 0.1
 """Of the radius of the cable or of what is round: what is deeper than that below a surface is noted."""
@@ -31,11 +33,12 @@ class _Limit:
                 f"radius of {self.radius:.3g} m: a stiffness greater than {self.stiffness:.3g} keeps it up")
 
 
-def _of_surfaces(model: Model) -> list[_Limit]:
+def _of_surfaces(scene: SceneData, model: Model) -> list[_Limit]:
     """Return the limits of contacts with surfaces."""
     limits = []
     for contact in model.contacts:
-        radius = min((r for r in (contact.radius, contact.round_radius) if r > 0), default=np.inf)
+        own = radius_of(scene, scene.contacts[contact.name])
+        radius = min((r for r in (own, contact.round_radius) if r > 0), default=np.inf)
         limits.append(_Limit(contact.name, contact.stiffness, DEEP * radius, radius, "below its surface"))
     return limits
 
@@ -49,9 +52,9 @@ def _of_crossings(model: Model) -> list[_Limit]:
 class Penetrations:
     """Sees how deep contacts and crossings are; notes where one is too deep."""
 
-    def __init__(self, model: Model):
+    def __init__(self, scene: SceneData, model: Model):
         self.found: dict[str, Any] = {}
-        self._limits = {"contact": _of_surfaces(model), "crossing": _of_crossings(model)}
+        self._limits = {"contact": _of_surfaces(scene, model), "crossing": _of_crossings(model)}
 
     def see(self, engine: Engine) -> None:
         """Take how deep the engine has found them at the ends of its steps, rows of output among them."""
@@ -78,8 +81,8 @@ class Penetrations:
                 if self.found.get(limit.name, 0.0) > limit.depth]
 
 
-def penetrations(model: Model, outputs: dict[str, np.ndarray]) -> list[str]:
+def penetrations(scene: SceneData, model: Model, outputs: dict[str, np.ndarray]) -> list[str]:
     """Return the notes on a state of rest; outputs: the engine's of each kind of coupling, (couplings, numbers)."""
-    found = Penetrations(model)
+    found = Penetrations(scene, model)
     found.see_rest(outputs)
     return found.notes()

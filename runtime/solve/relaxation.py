@@ -363,7 +363,7 @@ def _told(problem: StaticProblem, motion: _Motion, found: Stability, made: type[
     problem.messages += [*folds(problem.scene, problem.model, state.static_state["q"]),
                          *coarse(problem.scene, problem.model, state.static_state["q"]),
                          *coarse_at_slides(problem.scene, problem.model, state.static_state),
-                         *penetrations(problem.model, state.couplings),
+                         *penetrations(problem.scene, problem.model, state.couplings),
                          *beyond_ends(problem.scene, problem.model, problem.engine), *unseen_contact(problem.scene)]
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=5)

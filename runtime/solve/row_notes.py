@@ -49,7 +49,7 @@ class RowNotes:
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0):
         self.sensitivity, self.turns = Sensitivity(scene, model), FastTurns(model, step)
-        self._seen_in_steps: dict[str, SeenInSteps] = {"penetrations": Penetrations(model),
+        self._seen_in_steps: dict[str, SeenInSteps] = {"penetrations": Penetrations(scene, model),
                                                        "surface ends": SurfaceEnds(scene, model)}
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),

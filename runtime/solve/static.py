@@ -90,7 +90,7 @@ def note(problem: StaticProblem, state: RestState) -> None:
         problem.messages.append(f"the state is {state.stability}{leaves}")
     LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
              state.iterations, state.residual)
-    problem.messages += [*penetrations(problem.model, state.couplings),
+    problem.messages += [*penetrations(problem.scene, problem.model, state.couplings),
                          *beyond_ends(problem.scene, problem.model, problem.engine), *unseen_contact(problem.scene)]
     state.messages = problem.messages + implausible(problem.scene)
     for message in problem.messages:
