@@ -1,6 +1,7 @@
 """Notes on meshes too coarse for the forces in cables: by the strain within elements, and at slides."""
 
 import re
+import warnings
 
 import funicular as fu
 import numpy as np
@@ -185,3 +186,17 @@ def test_a_run_over_an_eyelet_is_told():
     scene = over_an_eyelet(13)
     run = scene.run(duration=0.1, tol=1e-3, output_step=0.005, integrator="radau", initial=scene.equilibrium())
     assert len([each for each in at_slides(run.report["messages"]) if "state to start" not in each]) == 1
+
+
+def test_forces_by_the_elastic_law_are_told_where_they_swing():
+    """At the pin the elastic law gives -1198 N of six elements and 345 N of 120; by balance it is the pin's 344 N."""
+    rest, fine = rope(6).equilibrium(), rope(120).equilibrium()
+    pin = np.linalg.norm(rest["wire@0.force"])
+    with pytest.warns(fu.FunicularWarning, match=r'"constitutive" swings by .* N within the element from s = 0 to 5 m'):
+        by_law = rest.section_forces("wire", s=[0.0], method="constitutive")
+    assert abs(float(by_law.tension[0]) / pin - 1) > 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for state, method in ((rest, "balance"), (fine, "constitutive")):
+            found = state.section_forces("wire", s=[0.0], method=method)
+            assert float(found.tension[0]) == pytest.approx(pin, rel=0.01)

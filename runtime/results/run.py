@@ -294,7 +294,7 @@ class Run(Viewable, NamedArrays):
         method: "balance", from what is in balance with the nodes' forces, loads, inertia and riders; "constitutive",
         from the elastic law and the strains of the mesh, without what Kelvin-Voigt damping adds. They go to the same as
         the mesh is refined, the second slowly: beside a point force, and wherever a cable turns within an element, it
-        swings about the first by a tenth and more. Vibrations of the mesh are in both.
+        swings about the first by a tenth and more, which a `FunicularWarning` says. Vibrations of the mesh are in both.
         side: "after" or "before", of a force or moment on one point the side of larger or of smaller s. At the ends of
         the cable it is always the one inside.
 

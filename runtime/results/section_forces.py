@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from ..errors import FunicularError, UnknownResultError, near
+from ..errors import FunicularError, FunicularWarning, UnknownResultError, near
 from ..kernels.libraries import kernels_of
 from ..model.model import Model
 from ..parts.cable import Cable
@@ -24,6 +25,7 @@ from .nodal_forces import element_forces
 from .section_balance import Cuts, balanced
 from .section_components import balanced_components, components, labels, taut_bending
 from .section_kinks import kinks
+from .section_swings import swinging
 
 if TYPE_CHECKING:
     import xarray
@@ -188,6 +190,9 @@ def dataset(state: Results | RestState, cable: Cable | str, s: ArrayLike | Slide
     s, follows = _places(state, drawn, s, over_time)
     compute: Callable = of_run if over_time else of_equilibrium
     values = compute(state, name, s, method=method, side=side)
+    if method == "constitutive" and (swing := swinging(drawn, s, lambda at: compute(
+            state, name, at, method=method)["tension"])):
+        warnings.warn(swing, FunicularWarning, stacklevel=3)
     label = GLOBAL | labels(drawn)
     coords: dict = {"xyz": ["x", "y", "z"]}
     of_s = {"units": "m", "long_name": "undeformed arc-length"}
