@@ -20,6 +20,7 @@ from ..parts.settings import EquilibriumSettings
 from ..rotations import rotate
 from .balance import balance
 from .condensation import condensed, fastest
+from .contact_edges import resolve_contact_edges
 from .rest_state import RestState
 from .spectrum import RELATIVE, ROUNDING, IncompleteError, Pencil, basis
 from .stability import count
@@ -85,8 +86,11 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
     as_drawn: also where forces do not balance as drawn, which else is refused. What is left out or uncertain is
     reported in ``messages``, and by a FunicularWarning. Raises SceneError.
     """
-    static = StaticState(scene, EquilibriumSettings(), build(scene))
-    model, engine = static.model, static.engine
+    model = build(scene)
+    if about is not None:
+        resolve_contact_edges(model, scene, about.static_state["q"])
+    static = StaticState(scene, EquilibriumSettings(), model)
+    engine = static.engine
     notes = _begin(static, about, as_drawn)
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
