@@ -92,8 +92,9 @@ def _resistance(dim: int) -> CouplingFamily:
 
 def _drag(dim: int) -> CouplingFamily:
     return CouplingFamily(drag.DRAGS[dim], f"drag of a fluid in {_SPACE[dim]}", partial(drag.build, dim),
-                          ("couplings.drag", "couplings.section_flow", "couplings.added_mass"), role="drag",
-                          missing=() if dim == 3 else ("lift_along_cable", "on_section"), facts={"dim": dim}, dim=dim)
+                          ("couplings.drag", "couplings.section_flow", "couplings.added_mass", "couplings.wetness"),
+                          role="drag", missing=() if dim == 3 else ("lift_along_cable", "on_section"),
+                          facts={"dim": dim}, dim=dim)
 
 
 def _crossing(dim: int) -> CouplingFamily:

@@ -1419,6 +1419,18 @@ void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *om
 /* impulse of the fluid at a body over a step, and its moment: A 3x3[1]; A_next 3x3[1]; C 3x3[kg]; w 3[m/s]; w_next
  * 3[m/s]; theta 3[1]; turning 3[m/s] -> dp 3[kg m/s]; p 3[kg m/s]; moment 3[N m]; more 3[m/s] */
 void drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
+/* wet part of a sphere: u 1[1] -> e 1[1]; c 1[1]; c_u 1[1]; c_uu 1[1] */
+void drag_wet_sphere(const fu_real *u, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
+/* wet part of a circle: phi 1[rad] -> e 1[1]; c 1[1]; c_u 1[1]; c_uu 1[1] */
+void drag_wet_section(const fu_real *phi, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
+/* wet part of a column at its lower end: u 1[1]; delta 1[1] -> e 1[1]; c 1[1]; c_u 1[1]; c_uu 1[1] */
+void drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
+/* added mass of a cable whose wet part changes: t 3[1]; m 2[kg/m]; w 3[m/s]; v 3[m/s]; n 3[1/m] -> p_rate 3[N/m]; g
+ * 3[N/m]; f_t 3x3[N/m]; f_w 3x3[kg/(m s)]; f_v 3x3[kg/(m s)]; f_n 3x3[J] */
+void drag_entry_of_cable(const fu_real *t, const fu_real *m, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_t, fu_real *f_w, fu_real *f_v, fu_real *f_n);
+/* added mass of a body whose wet part changes: A 3x3[1]; C 3x3[kg]; w 3[m/s]; v 3[m/s]; n 3[1/m] -> p_rate 3[N]; g
+ * 3[N]; f_turn 3x3[N]; f_w 3x3[kg/s]; f_v 3x3[kg/s]; f_n 3x3[J m] */
+void drag_entry_of_point(const fu_real *A, const fu_real *C, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_turn, fu_real *f_w, fu_real *f_v, fu_real *f_n);
 
 /* planar_drag: drag of a fluid in the plane */
 /* drag a length of a cable, and its derivatives: t 2[1]; w 2[m/s]; c 3[N s^2/m^3, N s^2/m^3, m/s] -> f 2[N/m]; f_t
@@ -1447,6 +1459,18 @@ void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_r
 /* impulse of the fluid at a body over a step, and its moment: A 2x2[1]; A_next 2x2[1]; C 2x2[kg]; w 2[m/s]; w_next
  * 2[m/s]; theta 1[1]; turning 2[m/s] -> dp 2[kg m/s]; p 2[kg m/s]; moment 1[N m]; more 2[m/s] */
 void planar_drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
+/* wet part of a sphere: u 1[1] -> e 1[1]; c 1[1]; c_u 1[1]; c_uu 1[1] */
+void planar_drag_wet_sphere(const fu_real *u, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
+/* wet part of a circle: phi 1[rad] -> e 1[1]; c 1[1]; c_u 1[1]; c_uu 1[1] */
+void planar_drag_wet_section(const fu_real *phi, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
+/* wet part of a column at its lower end: u 1[1]; delta 1[1] -> e 1[1]; c 1[1]; c_u 1[1]; c_uu 1[1] */
+void planar_drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
+/* added mass of a cable whose wet part changes: t 2[1]; m 2[kg/m]; w 2[m/s]; v 2[m/s]; n 2[1/m] -> p_rate 2[N/m]; g
+ * 2[N/m]; f_t 2x2[N/m]; f_w 2x2[kg/(m s)]; f_v 2x2[kg/(m s)]; f_n 2x2[J] */
+void planar_drag_entry_of_cable(const fu_real *t, const fu_real *m, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_t, fu_real *f_w, fu_real *f_v, fu_real *f_n);
+/* added mass of a body whose wet part changes: A 2x2[1]; C 2x2[kg]; w 2[m/s]; v 2[m/s]; n 2[1/m] -> p_rate 2[N]; g
+ * 2[N]; f_turn 2x1[N]; f_w 2x2[kg/s]; f_v 2x2[kg/s]; f_n 2x2[J m] */
+void planar_drag_entry_of_point(const fu_real *A, const fu_real *C, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_turn, fu_real *f_w, fu_real *f_v, fu_real *f_n);
 
 /* crossing: lines that touch at their closest points in space */
 /* a step of Newton's method to the closest points: d 3[m]; t 2x3[1]; k 2x3[1/m] -> step 2[m] */
@@ -1765,6 +1789,11 @@ typedef struct {
     void (*impulse_of_point)(const fu_real *A, const fu_real *C, const fu_real *w, fu_real *p, fu_real *M);
     void (*inertia_of_point)(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
     void (*inertia_of_point_step)(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
+    void (*wet_sphere)(const fu_real *u, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
+    void (*wet_section)(const fu_real *phi, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
+    void (*wet_column)(const fu_real *u, const fu_real *delta, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
+    void (*entry_of_cable)(const fu_real *t, const fu_real *m, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_t, fu_real *f_w, fu_real *f_v, fu_real *f_n);
+    void (*entry_of_point)(const fu_real *A, const fu_real *C, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_turn, fu_real *f_w, fu_real *f_v, fu_real *f_n);
 } fu_drag_kernels;
 
 /* What the engine needs of a crossing. */

@@ -239,10 +239,12 @@ static const fu_resistance_kernels resistances[] = {
 static const fu_drag_kernels drags[] = {
     {"drag", 3, drag_along_cable, drag_lift_along_cable, drag_on_section, drag_on_point, drag_on_foil,
      drag_impulse_of_cable, drag_inertia_of_cable, drag_inertia_step, drag_impulse_of_point, drag_inertia_of_point,
-     drag_inertia_of_point_step},
+     drag_inertia_of_point_step, drag_wet_sphere, drag_wet_section, drag_wet_column, drag_entry_of_cable,
+     drag_entry_of_point},
     {"planar_drag", 2, planar_drag_along_cable, 0, 0, planar_drag_on_point, planar_drag_on_foil,
      planar_drag_impulse_of_cable, planar_drag_inertia_of_cable, planar_drag_inertia_step, planar_drag_impulse_of_point,
-     planar_drag_inertia_of_point, planar_drag_inertia_of_point_step},
+     planar_drag_inertia_of_point, planar_drag_inertia_of_point_step, planar_drag_wet_sphere, planar_drag_wet_section,
+     planar_drag_wet_column, planar_drag_entry_of_cable, planar_drag_entry_of_point},
 };
 
 static const fu_crossing_kernels crossings[] = {
@@ -728,6 +730,11 @@ static const fu_point_law_kernels point_laws[] = {
     X(drag_impulse_of_point, a[0], a[1], a[2], out[0], out[1]) \
     X(drag_inertia_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
     X(drag_inertia_of_point_step, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]) \
+    X(drag_wet_sphere, a[0], out[0], out[1], out[2], out[3]) \
+    X(drag_wet_section, a[0], out[0], out[1], out[2], out[3]) \
+    X(drag_wet_column, a[0], a[1], out[0], out[1], out[2], out[3]) \
+    X(drag_entry_of_cable, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(drag_entry_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(planar_drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(planar_drag_on_point, a[0], a[1], out[0], out[1]) \
     X(planar_drag_on_foil, a[0], a[1], a[2], a[3], out[0], out[1]) \
@@ -737,6 +744,11 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_drag_impulse_of_point, a[0], a[1], a[2], out[0], out[1]) \
     X(planar_drag_inertia_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
     X(planar_drag_inertia_of_point_step, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]) \
+    X(planar_drag_wet_sphere, a[0], out[0], out[1], out[2], out[3]) \
+    X(planar_drag_wet_section, a[0], out[0], out[1], out[2], out[3]) \
+    X(planar_drag_wet_column, a[0], a[1], out[0], out[1], out[2], out[3]) \
+    X(planar_drag_entry_of_cable, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(planar_drag_entry_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(crossing_closest, a[0], a[1], a[2], out[0]) \
     X(crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \

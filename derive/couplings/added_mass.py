@@ -119,7 +119,7 @@ def _turned_mass(p: Program, name: str, A: np.ndarray, C: np.ndarray) -> np.ndar
     return np.array([p.vector(f"{name}{k + 1}", row) for k, row in enumerate(A.dot(half))])
 
 
-def _mass_of_point(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray]:
+def mass_of_point(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the axes A of a body and its added mass A C A' in global axes."""
     A = p.input("A", (dim, dim), "1", "axes of the body by columns")
     C = p.input("C", (dim, dim), "kg", "added mass in body axes, symmetric")
@@ -130,7 +130,7 @@ def _mass_of_point(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray]:
 def impulse_of_point(name: str, dim: int) -> Program:
     """Return the kernel of the impulse of the fluid at a point of a body, and of its mass."""
     p = Program(f"{name}_impulse_of_point", "impulse of the fluid at a body, and its mass", POINT)
-    _, M = _mass_of_point(p, dim)
+    _, M = mass_of_point(p, dim)
     w = p.input("w", dim, "m/s", PAST)
     p.output("p", M.dot(w), "kg m/s", "impulse A C A' w")
     p.output("M", M, "kg", "added mass A C A' in global axes")
@@ -142,7 +142,7 @@ def of_point(name: str, dim: int) -> Program:
     turns = 3 if dim == 3 else 1
     p = Program(f"{name}_inertia_of_point",
                 "impulse of the fluid at a body, its rate and moment, and their derivatives", POINT)
-    A, M = _mass_of_point(p, dim)
+    A, M = mass_of_point(p, dim)
     omega = p.input("omega", turns, "rad/s", "angular velocity in global axes")
     w, w_rate = p.input("w", dim, "m/s", PAST), p.input("w_rate", dim, "m/s^2", "its rate")
     p.stage("impulse, its rate and moment")
@@ -152,13 +152,13 @@ def of_point(name: str, dim: int) -> Program:
     moment = np.array([p.define(f"moment{k}", value) for k, value in enumerate(_moment(w, impulse))])
     p.stage("derivatives")
     units = np.eye(turns, dtype=int)
-    turned = [DirectionalDerivative(p, f"d_th{k + 1}", _turned(A, axis)) for k, axis in enumerate(units)]
+    swung = [DirectionalDerivative(p, f"d_th{k + 1}", turned(A, axis)) for k, axis in enumerate(units)]
     p.output("p", impulse, "kg m/s", "impulse A C A' w")
     p.output("p_rate", impulse_rate, "N", "its rate")
     p.output("moment", moment, "N m", "w x p")
     p.output("M", M, "kg", "added mass A C A' in global axes")
     for key, values in {"p": impulse, "p_rate": impulse_rate, "moment": moment}.items():
-        p.output(f"{key}_turn", np.stack([d.array(values) for d in turned], axis=-1), "SI",
+        p.output(f"{key}_turn", np.stack([d.array(values) for d in swung], axis=-1), "SI",
                  f"derivatives of {key} by a turn of the body about global axes")
     p.output("p_rate_omega", jacobian(p, impulse_rate, omega), "kg m/s", "derivatives of p_rate by omega")
     p.output("p_rate_w", jacobian(p, impulse_rate, w), "kg/s", "derivatives of p_rate by w")
@@ -207,7 +207,7 @@ def _moment(w: np.ndarray, impulse: np.ndarray) -> np.ndarray:
     return cross(w, impulse) if len(w) == 3 else np.array([w[0] * impulse[1] - w[1] * impulse[0]])
 
 
-def _turned(A: np.ndarray, axis: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
+def turned(A: np.ndarray, axis: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
     """Return what a turn about a global axis changes the entries of A by."""
     change = np.stack([cross(axis, column) for column in A.T], axis=1)
     return dict(zip(A.ravel(), change.ravel(), strict=True))

@@ -19,7 +19,7 @@ import sympy as sp
 
 from ..algebra.tangent_frame import cross
 from ..codegen.program import Program, jacobian
-from . import added_mass, section_flow
+from . import added_mass, section_flow, wetness
 
 DRAGS = {3: "drag", 2: "planar_drag"}
 RELATIVE = "velocity of the fluid less that of the point"
@@ -29,7 +29,8 @@ SOURCE = "Morison et al. 1950; Hall & Goupee 2015"
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
     lift = [lift_along_cable(), section_flow.on_section(DRAGS[dim], RELATIVE)] if dim == 3 else []
-    return [along_cable(dim), *lift, on_point(dim), on_foil(dim), *added_mass.build(DRAGS[dim], dim)]
+    return [along_cable(dim), *lift, on_point(dim), on_foil(dim), *added_mass.build(DRAGS[dim], dim),
+            *wetness.build(DRAGS[dim], dim)]
 
 
 def _size(p: Program, name: str, square: sp.Expr, least: sp.Expr) -> sp.Expr:

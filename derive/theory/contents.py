@@ -41,6 +41,7 @@ def theory() -> Document:
     composer.add("couplings/resistance", MAIN)
     composer.add("couplings/drag", MAIN)
     composer.add("couplings/added_mass", MAIN)
+    composer.add("couplings/wetness", MAIN)
     composer.add("couplings/surface", MAIN)
     composer.add("couplings/hard_contact", MAIN)
     composer.add("couplings/crossing", MAIN)

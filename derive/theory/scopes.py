@@ -366,7 +366,9 @@ def drag_scope(name: str) -> Scope:
                                     *(Symbol(s, "m", entry(k)) for k, s in enumerate(("m_{n}", "m_{t}"))),
                                     Symbol(r"\mathbf{s}", "s", column), Symbol(r"\mathbf{A}", "A", matrix),
                                     Symbol(r"\mathbf{C}", "C", matrix),
-                                    Symbol(r"\boldsymbol{\omega}", "omega", column)))
+                                    Symbol(r"\boldsymbol{\omega}", "omega", column),
+                                    Symbol("u", "u", entry(0)), Symbol(r"\delta", "delta", entry(0)),
+                                    Symbol(r"\mathbf{v}", "v", column), Symbol(r"\mathbf{z}", "n", column)))
 
 
 def crossing_scope(name: str) -> Scope:

@@ -33,6 +33,7 @@ def drag(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     if family.dim == 3:
         yield from _on_section(k, s)
     yield from _added_mass(family, k, s)
+    yield from _wetness(k, s)
 
 
 def _on_section(k: Numbers, s: State) -> Iterator[Invariance]:
@@ -56,6 +57,21 @@ def _on_section(k: Numbers, s: State) -> Iterator[Invariance]:
     at_rest = k("on_section", {**s, "w": 0 * w})
     yield "a section's forces vanish without flow", max(
         float(np.max(np.abs(at_rest[name]))) for name in ("f", "K")), 64 * EPS
+
+
+def _wetness(k: Numbers, s: State) -> Iterator[Invariance]:
+    """Yield that wet parts go from nil to all, and the mean depth from nil to that of the middle."""
+    delta = float(s["delta"][0])
+    ends = {"wet_sphere": ("u", -1.0, 1.0), "wet_section": ("phi", -np.pi / 2, np.pi / 2)}
+    for kernel, (name, dry, wet) in ends.items():
+        for at, e, c in ((dry, 0.0, 0.0), (wet, 1.0, 1.0)):
+            out = k(kernel, {**s, name: np.array([at])})
+            yield f"{kernel[4:]}: depth and wet part at the ends", max(
+                abs(float(out[key][0]) - value) for key, value in (("e", e), ("c", c), ("c_u", 0.0))), 64 * EPS
+    out = k("wet_column", {**s, "u": np.array([delta - 1.0])})
+    yield "the rounded end of a column joins its side", max(
+        abs(float(out[key][0]) - value) for key, value in (
+            ("e", delta**2 / 4 + delta**2 / 12), ("c", delta / 2), ("c_u", 0.5))), 64 * EPS
 
 
 def _added_mass(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:

@@ -11,13 +11,15 @@ from ..numbers import Numbers, State
 
 def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
     """Return the slope of a cable, the velocity of the fluid past it, with rates and at the end of a step; axes of a
-    body and its turn, over a step by a Cayley vector; coefficients of drag, added masses along and across.
+    body and its turn, over a step by a Cayley vector; coefficients of drag, added masses along and across; a surface
+    that cuts what is wetted.
     """
     dim = family.dim
-    moving = {name: random.normal(size=dim) for name in ("t", "w", "t_rate", "w_rate", "t_next", "w_next")}
+    moving = {name: random.normal(size=dim) for name in ("t", "w", "t_rate", "w_rate", "t_next", "w_next", "v", "n")}
     axes, half = np.linalg.qr(random.normal(size=(dim, dim)))[0], random.normal(size=(dim, dim))
     sampled = moving | {"A": axes, "omega": random.normal(size=3 if dim == 3 else 1), "C": half @ half.T,
                      "m": np.array([1.3, 0.2]),
+                     "u": np.array([-0.97]), "delta": np.array([0.05]), "phi": np.array([0.4]),
                      "s": _unit(random.normal(size=3)) if dim == 3 else -np.ones(1),
                      "c_lift": np.array([0.6, 1e-30]), "c_foil": np.array([0.9, 1e-30]),
                      "coefficients": np.array([0.5, 0.3, 0.8, -1.2]), "c": np.array([0.8, 0.3, 1e-30]),
