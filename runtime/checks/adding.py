@@ -14,6 +14,7 @@ from ..parts.contact import Contact
 from ..parts.crossing import Crossing
 from ..parts.drag import Drag
 from ..parts.event import Event
+from ..parts.fluid import Fluid
 from ..parts.joint import Joint
 from ..parts.load import Load
 from ..parts.part import Part
@@ -26,7 +27,7 @@ from ..parts.surface import Surface
 from ..parts.validation import show
 from .contact_placement import placed_contact, placed_contacts, placed_surface
 from .crossing_placement import placed_crossing
-from .drag_placement import placed_drag
+from .drag_placement import placed_drag, placed_fluid
 from .event_placement import placed_event
 from .joint_placement import placed_joint
 from .placement import placed_between, placed_load, placed_point_force, placed_support, placed_tie
@@ -66,7 +67,7 @@ def _lie_in_one_plane(cable: Cable, other: Cable) -> bool:
 
 _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
     Cable: placed_cable, Support: placed_support, Tie: placed_tie, Joint: placed_joint, Slide: placed_slide,
-    Load: placed_load, PointForce: placed_point_force, Event: placed_event, Drag: placed_drag,
+    Load: placed_load, PointForce: placed_point_force, Event: placed_event, Fluid: placed_fluid, Drag: placed_drag,
     Crossing: placed_crossing, Surface: placed_surface, Contact: placed_contact}
 
 

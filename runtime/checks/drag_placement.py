@@ -10,8 +10,10 @@ from ..errors import SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
 from ..parts.drag import OF_BODY, OF_CABLE, Drag
+from ..parts.fluid import NO_SURFACE, Fluid
 from ..parts.scene_data import SceneData
 from ..parts.validation import EXACT, show
+from ..parts.velocity_table import VelocityTable
 from .frames import draws_section
 from .placement import placed_attachment
 
@@ -22,6 +24,7 @@ PLACES = 65
 def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     """Return the drag with its fluid and its place complete, sure to act on something. Raises SceneError."""
     drag = drag.completed({"fluid": _fluid(scene, drag)})
+    _check_surfaces(scene, drag)
     if drag.on in scene.cables:
         _check_cable(scene, drag)
         cable = scene.cables[drag.on]
@@ -40,13 +43,15 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
 
 def _check_table(scene: SceneData, drag: Drag, places_of: Callable[[], np.ndarray]) -> None:
     """Raise SceneError where a drag begins outside of the table of its fluid; places_of: gives places (n, 3), in m."""
-    fluid = scene.fluids[drag.fluid or ""]
-    if fluid.table is None:
-        return
-    places = places_of()
-    margin, axis = fluid.table.margin(np.zeros(len(places)), places)
+    for fluid in scene.fluids_of(drag):
+        if fluid.table is not None:
+            _check_in_table(drag, fluid, fluid.table, places_of())
+
+
+def _check_in_table(drag: Drag, fluid: Fluid, table: VelocityTable, places: np.ndarray) -> None:
+    margin, axis = table.margin(np.zeros(len(places)), places)
     if margin < -EXACT:
-        values = fluid.table.grid.axes[axis]
+        values = table.grid.axes[axis]
         at = 0.0 if axis == "time" else float(max(places[:, "xyz".index(axis)], key=lambda x: abs(x - values.mean())))
         unit = "s" if axis == "time" else "m"
         raise SceneError(drag.where, f'begins at {axis} = {show(at, unit)}, outside of the table of {fluid.where}, '
@@ -54,16 +59,60 @@ def _check_table(scene: SceneData, drag: Drag, places_of: Callable[[], np.ndarra
                          "take a larger table, or leave out what the velocity does not depend on")
 
 
-def _fluid(scene: SceneData, drag: Drag) -> str:
-    """Return the name of the fluid that a drag is in."""
+def placed_fluid(scene: SceneData, fluid: Fluid) -> Fluid:
+    """Return the fluid, sure to share no surface with another, and to suit the drags. Raises SceneError."""
+    fluids = list(scene.fluids.values())
+    if fluid.surface is None:
+        if other := next((each for each in fluids if each.surface is None), None):
+            for drag in (each for each in scene.drags.values() if each.fluid is None):
+                raise SceneError(fluid.where, f"fills the same place as the {other.where}, and the {drag.where} is in "
+                                 "all fluids", "give one of them a surface, or name the fluid of the drag")
+        return fluid
+    if other := next((each for each in fluids if each.surface == fluid.surface), None):
+        raise SceneError(fluid.where, f"has its surface at {show(fluid.surface, 'm')}, as the {other.where} has",
+                         "two fluids cannot fill the same place: give another level")
+    for drag in scene.drags.values():
+        if any(each.top > fluid.top for each in scene.fluids_of(drag)):
+            _check_cut(scene, drag)
+    return fluid
+
+
+def _check_surfaces(scene: SceneData, drag: Drag) -> None:
+    """Raise SceneError where a surface may cut what a drag has no wet part for."""
+    if any(fluid.surface is not None or fluid.bottom(scene.fluids.values()) > -NO_SURFACE
+           for fluid in scene.fluids_of(drag)):
+        _check_cut(scene, drag)
+
+
+def _check_cut(scene: SceneData, drag: Drag) -> None:
+    if drag.polar is not None and drag.on in scene.cables:
+        raise SceneError(drag.where, f'has a polar on cable "{drag.on}", in a fluid with a surface, which does not '
+                         "know the wet part of a section that turns", "take normal and lift, or leave surface out")
+
+
+def _fluid(scene: SceneData, drag: Drag) -> str | None:
+    """Return the name of the fluid that a drag is in; None: it is in all of them."""
     if drag.fluid is None and len(scene.fluids) == 1:
         return next(iter(scene.fluids))
     if drag.fluid is None:
-        raise SceneError(drag.where, f"needs a fluid, of which the scene has {len(scene.fluids) or 'none'}",
-                         "name it with fluid" if scene.fluids else "add one before: scene.fluid(density=...)")
+        everywhere = [name for name, fluid in scene.fluids.items() if fluid.surface is None]
+        if not scene.fluids:
+            raise SceneError(drag.where, "needs a fluid, of which the scene has none",
+                             "add one before: scene.fluid(density=...)")
+        if len(everywhere) > 1:
+            raise SceneError(drag.where, f"needs a fluid, of which the scene has {len(scene.fluids)}, and "
+                             f"{', '.join(everywhere)} fill the same place",
+                             "name it with fluid, or give them surfaces")
+        return None
     if drag.fluid not in scene.fluids:
         raise SceneError(drag.where, f'there is no fluid "{drag.fluid}"', near(drag.fluid, scene.fluids))
     return drag.fluid
+
+
+def _are_apart(scene: SceneData, one: Drag, other: Drag) -> bool:
+    """Return whether two drags are in fluids that are at no common place, as surfaces part them."""
+    tops = {fluid.top for drag in (one, other) for fluid in scene.fluids_of(drag)}
+    return len(tops) > 1
 
 
 def _check_cable(scene: SceneData, drag: Drag) -> None:
@@ -74,7 +123,9 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
     if isinstance(drag.added_mass, tuple):
         raise SceneError(drag.where, f'acts on cable "{drag.on}", whose added_mass is one number',
                          "give that across the cable, and added_mass_tangential along it")
-    if other := next((each for each in scene.drags.values() if each.on == drag.on), None):
+    if other := next((each for each in scene.drags.values() if each.on == drag.on
+                      and (None in (each.fluid, drag.fluid) or each.fluid == drag.fluid
+                           or not _are_apart(scene, each, drag))), None):
         raise SceneError(drag.where, f'cable "{drag.on}" has the {other.where} already', "leave one of them out")
     if drag.lift != 0 and cable.dim == 2:
         raise SceneError(drag.where, f'lift of cable "{drag.on}" leaves the plane of its element {cable.element}',

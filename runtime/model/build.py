@@ -14,7 +14,7 @@ from .contacts import contact_model
 from .coupling import number
 from .crossings import crossing_model
 from .cutting import attached
-from .drags import drag_model
+from .drags import drag_models
 from .hard_contacts import hard_contact_models
 from .joints import JointModel, frame_joint_model, joint_model
 from .loads import LoadBuilder
@@ -48,7 +48,7 @@ def build(scene: SceneData) -> Model:
     slides = [slide_model(slide, scene, attachments, loads.signal) for slide in scene.slides.values()]
     joints = _joints(scene, attachments, loads)
     point_forces = [loads.point_force(force) for force in scene.point_forces.values()]
-    drags = [drag_model(drag, scene, attachments, loads) for drag in scene.drags.values()]
+    drags = [model for drag in scene.drags.values() for model in drag_models(drag, scene, attachments, loads)]
     crossings = [crossing_model(crossing, scene, attachments) for crossing in scene.crossings.values()]
     contacts = [contact_model(contact, scene, attachments) for contact in scene.contacts.values()
                 if not contact.is_hard]

@@ -10,7 +10,7 @@ import numpy as np
 from ..parts.attachment import Attachment
 from ..parts.drag import Drag
 from ..parts.flow_profile import PowerProfile, TableProfile
-from ..parts.fluid import Fluid
+from ..parts.fluid import NO_SURFACE, Fluid
 from ..parts.polar import Polar
 from ..parts.scene_data import SceneData
 from ..parts.velocity_table import AXES
@@ -33,6 +33,7 @@ class DragModel(CouplingModel):
     at the height base + up . r. coefficients: as the kernel takes them. buoyancy (dim): N/m of a cable, N of a body.
     lift, foil, section: likewise, is_foil: a body with a span, or a beam with a chord; n_angles, angles, polar_drag,
     polar_lift, polar_moment: its polar, see `Polar.pieces`.
+    wet: what a surface cuts, all: nothing; extent: half the height of that, m; surface, bottom: heights, m.
     displaced: mass of the fluid displaced, added: that it adds, as engine/include/drags.h has them, where has_inertia.
     weights (1 or elements, n_points), in m, N, N_x and N_chord, of a beam's chord (1 or elements, n_points, vectors):
     of the quadrature on the elements of the cable, once where they are equal; stride: points from one element's to the
@@ -73,6 +74,10 @@ class DragModel(CouplingModel):
     polar_lift: np.ndarray
     polar_moment: np.ndarray
     buoyancy: np.ndarray
+    wet: str
+    extent: float
+    surface: float
+    bottom: float
     displaced: float
     added: tuple[float, ...]
     n_points: int
@@ -86,18 +91,23 @@ class DragModel(CouplingModel):
     polar: Polar | None
 
 
-def drag_model(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> DragModel:
-    """Return the model of a drag of the scene."""
-    assert part.fluid is not None, f"{part.where} is not complete"
-    fluid, dim = scene.fluids[part.fluid], scene.dim
+def drag_models(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> list[DragModel]:
+    """Return the models of a drag of the scene, one for each fluid that it is in."""
+    return [_in_fluid(part, fluid, scene, attachments, loads) for fluid in scene.fluids_of(part)]
+
+
+def _in_fluid(part: Drag, fluid: Fluid, scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder
+              ) -> DragModel:
+    dim = scene.dim
     signal, factor = loads.scale(fluid.scale)
     gravity = np.array(scene.gravity)[:dim]
     up, base = _height(scene)
     displaced, none = part.displaced(scene.cables.get(part.on)), np.zeros(0)
     model = DragModel(
         kernel=KERNELS[dim], velocity=factor * np.array(fluid.velocity)[:dim], up=up[:dim], base=base, signal=signal,
-        **_profile(fluid), **_foil(part, fluid, dim, part.on in scene.bodies), **_table(fluid, scene), cable=-1,
-        coefficients=(), buoyancy=-fluid.density * displaced * gravity, displaced=fluid.density * displaced, added=(),
+        **_profile(fluid), **_foil(part, fluid, dim, part.on in scene.bodies), **_table(fluid, scene),
+        **_wet(part, fluid, scene), cable=-1, coefficients=(),
+        buoyancy=-fluid.density * displaced * gravity, displaced=fluid.density * displaced, added=(),
         has_inertia=part.added_mass is not None, n_points=0, stride=0, weights=none, N=none, N_x=none,
         N_chord=none, attachments=[], fluid=fluid, polar=part.polar, type="drag", name=part.name or "", is_damped=True)
     if model.has_inertia:
@@ -135,6 +145,14 @@ def _foil(part: Drag, fluid: Fluid, dim: int, on_body: bool) -> dict[str, Any]:
             "span": tuple(span) if dim == 3 else (float(np.sign(span[2])),), "chord": tuple(chord[:dim]),
             "foil_lift": part.lift, "section": (0.0, 0.0, LEAST_SPEED), "n_angles": len(drag), "angles": breaks,
             "polar_drag": drag, "polar_lift": lift, "polar_moment": moment}
+
+
+def _wet(part: Drag, fluid: Fluid, scene: SceneData) -> dict[str, Any]:
+    """Return what a model has of the surfaces of a fluid, and of what they cut."""
+    cable, bottom = scene.cables.get(part.on), fluid.bottom(scene.fluids.values())
+    kind = "section" if cable is not None else "sphere" if part.height is None else "column"
+    is_cut = fluid.surface is not None or bottom > -NO_SURFACE
+    return {"wet": kind if is_cut else "all", "extent": part.extent(cable), "surface": fluid.top, "bottom": bottom}
 
 
 def up_of(scene: SceneData) -> np.ndarray:

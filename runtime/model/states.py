@@ -5,7 +5,7 @@ All is along the axes of the model, in which the plane of a planar one is z = 0,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 
@@ -212,6 +212,17 @@ def free_states(model: Model, q: np.ndarray, s: np.ndarray, slide_forces: np.nda
     return found
 
 
+def _drag_states(model: Model, forces: np.ndarray, asked: Callable[[str | None], bool]
+                 ) -> dict[str, dict[str, np.ndarray]]:
+    """Return the force of each drag that is asked for, that of all its fluids; forces (time, models of drags, 3)."""
+    found: dict[str, dict[str, np.ndarray]] = {}
+    for k, drag in enumerate(model.drags):
+        if asked(drag.name):
+            before = found[drag.name]["force"] if drag.name in found else 0.0
+            found[drag.name] = {"force": before + forces[:, k]}
+    return found
+
+
 def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: np.ndarray, joints: np.ndarray,
                       point_forces: np.ndarray, couplings: Mapping[str, np.ndarray],
                       alone: str | None = None) -> dict[str, dict[str, dict[str, np.ndarray]]]:
@@ -240,8 +251,7 @@ def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: n
         "joints": {joint.name: state for joint, state in of_joints if joint.slide is None},
         PointForce.group: {force.name: point_force_state(model, force, point_forces[:, k], q)
                            for k, force in enumerate(model.point_forces) if asked(force.name)},
-        Drag.group: {drag.name: {"force": couplings["drag"][:, k]} for k, drag in enumerate(model.drags)
-                     if asked(drag.name)},
+        Drag.group: _drag_states(model, couplings["drag"], asked),
         Crossing.group: {crossing.name: crossing_state(couplings["crossing"][:, k])
                          for k, crossing in enumerate(model.crossings) if asked(crossing.name)},
         Contact.group: {contact.name: contact_state(contact, couplings["contact"][:, k])

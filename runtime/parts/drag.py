@@ -33,7 +33,7 @@ from .validation import (
 
 OF_CABLE = ("normal", "tangential", "lift", "polar", "chord", "diameter", "displaced_area", "added_mass",
             "added_mass_tangential")
-OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "added_mass")
+OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "height", "added_mass")
 
 
 def _added_mass(value: Any) -> float | Matrix:
@@ -54,7 +54,8 @@ def _check_added_mass(matrix: np.ndarray) -> None:
 class Drag(Part):
     """Drag, buoyancy and added mass of a cable or a body in a `Fluid`.
 
-    on: the cable, all of it, or the body; fluid: its name, the scene's only one if not given.
+    on: the cable, all of it, or the body; fluid: its name. If not given, the only one of the scene, or all of them, of
+    which each acts where it is, if no two of them are at the same place.
     Of a cable: ``normal`` and ``tangential``, the coefficients of Morison's equation, whose forces a length are
     ``ρ/2 d normal |w_n| w_n`` across and ``ρ/2 π d tangential |w_t| w_t`` along, with the fluid's velocity w past it;
     ``diameter`` d in m and ``displaced_area``, the volume a length that the cable displaces, in m², are those of the
@@ -71,6 +72,12 @@ class Drag(Part):
     motion across it, and with that along it times ``added_mass_tangential``; of a body at ``at``, the same in all
     directions, or three along its axes, or 3x3 in these. With it the fluid also acts by its own acceleration, as a
     current or wave that changes does: (1 + C) times the mass displaced. None: neither; 0: without added mass.
+
+    Where a fluid has a surface, all of these count by the wet part. Of a cable that is the part of its section, a
+    circle of the diameter d (without one, of the displaced area), below the surface, at each place along it. A body is
+    taken as a sphere of its ``volume`` about ``at`` (without a volume, of its ``area``), or with ``height``, in m, as a
+    column that is upright in all attitudes and has the same section over this height, half of it below ``at``; both its
+    ends are rounded by a fortieth of the height. Buoyancy acts at ``at`` in any case: what heels takes several drags.
     """
 
     kind: ClassVar[str] = "drag"
@@ -92,6 +99,7 @@ class Drag(Part):
     chord: Annotated[Vector, direction()] | None = None
     at: Annotated[Vector, xyz("m")] | None = None
     volume: Annotated[float, not_negative("m³")] = 0.0
+    height: Annotated[float, positive("m")] | None = None
     added_mass: Annotated[float | Matrix | None, checked(
         _added_mass, {"anyOf": [number_schema(minimum=0), list_schema(), list_of_lists("1")]})] = None
     added_mass_tangential: Annotated[float, not_negative()] = 0.0
@@ -130,6 +138,17 @@ class Drag(Part):
         if radius is None:
             raise ValueError("diameter is missing, which the section of the cable does not tell")
         return 2 * radius
+
+    def extent(self, cable: Cable | None) -> float:
+        """Return half of the height of what a surface cuts, in m: of a cable's section, or of a body. 0: of a point."""
+        if cable is None:
+            if self.height is not None:
+                return self.height / 2
+            return math.cbrt(3 * self.volume / (4 * math.pi)) if self.volume else math.sqrt(self.area / math.pi)
+        try:
+            return self.width(cable) / 2
+        except ValueError:
+            return math.sqrt(self.displaced(cable) / math.pi)
 
     def displaced(self, cable: Cable | None) -> float:
         """Return the displaced volume: of a cable that of a length, m²; of a body all of it, m³."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -12,12 +12,18 @@ from .flow_profile import AnyProfile
 from .part import Part
 from .plane import across
 from .signal import AnySignal, Constant
-from .validation import Name, Vector, positive, xyz
+from .validation import Name, Vector, finite, positive, xyz
 from .velocity_table import VelocityTable
+
+NO_SURFACE = 1e300
+"""m: beyond all heights."""
 
 
 class Fluid(Part):
-    """Air or water that fills the scene, at rest or in motion; it acts on what a `Drag` names.
+    """Air or water, at rest or in motion; it acts on what a `Drag` names.
+
+    It fills the scene, or all below its ``surface``, a level in m as heights are counted. Fluids with surfaces lie on
+    each other: that with the lowest surface above a place is there, and one without a surface is above all others.
 
     density in kg/m³; velocity in m/s, times the signal ``scale`` of time and the ``profile``, a `PowerProfile` or a
     `TableProfile` of the height above the origin. Heights are counted against gravity, along y without gravity. Or
@@ -28,6 +34,7 @@ class Fluid(Part):
     group: ClassVar[str] = "fluids"
     name: Name | None = None
     density: Annotated[float, positive("kg/m³")]
+    surface: Annotated[float, finite("m")] | None = None
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
     scale: AnySignal = Constant(constant=1.0)
     profile: AnyProfile = None
@@ -50,6 +57,15 @@ class Fluid(Part):
     def moves(self) -> bool:
         """Return whether it has a velocity anywhere."""
         return any(self.velocity) or (self.table is not None and bool(np.any(self.table.grid.velocity)))
+
+    @property
+    def top(self) -> float:
+        """Return the height up to which it is, in m; `NO_SURFACE` without a surface."""
+        return NO_SURFACE if self.surface is None else self.surface
+
+    def bottom(self, fluids: Iterable[Fluid]) -> float:
+        """Return the height above which it is, in m, among the fluids of its scene; minus `NO_SURFACE`: everywhere."""
+        return max((other.top for other in fluids if other.top < self.top), default=-NO_SURFACE)
 
     def velocity_at(self, time: np.ndarray, height: np.ndarray, place: np.ndarray | None = None) -> np.ndarray:
         """Return the velocity (..., 3) in m/s at times (s) and heights (m), which are broadcast.

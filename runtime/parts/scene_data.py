@@ -117,6 +117,10 @@ class SceneData:
         """Return all supports of nodes: pins, clamps and motions."""
         return [*self.pins, *self.clamps, *self.motions]
 
+    def fluids_of(self, drag: Drag) -> list[Fluid]:
+        """Return the fluids that a drag is in: the one that it names, else all."""
+        return list(self.fluids.values()) if drag.fluid is None else [self.fluids[drag.fluid]]
+
     def parts(self) -> Iterator[Part]:
         """Yield all parts, in an order in which they can be added."""
         for group in _groups():

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..engine import Engine
+from ..errors import FunicularError
 from ..kernels.libraries import kernels_of
 from ..kernels.mesh import Mesh
 from ..model.attachments import CARRIED, UP, AttachmentModel
@@ -227,6 +228,9 @@ class CableLoads:
             if drag.cable not in self.cables:
                 continue
             cable = self.model.cables[drag.cable]
+            if drag.wet != "all":
+                raise FunicularError(f'drag "{drag.name}": the surface of its fluid may cut cable "{cable.name}", and '
+                                     'section forces by balance do not know the wet part; take method="constitutive"')
             density, turning = densities(self.model, drag, self.at.time, self.at.q, self.at.v)
             density, on_slope = self.at.load * density, None
             if turning is not None:

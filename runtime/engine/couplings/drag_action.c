@@ -87,6 +87,26 @@ static void add_section(const fu_drag *drag, const fu_drag_place *at, fu_drag_ac
     }
 }
 
+static void scale(int n, double by, double *x)
+{
+    for (int i = 0; i < n; ++i) x[i] *= by;
+}
+
+/* Takes the wet part of what acts where all is wet, with the derivative by the place that this gives. */
+static void take_wet_part(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, fu_drag_action *out)
+{
+    const int dim = model->dim;
+    const fu_wetness wet = fu_wet_at_height(drag, fu_drag_height(model, drag, at->r));
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+            out->by_wet[i * dim + j] = (out->f[i] + out->buoyancy[i]) * wet.slope * drag->flow.up[j];
+    scale(3, wet.part, out->f);
+    scale(3, wet.part, out->buoyancy);
+    scale(9, wet.part, out->by_slope);
+    scale(9, wet.part, out->by_w);
+    scale(9, wet.part, out->by_turn);
+}
+
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A, fu_drag_action *out)
 {
     fu_flow_at(model, &drag->flow, t, at->r, &out->flow);
@@ -98,4 +118,7 @@ void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_
     if (drag->lift[0] != 0.0) add_lift(drag, at, out);
     if (fu_drag_on_section(drag)) add_section(drag, at, out);
     else if (drag->is_foil) add_foil(model->dim, drag, A, out);
+    memcpy(out->buoyancy, drag->buoyancy, sizeof out->buoyancy);
+    if (drag->wet == FU_ALL_WET) memset(out->by_wet, 0, sizeof out->by_wet);
+    else take_wet_part(model, drag, at, out);
 }

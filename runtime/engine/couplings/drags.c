@@ -14,24 +14,24 @@ static void by_place(int dim, const fu_drag_action *a, double out[9])
 {
     for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) {
-            out[i * dim + j] = 0.0;
+            out[i * dim + j] = a->by_wet[i * dim + j];
             for (int k = 0; k < dim; ++k) out[i * dim + j] += a->by_w[i * dim + k] * a->flow.gradient[k * dim + j];
         }
 }
 
 /* Makes the force of drag and buoyancy, N/m or N: so much of it as of all loads acts. */
-static void whole_force(const fu_model *model, const fu_drag *drag, const fu_drag_action *a, double force[3])
+static void whole_force(const fu_model *model, const fu_drag_action *a, double force[3])
 {
-    for (int d = 0; d < model->dim; ++d) force[d] = model->load_fraction * (a->f[d] + drag->buoyancy[d]);
+    for (int d = 0; d < model->dim; ++d) force[d] = model->load_fraction * (a->f[d] + a->buoyancy[d]);
 }
 
 /* Adds to `sum` the powers at a place of this weight. */
-static void add_powers(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const fu_drag_action *a,
-                       double weight, fu_drag_powers *sum)
+static void add_powers(const fu_model *model, const fu_drag_place *at, const fu_drag_action *a, double weight,
+                       fu_drag_powers *sum)
 {
     const double part = weight * model->load_fraction;
     sum->dissipated += part * fu_dot(model->dim, a->f, a->w);
-    sum->external += part * (fu_dot(model->dim, a->f, a->flow.U) + fu_dot(model->dim, drag->buoyancy, at->v));
+    sum->external += part * (fu_dot(model->dim, a->f, a->flow.U) + fu_dot(model->dim, a->buoyancy, at->v));
 }
 
 /* Returns a point of quadrature on an element of n shape functions. */
@@ -74,16 +74,18 @@ static void on_cable(const fu_model *model, const fu_drag *drag, double t, const
     const int dim = model->dim, n = cable->coordinates / dim;
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
-        for (int g = 0; g < drag->n_points; ++g) {
+        fu_drag_points points;
+        fu_drag_points_on(model, drag, e, q + first, &points);
+        for (int g = 0; g < points.n; ++g) {
             fu_drag_place at;
             fu_drag_action a;
             double force[3];
-            const fu_quadrature_point point = fu_drag_point(drag, n, e, g);
+            const fu_quadrature_point point = points.at[g];
             fu_drag_place_on_axis(model, drag, q + first, v + first, 0, point, &at);
             fu_drag_act(model, drag, t, &at, 0, &a);
-            whole_force(model, drag, &a, force);
+            whole_force(model, &a, force);
             const double share = point.weight * model->load_fraction;
-            if (sums->power) add_powers(model, drag, &at, &a, point.weight, sums->power);
+            if (sums->power) add_powers(model, &at, &a, point.weight, sums->power);
             if (sums->power && point.N_chord) sums->power->external += share * fu_section_power(&at, &a);
             if (sums->f && point.N_chord) fu_section_forces(&a, point, share, n, sums->f + first);
             for (int d = 0; d < dim; ++d) {
@@ -104,9 +106,11 @@ static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu
     double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
+        fu_drag_points points;
         memset(K, 0, sizeof(double) * (size_t)(all * all));
-        for (int g = 0; g < drag->n_points; ++g) {
-            const fu_quadrature_point point = fu_drag_point(drag, n, e, g);
+        fu_drag_points_on(model, drag, e, state->q + first, &points);
+        for (int g = 0; g < points.n; ++g) {
+            const fu_quadrature_point point = points.at[g];
             const double *N = point.N, *N_x = point.N_x;
             const double scale = -weights.stiffness * model->load_fraction * point.weight;
             double gradient[9];
@@ -160,8 +164,8 @@ static void on_body(const fu_model *model, const fu_drag *drag, double t, const 
     double force[3];
     place_on_body(model, drag, state, step, &at, &end);
     fu_drag_act(model, drag, t, &at, end.A, &a);
-    whole_force(model, drag, &a, force);
-    if (sums->power) add_powers(model, drag, &at, &a, 1.0, sums->power);
+    whole_force(model, &a, force);
+    if (sums->power) add_powers(model, &at, &a, 1.0, sums->power);
     for (int d = 0; d < model->dim; ++d) {
         if (sums->total) sums->total[d] += force[d];
         for (int i = 0; sums->f && i < end.n; ++i) sums->f[end.at[i]] -= end.P[d * end.n + i] * force[d];
@@ -180,7 +184,7 @@ static void matrix_of_body(const fu_model *model, const fu_drag *drag, const fu_
     fu_drag_action a;
     place_on_body(model, drag, state, 0, &at, &end);
     fu_drag_act(model, drag, state->t, &at, end.A, &a);
-    whole_force(model, drag, &a, force);
+    whole_force(model, &a, force);
     const int n = end.n;
     memcpy(turned, end.P, sizeof turned);
     memset(of_rate, 0, sizeof of_rate);
@@ -310,6 +314,7 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
 }
 
 static const char *const role[] = {"drag", 0};
+static const char *const wetted[] = {"all", "section", "sphere", "column", 0};
 static const char *const profiles[] = {"uniform", "power", "table", 0};
 #define FLOW_FIELD(member, kind, words) {#member, kind, offsetof(fu_drag, flow.member), 1, 0, words}
 #define FLOW_VECTOR(member) {#member, FU_REAL, offsetof(fu_drag, flow.member), 3, sizeof(double), NULL}
@@ -348,6 +353,10 @@ static const fu_field fields[] = {
     FU_FIELD(fu_drag, polar_lift, FU_REALS, 0),
     FU_FIELD(fu_drag, polar_moment, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_drag, buoyancy, FU_REAL),
+    FU_FIELD(fu_drag, wet, FU_WORD, wetted),
+    FU_FIELD(fu_drag, extent, FU_REAL, 0),
+    FU_FIELD(fu_drag, surface, FU_REAL, 0),
+    FU_FIELD(fu_drag, bottom, FU_REAL, 0),
     FU_FIELD(fu_drag, displaced, FU_REAL, 0),
     FU_FIELD_ARRAY(fu_drag, added, FU_REAL),
     FU_FIELD(fu_drag, n_points, FU_INTEGER, 0),
@@ -361,7 +370,7 @@ static const fu_field fields[] = {
 };
 
 const fu_coupling_type fu_drag_type = {
-    .name = "drag", .size = sizeof(fu_drag), .fields = fields, .n_outputs = 3, .n_flags = 1, .events = &fu_table_edges, .residual = residual, .tangent = tangent,
+    .name = "drag", .size = sizeof(fu_drag), .fields = fields, .n_outputs = 3, .n_flags = FU_DRAG_FLAGS, .events = &fu_drag_events, .residual = residual, .tangent = tangent,
     .step_residual = step_residual, .step_tangent = step_tangent, .step_dissipation = step_dissipation, .step_work = step_work,
     .inertia = fu_fluid_inertia, .mass = fu_fluid_mass, .kinetic_energy = fu_fluid_kinetic_energy,
     .force = force, .external_power = external_power, .dissipation = dissipation, .outputs = outputs};

@@ -6,6 +6,9 @@
  * accelerations, is the mass, which Newton's matrix and that of eq 38 have as well. On the displaced mass acts its part of
  * DU/Dt = dU/dt + G U, as in the undisturbed fluid.
  *
+ * Of what is partly wet, T and the displaced mass count by the wet part c (derive/couplings/wetness.py): the rate of the impulse has
+ * that of c, and the derivative of T by the place acts as well.
+ *
  * The fluid gives the power -p' . U - (G' p) . v, work from outside, where T counts as kinetic energy. In the matrix second
  * derivatives of U are left out: Newton's method converges without.
  */
@@ -13,12 +16,21 @@
 
 #include <string.h>
 
-/* What the kernels give: impulse, its rate, and their derivatives, of a cable or of a body's point. */
+/* What the change of the wet part adds: the derivative of T by the place; derivatives of force by velocity and place, and of what acts
+ * on the slope, or turns, by the place. */
+typedef struct {
+    double pull[3], by_v[9], force_place[9], other_place[9];
+} of_wet_part;
+
+/* What the kernels give: impulse, its rate, and their derivatives, of a cable or of a body's point. p_rate_t, p_rate_turn and p_rate_w
+ * are derivatives of the rate less the pull. */
 typedef struct {
     double p[3], p_rate[3], g[3], M[9], p_t[9], p_rate_t[9], p_rate_t_rate[9], p_rate_w[9], g_t[9], g_w[9];
+    of_wet_part wet; /* nil where all is wet */
 } of_length;
 typedef struct {
     double p[3], p_rate[3], moment[3], M[9], p_turn[9], p_rate_turn[9], moment_turn[9], p_rate_omega[9], p_rate_w[9], moment_w[9];
+    of_wet_part wet;
 } of_point;
 
 fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v, const double *a)
@@ -32,6 +44,10 @@ fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t
         out.w_rate[d] = a[d] - out.flow.rate[d] - fu_dot(dim, gradient, v);
         out.material[d] = out.flow.rate[d] + fu_dot(dim, gradient, out.flow.U);
     }
+    const fu_wetness wet = drag->wet == FU_ALL_WET ? (fu_wetness){1.0, 0.0, 0.0} : fu_wet_at_height(drag, fu_drag_height(model, drag, r));
+    out.wet = wet.part;
+    out.curvature = wet.curvature;
+    for (int d = 0; d < dim; ++d) out.by_place[d] = wet.slope * drag->flow.up[d];
     return out;
 }
 
@@ -48,18 +64,85 @@ void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_
                          const double *v, double part, double left[3], fu_drag_powers *power)
 {
     const int dim = model->dim;
+    const double displaced = at->wet * drag->displaced;
     double strained[3];
     back(dim, at, p, strained);
-    for (int d = 0; d < dim; ++d) left[d] = part * (p_rate[d] + strained[d] - drag->displaced * at->material[d]);
+    for (int d = 0; d < dim; ++d) left[d] = part * (p_rate[d] + strained[d] - displaced * at->material[d]);
     if (power)
-        power->external += part * (drag->displaced * fu_dot(dim, at->material, v) - fu_dot(dim, p_rate, at->flow.U) -
+        power->external += part * (displaced * fu_dot(dim, at->material, v) - fu_dot(dim, p_rate, at->flow.U) -
                                    fu_dot(dim, strained, v));
 }
 
-static void terms_of_length(const fu_drag *drag, const fu_drag_place *at, const fu_fluid_past *past, of_length *out)
+static void add_to(int n, const double *x, double *sum)
+{
+    for (int i = 0; i < n; ++i) sum[i] += x[i];
+}
+
+/* Multiplies n numbers by the wet part. */
+static void take_part(int n, const fu_fluid_past *past, double *x)
+{
+    for (int i = 0; i < n; ++i) x[i] *= past->wet;
+}
+
+/* Makes the derivatives by the place of force and of n other numbers, which are those where all is wet, times the wet part. */
+static void by_wet_part(int dim, const fu_drag *drag, const fu_fluid_past *past, const double *p, const double *p_rate, int n,
+                        const double *other, of_wet_part *out)
+{
+    double strained[3];
+    back(dim, past, p, strained);
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+            out->force_place[i * dim + j] =
+                (p_rate[i] + strained[i] - drag->displaced * past->material[i]) * past->by_place[j];
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < dim; ++j) out->other_place[i * dim + j] = other[i] * past->by_place[j];
+}
+
+/* Adds to the derivative of the force by the place that by the derivative n of the wet part, which changes along the vertical. */
+static void by_curvature(int dim, const fu_drag *drag, const fu_fluid_past *past, const double *f_n, of_wet_part *out)
+{
+    const double *up = drag->flow.up;
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) out->force_place[i * dim + j] += past->curvature * fu_dot(dim, f_n + i * dim, up) * up[j];
+}
+
+/* Takes the wet part of a length, with what its change adds. */
+static void wet_length(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const fu_fluid_past *past, of_length *out)
+{
+    const int dim = model->dim;
+    double p_rate[3], f_t[9], f_w[9], f_n[9];
+    by_wet_part(dim, drag, past, out->p, out->p_rate, dim, out->g, &out->wet);
+    take_part((int)(offsetof(of_length, wet) / sizeof(double)), past, (double *)out);
+    drag->kernel->entry_of_cable(at->r_x, drag->added, past->w, at->v, past->by_place, p_rate, out->wet.pull, f_t, f_w, out->wet.by_v,
+                                 f_n);
+    by_curvature(dim, drag, past, f_n, &out->wet);
+    add_to(dim, p_rate, out->p_rate);
+    add_to(dim * dim, f_t, out->p_rate_t);
+    add_to(dim * dim, f_w, out->p_rate_w);
+}
+
+/* The same of a body's point, which moves at v. */
+static void wet_point(const fu_model *model, const fu_drag *drag, const fu_attachment_state *end, const fu_fluid_past *past, of_point *out)
+{
+    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    double p_rate[3], f_turn[9], f_w[9], f_n[9];
+    by_wet_part(dim, drag, past, out->p, out->p_rate, turns, out->moment, &out->wet);
+    take_part((int)(offsetof(of_point, wet) / sizeof(double)), past, (double *)out);
+    drag->kernel->entry_of_point(end->A, drag->added, past->w, end->v, past->by_place, p_rate, out->wet.pull, f_turn, f_w,
+                                 out->wet.by_v, f_n);
+    by_curvature(dim, drag, past, f_n, &out->wet);
+    add_to(dim, p_rate, out->p_rate);
+    add_to(dim * turns, f_turn, out->p_rate_turn);
+    add_to(dim * dim, f_w, out->p_rate_w);
+}
+
+static void terms_of_length(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const fu_fluid_past *past,
+                            of_length *out)
 {
     drag->kernel->inertia_of_cable(at->r_x, at->r_x_rate, past->w, past->w_rate, drag->added, out->p, out->p_rate, out->g,
                                    out->M, out->p_t, out->p_rate_t, out->p_rate_t_rate, out->p_rate_w, out->g_t, out->g_w);
+    if (drag->wet == FU_ALL_WET) memset(&out->wet, 0, sizeof out->wet);
+    else wet_length(model, drag, at, past, out);
 }
 
 void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point, const double *left,
@@ -79,16 +162,19 @@ static void on_cable(const fu_model *model, const fu_drag *drag, const fu_state 
     const int dim = model->dim, n = cable->coordinates / dim;
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
-        for (int k = 0; k < drag->n_points; ++k) {
-            const fu_quadrature_point point = fu_drag_point(drag, n, e, k);
+        fu_drag_points points;
+        fu_drag_points_on(model, drag, e, state->q + first, &points);
+        for (int k = 0; k < points.n; ++k) {
+            const fu_quadrature_point point = points.at[k];
             const double part = point.weight * model->load_fraction;
             double left[3];
             fu_drag_place at;
             of_length terms;
             fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, a ? a + first : 0, point, &at);
             const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
-            terms_of_length(drag, &at, &past, &terms);
+            terms_of_length(model, drag, &at, &past, &terms);
             fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, at.v, part, left, sums->power);
+            for (int d = 0; d < dim; ++d) left[d] -= part * terms.wet.pull[d];
             for (int d = 0; d < dim; ++d) terms.g[d] *= part;
             fu_fluid_on_element(model, drag, first, point, left, terms.g, sums);
         }
@@ -108,7 +194,7 @@ void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupli
             of_length terms;
             fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, fu_drag_point(drag, n, e, k), &at);
             const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
-            terms_of_length(drag, &at, &past, &terms);
+            terms_of_length(model, drag, &at, &past, &terms);
             fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, at.v, model->load_fraction, left, 0);
             memset(out, 0, sizeof(double[FU_INERTIA_DENSITIES]));
             for (int d = 0; d < dim; ++d) {
@@ -130,12 +216,13 @@ static void derivatives(const fu_drag *drag, int dim, const of_length *of, const
         for (int j = 0; j < dim; ++j) {
             const int ij = i * dim + j;
             by_slope[ij] = of->p_rate_t[ij] + rate * of->p_rate_t_rate[ij];
-            by_place[ij] = g_place[ij] = 0.0;
+            by_place[ij] = of->wet.force_place[ij] + rate * of->wet.by_v[ij];
+            g_place[ij] = of->wet.other_place[ij];
             for (int k = 0; k < dim; ++k) {
                 const double w = (k == j ? rate : 0.0) - G[k * dim + j]; /* of w by the place */
                 by_slope[ij] += G[k * dim + i] * of->p_t[k * dim + j];
                 by_place[ij] += of->p_rate_w[i * dim + k] * w - rate * of->M[i * dim + k] * G[k * dim + j] -
-                                drag->displaced * G[i * dim + k] * G[k * dim + j];
+                                past->wet * drag->displaced * G[i * dim + k] * G[k * dim + j];
                 for (int l = 0; l < dim; ++l) {
                     const double w_l = (l == j ? rate : 0.0) - G[l * dim + j];
                     by_place[ij] += G[k * dim + i] * of->M[k * dim + l] * w_l;
@@ -153,15 +240,17 @@ static void tangent_of_cable(const fu_model *model, const fu_drag *drag, const f
     double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES], by_slope[9], by_place[9], g_place[9];
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
+        fu_drag_points points;
         memset(K, 0, sizeof(double) * (size_t)(all * all));
-        for (int k = 0; k < drag->n_points; ++k) {
-            const fu_quadrature_point point = fu_drag_point(drag, all / dim, e, k);
+        fu_drag_points_on(model, drag, e, state->q + first, &points);
+        for (int k = 0; k < points.n; ++k) {
+            const fu_quadrature_point point = points.at[k];
             const double part = weights.stiffness * model->load_fraction * point.weight;
             fu_drag_place at;
             of_length terms;
             fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, a ? a + first : 0, point, &at);
             const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
-            terms_of_length(drag, &at, &past, &terms);
+            terms_of_length(model, drag, &at, &past, &terms);
             derivatives(drag, dim, &terms, &past, weights.rate, by_slope, by_place, g_place);
             fu_add_element_product(dim, all, part, point.N, point.N_x, by_slope, K);
             fu_add_element_product(dim, all, part, point.N, point.N, by_place, K);
@@ -188,6 +277,8 @@ static fu_fluid_past at_body(const fu_model *model, const fu_drag *drag, const f
     drag->kernel->inertia_of_point(end->A, drag->added, omega, past.w, past.w_rate, out->p, out->p_rate, out->moment, out->M,
                                    out->p_turn, out->p_rate_turn, out->moment_turn, out->p_rate_omega, out->p_rate_w,
                                    out->moment_w);
+    if (drag->wet == FU_ALL_WET) memset(&out->wet, 0, sizeof out->wet);
+    else wet_point(model, drag, end, &past, out);
     return past;
 }
 
@@ -199,6 +290,7 @@ static void on_body(const fu_model *model, const fu_drag *drag, const fu_state *
     of_point terms;
     const fu_fluid_past past = at_body(model, drag, state, a, &end, &terms);
     fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, end.v, model->load_fraction, left, sums->power);
+    for (int d = 0; d < dim; ++d) left[d] -= model->load_fraction * terms.wet.pull[d];
     for (int d = 0; d < dim && sums->total; ++d) sums->total[d] -= left[d];
     for (int i = 0; sums->f && i < end.n; ++i) {
         double sum = 0.0;
@@ -222,6 +314,7 @@ static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu
     const int n = end.n;
     const double *G = past.flow.gradient;
     fu_fluid_on_particles(model, drag, &past, of.p, of.p_rate, end.v, 1.0, left, 0);
+    for (int d = 0; d < dim; ++d) left[d] -= of.wet.pull[d];
     memcpy(turned, end.P, sizeof turned);
     memcpy(axes, end.T, sizeof axes);
     memset(K, 0, sizeof(double) * (size_t)(n * n));
@@ -242,7 +335,9 @@ static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu
         for (int d = 0; d < dim; ++d) {
             force[d] = p[d] = 0.0;
             for (int k = 0; k < dim; ++k) {
-                force[d] += of.p_rate_w[d * dim + k] * w[k] + of.M[d * dim + k] * w_rate[k];
+                force[d] += of.p_rate_w[d * dim + k] * w[k] + of.M[d * dim + k] * w_rate[k] +
+                            of.wet.force_place[d * dim + k] * turned[k * n + j] +
+                            weights.rate * of.wet.by_v[d * dim + k] * end.P[k * n + j];
                 p[d] += of.M[d * dim + k] * w[k];
             }
             for (int k = 0; k < turns; ++k) {
@@ -254,7 +349,8 @@ static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu
         back(dim, &past, p, strained);
         for (int k = 0; k < turns; ++k) {
             moment[k] = 0.0;
-            for (int d = 0; d < dim; ++d) moment[k] += of.moment_w[k * dim + d] * w[d];
+            for (int d = 0; d < dim; ++d)
+                moment[k] += of.moment_w[k * dim + d] * w[d] + of.wet.other_place[k * dim + d] * turned[d * n + j];
             for (int l = 0; l < turns; ++l) moment[k] += of.moment_turn[k * turns + l] * axes[l * n + j];
         }
         for (int i = 0; i < n; ++i) {
@@ -278,109 +374,4 @@ void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const 
 {
     if (drag->cable >= 0) tangent_of_cable(model, drag, state, a, weights, system);
     else tangent_of_body(model, drag, state, a, psi, weights, system);
-}
-
-/* Makes the impulse M w of a length of cable at a point of quadrature, with M. */
-static void impulse(const fu_model *model, const fu_drag *drag, const double *q, const double *v, fu_quadrature_point point,
-                    double w[3], double p[3], double M[9])
-{
-    fu_drag_place at;
-    fu_drag_place_on_axis(model, drag, q, v, 0, point, &at);
-    memcpy(w, at.v, sizeof at.v);
-    drag->kernel->impulse_of_cable(at.r_x, w, drag->added, p, M);
-}
-
-void fu_fluid_inertia(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f)
-{
-    const fu_drag *drag = (const fu_drag *)coupling;
-    const int dim = model->dim;
-    double w[3] = {0.0}, p[3], M[9];
-    if (drag->cable < 0) {
-        const fu_state state = {.q = (double *)q, .v = (double *)model->zero};
-        fu_attachment_state end;
-        fu_attachment_at(model, &drag->attachments[0], &state, 0.0, FU_POINT | FU_AXES, &end);
-        for (int d = 0; d < dim; ++d)
-            for (int i = 0; i < end.n; ++i) w[d] += end.P[d * end.n + i] * a[end.at[i]];
-        drag->kernel->impulse_of_point(end.A, drag->added, w, p, M);
-        for (int d = 0; d < dim; ++d)
-            for (int i = 0; i < end.n; ++i) f[end.at[i]] += end.P[d * end.n + i] * p[d];
-        return;
-    }
-    const fu_cable *cable = &model->cables[drag->cable];
-    const int n = cable->coordinates / dim;
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
-        for (int g = 0; g < drag->n_points; ++g) {
-            const fu_quadrature_point point = fu_drag_point(drag, n, e, g);
-            impulse(model, drag, q + first, a + first, point, w, p, M);
-            for (int k = 0; k < n; ++k)
-                for (int d = 0; d < dim; ++d) f[first + k * dim + d] += point.weight * point.N[k] * p[d];
-        }
-    }
-}
-
-void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system)
-{
-    const fu_drag *drag = (const fu_drag *)coupling;
-    const int dim = model->dim;
-    double w[3] = {0.0}, p[3], M[9];
-    if (drag->cable < 0) {
-        const fu_state state = {.q = (double *)q, .v = (double *)model->zero};
-        fu_attachment_state end;
-        fu_attachment_at(model, &drag->attachments[0], &state, 0.0, FU_POINT | FU_AXES, &end);
-        drag->kernel->impulse_of_point(end.A, drag->added, w, p, M);
-        for (int i = 0; i < end.n; ++i)
-            for (int j = 0; j < end.n; ++j) {
-                double sum = 0.0;
-                for (int c = 0; c < dim; ++c)
-                    for (int d = 0; d < dim; ++d) sum += end.P[c * end.n + i] * M[c * dim + d] * end.P[d * end.n + j];
-                fu_add(model, system, end.at[i], end.at[j], scale * sum);
-            }
-        return;
-    }
-    const fu_cable *cable = &model->cables[drag->cable];
-    const int all = cable->coordinates;
-    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
-        memset(K, 0, sizeof(double) * (size_t)(all * all));
-        for (int g = 0; g < drag->n_points; ++g) {
-            const fu_quadrature_point point = fu_drag_point(drag, all / dim, e, g);
-            impulse(model, drag, q + first, model->zero, point, w, p, M);
-            fu_add_element_product(dim, all, scale * point.weight, point.N, point.N, M, K);
-        }
-        fu_add_element_matrix(model, first, all, K, system);
-    }
-}
-
-double fu_fluid_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
-                               int past_fluid)
-{
-    const fu_drag *drag = (const fu_drag *)coupling;
-    const int dim = model->dim;
-    double total = 0.0, p[3], M[9];
-    fu_flow_state flow = {{0.0}, {0.0}, {0.0}};
-    if (drag->cable < 0) {
-        const fu_state state = {.t = t, .q = (double *)q, .v = (double *)v};
-        fu_attachment_state end;
-        fu_attachment_at(model, &drag->attachments[0], &state, 0.0, FU_POINT | FU_AXES, &end);
-        if (past_fluid) fu_flow_at(model, &drag->flow, t, end.p, &flow);
-        for (int d = 0; d < dim; ++d) end.v[d] -= flow.U[d];
-        drag->kernel->impulse_of_point(end.A, drag->added, end.v, p, M);
-        return 0.5 * fu_dot(dim, p, end.v);
-    }
-    const fu_cable *cable = &model->cables[drag->cable];
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
-        for (int g = 0; g < drag->n_points; ++g) {
-            const fu_quadrature_point point = fu_drag_point(drag, cable->coordinates / dim, e, g);
-            fu_drag_place at;
-            fu_drag_place_on_axis(model, drag, q + first, v + first, 0, point, &at);
-            if (past_fluid) fu_flow_at(model, &drag->flow, t, at.r, &flow);
-            for (int d = 0; d < dim; ++d) at.v[d] -= flow.U[d];
-            drag->kernel->impulse_of_cable(at.r_x, at.v, drag->added, p, M);
-            total += 0.5 * point.weight * fu_dot(dim, p, at.v);
-        }
-    }
-    return total;
 }

@@ -3,10 +3,63 @@
  *
  * The impulse's rate is its change over the step; on the slope of a cable acts a discrete gradient, and on a body a moment of the
  * same kind (derive/couplings/added_mass.py). Moments act along the axes in the middle of the step.
+ *
+ * Of a wet part c both are those of the mean of c, and the impulse changes by that of c times its own mean, too. T changes with c by
+ * D of added_mass.py, so D times the change of c over that of the height acts along the vertical.
  */
 #include "engine.h"
 
 #include <string.h>
+
+#define NO_RISE 1e-7 /* of the extent: below it the change of the wet part over the rise is its derivative in between */
+
+/* The wet part over a step: its mean, its change, and the derivative by the place that gives this change. */
+typedef struct {
+    double mean, change, by_place[3];
+} wet_step;
+
+static wet_step wet_over_step(const fu_model *model, const fu_drag *drag, const double *r, const double *r_next)
+{
+    wet_step out = {1.0, 0.0, {0.0}};
+    const double from = fu_drag_height(model, drag, r), to = fu_drag_height(model, drag, r_next);
+    const double before = fu_wet_at_height(drag, from).part, after = fu_wet_at_height(drag, to).part;
+    const double slope = fabs(to - from) > NO_RISE * drag->extent ? (after - before) / (to - from)
+                                                                  : fu_wet_at_height(drag, 0.5 * (from + to)).slope;
+    out.mean = 0.5 * (before + after);
+    out.change = after - before;
+    for (int d = 0; d < model->dim; ++d) out.by_place[d] = slope * drag->flow.up[d];
+    return out;
+}
+
+/* Takes the wet part of the change dp of an impulse, which is p at both ends of a step by the masses M; makes what acts on the place. */
+static void take_wet_step(int dim, const wet_step *wet, const fu_fluid_past past[2], double p[2][3], double M[2][9], double dp[3],
+                          double on_place[3])
+{
+    double a[3], b[3], D = 0.0;
+    for (int d = 0; d < dim; ++d) {
+        a[d] = 0.5 * (past[0].w[d] + past[1].w[d]);
+        b[d] = 0.5 * (past[1].w[d] - past[0].w[d]);
+        dp[d] = wet->mean * dp[d] + wet->change * 0.5 * (p[0][d] + p[1][d]);
+    }
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+            D += 0.25 * (a[i] * a[j] - b[i] * b[j]) * (M[0][i * dim + j] + M[1][i * dim + j]);
+    for (int d = 0; d < dim; ++d) on_place[d] = D * wet->by_place[d];
+}
+
+/* Takes the wet part of the change of an impulse over a step, of what acts on the slope, and of the impulse half-way. */
+static void wet_length_over_step(const fu_model *model, const fu_drag *drag, const fu_drag_place place[2], const fu_fluid_past past[2],
+                                 const fu_fluid_past *halfway, double dp[3], double g[3], double mean[3], double on_place[3])
+{
+    const wet_step wet = wet_over_step(model, drag, place[0].r, place[1].r);
+    double p[2][3], M[2][9];
+    for (int i = 0; i < 2; ++i) drag->kernel->impulse_of_cable(place[i].r_x, past[i].w, drag->added, p[i], M[i]);
+    take_wet_step(model->dim, &wet, past, p, M, dp, on_place);
+    for (int d = 0; d < model->dim; ++d) {
+        g[d] *= wet.mean;
+        mean[d] *= halfway->wet;
+    }
+}
 
 static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
 {
@@ -15,11 +68,13 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
     const fu_state *ends[2] = {at->now, at->next};
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
-        for (int k = 0; k < drag->n_points; ++k) {
-            const fu_quadrature_point point = fu_drag_point(drag, n, e, k);
+        fu_drag_points points;
+        fu_drag_points_on(model, drag, e, at->middle->q + first, &points);
+        for (int k = 0; k < points.n; ++k) {
+            const fu_quadrature_point point = points.at[k];
             fu_drag_place place[2], middle;
             fu_fluid_past past[2];
-            double dp[3], g[3], rate[3], mean[3], M[9], left[3];
+            double dp[3], g[3], rate[3], mean[3], M[9], left[3], on_place[3] = {0.0};
             for (int i = 0; i < 2; ++i) {
                 fu_drag_place_on_axis(model, drag, ends[i]->q + first, ends[i]->v + first, 0, point, &place[i]);
                 past[i] = fu_past_fluid(model, drag, ends[i]->t, place[i].r, place[i].v, place[i].a);
@@ -28,12 +83,14 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
             const fu_fluid_past halfway = fu_past_fluid(model, drag, at->middle->t, middle.r, middle.v, middle.a);
             drag->kernel->inertia_step(place[0].r_x, place[1].r_x, past[0].w, past[1].w, drag->added, dp, g);
             drag->kernel->impulse_of_cable(middle.r_x, halfway.w, drag->added, mean, M);
+            if (drag->wet != FU_ALL_WET) wet_length_over_step(model, drag, place, past, &halfway, dp, g, mean, on_place);
             for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
             fu_fluid_on_particles(model, drag, &halfway, mean, rate, middle.v, point.weight, left, sums->power);
             if (sums->power) /* that T changes by, with the velocities at both ends; fu_fluid_on_particles has -rate . U half-way */
                 for (int d = 0; d < dim; ++d)
                     sums->power->external += point.weight * rate[d] *
                                              (0.5 * (past[0].w[d] + past[1].w[d]) - middle.v[d] + halfway.flow.U[d]);
+            for (int d = 0; d < dim; ++d) left[d] -= point.weight * on_place[d];
             for (int d = 0; d < dim; ++d) g[d] *= point.weight;
             fu_fluid_on_element(model, drag, first, point, left, g, sums);
         }
@@ -77,16 +134,36 @@ static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_
     out->halfway = fu_past_fluid(model, drag, at->middle->t, middle, out->v, model->zero);
 }
 
+/* The same of a body, whose moment takes the work of the impulse's change with the turn as well. */
+static void wet_body_over_step(const fu_model *model, const fu_drag *drag, const body_step *of, double dp[3], double mean[3],
+                               double moment[3], double on_place[3])
+{
+    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    const wet_step wet = wet_over_step(model, drag, of->ends[0].p, of->ends[1].p);
+    double p[2][3], M[2][9], more[3], with[3];
+    for (int i = 0; i < 2; ++i) drag->kernel->impulse_of_point(of->ends[i].A, drag->added, of->past[i].w, p[i], M[i]);
+    take_wet_step(dim, &wet, of->past, p, M, dp, on_place);
+    for (int d = 0; d < dim; ++d) {
+        more[d] = 0.25 * wet.change * 0.5 * (p[0][d] + p[1][d]);
+        mean[d] *= of->halfway.wet;
+    }
+    if (dim == 3) fu_cross(of->change, more, with);
+    else with[0] = of->change[0] * more[1] - of->change[1] * more[0];
+    for (int k = 0; k < turns; ++k) moment[k] = wet.mean * moment[k] + with[k];
+}
+
 static void on_body_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
-    double dp[3], mean[3], moment[3], more[3], rate[3], left[3], P[3 * FU_ATTACHMENT_COORDINATES];
+    double dp[3], mean[3], moment[3], more[3], rate[3], left[3], on_place[3] = {0.0}, P[3 * FU_ATTACHMENT_COORDINATES];
     body_step of;
     body_over_step(model, drag, at, &of);
     drag->kernel->inertia_of_point_step(of.ends[0].A, of.ends[1].A, drag->added, of.past[0].w, of.past[1].w, of.theta, of.change,
                                         dp, mean, moment, more);
+    if (drag->wet != FU_ALL_WET) wet_body_over_step(model, drag, &of, dp, mean, moment, on_place);
     for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
     fu_fluid_on_particles(model, drag, &of.halfway, mean, rate, of.v, 1.0, left, sums->power);
+    for (int d = 0; d < dim; ++d) left[d] -= on_place[d];
     for (int d = 0; d < dim && sums->power; ++d) /* as along a cable */
         sums->power->external +=
             rate[d] * (0.5 * (of.past[0].w[d] + of.past[1].w[d]) - of.v[d] - more[d] + of.halfway.flow.U[d]);

@@ -1,8 +1,10 @@
-/* Events of drag in a fluid with a table: what it acts on leaves the table, or all of it is back. */
+/* Events of drag in a fluid with a table: what it acts on leaves the table, or all of it is back; with those of surfaces
+ * (surface_events.c). */
 #include "engine.h"
 
 #include <math.h>
 
+#define OF_TABLE 1 /* watches of the table, before those of surfaces */
 #define AT_EDGE 1e-9 /* of an axis of a table: what is beyond its edge by less is at it, as a run that ends with a table */
 
 /* Returns how far within its table all of what a fluid acts on is, as a part of the table's axes; negative beyond its edges. */
@@ -21,6 +23,12 @@ static double margin(const fu_model *model, const fu_drag *drag, const fu_state 
     return least + AT_EDGE;
 }
 
+static int has_edges(const fu_drag *drag)
+{
+    return drag->flow.degree > 0;
+}
+
+/* Returns flags by the number of the watch: not zero where what it watches is negative. */
 static int *is_outside(const fu_coupling *coupling, const fu_state *state)
 {
     return state->flags + coupling->flags;
@@ -28,42 +36,47 @@ static int *is_outside(const fu_coupling *coupling, const fu_state *state)
 
 static int watches(const fu_coupling *coupling, fu_watch *out)
 {
-    if (((const fu_drag *)coupling)->flow.degree == 0) return 0;
-    if (out) *out = (fu_watch){.which = 0, .direction = 0};
-    return 1;
+    const fu_drag *drag = (const fu_drag *)coupling;
+    const int n = has_edges(drag);
+    if (n && out) *out = (fu_watch){.which = 0, .direction = 0};
+    return n + fu_surface_watches(drag, OF_TABLE, out ? out + n : 0);
 }
 
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
-    (void)which;
-    return margin(run->model, (const fu_drag *)coupling, state);
+    const fu_drag *drag = (const fu_drag *)coupling;
+    return which < OF_TABLE ? margin(run->model, drag, state) : fu_surface_watched(run->model, drag, state, which - OF_TABLE);
 }
 
 static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
 {
-    (void)model, (void)which;
-    return *is_outside(coupling, state) ? -1 : 1;
+    (void)model;
+    return is_outside(coupling, state)[which] ? -1 : 1;
 }
 
-/* Notes that something leaves the table, or that all is in it again. The velocity does not jump there, but its derivatives do. */
+/* Notes on which side of a surface something is. Of a table, that something leaves the table, or that all is in it again. The velocity does not jump there, but its derivatives do. */
 static int pass_edge(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
-    (void)which;
-    *is_outside(coupling, &run->now) = side < 0;
-    *what = side < 0 ? "leaves the table of its fluid" : "is back in the table of its fluid";
+    is_outside(coupling, &run->now)[which] = side < 0;
+    *what = which >= OF_TABLE ? 0 : side < 0 ? "leaves the table of its fluid" : "is back in the table of its fluid";
     return FU_RUNNING;
 }
 
-static int has_edges(const fu_coupling *coupling)
+static int can_act(const fu_coupling *coupling)
 {
-    return ((const fu_drag *)coupling)->flow.degree > 0;
+    const fu_drag *drag = (const fu_drag *)coupling;
+    return has_edges(drag) || drag->wet != FU_ALL_WET;
 }
 
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
+    fu_watch at[FU_DRAG_FLAGS];
+    const int n = watches(coupling, at);
     *is_outside(coupling, &run->now) = margin(run->model, (const fu_drag *)coupling, &run->now) < 0.0;
+    for (int k = 0; k < n; ++k)
+        is_outside(coupling, &run->now)[at[k].which] = watched(run, coupling, &run->now, at[k].which) < 0.0;
     return FU_RUNNING;
 }
 
-const fu_coupling_events fu_table_edges = {
-    .watches = watches, .watched = watched, .sign = sign, .act = pass_edge, .can_act = has_edges, .begin = begin};
+const fu_coupling_events fu_drag_events = {
+    .watches = watches, .watched = watched, .sign = sign, .act = pass_edge, .can_act = can_act, .begin = begin};

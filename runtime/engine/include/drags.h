@@ -6,6 +6,13 @@
 #include "coupling.h"
 #include "flow.h"
 
+#define FU_NO_SURFACE 1e300  /* m: beyond all heights (runtime/parts/fluid.py) */
+#define FU_SURFACE_WATCHES 4 /* events of its two surfaces */
+
+/* What of a cable's section or of a body's volume a fluid wets: all of it, or what is below its surface and above its bottom, of a
+ * circle, a sphere, or a column (couplings/wetness.c). */
+enum { FU_ALL_WET, FU_WET_SECTION, FU_WET_SPHERE, FU_WET_COLUMN };
+
 /* The force of a fluid on a whole cable, or on a point of a body. */
 typedef struct {
     fu_coupling base;          /* base.has_inertia: that of the fluid is in it */
@@ -21,6 +28,9 @@ typedef struct {
     int n_angles;                      /* polynomials of the angle, as a signal's of time, of each coefficient; */
     const double *angles, *polar_drag, *polar_lift, *polar_moment; /* that of the moment of a beam alone */
     double buoyancy[3];        /* N/m a length of the undeformed cable, N on a body */
+    int wet;                   /* see above */
+    double extent;             /* half the height of what is wetted, m */
+    double surface, bottom;    /* heights between which the fluid is, m */
     double displaced;          /* mass of the fluid displaced: kg/m, kg */
     double added[9];           /* mass added: of a length of cable across and along it, kg/m; of a body in its axes (dim x dim), kg */
     int n_points;              /* of quadrature on an element: weights in m, shape functions, their slopes, */
@@ -36,17 +46,31 @@ typedef struct {
     const double *N, *N_x, *N_chord;
 } fu_quadrature_point;
 
+/* Those of an element that act, with the shape functions of those that stand in no table. */
+#define FU_DRAG_POINTS 80
+typedef struct {
+    int n;
+    fu_quadrature_point at[FU_DRAG_POINTS];
+    double shapes[FU_DRAG_POINTS * FU_MAX_COORDINATES];
+} fu_drag_points;
+
+/* A wet part, and its derivatives by the height of the place, 1/m and 1/m^2. */
+typedef struct {
+    double part, slope, curvature;
+} fu_wetness;
+
 /* Where the fluid acts: a point of a cable's axis, or of a body. r_x, its rate, and `a`, acceleration, only of a cable; the
  * director along the chord and its rate only of a beam's foil. */
 typedef struct {
     double r[3], r_x[3], v[3], r_x_rate[3], a[3], chord[3], chord_rate[3];
 } fu_drag_place;
 
-/* What the fluid does at a place: its velocity with derivatives, that past the place; drag and lift with their derivatives.
+/* What the fluid does at a place: its velocity with derivatives, that past the place; drag and lift with their derivatives, and
+ * buoyancy, all of the wet part; by_wet: derivative of their sum by the place where the wet part changes.
  * of_section: of a beam's foil the forces on r, r_x and chord, with their derivatives by r_x, chord and w; f has the first. */
 typedef struct {
     fu_flow_state flow;
-    double w[3], f[3], by_slope[9], by_w[9], by_turn[9], of_section[9], section_by[81];
+    double w[3], f[3], buoyancy[3], by_wet[9], by_slope[9], by_w[9], by_turn[9], of_section[9], section_by[81];
 } fu_drag_action;
 
 /* Powers: what goes to heat, what the fluid gives, W. */
@@ -70,6 +94,12 @@ fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int p
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
                            fu_quadrature_point point, fu_drag_place *at);
 
+/* wetness.c: the wet part at a height; the height of a place, m; the points of an element with the coordinates e. */
+fu_wetness fu_wet_at_height(const fu_drag *drag, double height);
+double fu_wet_reach(const fu_drag *drag); /* how far from a surface the wet part changes, m */
+double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *r);
+void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out);
+
 /* drag_action.c: makes what the fluid does at a place; A: axes of a body there. */
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
                  fu_drag_action *out);
@@ -79,13 +109,19 @@ double fu_section_power(const fu_drag_place *at, const fu_drag_action *action);
 void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, double part, int n, double *f);
 void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all, double *K);
 
-/* table_events.c */
-extern const fu_coupling_events fu_table_edges;
+/* table_events.c: flags are one of the table and one a watch of surfaces */
+#define FU_DRAG_FLAGS (1 + FU_SURFACE_WATCHES)
+extern const fu_coupling_events fu_drag_events;
 
-/* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is minus the flow's gradient. */
+/* surface_events.c: the watches of its surfaces, numbered from `first`; the number that one of them is, m. */
+int fu_surface_watches(const fu_drag *drag, int first, fu_watch *out);
+double fu_surface_watched(const fu_model *model, const fu_drag *drag, const fu_state *state, int which);
+
+/* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is minus the flow's gradient.
+ * The wet part, its derivative by the place, and the second one by the height. */
 typedef struct {
     fu_flow_state flow;
-    double w[3], w_rate[3], material[3];
+    double w[3], w_rate[3], material[3], wet, by_place[3], curvature;
 } fu_fluid_past;
 
 /* fluid_inertia.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or without, null. */

@@ -192,12 +192,15 @@ def _flows(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
     up = up_of(scene)
     time = frames.time if frames.moves else np.zeros(len(frames))
     for name, drag in scene.drags.items():
-        if not scene.fluids[drag.fluid or ""].moves:
+        fluids = [fluid for fluid in scene.fluids_of(drag) if fluid.moves]
+        if not fluids:
             continue
         cable = scene.cables.get(drag.on)
         end = Attachment(on=drag.on, at=drag.at) if cable is None else Attachment(on=drag.on, s=cable.length / 2)
         at = np.broadcast_to(place(frames, end), (len(time), 3))
-        found.append((f"{drag.fluid}, {name}", end, scene.fluids[drag.fluid or ""].velocity_at(time, at @ up, at)))
+        for fluid in fluids:
+            is_there = (at @ up > fluid.bottom(scene.fluids.values())) & (at @ up <= fluid.top)
+            found.append((f"{fluid.given_name}, {name}", end, is_there[:, None] * fluid.velocity_at(time, at @ up, at)))
     largest = max((np.linalg.norm(value, axis=-1).max() for _, _, value in found), default=0.0)
     for label, end, value in found:
         if largest > 0:

@@ -1,0 +1,236 @@
+/* Fluids with a surface: the wet part of a body or of a cable's section (derive/couplings/wetness.py), and the quadrature along an
+ * element that a surface cuts.
+ *
+ * Along an element the wet part is 0, 1, or changes over the short length on which the surface cuts the section. The quadrature
+ * ends where that length begins and ends, so that the integral is smooth in the coordinates. Within it points gather at both ends,
+ * where the waterline has a root.
+ */
+#include "engine.h"
+
+#include <math.h>
+#include <string.h>
+
+#define COLUMN_ROUNDING 0.05 /* of half the height of a column: its ends are rounded by this to both sides (runtime/parts/drag.py) */
+#define MOST_DEPTH 0.99      /* of the radius of a section: beyond, matrices leave out the second derivative, which has a pole */
+#define SPANS 4              /* an element is cut into, on each of which heights are a cubic: exact for cubic elements */
+#define MOST_CUTS 12         /* of an element by the ends of a section that two surfaces cut, of a cubic */
+#define REACH 0.35           /* of an element's length, times its steepest slope at the samples: what heights between them differ by */
+#define NARROW 1e-12         /* of an element: shorter parts of it hold no points */
+
+static double end_of(const fu_drag *drag)
+{
+    return drag->wet == FU_WET_COLUMN ? 1.0 + COLUMN_ROUNDING : 1.0;
+}
+
+double fu_wet_reach(const fu_drag *drag)
+{
+    return end_of(drag) * drag->extent;
+}
+
+/* Returns the part below a level. */
+static fu_wetness below(const fu_drag *drag, double level, double height)
+{
+    const double u = (level - height) / drag->extent, end = end_of(drag);
+    double e, c, c_u, c_uu;
+    if (u <= -end) return (fu_wetness){0.0, 0.0, 0.0};
+    if (u >= end) return (fu_wetness){1.0, 0.0, 0.0};
+    if (drag->wet == FU_WET_SPHERE) drag->kernel->wet_sphere(&u, &e, &c, &c_u, &c_uu);
+    else if (drag->wet == FU_WET_SECTION) {
+        const double theta = asin(u);
+        drag->kernel->wet_section(&theta, &e, &c, &c_u, &c_uu);
+        if (fabs(u) > MOST_DEPTH) c_uu = 0.0;
+    } else {
+        const double lower = -fabs(u), rounding = COLUMN_ROUNDING;
+        c = 0.5 * (1.0 + lower);
+        c_u = 0.5;
+        c_uu = 0.0;
+        if (lower < rounding - 1.0) drag->kernel->wet_column(&lower, &rounding, &e, &c, &c_u, &c_uu);
+        if (u > 0.0) { /* the upper half is the lower one upside down */
+            c = 1.0 - c;
+            c_uu = -c_uu;
+        }
+    }
+    return (fu_wetness){c, -c_u / drag->extent, c_uu / (drag->extent * drag->extent)};
+}
+
+fu_wetness fu_wet_at_height(const fu_drag *drag, double height)
+{
+    const fu_wetness top = below(drag, drag->surface, height), bottom = below(drag, drag->bottom, height);
+    return (fu_wetness){top.part - bottom.part, top.slope - bottom.slope, top.curvature - bottom.curvature};
+}
+
+double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *r)
+{
+    return drag->flow.base + fu_dot(model->dim, drag->flow.up, r);
+}
+
+/* Heights of an element's axis over a part of it: a0 + a1 x + a2 x^2 + a3 x^3, x from 0 to 1. */
+typedef struct {
+    double start, length, a[4];
+} heights;
+
+static double height_on(const heights *of, double x)
+{
+    return of->a[0] + x * (of->a[1] + x * (of->a[2] + x * of->a[3]));
+}
+
+static double slope_on(const heights *of, double x)
+{
+    return of->a[1] + x * (2.0 * of->a[2] + x * 3.0 * of->a[3]);
+}
+
+/* Returns where heights that rise or fall all the way from low to high are at a level between their ends (Newton, bisection). */
+static double reached_at(const heights *of, double level, double low, double high)
+{
+    const double sense = height_on(of, high) > height_on(of, low) ? 1.0 : -1.0;
+    double x = 0.5 * (low + high);
+    for (int i = 0; i < 60; ++i) {
+        const double over = sense * (height_on(of, x) - level), slope = sense * slope_on(of, x);
+        if (over > 0.0) high = x;
+        else low = x;
+        const double next = slope > 0.0 ? x - over / slope : low;
+        const double to = next > low && next < high ? next : 0.5 * (low + high);
+        if (fabs(to - x) <= 1e-15) return to;
+        x = to;
+    }
+    return x;
+}
+
+/* Makes the ends of the parts of 0 to 1 in which heights rise or fall all the way; returns how many parts. */
+static int monotone_parts(const heights *of, double ends[4])
+{
+    const double a = 3.0 * of->a[3], b = of->a[2], c = of->a[1], square = b * b - a * c;
+    int n = 0;
+    ends[0] = 0.0;
+    if (square > 0.0) {
+        const double root = -(b + (b > 0.0 ? sqrt(square) : -sqrt(square)));
+        double at[2] = {a != 0.0 ? root / a : -1.0, root != 0.0 ? c / root : -1.0};
+        if (at[0] > at[1]) {
+            const double first = at[1];
+            at[1] = at[0];
+            at[0] = first;
+        }
+        for (int k = 0; k < 2; ++k)
+            if (at[k] > ends[n] && at[k] < 1.0) ends[++n] = at[k];
+    }
+    ends[++n] = 1.0;
+    return n;
+}
+
+/* Adds where heights are at a level to the cuts, in increasing order. */
+static void cut_at(const heights *of, double level, double cuts[MOST_CUTS], int *n)
+{
+    double ends[4];
+    const int parts = monotone_parts(of, ends);
+    for (int k = 0; k < parts && *n < MOST_CUTS; ++k) {
+        const double from = height_on(of, ends[k]) - level, to = height_on(of, ends[k + 1]) - level;
+        if (!((from < 0.0 && to >= 0.0) || (from >= 0.0 && to < 0.0))) continue;
+        const double cut = of->start + of->length * reached_at(of, level, ends[k], ends[k + 1]);
+        int at = (*n)++;
+        for (; at > 0 && cuts[at - 1] > cut; --at) cuts[at] = cuts[at - 1];
+        cuts[at] = cut;
+    }
+}
+
+/* Gauss's rules from 0 to 1. */
+static const double PLAIN[2][4] = {{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262},
+                                   {0.1739274225687269, 0.32607257743127305, 0.32607257743127305, 0.1739274225687269}};
+static const double GATHERED[2][6] = {{0.033765242898423975, 0.16939530676686776, 0.3806904069584015, 0.6193095930415985,
+                                       0.8306046932331322, 0.966234757101576},
+                                      {0.08566224618958525, 0.1803807865240693, 0.2339569672863455, 0.2339569672863455,
+                                       0.1803807865240693, 0.08566224618958525}};
+
+/* Adds a point at x of an element of n shape functions. */
+static void add_point(const fu_cable *cable, double length, int n, double x, double weight, fu_drag_points *out)
+{
+    double *N = out->shapes + (size_t)out->n * 2 * (size_t)n, *N_x = N + n;
+    cable->kernel->on_axis(length, x, N, N_x);
+    out->at[out->n++] = (fu_quadrature_point){weight, N, N_x, 0};
+}
+
+/* Adds the points of a part of an element: none where it is dry. */
+static void add_part(const fu_drag *drag, const fu_cable *cable, double length, int n, double from, double to, double height,
+                     fu_drag_points *out)
+{
+    const fu_wetness wet = fu_wet_at_height(drag, height);
+    const double part = to - from;
+    if (part <= NARROW * length || (wet.part == 0.0 && wet.slope == 0.0)) return;
+    if (wet.slope == 0.0) {
+        for (int k = 0; k < 4; ++k) add_point(cable, length, n, from + part * PLAIN[0][k], part * PLAIN[1][k], out);
+        return;
+    }
+    for (int k = 0; k < 6; ++k) {
+        const double x = GATHERED[0][k];
+        add_point(cable, length, n, from + part * x * x * (3.0 - 2.0 * x), part * 6.0 * x * (1.0 - x) * GATHERED[1][k], out);
+    }
+}
+
+/* Returns the height of an element's axis where its shape functions, or their slopes, have these values. */
+static double along_axis(const fu_model *model, const fu_drag *drag, int n, const double *shape, const double *e)
+{
+    double sum = 0.0;
+    for (int k = 0; k < n; ++k) sum += shape[k] * fu_dot(model->dim, drag->flow.up, e + k * model->dim);
+    return sum;
+}
+
+/* Returns whether all of an element is on one side of both surfaces, where its height is; else 0. */
+static int is_uncut(const fu_model *model, const fu_drag *drag, int n, int element, const double *e, double *height)
+{
+    const fu_cable *cable = &model->cables[drag->cable];
+    double low = fu_drag_height(model, drag, e), high = low, steepest = 0.0;
+    const double last = fu_drag_height(model, drag, e + cable->per_node);
+    low = fmin(low, last);
+    high = fmax(high, last);
+    for (int g = 0; g < drag->n_points; ++g) {
+        const fu_quadrature_point point = fu_drag_point(drag, n, element, g);
+        const double h = drag->flow.base + along_axis(model, drag, n, point.N, e);
+        low = fmin(low, h);
+        high = fmax(high, h);
+        steepest = fmax(steepest, fabs(along_axis(model, drag, n, point.N_x, e)));
+    }
+    const double reach = drag->extent + REACH * fu_element_length(cable, element) * steepest;
+    *height = low;
+    return (low - reach > drag->surface || high + reach < drag->surface) && (low - reach > drag->bottom || high + reach < drag->bottom);
+}
+
+/* Makes the points of an element that a surface cuts, or may cut. */
+static void cut_points(const fu_model *model, const fu_drag *drag, int n, int element, const double *e, fu_drag_points *out)
+{
+    const fu_cable *cable = &model->cables[drag->cable];
+    const double length = fu_element_length(cable, element), span = length / SPANS;
+    const double levels[4] = {drag->surface - drag->extent, drag->surface + drag->extent, drag->bottom - drag->extent,
+                              drag->bottom + drag->extent};
+    double cuts[MOST_CUTS], N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES], h[SPANS + 1], slope[SPANS + 1];
+    heights of[SPANS];
+    int n_cuts = 0;
+    for (int k = 0; k <= SPANS; ++k) {
+        cable->kernel->on_axis(length, k * span, N, N_x);
+        h[k] = drag->flow.base + along_axis(model, drag, n, N, e);
+        slope[k] = span * along_axis(model, drag, n, N_x, e);
+    }
+    for (int k = 0; k < SPANS; ++k) {
+        of[k] = (heights){k * span, span, {h[k], slope[k], 3.0 * (h[k + 1] - h[k]) - 2.0 * slope[k] - slope[k + 1],
+                                           2.0 * (h[k] - h[k + 1]) + slope[k] + slope[k + 1]}};
+        for (int l = 0; l < 4; ++l) cut_at(&of[k], levels[l], cuts, &n_cuts);
+    }
+    for (int k = 0; k <= n_cuts; ++k) {
+        const double from = k ? cuts[k - 1] : 0.0, to = k < n_cuts ? cuts[k] : length, middle = 0.5 * (from + to) / span;
+        const int in = middle < SPANS - 1 ? (int)middle : SPANS - 1;
+        add_part(drag, cable, length, n, from, to, height_on(&of[in], middle - in), out);
+    }
+}
+
+void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out)
+{
+    const int n = model->cables[drag->cable].coordinates / model->dim;
+    double height;
+    out->n = 0;
+    if (drag->wet != FU_ALL_WET) {
+        if (!is_uncut(model, drag, n, element, e, &height)) {
+            cut_points(model, drag, n, element, e, out);
+            return;
+        }
+        if (fu_wet_at_height(drag, height).part == 0.0) return;
+    }
+    for (int g = 0; g < drag->n_points; ++g) out->at[out->n++] = fu_drag_point(drag, n, element, g);
+}
