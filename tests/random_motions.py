@@ -173,8 +173,9 @@ def swinging_rope(scene, rng) -> float:
 
 def slack_rope(scene, rng) -> float:
     """A rope that resists no compression jerks a body that is thrown."""
+    section = fu.Circle(radius=decade(rng, 0.003, 0.01))
     rope = scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=int(rng.integers(2, 5)), element="cable8p",
-                       strain="engineering", membrane="tension_only", section=fu.Circle(radius=decade(rng, 0.003, 0.01)),
+                       strain="engineering", membrane="tension_only", section=section,
                        material=fu.Material(youngs_modulus=decade(rng, 1e6, 1e8), density=1000, poisson_ratio=0.3,
                                             damping_time=float(rng.choice([0.0, 1e-3]))))
     scene.pin(rope, s=0)

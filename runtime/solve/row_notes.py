@@ -14,6 +14,7 @@ from .coarse_slides import CoarseSlides
 from .fast_turns import FastTurns
 from .folds import Folds
 from .meeting_points import MeetingPoints
+from .normal_forces import NormalForces
 from .penetrations import Penetrations
 from .reduced_strain import ReducedStrain
 from .sensitivity import Sensitivity
@@ -49,13 +50,14 @@ class RowNotes:
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0):
         self.sensitivity, self.turns = Sensitivity(scene, model), FastTurns(model, step)
+        self.normal_forces = NormalForces(scene, model)
         self._seen_in_steps: dict[str, SeenInSteps] = {"penetrations": Penetrations(scene, model),
                                                        "surface ends": SurfaceEnds(scene, model)}
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
             "coarse meshes": CoarseMeshes(scene, model), "coarse slides": CoarseSlides(scene, model),
             "sensitivity": self.sensitivity, "meeting points": MeetingPoints(scene, model),
-            "fast turns": self.turns, "folds": Folds(scene, model)}
+            "fast turns": self.turns, "folds": Folds(scene, model), "normal forces": self.normal_forces}
         self._noted: dict[str, Noted] = {**self._watched, **self._seen_in_steps}
 
     def see(self, engine: Engine) -> None:

@@ -38,7 +38,7 @@ from .signal_steps import unresolved
 from .sink import Sink
 from .threads import share_elements
 from .trial_run import on_trial
-from .unseen_errors import unseen_errors
+from .uncontrolled_errors import uncontrolled_errors
 
 LOG = logging.getLogger(__name__)
 
@@ -130,7 +130,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     messages += _controlled_alone(run.engine, settings)
     if status not in FAILED:
         grows = [] if settings.estimate else [*sensitive(run.engine, settings, run.row_notes.sensitivity),
-                                              *unseen_errors(scene, run.engine, settings, run.row_notes.turns)]
+                                              *uncontrolled_errors(scene, run.engine, settings, run.row_notes)]
         messages += _warned([*notes(run.engine, settings), *trapped(scene, run.engine), *run.row_notes.notes(), *grows])
     noted = time.perf_counter() - ended
     total = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)

@@ -3,8 +3,8 @@
     python tests/benchmarks/notes.py [--scenes 300] [--first 0] [--out FILE.csv]
 
 The scenes are those of tests/random_motions.py. A reference is the explicit method at tol=1e-9, where radau at 1e-9
-agrees with it to 0.1 of the tol that is measured; scenes without one (chaotic, or longer than 2 s) are counted apart. Noted: a
-message of the run warns of errors, or of a state that makes them. Each run has 40 output times.
+agrees with it to 0.1 of the tol that is measured; scenes without one (chaotic, or longer than 2 s) are counted apart.
+Noted: a message of the run warns of errors, or of a state that makes them. Each run has 40 output times.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import re
 import sys
 import time
 import warnings
+from itertools import pairwise
 from pathlib import Path
 
 import funicular as fu
@@ -84,9 +85,10 @@ def summary(rows: list[dict]) -> list[dict]:
     """Counts of runs by error, noted or not; of those with a reference."""
     known = [row for row in rows if np.isfinite(row["error/tol"])]
     edges = [0.0, 1.0, SILENT, 10.0, np.inf]
-    return [{"error": f"{low:g} to {high:g} tol", "runs": len(chosen), "noted": sum(bool(row["noted"]) for row in chosen),
+    return [{"error": f"{low:g} to {high:g} tol", "runs": len(chosen),
+             "noted": sum(bool(row["noted"]) for row in chosen),
              "silent": sum(not row["noted"] for row in chosen)}
-            for low, high in zip(edges, edges[1:], strict=False)
+            for low, high in pairwise(edges)
             for chosen in [[row for row in known if low <= row["error/tol"] < high]]]
 
 
