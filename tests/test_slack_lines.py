@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from catenary import end_forces
 from scipy.optimize import fsolve
-from slack_lines import LAZY_WAVES, MESHES, largest_curvature, lazy_wave, rope, tied_ropes, wire_on_bed
+from slack_lines import LAZY_WAVES, MESHES, G, LazyWave, largest_curvature, lazy_wave, rope, tied_ropes, wire_on_bed
 
 pytestmark = pytest.mark.filterwarnings("ignore:contact .* below its surface:funicular.FunicularWarning",
                                          "ignore:the state is unstable:funicular.FunicularWarning")
-W = 9.80665
 
 
 def pull(rest: fu.Equilibrium, cable: str) -> float:
@@ -31,6 +30,51 @@ def test_lazy_waves(name, mesh):
     rest = lazy_wave(data, MESHES[mesh]).equilibrium()
     assert pull(rest, "upper") == pytest.approx(data.force, rel=1e-3)
     assert largest_curvature(rest) == pytest.approx(data.curvature, rel=5e-3)
+
+
+@pytest.mark.parametrize("fractions", [(0.4, 0.5), (0.3, 0.7)])
+def test_parts_may_be_drawn_of_any_length(fractions):
+    """Slopes at the ties kept the ratio in which parts are drawn slack: 9,326 N, 2.5 1/m, or no stable state."""
+    data = LAZY_WAVES["80 m"]
+    rest = lazy_wave(data, MESHES[100], fractions).equilibrium()
+    assert pull(rest, "upper") == pytest.approx(data.force, rel=1e-3)
+    assert largest_curvature(rest) == pytest.approx(data.curvature, rel=5e-3)
+
+
+def test_elements_that_are_long_for_their_bends():
+    """Of 5 m where the line's radius is 12 m: strings of several links an element; reference: 1,000 elements."""
+    deep = LazyWave((560.0, 200.0, 560.0), 0.3, 60.85, (600.0, -800.0), 85584.78, 0.0852)
+    rest = lazy_wave(deep, (120, 40, 80)).equilibrium()
+    assert pull(rest, "upper") == pytest.approx(deep.force, rel=1e-4)
+    assert largest_curvature(rest) == pytest.approx(deep.curvature, rel=2e-2)
+
+
+def in_space(flow: float) -> fu.Scene:
+    """Return a line of three parts above and on a bed that slopes, in a stream across it, clamped at its top."""
+    scene = fu.Scene(gravity=(0, 0, -G))
+    scene.fluid("sea", density=1025, velocity=(0.2 * flow, flow, 0))
+    scene.surface("bed", fu.Plane(point=(60, 20, -40), normal=(0.1, -0.05, 1)))
+    points = np.array([0, 0, -2]) + np.array([0, 4, 6, 9])[:, None] / 9 * np.array([60, 20, -38])
+    for k, (density, length) in enumerate(((3000, 40), (700, 20), (3000, 30))):
+        scene.cable(f"c{k}", start=points[k], end=points[k + 1], rest_length=length, elements=12, element="cable12",
+                    section=fu.Circle(radius=0.04), strain="engineering",
+                    material=fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=density))
+        scene.drag(f"c{k}", normal=1.2, diameter=0.08, displaced_area=np.pi * 0.04**2)
+        scene.contact(f"c{k}", "bed", stiffness=1e4)
+    scene.clamp("c0", s=0)
+    scene.pin("c2", s=30)
+    scene.tie("c0", s=40, to="c1", at=0)
+    scene.tie("c1", s=20, to="c2", at=0)
+    return scene
+
+
+@pytest.mark.parametrize("flow", [0.0, 0.5])
+def test_in_space_it_is_the_state_of_relax(flow):
+    rest, other = in_space(flow).equilibrium(), in_space(flow).relax()
+    assert rest.stable
+    assert rest.iterations <= 30
+    for name in ("c0", "c1", "c2"):
+        np.testing.assert_allclose(rest[f"{name}.position"], other[f"{name}.position"], atol=1e-6)
 
 
 def test_the_state_depends_on_no_added_mass():
@@ -53,7 +97,7 @@ def test_two_tied_ropes(elements):
 
 def on_bed(density: float) -> float:
     """Return the force at the top of the wire of `wire_on_bed` by the elastic catenary that ends on a rigid bed, N."""
-    weight, axial, span, drop, length = 0.08 * density * W, 0.08e10, 300.0, 80.0, 330.0
+    weight, axial, span, drop, length = 0.08 * density * G, 0.08e10, 300.0, 80.0, 330.0
 
     def gaps(unknown):
         H, hanging = np.exp(unknown[0]), unknown[1]

@@ -9,7 +9,7 @@ from ..parts.scene_data import SceneData
 from .attachments import AttachmentBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .border import ACCELERATIONS, NEWTON, elimination
-from .cables import cable_gravity, cable_model, cable_rates, cable_weights
+from .cables import cable_gravity, cable_model, cable_rates, cable_weights, level_tied_slopes
 from .contacts import contact_model
 from .coupling import number
 from .crossings import crossing_model
@@ -38,6 +38,7 @@ def build(scene: SceneData) -> Model:
         n_flexible = cables[-1].coordinates.stop
     bodies = body_models(scene, n_flexible)
     nodal = [cable.nodal_vectors[..., :dim] for cable in drawn]
+    level_tied_slopes(scene, nodal)
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
              for model, vectors in zip(cables, nodal, strict=True)}
     attachments = AttachmentBuilder(scene, cables, bodies)

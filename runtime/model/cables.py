@@ -12,6 +12,9 @@ from .constants import constants
 from .model import CableModel
 from .unknowns import Reduction, as_supports_leave
 
+MOST_STRAIN = 0.01
+"""Of slopes that a rigid tie makes one: by a larger difference as drawn one of them is drawn slack."""
+
 
 def cable_model(cable: Cable, first: int) -> CableModel:
     """Make the model of a cable whose coordinates begin at ``first``."""
@@ -34,6 +37,24 @@ def cable_gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.nd
     weight[:-1] += each[:, 0]
     weight[1:] += each[:, 1]
     return weight.ravel()
+
+
+def level_tied_slopes(scene: SceneData, nodal: list[np.ndarray]) -> None:
+    """Give slopes that a rigid tie makes one the lesser of their lengths, where these differ by more than strains do.
+
+    nodal: (nodes, vectors, dim) of each cable as drawn, changed in place. Cables drawn slack, each by another share of
+    its length, would keep the ratio of their slopes at the tie, and one of them a strain of that size.
+    """
+    numbers = {name: k for k, name in enumerate(scene.cables)}
+    for tie in scene.ties.values():
+        if tie.rotation != "rigid":
+            continue
+        slopes = [nodal[numbers[cable.name]][cable.node(s), cable.kind_of_element.nodal_vectors.index("r_x")]
+                  for cable, s in ((scene.cables[tie.cable], tie.s), (scene.cables[tie.to], tie.at))]
+        lengths = [float(np.linalg.norm(slope)) for slope in slopes]
+        if abs(lengths[0] - lengths[1]) > MOST_STRAIN * max(lengths):
+            for slope, length in zip(slopes, lengths, strict=True):
+                slope *= min(lengths) / length  # a longer one would turn a short element back on itself
 
 
 def cable_rates(scene: SceneData, reduction: Reduction) -> np.ndarray:

@@ -6,13 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from ..model.model import Model
+from ..model.middle_strain import stretches
+from ..model.model import CableModel, Model
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import STABILISATION, is_reduced
 
+PLACES, WEIGHTS = np.polynomial.legendre.leggauss(4)
+GAUSS = (0.5 * (1 + PLACES)).tolist(), (0.5 * WEIGHTS).tolist()
+"""Of the length of an element."""
+
 
 class ReducedStrain:
-    """The largest compression of each cable with a reduced axial strain; its strain is that of the chords of elements.
+    """The largest compression of each cable with a reduced axial strain, of the mean strain of its elements.
 
     found: strain and time in s, by the cable's name.
     """
@@ -25,7 +30,10 @@ class ReducedStrain:
         """Take further output rows."""
         for cable in self._cables:
             nodes = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
-            strain = (np.linalg.norm(np.diff(nodes, axis=1), axis=-1) / cable.mesh.lengths - 1).min(axis=1)
+            chords = np.linalg.norm(np.diff(nodes, axis=1), axis=-1) / cable.mesh.lengths - 1
+            for k in np.flatnonzero((chords < -STABILISATION).any(axis=1)):  # of bent elements the chord is shorter
+                chords[k] = _strain(cable, rows["q"][k])
+            strain = chords.min(axis=1)
             k = int(np.argmin(strain))
             if cable.name not in self.found or strain[k] < self.found[cable.name][0]:
                 self.found[cable.name] = [float(strain[k]), float(rows["time"][k])]
@@ -34,6 +42,12 @@ class ReducedStrain:
         """Return a note for each cable that was compressed too much."""
         return [_note(name, "was", strain, f" at t = {time:.4g} s")
                 for name, (strain, time) in self.found.items() if strain < -STABILISATION]
+
+
+def _strain(cable: CableModel, q: np.ndarray) -> np.ndarray:
+    """Return (elements,): by how much centrelines are longer than at rest, over that."""
+    vectors = q[cable.coordinates].reshape(cable.shape)
+    return stretches(cable, vectors[:-1], vectors[1:], np.arange(cable.n_elements), GAUSS) - 1
 
 
 def compressed(scene: SceneData, model: Model, q: np.ndarray) -> list[str]:

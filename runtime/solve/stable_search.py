@@ -38,10 +38,9 @@ def find_rest(problem: StaticProblem) -> Stability | None:
     """
     begin, passed = problem.keep(), None
     passed_at, problem.pushed = begin, False
-    if problem.settings.seek_stable and hang(problem, every=False):
-        if problem.newton() and not (found := stability(problem)).unstable:
-            return found
-        problem.restore(begin)
+    if problem.settings.seek_stable and (stable := from_strings(problem, every=False)) is not None:
+        return stable
+    problem.restore(begin)
     if problem.newton():
         found = stability(problem)
         if not found.unstable or not problem.settings.seek_stable:
@@ -51,23 +50,38 @@ def find_rest(problem: StaticProblem) -> Stability | None:
         problem.restore(begin)
         if (stable := descend(problem)) is not None:
             if passed is not None:
-                problem.messages.append(f"Newton's method found a state of rest that is {passed}; the search went on "
-                                        f"to a stable one{CHOICE * problem.pushed}")
+                _tell(problem, passed)
             return stable
     if passed is not None:
         problem.restore(passed_at)
     return passed
 
 
-def from_strings(problem: StaticProblem) -> Stability | None:
-    """Find a stable state by Newton's method, or `relax`, from where cables are that hang as strings do; else None."""
-    if not hang(problem, every=True):
+def _tell(problem: StaticProblem, passed: Stability) -> None:
+    """Add the message of an unstable state that was passed."""
+    problem.messages.append(f"Newton's method found a state of rest that is {passed}; the search went on to a stable "
+                            f"one{CHOICE * problem.pushed}")
+
+
+def from_strings(problem: StaticProblem, every: bool = True) -> Stability | None:
+    """Find a stable state from where cables are that hang as strings do, see `hang`: by Newton's method, from the
+    unstable state that this finds, pushed off it, by `relax`, or by that alone; else None.
+    """
+    if not hang(problem, every):
         return None
     hung = problem.keep()
-    if problem.newton() and not (found := stability(problem)).unstable:
+    if not problem.newton():
+        problem.restore(hung)
+        return relax(problem)
+    found = stability(problem)
+    if not found.unstable:
         return found
-    problem.restore(hung)
-    return relax(problem)
+    problem.move(PUSH * problem.size * lowest_direction(problem))
+    stable = relax(problem)
+    if stable is not None:
+        problem.pushed = True
+        _tell(problem, found)
+    return stable
 
 
 def relax(problem: StaticProblem) -> Stability | None:

@@ -20,16 +20,13 @@ KNOWN_VECTORS = {"r", "r_x", "r_y", "r_z", "r_xx"}
 
 @dataclass
 class SmoothTie:
-    """Two ends of cables that a tie makes one node, with one direction: nodes beside it, and lengths to them in m.
+    """Two ends of cables that a tie makes one node, with one direction.
 
     first, second: nodes of the tie; sense: 1 where the second cable runs on as the first one does, else -1.
     """
 
     first: int
     second: int
-    before: int
-    after: int
-    lengths: tuple[float, float]
     sense: float
 
 
@@ -79,17 +76,14 @@ class StringNodes:
 
     def smooth_ties(self, group: np.ndarray) -> list[SmoothTie]:
         """Return the ties of a group that join two ends of cables, and nothing else, with one direction."""
-        ends = {int(node): (int(node + inward), float(self.model.cables[c].mesh.lengths[at]), inward)
-                for c in group for node, inward, at in ((self.first[c], 1, 0), (self.first[c + 1] - 1, -1, -1))}
+        own = self.of(group)
+        inward = {int(node): sense for c in group for node, sense in ((self.first[c], 1), (self.first[c + 1] - 1, -1))}
         at_node: dict[int, list[int]] = {}
-        for node in self.of(group)[self.string_node[self.of(group)] != self.of(group)]:
-            at_node.setdefault(int(self.string_node[node]), []).append(int(node))
-        found = []
-        for first, others in at_node.items():
-            if len(others) == 1 and first in ends and others[0] in ends and self._share_slopes(first, others[0]):
-                (before, length, inward), (after, other, outward) = ends[first], ends[others[0]]
-                found.append(SmoothTie(first, others[0], before, after, (length, other), -float(inward * outward)))
-        return found
+        for node in own[self.string_node[own] != own].tolist():
+            at_node.setdefault(int(self.string_node[node]), []).append(node)
+        return [SmoothTie(first, others[0], -float(inward[first] * inward[others[0]]))
+                for first, others in at_node.items() if len(others) == 1 and first in inward and others[0] in inward
+                and self._share_slopes(first, others[0])]
 
     def _share_slopes(self, a: int, b: int) -> bool:
         of_a, of_b = (self.model.unknown_of_dof[self.slope[node]] for node in (a, b))

@@ -14,12 +14,15 @@ from ..model.contacts import ContactModel
 from ..model.unknowns import as_supports_leave
 from .static_problem import StaticProblem
 from .string_loads import depend_on_shape, string_loads
-from .string_nodes import StringNodes, rests
+from .string_nodes import SmoothTie, StringNodes, rests
 from .string_vectors import laid_vectors, slopes
 from .strings import Rest, Strings, rest_of
 
 ROUNDS = 3
 """Shapes that follow from each other where loads depend on the shape."""
+LARGEST_TURN = 0.3
+"""rad: by which a string may turn from an element to the next, before elements have several links."""
+MOST_PARTS = 8
 STRAIGHT = 1e-9
 """Of the length: what nodes on a line may be off it, and by what a cable is slack."""
 
@@ -42,13 +45,23 @@ def hang(problem: StaticProblem, every: bool) -> bool:
     for _ in range(ROUNDS if groups and depend_on_shape(model) else 1):
         force = string_loads(problem, q) if groups else q
         for group in groups:
-            line = _Line(problem, nodes, group, q)
-            rest = rest_of(line.strings(force))
+            line, rest = _at_rest(problem, nodes, group, q, force)
             if rest is not None and rest.taut.all():
                 q, found = line.laid(q, rest), True
     if found:
         problem.restore(kept | {"q": q})
     return found
+
+
+def _at_rest(problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray,
+             force: np.ndarray) -> tuple[_Line, Rest | None]:
+    """Return cables as strings of as many links as elements, or of more where elements turn far, and their rest."""
+    line = _Line(problem, nodes, group, q, 1)
+    rest = rest_of(line.strings(force))
+    if rest is not None and (turn := line.turn(rest)) > LARGEST_TURN:
+        line = _Line(problem, nodes, group, q, min(int(np.ceil(turn / LARGEST_TURN)) + 1, MOST_PARTS))
+        rest = rest_of(line.strings(force))
+    return line, rest
 
 
 def _is_straight_and_slack(nodes: StringNodes, group: np.ndarray, q: np.ndarray) -> bool:
@@ -64,116 +77,157 @@ def _is_straight_and_slack(nodes: StringNodes, group: np.ndarray, q: np.ndarray)
 
 
 class _Line:
-    """Cables that ties hold together, as strings: their nodes are numbered anew, tied ones have one number."""
+    """Cables that ties hold together, as strings of `parts` links an element.
 
-    def __init__(self, problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray):
-        self.model, self.nodes, self.group, self.q = problem.model, nodes, group, q
-        self.parts = [problem.scene.cables[self.model.cables[c].name] for c in group]
-        self.own = nodes.of(group)
-        self.number = np.full(len(nodes.cable), -1)
-        _, self.number[self.own] = np.unique(nodes.string_node[self.own], return_inverse=True)
-        self.by_cable = [self.number[nodes.first[c] : nodes.first[c + 1]] for c in group]
-        self.lengths = [np.broadcast_to(self.model.cables[c].mesh.lengths, self.model.cables[c].n_elements)
-                        for c in group]
+    along: of each cable the string nodes from its start to its end; lengths: of its links, in m.
+    """
+
+    def __init__(self, problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray, parts: int):
+        self.model, self.nodes, self.group, self.q, self.parts = problem.model, nodes, group, q, parts
+        self.drawn = [problem.scene.cables[self.model.cables[c].name] for c in group]
+        own = nodes.of(group)
+        number = np.full(len(nodes.cable), -1)
+        _, number[own] = np.unique(nodes.string_node[own], return_inverse=True)
+        self.own, self.at = own, number[own]
+        self.n = int(number.max()) + 1
+        self.along, self.lengths = [], []
+        for c in group:
+            elements = self.model.cables[c].n_elements
+            along = np.empty(elements * parts + 1, dtype=int)
+            inside = np.arange(elements * parts + 1) % parts != 0
+            along[~inside] = number[nodes.first[c] : nodes.first[c + 1]]
+            along[inside] = np.arange(self.n, self.n + inside.sum())
+            self.n += int(inside.sum())
+            self.along.append(along)
+            self.lengths.append(np.repeat(np.broadcast_to(self.model.cables[c].mesh.lengths, elements) / parts, parts))
         self.ties, self.clamped = nodes.smooth_ties(group), nodes.clamped(group, q)
-        self.order = np.arange(self.number.max() + 1)
+        self.order = np.arange(self.n)
+
+    def _beside(self, node: int, side: int) -> tuple[int, float] | None:
+        """Return the string node beside a cable's node, to its end (side 1) or start (-1), and the length between."""
+        k = int(np.searchsorted(self.group, self.nodes.cable[node]))
+        at = (node - int(self.nodes.first[self.group[k]])) * self.parts
+        if not 0 <= at + side < len(self.along[k]):
+            return None
+        return int(self.along[k][at + side]), float(self.lengths[k][at if side == 1 else at - 1])
+
+    def _number(self, node: int) -> int:
+        """Return the string node that a cable's node is."""
+        return int(self.at[np.searchsorted(self.own, node)])
 
     def strings(self, force: np.ndarray) -> Strings:
         """Return the strings under forces on the dofs, numbered by `order`."""
-        n, dim, at = len(self.order), self.model.dim, self.number[self.own]
-        r, fixed, load = np.empty((n, dim)), np.empty((n, dim), dtype=bool), np.zeros((n, dim))
-        r[at], fixed[at] = self.q[self.nodes.r[self.own]], self.nodes.unknown[self.own] == -1
-        np.add.at(load, at, force[self.nodes.r[self.own]])
-        links = np.concatenate([np.stack([each[:-1], each[1:]], axis=1) for each in self.by_cable])
+        dim = self.model.dim
+        r, fixed = np.zeros((self.n, dim)), np.zeros((self.n, dim), dtype=bool)
+        r[self.at], fixed[self.at] = self.q[self.nodes.r[self.own]], self.nodes.unknown[self.own] == -1
+        load = self._load(force)
+        links = np.concatenate([np.stack([each[:-1], each[1:]], axis=1) for each in self.along])
         axial = np.concatenate([np.full(len(length), part.material.youngs_modulus * part.section.moments()[0])
-                                for part, length in zip(self.parts, self.lengths, strict=True)])
+                                for part, length in zip(self.drawn, self.lengths, strict=True)])
         made = Strings(r, fixed, load, links, np.concatenate(self.lengths), axial, *self._bends(),
                        *self._planes(fixed, load))
         if made.width > 2:
-            beside = coo_array((np.ones(len(links)), tuple(links.T)), shape=(n, n)).tocsr()
+            beside = coo_array((np.ones(len(links)), tuple(links.T)), shape=(self.n, self.n)).tocsr()
             self.order = reverse_cuthill_mckee((beside + beside.T).tocsr(), symmetric_mode=True)
             made = made.renumbered(self.order)
         return made
 
+    def _load(self, force: np.ndarray) -> np.ndarray:
+        """Return (n, dim): forces on the cables' nodes, spread over the links of the elements beside them."""
+        load, hat = np.zeros((self.n, self.model.dim)), 1 - np.abs(np.arange(1 - self.parts, self.parts)) / self.parts
+        for c, along in zip(self.group, self.along, strict=True):
+            own = force[self.nodes.r[self.nodes.first[c] : self.nodes.first[c + 1]]]
+            if self.parts > 1:
+                given = np.zeros((len(along), own.shape[1]))
+                share = np.convolve(np.ones(len(along)), hat, "same")[:: self.parts]
+                given[:: self.parts] = own / share[:, None]
+                own = np.stack([np.convolve(column, hat, "same") for column in given.T], axis=1)
+            np.add.at(load, along, own)
+        return load
+
     def _bends(self) -> tuple[np.ndarray, ...]:
         """Return bends, factors, natural and bending of `Strings`: of inner nodes, of smooth ties, and at clamps."""
-        nodes, sides, bending = [], [], []
         stiffness = {int(c): part.material.youngs_modulus * min(part.section.moments()[1:3]) * (not part.is_curved)
-                     for c, part in zip(self.group, self.parts, strict=True)}
-        for c, at, length in zip(self.group, self.by_cable, self.lengths, strict=True):
-            nodes.append(np.stack([at[:-2], at[1:-1], at[2:]], axis=1))
+                     for c, part in zip(self.group, self.drawn, strict=True)}
+        nodes, sides, bending = [], [], []
+        for c, along, length in zip(self.group, self.along, self.lengths, strict=True):
+            nodes.append(np.stack([along[:-2], along[1:-1], along[2:]], axis=1))
             sides.append(np.stack([length[:-1], length[1:]], axis=1))
-            bending.append(np.full(len(at) - 2, stiffness[int(c)]))
+            bending.append(np.full(len(along) - 2, stiffness[int(c)]))
         for tie in self.ties:
-            nodes.append(self.number[[[tie.before, tie.first, tie.after]]])
-            sides.append(np.array([tie.lengths]))
+            (before, one), (after, other) = self._across(tie)
+            nodes.append(np.array([[before, self._number(tie.first), after]]))
+            sides.append(np.array([[one, other]]))
             bending.append(np.array([sum(stiffness[int(self.nodes.cable[k])] for k in (tie.first, tie.second)) / 2]))
         length = np.concatenate(sides)
         mean = length.mean(axis=1)
         first, last = 1 / (length[:, 0] * mean), 1 / (length[:, 1] * mean)
-        at_clamps = list(self._at_clamps(stiffness))
-        dim, k = self.model.dim, len(at_clamps)
-        natural = np.concatenate([np.zeros((len(mean), dim)), np.reshape([of[1] for of in at_clamps], (k, dim))])
-        of_clamps = [np.reshape([of[part] for of in at_clamps], shape) for part, shape in
-                     ((0, (k, 3)), (2, (k, 3)), (3, (k,)))]
-        return (np.concatenate([*nodes, of_clamps[0].astype(int)]),
-                np.concatenate([np.stack([first, -first - last, last], axis=1), of_clamps[1]]), natural,
-                np.concatenate([np.concatenate(bending) * mean, of_clamps[2]]))
+        found = [np.concatenate(nodes), np.stack([first, -first - last, last], axis=1),
+                 np.zeros((len(mean), self.model.dim)), np.concatenate(bending) * mean]
+        for node, tangent in self.clamped.items():
+            for side in (1, -1):
+                if (beside := self._beside(node, side)) is not None:
+                    other, l = beside
+                    half = ([[self._number(node), other, other]], [[-2 / l**2, 2 / l**2, 0.0]],
+                            [side * 2 / l * tangent], [stiffness[int(self.nodes.cable[node])] * l / 2])
+                    found = [np.concatenate([given, more]) for given, more in zip(found, half, strict=True)]
+        return tuple(found)
 
-    def _at_clamps(self, stiffness: dict[int, float]) -> list[tuple]:
-        """Return nodes, natural curvature, factors and stiffness of the half elements beside clamped nodes."""
-        found: list[tuple] = []
-        for node, along in self.clamped.items():
-            c = int(self.nodes.cable[node])
-            lengths, k = self.lengths[int(np.searchsorted(self.group, c))], node - int(self.nodes.first[c])
-            for side, has in ((1, k < len(lengths)), (-1, k > 0)):
-                if has:
-                    l = float(lengths[k if side == 1 else k - 1])
-                    at, beside = self.number[node], self.number[node + side]
-                    found.append(((at, beside, beside), side * 2 / l * along, (-2 / l**2, 2 / l**2, 0.0),
-                                  stiffness[c] * l / 2))
-        return found
+    def _across(self, tie: SmoothTie) -> tuple[tuple[int, float], tuple[int, float]]:
+        """Return the string nodes on both sides of a tie, and the lengths to them."""
+        found = [self._beside(node, side) for node in (tie.first, tie.second) for side in (1, -1)]
+        first, second = (each for each in found if each is not None)
+        return first, second
 
     def _planes(self, fixed: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return resting, normals, heights and compliances of `Strings`."""
-        dim, found = self.model.dim, [(np.zeros(0, dtype=int), np.zeros((0, self.model.dim)), np.zeros(0), np.zeros(0))]
+        dim = self.model.dim
+        found = [(np.zeros(0, dtype=int), np.zeros((0, dim)), np.zeros(0), np.zeros(0))]
         for contact in self.model.contacts:
             if not (rests(contact) and contact.cable in self.group):
                 continue
             k = int(np.searchsorted(self.group, contact.cable))
             share = np.convolve(self.lengths[k], (0.5, 0.5), "full")
-            free = ~fixed[self.by_cable[k]].all(axis=1)
-            at, share = self.by_cable[k][free], share[free]
+            free = ~fixed[self.along[k]].all(axis=1)
+            at, share = self.along[k][free], share[free]
             normal = np.asarray(contact.direction, dtype=float)
             height = float(normal @ np.asarray(contact.on[0].u)[:dim]) + contact.radius
             found.append((at, np.tile(normal, (len(at), 1)), np.full(len(at), height),
                           1 / (share * _stiffness(contact, np.abs(load[at] @ normal) / share))))
         return tuple(np.concatenate(each) for each in zip(*found, strict=True))
 
-    def laid(self, q: np.ndarray, rest: Rest) -> np.ndarray:
-        """Return a configuration with these cables along the strings at rest, as supports and ties leave it."""
+    def turn(self, rest: Rest) -> float:
+        """Return the largest angle by which strings at rest turn from a link to the next, about, in rad."""
+        r = self._drawn_order(rest)
+        ways = (np.diff(r[along], axis=0) / length[:, None] for along, length in
+                zip(self.along, self.lengths, strict=True))
+        return max((float(np.linalg.norm(np.diff(way, axis=0), axis=1).max(initial=0.0)) for way in ways), default=0.0)
+
+    def _drawn_order(self, rest: Rest) -> np.ndarray:
         r = np.empty_like(rest.r)
         r[self.order] = rest.r
-        known = self.clamped | {node: along for tie in self.ties for node, along in self._along(tie, r).items()}
+        return r
+
+    def laid(self, q: np.ndarray, rest: Rest) -> np.ndarray:
+        """Return a configuration with these cables along the strings at rest, as supports and ties leave it."""
+        r, known = self._drawn_order(rest), dict(self.clamped)
+        for tie in self.ties:
+            (before, one), (after, other) = self._across(tie)
+            at = r[self._number(tie.first)]
+            tangent = (at - r[before]) / one**2 + (r[after] - at) / other**2
+            tangent = tangent if self._beside(tie.first, 1) is None else -tangent
+            known |= {tie.first: tangent, tie.second: tie.sense * tangent}
         found = q.copy()
-        for c, at, length in zip(self.group, self.by_cable, self.lengths, strict=True):
+        for c, along, length in zip(self.group, self.along, self.lengths, strict=True):
             cable, first, last = self.model.cables[c], int(self.nodes.first[c]), int(self.nodes.first[c + 1]) - 1
-            slope = slopes(r[at], length, (known.get(first), known.get(last)))
+            slope = slopes(r[along], length, (known.get(first), known.get(last)))[:: self.parts]
             was = q[cable.coordinates].reshape(cable.shape)
-            found[cable.coordinates] = laid_vectors(cable.vectors, was, r[at], slope, cable.mesh.node_s,
-                                                    last in self.clamped).ravel()
+            found[cable.coordinates] = laid_vectors(cable.vectors, was, r[along[:: self.parts]], slope,
+                                                    cable.mesh.node_s, last in self.clamped).ravel()
         own = slice(0, self.model.cables[-1].coordinates.stop)
         found[own] = q[own] + as_supports_leave(found[own] - q[own], self.model.unknown_of_dof[own],
                                                 self.model.combinations)
         return found
-
-    def _along(self, tie: object, r: np.ndarray) -> dict[int, np.ndarray]:
-        """Return the directions of both cables at a tie."""
-        before, at, after = (r[self.number[node]] for node in (tie.before, tie.first, tie.after))
-        along = (at - before) / tie.lengths[0] ** 2 + (after - at) / tie.lengths[1] ** 2
-        first_runs_to_it = tie.before < tie.first
-        along = along if first_runs_to_it else -along
-        return {tie.first: along, tie.second: along * tie.sense}
 
 
 def _stiffness(contact: ContactModel, pressure: np.ndarray) -> np.ndarray:

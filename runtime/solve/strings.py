@@ -19,16 +19,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import LinAlgError, solveh_banded
+from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
 TOLERANCE = 1e-8
 """Of all loads together: forces left over, and tensions of links that are not taut."""
 MOST_ITERATIONS = 60
 TO_BOUNDARY = 0.95
 """Of the way to where a constraint or a multiplier becomes zero: a step goes no further."""
-FIRST_CENTRING = 0.2
-CENTRING = ((0.9, 0.05), (0.7, 0.1), (0.3, 0.3), (0.0, 0.7))
-"""Step, and factor of the mean complementarity that the next one aims at after a step at least as long."""
 SLACK = 1e-4
 """Of half the squared length: by which a link is slack."""
 TINY = 1e-300
@@ -81,7 +78,7 @@ class Strings:
         pull = (start[self.links[:, 1]] - start[self.links[:, 0]]) / self.length[:, None]
         np.add.at(force, self.links[:, 0], pull)
         np.add.at(force, self.links[:, 1], -pull)
-        return start + system.solve(system.of_links(stiffness) + system.held, force)
+        return start + system.solve(system.factor(system.of_links(stiffness) + system.held), force)
 
 
 @dataclass
@@ -155,11 +152,26 @@ class _Banded:
                 found += self._filled(at, mask * values[:, None])
         return found
 
-    def solve(self, matrix: np.ndarray, force: np.ndarray) -> np.ndarray:
-        """Return (n, dim): displacements under forces (n, dim). Raises LinAlgError where the matrix is not definite."""
+    def factor(self, matrix: np.ndarray) -> np.ndarray:
+        """Return the factor of a matrix. Raises LinAlgError where that is not positive definite."""
+        return cholesky_banded(matrix.reshape(self.above + 1, self.n), overwrite_ab=True, check_finite=False)
+
+    def solve(self, factor: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """Return (n, dim): displacements under forces (n, dim), by the factor of a matrix."""
         right = np.where(self.free, force.ravel(), 0.0)
-        found = solveh_banded(matrix.reshape(self.above + 1, self.n), right, check_finite=False)
-        return found.reshape(force.shape)
+        return cho_solve_banded((factor, False), right, overwrite_b=True, check_finite=False).reshape(force.shape)
+
+
+@dataclass
+class _Step:
+    """Changes of places, tensions and pressures, and by which constraints change: linearly, and by a square less."""
+
+    x: np.ndarray
+    more: np.ndarray
+    harder: np.ndarray
+    closing: np.ndarray
+    rise: np.ndarray
+    square: np.ndarray
 
 
 class _Search:
@@ -210,41 +222,50 @@ class _Search:
         np.add.at(force, strings.links[:, 1], -pull)
         np.add.at(force, strings.resting, -pressure[:, None] * strings.normals / self.unit)
 
-    def step(self, centring: float) -> float:
-        """Go on to a part of the mean complementarity; returns the length of the step, of Newton's."""
+    def step(self) -> None:
+        """Make a step of Mehrotra's: where Newton's step to rest would lead says how far to stay off constraints."""
         strings, system = self.strings, self.system
-        left = self.out_of_balance()
-        aim = centring * self.mean()
-        of_links, of_planes = (self.slack + self.gives * self.tension, self.height + self.yields * self.pressure)
+        of_links, of_planes = self.slack + self.gives * self.tension, self.height + self.yields * self.pressure
         stiff, hard = self.tension / of_links, self.pressure / of_planes
-        pull, push = (aim - self.tension * self.slack) / of_links, (aim - self.pressure * self.height) / of_planes
-        self._add(left, pull, -push)
         blocks = ((self.tension / strings.length**2)[:, None, None] * np.eye(strings.r.shape[1])
                   + stiff[:, None, None] * self.along[:, :, None] * self.along[:, None])
         matrix = self.constant + system.of_links(blocks)
         if len(hard):
             matrix += system.of_planes(hard / self.unit**2)
-        x = system.solve(matrix, left)
-        apart = x[strings.links[:, 1]] - x[strings.links[:, 0]]
-        closing = -(self.along * apart).sum(axis=1)
-        more = pull - stiff * closing
-        rise = (x[strings.resting] * strings.normals).sum(axis=1) / self.unit
-        harder = push - hard * rise
-        size = self._length(apart, closing + self.gives * more, more, rise + self.yields * harder, harder)
-        self.r, self.tension, self.pressure = (self.r + size * x, self.tension + size * more,
-                                               self.pressure + size * harder)
-        self._look()
-        return size
+        factor, left = system.factor(matrix), self.out_of_balance()
 
-    def _length(self, apart: np.ndarray, closing: np.ndarray, more: np.ndarray, rise: np.ndarray,
-                harder: np.ndarray) -> float:
+        def towards(pull: np.ndarray, push: np.ndarray) -> _Step:
+            force = left.copy()
+            self._add(force, pull / of_links, -push / of_planes)
+            x = system.solve(factor, force)
+            apart = x[strings.links[:, 1]] - x[strings.links[:, 0]]
+            closing = -(self.along * apart).sum(axis=1)
+            rise = (x[strings.resting] * strings.normals).sum(axis=1) / self.unit
+            more, harder = pull / of_links - stiff * closing, push / of_planes - hard * rise
+            return _Step(x, more, harder, closing + self.gives * more, rise + self.yields * harder,
+                         (apart * apart).sum(axis=1) / (2 * strings.length**2))
+
+        there = self.tension * self.slack, self.pressure * self.height
+        first, mean = towards(-there[0], -there[1]), self.mean()
+        size = self._length(first)
+        left_then = ((self.tension + size * first.more) @ (self.slack + size * first.closing - size**2 * first.square)
+                     + (self.pressure + size * first.harder) @ (self.height + size * first.rise))
+        aim = mean * min(1.0, max(left_then / (mean * (len(there[0]) + len(there[1]))), 0.0)) ** 3
+        step = towards(aim - there[0] - first.more * first.closing + self.tension * first.square,
+                       aim - there[1] - first.harder * first.rise)
+        size = self._length(step)
+        self.r, self.tension, self.pressure = (self.r + size * step.x, self.tension + size * step.more,
+                                               self.pressure + size * step.harder)
+        self._look()
+
+    def _length(self, step: _Step) -> float:
         """Return how much of a step leaves constraints and multipliers positive; those of links fall by a square, too.
         """
-        square = (apart * apart).sum(axis=1) / (2 * self.strings.length**2)
         far = TO_BOUNDARY * self.slack
-        parts = [2 * far / np.maximum(np.sqrt(closing**2 + 4 * square * far) - closing, TINY)]
+        parts = [2 * far / np.maximum(np.sqrt(step.closing**2 + 4 * step.square * far) - step.closing, TINY)]
         parts += [TO_BOUNDARY * value / np.maximum(-rate, TINY)
-                  for value, rate in ((self.tension, more), (self.height, rise), (self.pressure, harder))]
+                  for value, rate in ((self.tension, step.more), (self.height, step.rise),
+                                      (self.pressure, step.harder))]
         return min(1.0, *(float(part.min(initial=1.0)) for part in parts))
 
     def mean(self) -> float:
@@ -263,14 +284,13 @@ def rest_of(strings: Strings) -> Rest | None:
         return None
     with np.errstate(all="ignore"):  # of what nothing holds in a direction, which is found at the end of a step
         try:
-            search, centring = _Search(strings), FIRST_CENTRING
+            search = _Search(strings)
             for iteration in range(MOST_ITERATIONS):
                 if search.is_at_rest():
                     return Rest(search.r, search.slack < SLACK, iteration)
-                length = search.step(centring)
+                search.step()
                 if not np.isfinite(search.mean()):
                     return None
-                centring = next(factor for least, factor in CENTRING if length >= least)
         except LinAlgError:
             pass
     return None
