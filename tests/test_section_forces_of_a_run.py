@@ -59,7 +59,7 @@ def test_a_cut_lies_in_its_element(run, calls):
     s = [0, 0.2, 0.5, 1.2, 1.5]
     forces = run.section_forces("wire", s, method="constitutive")
     assert_allclose(forces["tension"], np.tile(s, (3, 1)), rtol=1e-12)  # r of the element's first node, and x
-    (call,) = calls
+    call, _ = calls  # the second one is of how far the tension swings within elements
     assert_allclose(np.stack([call.e[:, 0, 0], call.x], axis=1)[:5],
                     [(0, 0), (0, 0.2), (0.5, 0), (1, 0.2), (1, 0.5)], atol=1e-12)
     assert call.l == 0.5 and call.e.shape == (15, 8, 3) and call.e0 == ()
