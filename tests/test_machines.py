@@ -27,6 +27,23 @@ def test_a_cable_car_climbs_over_the_support():
     assert max(run["hinge.residual"].max(), run["upper_wheel.residual"].max()) < 1e-9 * 200  # metres of rope
 
 
+def test_the_track_rope_slides_over_the_saddle():
+    """One tension on both sides, and a support that bears it times the turn, with the weight between.
+
+    A rope that is pinned there has 242 kN below the support and 200 kN above.
+    """
+    rest = load_scene("cable_car").equilibrium()
+    forces = rest.section_forces("track")
+    assert (forces.tension.min(), forces.tension.max()) == (pytest.approx(220.0e3, rel=2e-3),
+                                                            pytest.approx(226.1e3, rel=2e-3))
+    s = float(rest["saddle.s"])
+    below, above = rest.section_forces("track", s=[s - 9.0, s + 9.0])["force"].values
+    np.testing.assert_allclose(np.linalg.norm(below), np.linalg.norm(above), rtol=0.01)  # 18 m of rope rise by 3.6 m
+    turn = np.arccos(below @ above / np.linalg.norm(below) / np.linalg.norm(above))
+    weight = 8300 * 1.1e-3 * G * 18.0
+    assert np.linalg.norm(rest["saddle.force"]) == pytest.approx(np.linalg.norm(below) * turn + weight, rel=0.01)
+
+
 def test_a_zip_line_ends_in_its_buffer():
     scene = load_scene("zip_line")
     run = scene.run()

@@ -14,7 +14,7 @@ from funicular.rotations import cross, rotate
 from funicular.solve import integrator_choice
 from setup import bodies, calls, rope, set_up
 
-CEILINGS = {"paper51": (4200, 1800), "cable_car": (8900, 3900), "zip_line": (6500, 3000)}
+CEILINGS = {"paper51": (4200, 1800), "cable_car": (9800, 4700), "zip_line": (6500, 3000)}
 """Calls of Python and C functions that it takes to make a scene and to set its run up, an eighth above those counted; a
 ceiling moves up only on purpose.
 """
