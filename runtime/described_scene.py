@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from .errors import SceneError, near
+from .parts.event import Event
 from .parts.modal_body import ModalBody
 from .parts.pairs import pairs_of
 from .parts.part import Part
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from .parts.body_shape import Shape
 
 P = TypeVar("P", bound=Part)
+
+MOST_LISTED = 20
+"""Parts that a message names."""
 
 
 class DescribedScene(SceneMethods):
@@ -76,6 +80,30 @@ class DescribedScene(SceneMethods):
         """
         return self.changed([(self._part(part), changes)])
 
+    def without(self, *parts: Part | str) -> Self:
+        """Return a scene without some parts and without what hangs on them, checked as any scene is; this one stays.
+
+        parts: their names, or the parts themselves. What hangs on them, such as the supports, slides and loads of a
+        cable, is named in the new scene's ``messages``. Raises SceneError.
+
+        >>> import funicular as fu
+        >>> scene = fu.load_scene("paper51")
+        >>> scene.without("A").messages
+        ['without rigid_body "A", slide "trolley" was left out, too']
+        """
+        gone = [self._part(part) for part in parts]
+        names = _names_of(gone)
+        left, also = [part for part in self.parts() if all(part is not each for each in gone)], []
+        while hanging := [part for part in left if not names.isdisjoint(part.refers_to())]:
+            also += hanging
+            names |= _names_of(hanging)
+            left = [part for part in left if all(part is not each for each in hanging)]
+        made = self.with_parts(left)
+        if also:
+            were = "was" if len(also) == 1 else "were"
+            made.messages.append(f"without {_listing(gone)}, {_listing(also)} {were} left out, too")
+        return made
+
     def _part(self, part: Part | str) -> Part:
         """Return the part of a name, or this part where it is the scene's. Raises SceneError."""
         parts = list(self.parts())
@@ -119,6 +147,17 @@ class DescribedScene(SceneMethods):
             name = part.given_name or getattr(part, "label", part.kind)
             found.setdefault(part.kind, []).append(str(name))
         return found
+
+
+def _names_of(parts: list[Part]) -> set[str]:
+    """Return the names by which other parts may refer to these: events have names of their own."""
+    return {part.given_name for part in parts if part.given_name is not None and part.group != Event.group}
+
+
+def _listing(parts: list[Part]) -> str:
+    """Return in words which parts these are."""
+    named = [part.where for part in parts[:MOST_LISTED]]
+    return ", ".join(named) + (f" and {len(parts) - MOST_LISTED} more" if len(parts) > MOST_LISTED else "")
 
 
 def _counted(number: int, thing: str) -> str:

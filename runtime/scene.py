@@ -57,7 +57,8 @@ class Scene(Viewable, DescribedScene):
     """Cables, bodies, and what joins, holds and loads them.
 
     ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``point_forces``,
-    ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` lists what was adjusted;
+    ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists, all for reading: methods add parts,
+    `replace` and `without` make other scenes; ``messages`` lists what was adjusted;
     ``run_settings``, ``equilibrium_settings`` and ``relax_settings`` hold the settings that a scene file gives;
     ``title`` is what pictures are called: the name of the scene's file without the ending, or what you set.
     """

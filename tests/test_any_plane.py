@@ -46,7 +46,7 @@ def shaken():
 def turned_ends():
     """A beam whose end is turned, with its height downward, and forces that follow it."""
     scene = beam(up=(0, -1, 0))
-    scene.clamps.clear()
+    list.clear(scene.clamps)
     scene.motion("wire", s=0.0, displacement=(0, 0, 0), rotation=((0, 0, 1), TableSignal(time=(0, 0.1, 0.3),
                                                                                        value=(0, 0.1, 0.3))))
     scene.force("wire", s=1.0, value=(0.1, 0.4, 0), follower=True)
@@ -138,7 +138,7 @@ def sideways(scene):
 
 
 def free_in_part(scene):
-    scene.motions.clear()
+    list.clear(scene.motions)
     scene.motion("rope", s=0.0, displacement=(0, None, 0))
 
 
@@ -154,7 +154,7 @@ def test_what_keeps_a_scene_spatial(change, move, reason):
 
 def test_a_free_direction_along_the_axes_of_the_plane():
     spatial = turned_scene(shaken(), *UPRIGHT)
-    spatial.motions.clear()
+    list.clear(spatial.motions)
     spatial.motion("rope", s=0.0, displacement=(0, None, None))
     planar = planar_of(spatial)
     assert planar.scene is not None, planar

@@ -125,7 +125,7 @@ def test_a_function_that_fails_is_named(function, message):
 def test_a_slides_rate_and_traction(integrator, quantity, value, direction):
     """A run that stops there ends with that very rate, or force along the cable: here of friction."""
     scene = riding()
-    scene.slides.clear()
+    dict.clear(scene.slides)
     scene.slide("A", along="wire", s=2.0, name="trolley", friction=fu.Friction(coefficient=0.1, viscous=10.0))
     scene.event("there", quantity=f"trolley.{quantity}", value=value, direction=direction, action="stop")
     run = scene.run(1.5, integrator=integrator, tol=1e-4)

@@ -134,7 +134,7 @@ def test_a_body_that_a_slide_moves_away(scene):
     scene.joint("spherical", "C", (1, 1.001, 0))
     with pytest.warns(FunicularWarning, match=r"moved by 0.001 m"):
         scene.slide("C", along="rope", s=1)
-    scene.joints["joint_1"] = scene.joints["joint_1"].model_copy(update={"b": Attachment(at=(1, 1.1, 0))})
+    scene.put(scene.joints["joint_1"].model_copy(update={"b": Attachment(at=(1, 1.1, 0))}))
     with pytest.raises(SceneError, match=r"its ends are 0.1 m apart at the start"):
         scene.check()
 
@@ -145,10 +145,10 @@ def test_a_tangent_is_enough_for_some(scene):
             {"kind": "spherical"}, {"kind": "revolute", "axis": (1, 0, 0)}, {"kind": "cylindrical", "axis": (-1, 0, 0)},
             {"kind": "universal", "axis": (1, 0, 0), "second_axis": (0, 0, 1)}, {"kind": "weld", "up": (0, 1, 1)}]):
         scene.joint(a=rope[0], b=rope[1], name=f"j{number}", **given)
-        scene.joints.clear()
+        dict.clear(scene.joints)
     joint = scene.joint("weld", *rope, up=(0, 1, 0))
     assert_allclose(joint_axes(scene, joint).a, np.eye(3), atol=1e-15)
-    scene.joints.clear()
+    dict.clear(scene.joints)
     scene.joint("distance", ("rope", 1.0), "B")
     scene.joint("universal", (2, 1, 0), ("rope", 2.0), axis=(0, 0, 1), second_axis=(1, 0, 0))
 

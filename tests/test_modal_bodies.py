@@ -128,7 +128,7 @@ def test_stiffened_it_flies_like_the_mesh_in_absolute_coordinates(boundary):
             draw("bar", start=(0, 0, 0), end=(0.5, 0, 0), section=BAR, material=material, elements=3, **more)
         if boundary == "free":  # its origin is in the middle: with the start at rest
             moving = {"velocity": tuple(np.cross(spin, (0.25, 0, 0)))}
-            modal.bodies["bar"] = modal.bodies["bar"].model_copy(update=moving)
+            modal.put(modal.bodies["bar"].model_copy(update=moving))
         run = modal.run(duration=duration, output_step=duration, tol=1e-7, integrator="radau")
         model = build(nodal)
         model.v[:] = np.cross(spin, model.q.reshape(-1, 3)).ravel()

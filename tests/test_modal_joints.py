@@ -216,7 +216,7 @@ def test_modes_of_a_cable_and_what_rides_it_on_modes():
                                **BAR | {"material": STEEL})
         if kind == "rigid":
             shape, (position, orientation) = bar.shape, bar.frame
-            scene.bodies.clear()
+            dict.clear(scene.bodies)
             scene.rigid_body("bar", mass=shape.mass, inertia=bar.inertia, position=position, orientation=orientation)
         scene.slide("bar", along="wire", s=0.75, at=(-0.25, 0, 0))
         state = scene.equilibrium()
@@ -247,7 +247,7 @@ def test_a_follower_turns_with_the_section():
         moving = {"angular_velocity": (1, 2, -2)}
         bar = scene.modal_body("bar", start=(0, 0, 0), end=(0.5, 0, 0), modes=4, **moving, **BAR | {"material": STEEL})
         if stiff:
-            scene.bodies.clear()
+            dict.clear(scene.bodies)
             scene.rigid_body("bar", mass=bar.mass, inertia=bar.inertia, position=bar.frame[0], **moving)
         scene.force("bar", at=(0.25, 0.015, 0.01), value=(10, -20, 30), follower=True)
         run = scene.run(0.2, output_step=0.01, tol=1e-8, integrator="radau")

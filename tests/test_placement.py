@@ -239,7 +239,7 @@ def test_motions_that_would_begin_with_a_jump(scene):
     remedy = 'let it start from 0, or start with initial="equilibrium"'
     with refused(f'motion on "beam": displacement y is 0.1 m at t = 0, but counts from the place drawn; {remedy}'):
         scene.run(1.0)
-    scene.motions[:] = []
+    list.clear(scene.motions)
     scene.motion("beam", s=0, rotation=((0, 0, 1), 0.2))
     with refused(f'motion on "beam": rotation is 0.2 rad at t = 0, but counts from the place drawn; {remedy}'):
         scene.run(1.0)

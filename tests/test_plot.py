@@ -134,8 +134,8 @@ def test_a_scene_without_a_slide(tmp_path):
     scene = load_scene("paper51")
     recording = fake_recording(scene)
     recording.parts |= {"slides": {}, "bodies": {}}
-    scene.slides.clear()
-    scene.bodies.clear()
+    dict.clear(scene.slides)
+    dict.clear(scene.bodies)
     written = save_plots(Run.from_recording(recording, scene, SETTINGS, Scene.from_toml), tmp_path)
     assert [p.name for p in written] == ["shape.png", "energy.png"]
 

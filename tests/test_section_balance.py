@@ -316,7 +316,7 @@ class TestZipLine:
     @staticmethod
     def run(request):
         scene = load_scene("zip_line")
-        scene.cables["rope"] = scene.cables["rope"].model_copy(update={"elements": request.param})
+        scene.put(scene.cables["rope"].model_copy(update={"elements": request.param}))
         return scene.run(duration=10.05)
 
     def test_tension_beside_the_rider_is_that_of_the_pieces(self, run):

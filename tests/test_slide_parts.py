@@ -79,7 +79,7 @@ def test_without_gravity_up_is_the_cables():
 def test_drives(scene):
     drive = Ramp(start=0, end=1, before=0.5, after=1.5)
     assert scene.slide("A", along="beam", s=0.5, drive=drive, name="winch").prescribed == drive
-    scene.slides.clear()
+    dict.clear(scene.slides)
     moved = scene.slide("A", along="beam", s=0.5, velocity=Harmonic(amplitude=1, frequency=0.5), name="winch")
     assert_allclose(moved.prescribed.value([0.0, 1.0]), [0.5, 0.5 + 2 / np.pi], rtol=1e-14)
 

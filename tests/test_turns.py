@@ -75,7 +75,7 @@ def test_run_keeps_the_turns_of_its_state_of_rest(kind):
 def test_run_that_starts_at_another_place_than_its_state_of_rest_is_refused():
     def pulled(way):
         scene = rod("motion", 0.0)
-        scene.motions.pop()
+        list.pop(scene.motions)
         scene.motion("rod", s=1.0, displacement=(way, 0, 0))
         return scene
 

@@ -49,11 +49,9 @@ def placed_cable(scene: SceneData, cable: Cable) -> Cable:
                 cable.where, f'lies in {called(cable.plane)}, with the height at {show(cable.normal)} x tangent, '
                 f'but cable "{other.name}" in {called(other.plane)}, with that at {show(other.normal)} x tangent',
                 "draw both in one plane, and give up, on the same side of it")
-    scene.cables[cable.name] = cable
-    try:
-        check_plane(scene)
-    finally:
-        del scene.cables[cable.name]
+    others = scene.copied()
+    others.put(cable)
+    check_plane(others)
     return cable
 
 

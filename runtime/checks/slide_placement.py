@@ -155,7 +155,7 @@ def _seated(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
             remedy = f"start the body at position {show(body.position + onto, 'm')}, or {remedy}"
         raise SceneError(slide.where, where, remedy)
     if body is not None:
-        scene.bodies[body.name] = body.model_copy(update={"position": tuple((body.position + onto).tolist())})
+        scene.put(body.model_copy(update={"position": tuple((body.position + onto).tolist())}))
         message = f'{slide.where}: body "{body.name}" was moved by {gap:.6g} m onto cable "{cable.name}"'
     else:
         slide, nearest = _nearest(scene, slide, cable, gap)

@@ -9,7 +9,7 @@ import numpy as np
 
 from .part import Part
 from .schemas import attachment_schema, checked
-from .validation import Vector, finite, number, show, shown, vector3, xyz
+from .validation import NAMES_A_PART, Vector, finite, number, show, shown, vector3, xyz
 
 
 class Attachment(Part):
@@ -18,7 +18,7 @@ class Attachment(Part):
     What it is on is found out when its part is added to a scene; until then a name alone has neither s nor at.
     """
 
-    on: str | None = None
+    on: Annotated[str, NAMES_A_PART] | None = None
     s: Annotated[float, finite("m")] | None = None
     at: Annotated[Vector, xyz("m")] | None = None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
@@ -43,6 +43,11 @@ class Event(Part):
     function: Annotated[Any, checked(_function, ONLY_PYTHON)] = None
     direction: Annotated[str, one_of(("rising", "falling", "both"))] = "both"
     action: Annotated[str, one_of(("record", "stop"))] = "record"
+
+    def refers_to(self) -> Iterator[str]:
+        """Yield the name of the part whose quantity it watches."""
+        if self.quantity is not None:
+            yield self.quantity.partition(".")[0]
 
     @model_validator(mode="after")
     def _watches_one_thing(self) -> Event:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from .schemas import checked
-from .validation import shown
+from .validation import NAMES_A_PART, shown
 
 
 def _listed(value: Any) -> str:
@@ -16,5 +16,5 @@ def _listed(value: Any) -> str:
 
 
 Listed = Annotated[str, checked(_listed, {"anyOf": [
-    {"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]})]
+    {"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}), NAMES_A_PART]
 """The name of a part, given as that or as the part itself; where parts are added, a list of them or "all", too."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
+from itertools import chain
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
-from ..errors import RENAMED, SceneError, check_renamed, near
+from ..errors import RENAMED, SceneError, check_renamed, near, shown_path
 from .quantity import Quantity
-from .validation import shown
+from .validation import NAMES_A_PART, shown
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -169,6 +170,15 @@ class Part(BaseModel, metaclass=_TranslatingType):
                  and field.default is None and getattr(self, name) is not None]
         return self.completed(dict.fromkeys(found)) if found else self
 
+    def refers_to(self) -> Iterator[str]:
+        """Yield the names of the parts that it hangs on, without which it cannot be in a scene."""
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            if isinstance(value, Part):
+                yield from value.refers_to()
+            elif isinstance(value, str) and _names_a_part(field):
+                yield value
+
     @property
     def given_name(self) -> str | None:
         """Return its name, None where it has none, or none yet."""
@@ -196,9 +206,15 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return data
 
 
+def _names_a_part(field: FieldInfo) -> bool:
+    """Return whether a field holds the name of another part."""
+    of_types = (getattr(each, "__metadata__", ()) for each in get_args(field.annotation))
+    return any(mark is NAMES_A_PART for mark in chain(field.metadata, *of_types))
+
+
 def _unknown(name: str, known: Iterable[str]) -> tuple[str, str]:
     """Return cause and remedy for a name that is not known."""
-    return f'"{name}" is not known here', near(name, known)
+    return f'"{shown_path(name)}" is not known here', near(name, known)
 
 
 def _of_complaint(place: str, complaint: ErrorDetails) -> SceneError:

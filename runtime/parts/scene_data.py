@@ -16,6 +16,7 @@ from .crossing import Crossing
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid
+from .groups import PartsByName, PartsInOrder
 from .joint import Joint
 from .kinds import KINDS
 from .load import DistributedForce, Force, Moment
@@ -38,9 +39,9 @@ class SceneData:
     """What a scene is, as checks, model, solvers and results take it; `funicular.Scene` adds what can be done with it.
 
     ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
-    else a list. ``messages`` lists what was adjusted; ``run_settings``, ``equilibrium_settings`` and ``relax_settings``
-    hold the settings that a scene file gives; ``title`` is what pictures are called, the name of its file without the
-    ending.
+    else a list; both are for reading. ``messages`` lists what was adjusted; ``run_settings``, ``equilibrium_settings``
+    and ``relax_settings`` hold the settings that a scene file gives; ``title`` is what pictures are called, the name of
+    its file without the ending.
     """
 
     cables: dict[str, Cable]
@@ -71,7 +72,7 @@ class SceneData:
         except ValueError as error:
             raise SceneError("scene", f"gravity {error}") from None
         for kind in KINDS:
-            setattr(self, kind.group, {} if kind.is_named() else [])
+            setattr(self, kind.group, PartsByName() if kind.is_named() else PartsInOrder())
         self._touching: dict[tuple[str, str], str] = {}
         self.messages: list[str] = []
         self.title = ""
@@ -83,6 +84,12 @@ class SceneData:
         """Refuse an attribute that there is not; of an older version's, say what it is called now."""
         check_renamed(f"{type(self).__name__!r} object", name, dir(self))
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Refuse other parts in the place of a group. Raises SceneError."""
+        if name in _groups() and not isinstance(value, PartsByName | PartsInOrder):
+            raise SceneError("scene", f"{name} cannot be set", "add parts with the scene's methods for their kinds")
+        super().__setattr__(name, value)
 
     @property
     def touching(self) -> Mapping[tuple[str, str], str]:
@@ -139,10 +146,10 @@ class SceneData:
     def put(self, part: Part) -> None:
         """Store a part in its group, as it is."""
         group = getattr(self, part.group)
-        if isinstance(group, dict):
-            group[part.given_name] = part
+        if isinstance(group, PartsByName):
+            group.put(part.given_name or "", part)
         else:
-            group.append(part)
+            group.put(part)
 
     def part_named(self, name: str, group: str) -> Part | None:
         """Return the part whose name that is, None if it is free for a part of a group.
@@ -209,8 +216,8 @@ class SceneData:
         scene = self.copied()
         for name in _groups():
             group = getattr(scene, name)
-            setattr(scene, name, {key: made(part) for key, part in group.items()} if isinstance(group, dict)
-                    else [made(part) for part in group])
+            setattr(scene, name, PartsByName({key: made(part) for key, part in group.items()})
+                    if isinstance(group, PartsByName) else PartsInOrder(map(made, group)))
         return scene
 
     def check_name(self, part: Part) -> None:

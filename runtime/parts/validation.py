@@ -280,7 +280,9 @@ def _name(value: Any) -> str:
 Count = Annotated[int, checked(_count, {"type": "integer", "minimum": 1, "maximum": MOST})]
 Flag = Annotated[bool, checked(_flag, {"type": "boolean"})]
 Name = Annotated[str, checked(_name, {"type": "string", "maxLength": LONGEST_NAME})]
-Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", value))]
+NAMES_A_PART = object()
+"""Marks the type of a field that holds the name of another part."""
+Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", value)), NAMES_A_PART]
 """The name of a part of the scene, given as that or as the part itself."""
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
