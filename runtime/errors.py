@@ -127,7 +127,7 @@ def near(name: str, known: Iterable[str]) -> str:
     known = list(known)
     if (new := new_name(name)) in known:
         return f'it is called "{new}" now{INTEGRALS.get(new[-7:], "")}'
-    if matches := get_close_matches(str(name), known, n=1):
+    if len(str(name)) <= _MOST_SHOWN and (matches := get_close_matches(str(name), known, n=1)):
         return f'did you mean "{matches[0]}"?'
     return "known: " + ", ".join(known) if known else "the scene has none yet"
 

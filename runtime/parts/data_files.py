@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
+import zipfile
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +19,16 @@ if TYPE_CHECKING:
 
 NETCDF = {b"CDF\1": "scipy", b"CDF\2": "scipy", b"CDF\5": None, b"\x89HDF": None}
 """How files of data begin, and what reads them: None leaves it to xarray."""
+
+
+MOST = 50_000_000
+"""Numbers of an array: 400 MB."""
+MOST_IN_FILE = 2 * MOST
+"""Numbers of all arrays in a file together, before any is read: files that compress well may hold any number."""
+
+
+class _TooLargeError(Exception):
+    """A file has more numbers than are read."""
 
 
 @dataclass
@@ -40,6 +53,7 @@ def arrays_of(path: str) -> FileArrays:
         raise ValueError(f'there is no file "{shown_path(path)}"')
     try:
         if file.suffix == ".npz":
+            _check_size(_sizes_in_npz(file))
             with np.load(file, allow_pickle=False) as found:  # a pickle would run code
                 return FileArrays({name: found[name] for name in found.files})
         import xarray  # 0.5 s, for files of netCDF alone
@@ -49,8 +63,38 @@ def arrays_of(path: str) -> FileArrays:
         if head not in NETCDF:
             raise ValueError("it begins like no netCDF file")
         with xarray.open_dataset(file, engine=NETCDF[head], decode_times=False) as found:
+            _check_size({str(name): _numbers(each.shape, each.dtype) for name, each in found.variables.items()})
             made = FileArrays.of(found)
             made.units = {str(name): str(each.attrs.get("units", "")) for name, each in found.variables.items()}
             return made
+    except _TooLargeError as error:
+        raise ValueError(f'"{path}" {error}', "take a coarser grid, or leave out what is not needed") from None
     except Exception as error:
         raise ValueError(f'"{path}" could not be read: {error}', "give an .npz or a netCDF file") from error
+
+
+def _numbers(shape: tuple[int, ...], dtype: np.dtype) -> int:
+    """Return how many numbers of 8 bytes an array takes at least."""
+    return math.prod(shape) * max(1, -(-dtype.itemsize // 8))
+
+
+def _sizes_in_npz(file: Path) -> dict[str, int]:
+    """Return the numbers in each array of an .npz, by the arrays' own headers. Raises what damage leads to."""
+    sizes = {}
+    with zipfile.ZipFile(file) as archive:
+        for name in archive.namelist():
+            with archive.open(name) as member:
+                version = np.lib.format.read_magic(member)
+                read = (np.lib.format.read_array_header_1_0 if version == (1, 0)
+                        else np.lib.format.read_array_header_2_0)
+                shape, _, dtype = read(member)
+                sizes[name.removesuffix(".npy")] = _numbers(shape, dtype)
+    return sizes
+
+
+def _check_size(numbers: Mapping[str, int]) -> None:
+    """Raise _TooLargeError where arrays have more numbers than are read; numbers: by name."""
+    if (total := sum(numbers.values())) > MOST_IN_FILE:
+        largest = max(numbers, key=lambda name: numbers[name])
+        raise _TooLargeError(f"has arrays of {total} numbers, most of them in {largest}; at most {MOST_IN_FILE} are "
+                             "read")

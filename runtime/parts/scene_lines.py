@@ -6,6 +6,9 @@ import re
 import tomllib
 from collections.abc import Callable
 
+LONGEST = 1000
+"""Characters of a name that is looked for: a pattern of a million takes seconds."""
+
 
 def line_of(text: str, table: str, index: int | None = None, entry: str | None = None) -> int | None:
     """Return the number of a line of a scene file, from 1: of an entry of a table, else of the head of the table.
@@ -13,6 +16,8 @@ def line_of(text: str, table: str, index: int | None = None, entry: str | None =
     table: its name; index: of an array of tables, which one, from 0; entry: its name. None where it is not found, such
     as an entry that is missing from a table written in one line.
     """
+    if max(len(table), len(entry or "")) > LONGEST:
+        return None
     lines = text.splitlines(keepends=True)
     head = _first(lines, rf"\s*\[{{{1 if index is None else 2}}}\s*[\"']?{re.escape(table)}[\"']?\s*\]",
                   lambda before: index is None or len(before.get(table, [])) == index, skip=index or 0)

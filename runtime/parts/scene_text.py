@@ -13,7 +13,7 @@ import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Protocol, TypeVar
 
-from ..errors import SceneError, SceneFileError, near
+from ..errors import SceneError, SceneFileError, near, shown_path
 from ..kernels.libraries import check_allowed, resolved
 from .end_stops import Stop
 from .event import Event
@@ -39,6 +39,11 @@ TAGS = {Section: "shape", Signal: "form", Stop: "stop", Solid: "kind", SurfaceSh
 TABLES = ("gravity", *PARTS, *SETTINGS)
 
 
+DOTTED = re.compile(r"""\.[ \t]*+(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+(?=\.)""")
+"""A part in the middle of a key with dots."""
+MOST_DEPTH = 100
+"""Parts of a key; those of scene files have three."""
+
 MOST_ERRORS = 20
 """That are looked for in a file; each is sought in its text, and nobody reads more."""
 
@@ -63,6 +68,7 @@ def read(text: str, origin: str, new: Callable[..., S], directory: str | os.Path
     new: makes an empty scene, of the keyword gravity; directory: where paths in the text start from, by default the
     working directory; libraries: directories of elements that the text may load. Raises SceneError.
     """
+    _check_depth(text, origin)
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:  # its text gives line and column
@@ -87,6 +93,17 @@ def read(text: str, origin: str, new: Callable[..., S], directory: str | os.Path
     return scene
 
 
+def _check_depth(text: str, origin: str) -> None:
+    """Refuse keys of very many parts, which take tomllib time and memory by their square. Raises SceneError."""
+    depth = end = 0
+    for found in DOTTED.finditer(text):
+        depth = depth + 1 if found.start() == end else 1
+        end = found.end()
+        if depth > MOST_DEPTH:
+            line = text.count("\n", 0, end) + 1
+            raise SceneError(f"{origin}, line {line}", f"has a key of more than {MOST_DEPTH} parts with dots between")
+
+
 class _Reader:
     """Adds the parts of a file to a scene, and goes on where one is wrong, so that all errors are found at once."""
 
@@ -104,8 +121,10 @@ class _Reader:
     def read_all(self, scene: Addable) -> None:
         """Add all parts and settings to an empty scene."""
         for name in self.tables:
+            if len(self.found) == MOST_ERRORS:
+                return
             if name not in TABLES:
-                self.note(SceneError("scene", f'"{name}" is not known here', near(name, TABLES)), name,
+                self.note(SceneError("scene", f'"{shown_path(name)}" is not known here', near(name, TABLES)), name,
                           0 if _is_array(self.tables[name]) else None)
         for kind in PARTS:
             try:

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import model_validator
 
 from ..errors import near
-from .data_files import FileArrays, arrays_of
+from .data_files import MOST, FileArrays, arrays_of
 from .part import Part
 from .schemas import checked
 from .validation import LIMITS, OTHER_LIMITS, list_of, one_of, show
@@ -25,8 +25,6 @@ UNITS = {"time": "s", "x": "m", "y": "m", "z": "m"}
 DEGREES = {"linear": 1, "cubic": 3}
 OVERSHOOT = 0.5
 """Of the range of the values: splines half-way between them may go so far beyond it."""
-MOST = 50_000_000
-"""Numbers of a table: 400 MB."""
 
 Times = Annotated[tuple[float, ...] | None, list_of("s", least=2)]
 Lengths = Annotated[tuple[float, ...] | None, list_of("m", least=2)]
