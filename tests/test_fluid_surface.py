@@ -314,3 +314,15 @@ def test_section_forces_by_balance_are_refused():
     with pytest.raises(fu.FunicularError, match="do not know the wet part"):
         rest.section_forces("mast", 1.0)
     assert np.isfinite(np.array(rest.section_forces("mast", 1.0, method="constitutive")["force"])).all()
+
+
+def test_pictures_show_the_surface_where_it_is_in_sight(tmp_path):
+    scene = buoy(2.0, level=30.0)
+    scene.fluid("deep", density=1100, surface=-5000.0)
+    run = scene.run(1.0, tol=1e-4, output_step=0.1)
+    sea = {body.name: body for body in run.animation("falls").clips[0].bodies}["sea"]
+    corners = sea.shape["vertices"] + sea.position[0]
+    assert np.ptp(corners[:, 1]) < 1e-12 and corners[0, 1] == pytest.approx(30)
+    assert {body.name for body in run.animation("falls").clips[0].bodies} == {"buoy", "sea"}
+    run.save_html(tmp_path / "page.html")
+    assert (tmp_path / "page.html").stat().st_size > 10000

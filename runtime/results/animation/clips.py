@@ -23,7 +23,7 @@ from .frames import Frames, no_forces
 from .marks import arrow_length, marks, segments
 from .recorded import Recorded
 from .references import references
-from .surfaces import surface_shape
+from .surfaces import level_shapes, surface_shape
 
 FRAMES = 600
 """Of a run, at most."""
@@ -215,7 +215,9 @@ def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
             cables.append(line)
         else:
             points += _cloud(frames, name)
-    bodies += [surface_shape(frames, name, _centre(frames), size) for name in frames.scene.surfaces]
+    centre = _centre(frames)
+    bodies += [surface_shape(frames, name, centre, size) for name in frames.scene.surfaces]
+    bodies += level_shapes(frames, centre, size)
     return Clip(label, frames.time, tuple(cables), tuple(bodies), (*marks(frames, refs, size), *points),
                 tuple(segments(frames, refs, size, arrow_length(_extents(frames), size))))
 

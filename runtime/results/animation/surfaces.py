@@ -1,9 +1,12 @@
-"""Surfaces that cables and bodies touch, in a picture: a piece of a plane or of hills, boxes, and what is round."""
+"""Surfaces in a picture. Those that cables and bodies touch: a piece of a plane or of hills, boxes, and what is round.
+Those of fluids: a net, through which one sees what is below.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
+from ...model.drags import up_of
 from ...parts.solids import Box, Sphere
 from ...parts.surface import Surface
 from ...parts.surface_shapes import Geometry
@@ -13,6 +16,10 @@ from .frames import Frames, one_or_all
 
 PIECES = 12
 """Of a plane to each side, and points of a half circle."""
+IN_SIGHT = 2.0
+"""Sizes of the scene from its centre within which the surface of a fluid is drawn."""
+STRIP = 0.05
+"""Of a mesh of the net that a fluid's surface is: the width of its lines."""
 
 
 def surface_shape(frames: Frames, name: str, centre: np.ndarray, size: float) -> BodyShape:
@@ -33,6 +40,37 @@ def surface_shape(frames: Frames, name: str, centre: np.ndarray, size: float) ->
     return BodyShape(name, position, orientation, drawn, one_or_all(position))
 
 
+def level_shapes(frames: Frames, centre: np.ndarray, size: float) -> list[BodyShape]:
+    """Return the surfaces of fluids that are in sight as nets that stand still; centre (3,), size: of the scene, m."""
+    up, found = up_of(frames.scene), []
+    for name, fluid in frames.scene.fluids.items():
+        if fluid.surface is not None and abs(above := fluid.surface - up @ centre) <= IN_SIGHT * size:
+            position = np.broadcast_to(centre + above * up, (len(frames.time), 3))
+            orientation = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (len(frames.time), 4))
+            vertices, triangles = _net(up, size)
+            shape = {"kind": "mesh", "vertices": vertices, "triangles": triangles, "offset": [0.0, 0.0, 0.0]}
+            found.append(BodyShape(name, position, orientation, shape, one_or_all(position)))
+    return found
+
+
+def _net(normal: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a square net about the origin."""
+    along, across = _square_to(normal)
+    u, half = np.linspace(-size, size, 2 * PIECES + 1), STRIP * size / PIECES / 2
+    ends = np.array([-size - half, size + half])
+    strips = [_mesh(ends[:, None, None] * one + (at + np.array([-half, half]))[None, :, None] * other)
+              for one, other in ((along, across), (across, along)) for at in u]
+    return (np.concatenate([points for points, _ in strips]),
+            np.concatenate([faces + 4 * k for k, (_, faces) in enumerate(strips)]))
+
+
+def _square_to(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return two unit vectors (3,) that are square to a third and to each other."""
+    along = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+    along /= np.linalg.norm(along)
+    return along, np.cross(along, normal)
+
+
 def _drawn(surface: Surface, shape: Geometry, size: float, offset: np.ndarray) -> dict[str, object]:
     """Return the shape as pictures take it."""
     if isinstance(surface.shape, Sphere):
@@ -49,11 +87,9 @@ def _drawn(surface: Surface, shape: Geometry, size: float, offset: np.ndarray) -
 
 def _plane(shape: Geometry, size: float) -> tuple[np.ndarray, np.ndarray]:
     """Return a square piece of a plane about its origin."""
-    normal = shape.direction
-    along = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-    along /= np.linalg.norm(along)
+    along, across = _square_to(shape.direction)
     u = np.linspace(-size, size, 2 * PIECES + 1)
-    return _mesh(u[:, None, None] * along + u[None, :, None] * np.cross(along, normal))
+    return _mesh(u[:, None, None] * along + u[None, :, None] * across)
 
 
 def _hills(shape: Geometry, size: float) -> tuple[np.ndarray, np.ndarray]:
