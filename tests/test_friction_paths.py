@@ -30,7 +30,7 @@ def test_the_energy_that_friction_takes(integrator, tol, error):
 
 
 @pytest.mark.parametrize(("integrator", "tol", "error"), [
-    ("explicit", 1e-6, 1e-4), ("radau", 1e-6, 1.3e-4), ("radau", 1e-8, 1e-5)])
+    ("explicit", 1e-6, 1e-5), ("radau", 1e-6, 2e-5), ("radau", 1e-8, 1e-6)])
 def test_a_point_that_turns_round_while_it_slides(integrator, tol, error):
     """Where the turn was not looked for, the velocity in m/s was off by 3e-4, 1.6e-4 and 2e-5."""
     exact = grazed("radau", 1e-10)["A.velocity"][-1]

@@ -22,8 +22,10 @@ from .quadrature import along_elements
 GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 KERNELS = {2: "planar_surface", 3: "surface"}
 NONE = np.zeros(0)
-MARK_NUMBERS, AXES_NUMBERS, MARK_PLACE = 9, 9, slice(3, 6)
+MARK_NUMBERS, AXES_NUMBERS, MARK_PLACE = 17, 9, slice(3, 6)
 """That a state keeps of friction: of a point, of a body's axes; places among them (engine/include/contacts.h)."""
+NO_TIME = 1e300
+"""In s: the time of marks as drawn, from where no step begins."""
 
 
 @dataclass(kw_only=True)
@@ -126,7 +128,7 @@ def _marks(part: Contact, scene: SceneData, surface: Surface, drawn: np.ndarray)
         ends = surface.geometry.into(surface.in_axes(on, ends))
         turned = (ends[1:] - ends[0]).T[: scene.dim, : scene.dim]
         axes[: turned.size] = turned.ravel()
-    return np.concatenate([points.ravel(), axes])
+    return np.concatenate([points.ravel(), axes, [NO_TIME]])
 
 
 def _on_body(name: str, points: tuple[Vector, ...], scene: SceneData,

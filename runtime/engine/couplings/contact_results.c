@@ -62,9 +62,16 @@ void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_sta
             memset(mark, 0, sizeof *mark);
             if (touches) memcpy(mark->stretch, point.stretch, sizeof(double) * (size_t)dim);
             memcpy(mark->place, point.distance.y, sizeof(double) * (size_t)dim);
+            memcpy(mark->rate, point.slip, sizeof(double) * (size_t)dim);
+            memcpy(mark->normal_rate, point.normal_rate, sizeof(double) * (size_t)dim);
             fu_surface_into(dim, &on, point.distance.n, mark->normal);
+            mark->gap = -point.depth;
+            mark->gap_rate = -point.sinking;
         }
-    if (fu_contact_rolls(contact)) fu_contact_axes(model, contact, &on, state, fu_contact_axes_of(contact, state));
+    fu_friction_begin *begin = fu_contact_begin_of(contact, state);
+    double unused[3];
+    begin->time = state->t;
+    if (fu_contact_rolls(contact)) fu_contact_axes(model, contact, &on, state, begin->axes, unused);
 }
 
 /* Sums over the points of a contact in their order, and the ends of what touches: what is between two points is linear. */

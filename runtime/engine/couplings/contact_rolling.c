@@ -14,23 +14,31 @@ int fu_contact_rolls(const fu_contact *contact)
     return contact->law.friction > 0.0 && contact->radius > 0.0 && contact->cable < 0;
 }
 
-double *fu_contact_axes_of(const fu_contact *contact, const fu_state *state)
+fu_friction_begin *fu_contact_begin_of(const fu_contact *contact, const fu_state *state)
 {
-    return state->numbers + contact->base.numbers + (long)contact->n_points * FU_FRICTION_MARK;
+    return (fu_friction_begin *)(state->numbers + contact->base.numbers + contact->base.n_numbers) - 1;
 }
 
-void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double axes[9])
+void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double axes[9],
+                     double spin[3])
 {
     const int dim = model->dim;
+    double about[3], with[3];
     fu_attachment_state body;
     fu_attachment_at(model, contact->attachments, state, 0.0, FU_AXES, &body);
     memset(axes, 0, sizeof(double[9]));
     for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j)
             for (int k = 0; k < dim; ++k) axes[i * dim + j] += on->A[k * dim + i] * body.A[k * dim + j];
+    fu_turn_in_space(dim, body.omega, about);
+    fu_turn_in_space(dim, on->omega, with);
+    for (int d = 0; d < 3; ++d) about[d] -= with[d];
+    memcpy(spin, about, sizeof about);
+    if (dim == 3) fu_surface_into(dim, on, about, spin);
 }
 
-void fu_turn_between(int dim, const double *from, const double *to, double turn[3])
+/* Makes the turn from one set of axes to another, along the axes that both are given in. */
+static void turn_between(int dim, const double *from, const double *to, double turn[3])
 {
     double R[9];
     for (int i = 0; i < dim; ++i)
@@ -56,26 +64,10 @@ void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], c
     fu_cross(turn, arm, out);
 }
 
-void fu_contact_roll_on(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *from,
-                        const fu_state *state, const fu_friction_mark *mark, fu_surface_end *end)
+void fu_contact_turning(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
+                        fu_touch_point *point)
 {
-    const int dim = model->dim;
-    fu_attachment_state body;
-    double axes[9], turn[3], roll[3], spin[3], with[3], own[3] = {0.0}, arm[3] = {0.0};
-    if (!fu_contact_rolls(contact)) return;
-    fu_contact_axes(model, contact, on, state, axes);
-    fu_turn_between(dim, fu_contact_axes_of(contact, from), axes, turn);
-    fu_contact_roll(dim, contact, turn, end->n, mark, roll);
-    fu_attachment_at(model, contact->attachments, state, 0.0, FU_AXES, &body);
-    fu_turn_in_space(dim, body.omega, spin);
-    fu_turn_in_space(dim, on->omega, with);
-    for (int d = 0; d < 3; ++d) own[d] = spin[d] - with[d];
-    memcpy(spin, own, sizeof spin);
-    if (dim == 3) fu_surface_into(dim, on, own, spin);
-    for (int d = 0; d < dim; ++d) arm[d] = -contact->radius * end->n[d];
-    fu_cross(spin, arm, own);
-    for (int d = 0; d < dim; ++d) {
-        end->y[d] += roll[d];
-        end->rate[d] += own[d];
-    }
+    double axes[9];
+    fu_contact_axes(model, contact, on, state, axes, point->spin);
+    turn_between(model->dim, fu_contact_begin_of(contact, state)->axes, axes, point->turn);
 }

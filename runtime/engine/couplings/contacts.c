@@ -94,11 +94,8 @@ void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu
     memset(out->r, 0, sizeof out->r);
     memset(out->v, 0, sizeof out->v);
     memset(out->arm, 0, sizeof out->arm);
-    if (fu_contact_rolls(contact)) {
-        double axes[9];
-        fu_contact_axes(model, contact, on, state, axes);
-        fu_turn_between(dim, fu_contact_axes_of(contact, state), axes, out->turn);
-    }
+    if (out->mark) out->since = state->t - fu_contact_begin_of(contact, state)->time;
+    if (fu_contact_rolls(contact)) fu_contact_turning(model, contact, on, state, out);
     if (contact->cable < 0) {
         fu_attachment_state end;
         fu_attachment_at(model, &contact->attachments[point], state, 0.0, FU_POINT, &end);

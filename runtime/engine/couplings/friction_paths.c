@@ -1,116 +1,116 @@
-/* What friction by springs does within a step. Its anchors follow at the ends of steps, as if a point had gone straight on between them: a
- * second way, by a place within the step, tells how far that is off, and what friction takes on the way.
+/* What friction by springs takes within a step, by the cubics through places and velocities at its ends; and how far off the stretch is
+ * that the spring has at its end.
  */
 #include "engine.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A point at both ends of a step of h, s, with the rates of its gap, m/s; its anchor at the first end. */
+#define PARTS 8 /* of a step: those that friction's work is summed over */
+
+/* A point that may touch within a step: at its end, the change of its place and the stretch there. */
 typedef struct {
-    double h, rates[2];
-    fu_surface_end ends[2];
-    double anchor[3];
-} way;
+    fu_touch_point end;
+    fu_attachment_state on;
+    double change[3], stretch[3], normal[3];
+} step_point;
 
-/* A place on the way: the stretch of friction's spring, and the anchor that it has there, along the shape's axes, m. */
-typedef struct {
-    double stretch[3], anchor[3];
-} grip;
-
-/* Makes the grip of a point at y, this far off the surface, that comes from an anchor. */
-static void grip_at(int dim, const fu_contact *contact, const double *y, const double *n, double gap, double rate, const double *anchor,
-                    grip *out)
+/* Makes the spring's way to a part of the step: the place, the bound of the stretch, m. */
+static double place_within(int dim, const fu_contact *contact, const step_point *of, double x, double place[3])
 {
-    const double most = contact->law.friction * fu_contact_press(contact, -gap, -rate);
-    for (int d = 0; d < dim; ++d) out->stretch[d] = y[d] - anchor[d];
-    const double along = fu_dot(dim, n, out->stretch) / fu_dot(dim, n, n);
-    for (int d = 0; d < dim; ++d) out->stretch[d] -= along * n[d];
-    fu_limit_stretch(dim, contact->law.tangential, most, out->stretch);
-    for (int d = 0; d < dim; ++d) out->anchor[d] = y[d] - out->stretch[d];
-}
-
-static void grip_at_end(int dim, const fu_contact *contact, const way *of, int end, const double *anchor, grip *out)
-{
-    grip_at(dim, contact, of->ends[end].y, of->ends[end].n, of->ends[end].gap, of->rates[end], anchor, out);
-}
-
-/* Makes the grip at a part x of the step, by the cubics through places and rates at its ends (Hermite's). */
-static void grip_within(int dim, const fu_contact *contact, const way *of, double x, grip *out)
-{
-    const fu_surface_end *a = &of->ends[0], *b = &of->ends[1];
-    const double rest = 1.0 - x, to[2] = {rest * rest * (1.0 + 2.0 * x), x * x * (3.0 - 2.0 * x)};
-    const double by[2] = {of->h * rest * rest * x, -of->h * x * x * rest};
-    const double gap = to[0] * a->gap + to[1] * b->gap + by[0] * of->rates[0] + by[1] * of->rates[1];
-    const double rate = 6.0 * x * rest * (b->gap - a->gap) / of->h + rest * (1.0 - 3.0 * x) * of->rates[0] + x * (3.0 * x - 2.0) * of->rates[1];
-    double y[3], n[3];
+    const fu_friction_mark *mark = of->end.mark;
+    const double h = of->end.since;
+    const fu_step_ends gap = {{-mark->gap, of->end.depth}, {-mark->gap_rate, of->end.sinking}};
+    const double depth = fu_value_within(&gap, h, x), rate = fu_rate_within(&gap, h, x);
     for (int d = 0; d < dim; ++d) {
-        y[d] = to[0] * a->y[d] + to[1] * b->y[d] + by[0] * a->rate[d] + by[1] * b->rate[d];
-        n[d] = rest * a->n[d] + x * b->n[d];
+        const fu_step_ends ends = {{0.0, of->change[d]}, {mark->rate[d], of->end.slip[d]}};
+        place[d] = fu_value_within(&ends, h, x);
     }
-    grip_at(dim, contact, y, n, gap, rate, of->anchor, out);
+    return depth > 0.0 ? contact->law.friction * fu_press_at(contact, depth, rate, depth).p / contact->law.tangential : 0.0;
 }
 
-/* Returns how much too long the stretch at the end is, m, as the point has turned round on its way, and slid farther than its end tells. */
-static double astray(int dim, const fu_contact *contact, const way *of)
+/* Returns what friction takes over its stiffness, m^2, summed over equal parts of the step. */
+static double taken(int dim, const fu_contact *contact, const step_point *of, int parts)
 {
-    grip once, within, twice;
-    grip_at_end(dim, contact, of, 1, of->anchor, &once);
-    const double before = fu_dot(dim, once.stretch, of->ends[0].rate), after = fu_dot(dim, once.stretch, of->ends[1].rate);
-    grip_within(dim, contact, of, before > 0.0 && after < 0.0 ? before / (before - after) : 0.5, &within);
-    grip_at_end(dim, contact, of, 1, within.anchor, &twice);
-    return fabs(sqrt(fu_dot(dim, once.stretch, once.stretch)) - sqrt(fu_dot(dim, twice.stretch, twice.stretch)));
+    double sum = 0.0, stretch[3] = {0.0}, last[3] = {0.0}, place[3];
+    memcpy(stretch, of->end.mark->stretch, sizeof(double) * (size_t)dim);
+    for (int i = 1; i <= parts; ++i) {
+        double without[3], across = 0.0;
+        const double most = place_within(dim, contact, of, (double)i / parts, place);
+        for (int d = 0; d < dim; ++d) without[d] = stretch[d] + place[d] - last[d];
+        across = fu_dot(dim, of->normal, without) / fu_dot(dim, of->normal, of->normal);
+        for (int d = 0; d < dim; ++d) without[d] -= across * of->normal[d];
+        double next[3];
+        memcpy(next, without, sizeof next);
+        fu_limit_stretch(dim, 1.0, most, next);
+        for (int d = 0; d < dim; ++d) {
+            sum += 0.5 * (stretch[d] + next[d]) * (without[d] - next[d]);
+            stretch[d] = next[d];
+            last[d] = place[d];
+        }
+    }
+    return sum + 0.5 * (fu_dot(dim, stretch, stretch) - fu_dot(dim, of->stretch, of->stretch));
 }
 
-/* Returns what friction takes between two places, over its stiffness: the mean stretch times the way of the anchor, m^2. */
-static double taken(int dim, const grip *from, const grip *to)
+static double taken_by_ends(const fu_model *model, const fu_contact *contact, step_point *of)
 {
-    double sum = 0.0;
-    for (int d = 0; d < dim; ++d) sum += 0.5 * (from->stretch[d] + to->stretch[d]) * (to->anchor[d] - from->anchor[d]);
-    return sum;
+    return taken(model->dim, contact, of, 1);
 }
 
-static double taken_by_ends(int dim, const fu_contact *contact, const way *of)
+/* Returns the same by two sums, as the error falls with the square of the parts (Richardson). */
+static double taken_on_way(const fu_model *model, const fu_contact *contact, step_point *of)
 {
-    grip from, to;
-    grip_at_end(dim, contact, of, 0, of->anchor, &from);
-    grip_at_end(dim, contact, of, 1, of->anchor, &to);
-    return taken(dim, &from, &to);
+    return (4.0 * taken(model->dim, contact, of, PARTS) - taken(model->dim, contact, of, PARTS / 2)) / 3.0;
 }
 
-/* Returns what friction takes on the way over its stiffness, m^2, by one and two trapezoids (Richardson). */
-static double taken_on_way(int dim, const fu_contact *contact, const way *of)
-{
-    grip from, within, to;
-    grip_at_end(dim, contact, of, 0, of->anchor, &from);
-    grip_within(dim, contact, of, 0.5, &within);
-    grip_at_end(dim, contact, of, 1, of->anchor, &to);
-    return (4.0 * (taken(dim, &from, &within) + taken(dim, &within, &to)) - taken(dim, &from, &to)) / 3.0;
-}
-
-typedef double visitor(int dim, const fu_contact *contact, const way *of);
-
-/* Calls `visit` with the way of each point that touches at an end of the step; returns the largest value, or their sum by weight. */
-static double visit_ways(const fu_model *model, const fu_contact *contact, const fu_state *from, const fu_state *to, visitor *visit, int largest)
+/* Returns how far off the stretch may be at the end, m: by how much another way leads elsewhere, the parabola without the velocities at
+ * the beginning. */
+static double astray(const fu_model *model, const fu_contact *contact, step_point *of)
 {
     const int dim = model->dim;
+    fu_friction_mark other = *of->end.mark;
+    fu_touch_point end = of->end;
+    double square = 0.0;
+    if (!(end.depth > 0.0)) return 0.0;
+    for (int d = 0; d < dim; ++d) other.rate[d] = 2.0 * of->change[d] / end.since - end.slip[d];
+    other.gap_rate = -2.0 * (end.depth + other.gap) / end.since + end.sinking;
+    end.mark = &other;
+    fu_contact_stretch(model, contact, &of->on, &end);
+    for (int d = 0; d < dim; ++d) square += (end.stretch[d] - of->stretch[d]) * (end.stretch[d] - of->stretch[d]);
+    return sqrt(square);
+}
+
+typedef double visitor(const fu_model *model, const fu_contact *contact, step_point *of);
+
+/* Makes a point over the step; returns whether it touches at one of the ends. */
+static int point_over_step(const fu_model *model, const fu_contact *contact, const fu_state *to, int element, int number, step_point *out)
+{
+    const int dim = model->dim;
+    fu_touch_point *end = &out->end;
+    fu_contact_place(model, contact, &out->on, to, element, number, end);
+    const int touches = fu_contact_touches(model, contact, &out->on, end);
+    if (!touches && !(end->mark->gap < 0.0)) return 0;
+    fu_surface_into(dim, &out->on, end->distance.n, out->normal);
+    fu_contact_change(dim, contact, end, out->normal, out->change);
+    memset(out->stretch, 0, sizeof out->stretch);
+    for (int d = 0; d < dim && touches; ++d) out->stretch[d] = end->stretch[d];
+    return 1;
+}
+
+/* Calls `visit` with each point that touches at an end of the step; returns the largest value, or their sum by weight. */
+static double visit_points(const fu_model *model, const fu_contact *contact, const fu_state *from, const fu_state *to, visitor *visit, int largest)
+{
     double found = 0.0;
-    way of = {.h = to->t - from->t};
-    fu_attachment_state on[2];
-    if (contact->law.friction == 0.0 || !(of.h > 0.0)) return 0.0;
-    fu_surface_at(model, &contact->surface, from, &on[0]);
-    fu_surface_at(model, &contact->surface, to, &on[1]);
+    step_point of;
+    fu_attachment_state before;
+    if (contact->law.friction == 0.0 || !(to->t > from->t)) return 0.0;
+    fu_surface_at(model, &contact->surface, from, &before);
+    fu_surface_at(model, &contact->surface, to, &of.on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_touch(model, contact, &on[0], from, e, 0.0) && !fu_contact_may_touch(model, contact, &on[1], to, e, 0.0)) continue;
+        if (!fu_contact_may_touch(model, contact, &before, from, e, 0.0) && !fu_contact_may_touch(model, contact, &of.on, to, e, 0.0)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
-            const fu_friction_mark *mark = fu_contact_mark(contact, from, e, k);
-            for (int d = 0; d < dim; ++d) of.anchor[d] = mark->place[d] - mark->stretch[d];
-            fu_contact_gap(model, contact, &on[0], from, e, k, &of.rates[0], &of.ends[0]);
-            fu_contact_gap(model, contact, &on[1], to, e, k, &of.rates[1], &of.ends[1]);
-            if (!(of.ends[0].gap < 0.0) && !(of.ends[1].gap < 0.0)) continue;
-            fu_contact_roll_on(model, contact, &on[0], from, from, mark, &of.ends[0]);
-            fu_contact_roll_on(model, contact, &on[1], from, to, mark, &of.ends[1]);
-            const double value = visit(dim, contact, &of);
+            if (!point_over_step(model, contact, to, e, k, &of)) continue;
+            const double value = visit(model, contact, &of);
             found = largest ? fmax(found, value) : found + fu_contact_weight(contact, e, k) * value;
         }
     }
@@ -120,10 +120,10 @@ static double visit_ways(const fu_model *model, const fu_contact *contact, const
 double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends)
 {
     const fu_contact *contact = (const fu_contact *)coupling;
-    return contact->law.tangential * visit_ways(model, contact, from, to, by_ends ? taken_by_ends : taken_on_way, 0);
+    return contact->law.tangential * visit_points(model, contact, from, to, by_ends ? taken_by_ends : taken_on_way, 0);
 }
 
 double fu_contact_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
 {
-    return visit_ways(model, (const fu_contact *)coupling, from, to, astray, 1);
+    return visit_points(model, (const fu_contact *)coupling, from, to, astray, 1);
 }

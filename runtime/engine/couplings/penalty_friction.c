@@ -1,7 +1,20 @@
-/* Friction that sticks beside a force by penalty: of contact with surfaces and of crossings. */
+/* Friction that sticks beside a force by penalty: of contact with surfaces and of crossings.
+ *
+ * A spring is stretched as what it holds goes past what is touched, and slides where it is stretched by more than the bound b that friction
+ * has there. Along one direction, with the stretch a(x) as if nothing slid after the beginning of a step, the stretch at its end is
+ *
+ *     a(1) + min(0, min over x of b(x) - a(x)),
+ *
+ * and the like of sliding backwards. Where it slides to the end of the step the smallest is that at the end: the spring is then as long as
+ * friction allows. Where it slid within the step and then sticks, the smallest is where that changes. With the cubics through places and
+ * velocities at both ends of the step that error is of the fourth order in the step; by the ends alone it was of the second.
+ */
 #include "engine.h"
 
 #include <math.h>
+
+#define SAMPLES 3     /* parts of a step that the room to the bound is known at the ends of: of the cubic through it */
+#define REFINEMENTS 2 /* of where that room is least */
 
 int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
 {
@@ -9,4 +22,105 @@ int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
     if (!(size > most)) return 0;
     for (int d = 0; d < dim; ++d) stretch[d] *= most / size;
     return 1;
+}
+
+fu_cubic fu_cubic_at(double x)
+{
+    const double rest = 1.0 - x;
+    return (fu_cubic){x * x * (3.0 - 2.0 * x), {rest * rest * x, -x * x * rest}, 6.0 * x * rest, {rest * (1.0 - 3.0 * x), x * (3.0 * x - 2.0)}};
+}
+
+double fu_value_within(const fu_step_ends *ends, double h, double x)
+{
+    const fu_cubic at = fu_cubic_at(x);
+    return ends->value[0] + at.change * (ends->value[1] - ends->value[0]) + h * (at.rates[0] * ends->rate[0] + at.rates[1] * ends->rate[1]);
+}
+
+double fu_rate_within(const fu_step_ends *ends, double h, double x)
+{
+    const fu_cubic at = fu_cubic_at(x);
+    return at.slope * (ends->value[1] - ends->value[0]) / h + at.slope_rates[0] * ends->rate[0] + at.slope_rates[1] * ends->rate[1];
+}
+
+double fu_part_to_rise(const fu_step_ends *ends, double h)
+{
+    double low = 0.0, high = 1.0, x = ends->value[0] / (ends->value[0] - ends->value[1]);
+    for (int i = 0; i < 50 && high - low > 1e-15; ++i) {
+        const double value = fu_value_within(ends, h, x), slope = h * fu_rate_within(ends, h, x);
+        if (value > 0.0) high = x;
+        else low = x;
+        const double next = x - value / slope;
+        if (fabs(next - x) <= 1e-15) break;
+        x = slope > 0.0 && next > low && next < high ? next : 0.5 * (low + high);
+    }
+    return x;
+}
+
+/* Returns where the cubic through values at equal distances on [0, 1] is least, or 1. */
+static double least_of(const double g[SAMPLES + 1])
+{
+    const double a = 0.5 * (-11.0 * g[0] + 18.0 * g[1] - 9.0 * g[2] + 2.0 * g[3]);
+    const double b = 0.5 * (18.0 * g[0] - 45.0 * g[1] + 36.0 * g[2] - 9.0 * g[3]);
+    const double c = 0.5 * (-9.0 * g[0] + 27.0 * g[1] - 27.0 * g[2] + 9.0 * g[3]);
+    const double square = b * b - 3.0 * a * c, below = b + sqrt(fmax(square, 0.0)), x = -a / below;
+    if (!(square > 0.0) || !(below != 0.0) || !(x > 0.0 && x < 1.0)) return 1.0;
+    return g[0] + x * (a + x * (b + x * c)) < g[SAMPLES] ? x : 1.0;
+}
+
+/* Returns the bound at a part of the step, m, and makes the stretch as if nothing slid. */
+static double bound_at(const fu_friction_way *way, double x, double *stretch)
+{
+    const double depth = fu_value_within(&way->depth, way->h, x);
+    *stretch = fu_value_within(&way->stretch, way->h, x);
+    return depth > 0.0 ? way->bound(way->of, depth, fu_rate_within(&way->depth, way->h, x)) / way->stiffness : 0.0;
+}
+
+static double room_at(const fu_friction_way *way, double x, int side)
+{
+    double stretch;
+    const double bound = bound_at(way, x, &stretch);
+    return bound - side * stretch;
+}
+
+/* Returns the least room to a side near x, which is improved by parabolas. */
+static double least_room(const fu_friction_way *way, int side, double *x)
+{
+    double width = 0.1 * (1.0 - way->from), least = room_at(way, *x, side);
+    for (int i = 0; i < REFINEMENTS; ++i) {
+        const double low = fmax(*x - width, way->from), high = fmin(*x + width, 1.0);
+        const double g[3] = {room_at(way, low, side), least, room_at(way, high, side)};
+        const double left = (g[1] - g[0]) / (*x - low), right = (g[2] - g[1]) / (high - *x);
+        if (!(right > left)) break;
+        const double next = fmin(fmax(0.5 * (low + *x) - left * 0.5 * (high - low) / (right - left), low), high);
+        const double value = room_at(way, next, side);
+        if (!(value < least)) break;
+        *x = next;
+        least = value;
+        width *= 0.1;
+    }
+    return least;
+}
+
+fu_friction_end fu_end_of_friction(const fu_friction_way *way)
+{
+    const double all = way->stretch.value[1];
+    double room[2][SAMPLES + 1], bound = 0.0;
+    fu_friction_end end = {all, 1.0, 0};
+    for (int i = 0; i <= SAMPLES; ++i) {
+        double stretch;
+        bound = bound_at(way, i == SAMPLES ? 1.0 : way->from + (1.0 - way->from) * i / SAMPLES, &stretch);
+        room[0][i] = bound - stretch;
+        room[1][i] = bound + stretch;
+    }
+    for (int k = 0; k < 2; ++k) {
+        const int side = k ? -1 : 1;
+        double part = least_of(room[k]), least = room[k][SAMPLES];
+        if (part < 1.0) {
+            part = way->from + (1.0 - way->from) * part;
+            least = least_room(way, side, &part);
+        }
+        if (least < 0.0 && side * (all + side * least) < side * end.stretch) end = (fu_friction_end){all + side * least, part, side};
+    }
+    if (fabs(end.stretch) > bound) end = (fu_friction_end){copysign(bound, end.stretch), 1.0, end.stretch > 0.0 ? 1 : -1};
+    return end;
 }

@@ -3,6 +3,7 @@
 #define FUNICULAR_CONTACTS_H
 
 #include "coupling.h"
+#include "penalty_friction.h"
 #include "surfaces.h"
 
 #define FU_CONTACT_POINTS 16 /* of a body */
@@ -16,12 +17,16 @@ typedef struct {
 } fu_contact_law;
 
 /* What a state keeps of friction since the last step. Of each point, along the shape's axes: the stretch of the spring, the place, the
- * normal (zero as drawn, where it is not known). After those of all points, of the contact: the axes of the body along the shape's. */
+ * normal (zero as drawn, where it is not known) and its rate, the velocity where it touches past the surface, how far it is off the surface, and how
+ * fast that grows. After those of all points, of the contact: the axes of the body along the shape's; the time, s (far ahead as drawn, from
+ * where no step begins). */
 typedef struct {
-    double stretch[3], place[3], normal[3];
+    double stretch[3], place[3], normal[3], normal_rate[3], rate[3], gap, gap_rate;
 } fu_friction_mark;
-#define FU_FRICTION_MARK 9 /* numbers of a point */
-#define FU_FRICTION_AXES 9 /* numbers of a contact */
+typedef struct {
+    double axes[9], time;
+} fu_friction_begin;
+#define FU_FRICTION_MARK 17 /* numbers of a point */
 _Static_assert(sizeof(fu_friction_mark) == FU_FRICTION_MARK * sizeof(double), "numbers of a state are doubles");
 
 /* Points of a cable are those of quadrature on its elements, with weights in m; those of a body have the weight 1. */
@@ -45,22 +50,36 @@ typedef struct {
 extern const fu_coupling_type fu_contact_type;
 extern const fu_coupling_events fu_contact_events;
 
-/* A point that may touch: where it is, how it moves; its mark, null without friction; the turn of its body past the surface since the
- * mark, along the shape's axes; and how it touches: how deep it is, the normal, the way from it to where its sphere touches, the force
- * on it (a length) with its part that is friction, derivatives by its place, by its velocity past the surface and by the stretch alone,
- * the stored energy and the power that goes to heat in the normal force, what friction's spring is stretched by, along the shape's
- * axes, and whether friction slides. */
+/* A point that may touch: where it is, how it moves; its mark, null without friction; the time since, s, the turn of its body past the
+ * surface since then, and the rate of that, along the shape's axes; and how it touches: how deep it is and how fast it sinks, the normal,
+ * its rate along the shape's axes, the way from it to where its sphere touches, the velocity there past the surface, along the shape's axes, the force on it (a length)
+ * with its part that is friction, derivatives by its place, by its velocity past the surface and by the stretch alone, the stored energy
+ * and the power that goes to heat in the normal force, what friction's spring is stretched by, along the shape's axes, and how that has
+ * come about, whether friction slides. */
 typedef struct {
     double r[3], v[3];
     const fu_friction_mark *mark;
-    double turn[3], arm[3];
-    double depth, press, f[3], friction[3], by_place[9], by_rate[9], by_stretch[9], energy, power, stretch[3];
+    double since, turn[3], spin[3], arm[3], slip[3], normal_rate[3];
+    double depth, sinking, press, f[3], friction[3], by_place[9], by_rate[9], by_stretch[9], energy, power, stretch[3];
     fu_distance distance;
+    fu_friction_end friction_end;
     int slides;
 } fu_touch_point;
 
-/* couplings/contact_points.c; fu_contact_press: what presses on a point at a depth, N (a length). */
-double fu_contact_press(const fu_contact *contact, double depth, double rate);
+/* The normal force at a depth, with its derivatives, its elastic part, the stored energy; the mean of that part on a way to another depth. */
+typedef struct {
+    double p, by_depth, by_rate, elastic, energy, mean;
+} fu_pressing;
+
+/* couplings/contact_friction.c: friction where a point touches, and its derivatives, added to those of the normal force. */
+void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
+/* Makes what a point has moved by along the surface since its mark, m: along the shape's axes, as the normal there is. */
+void fu_contact_change(int dim, const fu_contact *contact, const fu_touch_point *point, const double *normal, double change[3]);
+void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
+
+/* couplings/contact_points.c; fu_contact_slip: makes distance, depth and velocities of a point, whether it touches or not. */
+fu_pressing fu_press_at(const fu_contact *contact, double depth, double rate, double depth_next);
+void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
 int fu_contact_touches(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
 void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
@@ -81,15 +100,14 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
                           int number, const fu_touch_point *point, double *f);
 void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum);
 
-/* couplings/contact_rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the shape's; how far
- * these have turned from others, along the shape's axes; how a point of a sphere moves, by how its centre does and turns: P (dim x n). */
+/* couplings/contact_rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the shape's, and how
+ * fast they turn, along the shape's axes; the turn since the mark, and its rate. */
 int fu_contact_rolls(const fu_contact *contact);
-void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double axes[9]);
-void fu_turn_between(int dim, const double *from, const double *to, double turn[3]);
-double *fu_contact_axes_of(const fu_contact *contact, const fu_state *state);
-/* Adds to where a point is, and how it moves, what its sphere's turning since `from` adds of where it touches. */
-void fu_contact_roll_on(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *from,
-                        const fu_state *state, const fu_friction_mark *mark, fu_surface_end *end);
+void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double axes[9],
+                     double spin[3]);
+void fu_contact_turning(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
+                        fu_touch_point *point);
+fu_friction_begin *fu_contact_begin_of(const fu_contact *contact, const fu_state *state);
 /* Makes what the point where a sphere touches has moved by its turning alone, along the shape's axes. */
 void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal, const fu_friction_mark *mark, double out[3]);
 

@@ -5,4 +5,40 @@
 /* Limits the stretch of friction's spring, of this stiffness in N/m, to what friction allows, in N; returns whether that slides. */
 int fu_limit_stretch(int dim, double stiffness, double most, double *stretch);
 
+/* Weights of the cubic through values and rates at both ends of a step of the length 1 (Hermite), at a part of it: of the change of the
+ * value, of both rates; and the same of its slope. */
+typedef struct {
+    double change, rates[2], slope, slope_rates[2];
+} fu_cubic;
+fu_cubic fu_cubic_at(double x);
+
+/* Values at both ends of a step, and their rates. */
+typedef struct {
+    double value[2], rate[2];
+} fu_step_ends;
+/* The value after a part of a step of h, s; its rate there. */
+double fu_value_within(const fu_step_ends *ends, double h, double x);
+double fu_rate_within(const fu_step_ends *ends, double h, double x);
+/* The last part of a step after which a value is positive that is not at its beginning and is at its end. */
+double fu_part_to_rise(const fu_step_ends *ends, double h);
+
+/* What friction may be on its way through a step, N, at a depth, m, that changes at a rate, m/s. */
+typedef double fu_friction_bound(const void *of, double depth, double rate);
+
+/* A spring's way through a step of h, s, along the direction of its stretch at the end: its stretch as if nothing slid, m, and the
+ * depth; `from`: the part of the step that it begins at; stiffness: N/m. */
+typedef struct {
+    fu_step_ends stretch, depth;
+    double h, from, stiffness;
+    fu_friction_bound *bound;
+    const void *of;
+} fu_friction_way;
+
+/* The stretch at the end, m; after which part of the step it slid last, and whether forwards, 1, backwards, -1, or not at all, 0. */
+typedef struct {
+    double stretch, part;
+    int slid;
+} fu_friction_end;
+fu_friction_end fu_end_of_friction(const fu_friction_way *way);
+
 #endif

@@ -10,7 +10,7 @@
 #define DIVISIONS 8           /* rejections of a fixed step that each step taken makes up for: so often it may be divided */
 #define MOST_TURNS 2          /* of a coupling on one boundary before a step is taken all the same: it rests there */
 #define MOST_CUTS 4           /* of a step before what is watched dips beyond zero in it: then it is taken all the same */
-#define CARRIED 0.15          /* of the error that is allowed over the run: what one turn of a point that friction holds may make */
+#define CARRIED 0.15          /* of the error that is allowed over the run: what one step may err by of what friction holds */
 #define PASSED_BY 0.5         /* of the step that was wanted: what is wanted after one whose event was not found */
 
 /* Starts the scheme anew after a very short step, unless the scheme went over it as one that leaves what it goes on with; returns a
@@ -92,7 +92,7 @@ static double error_of(fu_run *run, double h)
     const double begin = uncounted(run), error = fmax(run->integrator->error(run, h), fu_passage_error(run, h));
     const double carried = fu_carried_error(run->model, &run->now, &run->next) / (CARRIED * fu_allowed_error(run));
     run->statistics.time_error += uncounted(run) - begin;
-    return fmax(error, run->allowed * pow(carried, 0.5 * run->order)); /* what is carried errs by the square of the step */
+    return fmax(error, run->allowed * pow(carried, 0.5 * run->order)); /* what is carried errs by the square of the step at least */
 }
 
 /* Lets couplings be as in `now` for the rest of the step. */

@@ -1,0 +1,183 @@
+/* Friction of contact at a point: the stretch of its spring at the end of its way since the mark (couplings/penalty_friction.c), and how
+ * that changes with where the point is and how it moves.
+ */
+#include "engine.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The way of a point since its mark, along the shape's axes: by the end of it, by its beginning; the stretch as if nothing slid, with its
+ * direction; where the way is not known in time, as in statics, h is 0. */
+typedef struct {
+    double normal[3], change[3], x[3], along[3], size, from;
+    fu_friction_way way;
+} path;
+
+static double bound(const void *of, double depth, double rate)
+{
+    const fu_contact *contact = of;
+    return contact->law.friction * fu_press_at(contact, depth, rate, depth).p;
+}
+
+/* Makes the part of a step after which the point touches, and how far it has gone until then. */
+static void begin_at_touch(int dim, const fu_touch_point *point, path *of, double gone[3])
+{
+    const fu_friction_mark *mark = point->mark;
+    const double h = of->way.h;
+    of->from = 0.0;
+    if (!(mark->gap > 0.0)) return;
+    of->from = h > 0.0 ? fu_part_to_rise(&of->way.depth, h) : mark->gap / (mark->gap + point->depth);
+    for (int d = 0; d < dim; ++d) {
+        const fu_step_ends ends = {{0.0, of->change[d]}, {mark->rate[d], point->slip[d]}};
+        gone[d] = h > 0.0 ? fu_value_within(&ends, h, of->from) : of->from * of->change[d];
+    }
+}
+
+void fu_contact_change(int dim, const fu_contact *contact, const fu_touch_point *point, const double *normal, double change[3])
+{
+    const fu_friction_mark *mark = point->mark;
+    const double before = fu_dot(dim, mark->normal, mark->normal), now = fu_dot(dim, normal, normal), h = fmax(point->since, 0.0);
+    const double sunk = mark->gap + point->depth, rates[2] = {h * mark->gap_rate, -h * point->sinking};
+    const double halfway = -1.5 * sunk - 0.25 * (rates[0] + rates[1]);
+    double roll[3] = {0.0};
+    if (fu_contact_rolls(contact)) fu_contact_roll(dim, contact, point->turn, normal, mark, roll);
+    for (int d = 0; d < dim; ++d) change[d] = point->distance.y[d] - mark->place[d] + roll[d];
+    if (!(before > 0.0)) return;
+    /* what it sinks by is not along the surface: the integral of the normal times the rate of the gap, both by cubics, by Simpson's rule */
+    for (int d = 0; d < dim; ++d) {
+        const double n[2] = {mark->normal[d] / before, normal[d] / now}, turned = mark->normal_rate[d] / before - point->normal_rate[d] / now;
+        const double middle = 0.5 * (n[0] + n[1]) + 0.125 * h * turned;
+        change[d] -= h > 0.0 ? (n[0] * rates[0] + 4.0 * middle * halfway + n[1] * rates[1]) / 6.0 : -middle * sunk;
+    }
+}
+
+/* Makes a stretch along the surface at the mark that along it at the end: turned as the normal has, by the shortest way. */
+static void turn_along(int dim, const fu_friction_mark *mark, const double *normal, double stretch[3])
+{
+    const double before = sqrt(fu_dot(dim, mark->normal, mark->normal)), now = sqrt(fu_dot(dim, normal, normal));
+    memcpy(stretch, mark->stretch, sizeof(double[3]));
+    if (!(before > 0.0)) return;
+    const double share = fu_dot(dim, normal, mark->stretch) / now / (1.0 + fu_dot(dim, normal, mark->normal) / (before * now));
+    for (int d = 0; d < dim; ++d) stretch[d] -= share * (mark->normal[d] / before + normal[d] / now);
+}
+
+static void path_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point, path *out)
+{
+    const int dim = model->dim;
+    const fu_friction_mark *mark = point->mark;
+    double gone[3] = {0.0}, stretch[3];
+    fu_surface_into(dim, on, point->distance.n, out->normal);
+    turn_along(dim, mark, out->normal, stretch);
+    fu_contact_change(dim, contact, point, out->normal, out->change);
+    out->way = (fu_friction_way){.h = point->since, .stiffness = contact->law.tangential, .bound = bound, .of = contact};
+    out->way.depth = (fu_step_ends){{-mark->gap, point->depth}, {-mark->gap_rate, point->sinking}};
+    begin_at_touch(dim, point, out, gone);
+    for (int d = 0; d < dim; ++d) out->x[d] = (out->from > 0.0 ? 0.0 : stretch[d]) + out->change[d] - gone[d];
+    const double across = fu_dot(dim, out->normal, out->x) / fu_dot(dim, out->normal, out->normal);
+    for (int d = 0; d < dim; ++d) out->along[d] = out->x[d] - across * out->normal[d];
+    out->size = sqrt(fu_dot(dim, out->along, out->along));
+    for (int d = 0; d < dim && out->size > 0.0; ++d) out->along[d] /= out->size;
+    out->way.from = out->from;
+    out->way.stretch.value[0] = out->size - fu_dot(dim, out->along, out->change);
+    out->way.stretch.value[1] = out->size;
+    out->way.stretch.rate[0] = fu_dot(dim, out->along, mark->rate);
+    out->way.stretch.rate[1] = fu_dot(dim, out->along, point->slip);
+}
+
+void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point)
+{
+    const int dim = model->dim;
+    const double most = contact->law.friction * point->press / contact->law.tangential;
+    double x[3];
+    path of;
+    path_of(model, contact, on, point, &of);
+    if (of.way.h > 0.0) point->friction_end = fu_end_of_friction(&of.way);
+    else point->friction_end = (fu_friction_end){fmin(of.size, most), 1.0, of.size > most};
+    point->slides = point->friction_end.slid != 0 && point->friction_end.part == 1.0;
+    for (int d = 0; d < dim; ++d) point->stretch[d] = point->friction_end.stretch * of.along[d];
+    fu_surface_out(dim, on, point->stretch, x);
+    for (int d = 0; d < dim; ++d) {
+        point->friction[d] = -contact->law.tangential * x[d];
+        point->f[d] += point->friction[d];
+    }
+    point->energy += 0.5 * contact->law.tangential * fu_dot(dim, x, x);
+}
+
+/* Adds what follows from a way that touches only after a part of the step: of that the place and the velocity at the end count less. */
+static void add_touching(int dim, const fu_attachment_state *on, const path *of, fu_touch_point *point)
+{
+    const double h = of->way.h, *n = point->distance.n;
+    const fu_cubic at = fu_cubic_at(of->from);
+    const double sinking = h > 0.0 ? h * fu_rate_within(&of->way.depth, h, of->from) : point->depth + point->mark->gap;
+    const double end = h > 0.0 ? at.change : of->from, rate = h > 0.0 ? h * at.rates[1] : 0.0;
+    double by_place[9], by_rate[9], slope[3], own[3];
+    for (int d = 0; d < dim; ++d) {
+        const fu_step_ends ends = {{0.0, of->change[d]}, {point->mark->rate[d], point->slip[d]}};
+        own[d] = h > 0.0 ? h * fu_rate_within(&ends, h, of->from) : of->change[d];
+    }
+    fu_surface_out(dim, on, own, slope);
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            by_place[i * dim + j] = -end * (i == j) - slope[i] * n[j] * end / sinking;
+            by_rate[i * dim + j] = -rate * (i == j) - slope[i] * n[j] * rate / sinking;
+        }
+    double turned[9];
+    memcpy(turned, point->by_stretch, sizeof turned);
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            for (int k = 0; k < dim; ++k) {
+                point->by_place[i * dim + j] += turned[i * dim + k] * by_place[k * dim + j];
+                point->by_rate[i * dim + j] += turned[i * dim + k] * by_rate[k * dim + j];
+            }
+            point->by_stretch[i * dim + j] *= 1.0 - end;
+        }
+}
+
+/* Makes the derivatives of friction that has slid within the step and then sticks, or slides to its end. */
+static void add_sliding(int dim, const fu_contact *contact, const fu_attachment_state *on, const path *of, const double *x, fu_touch_point *point)
+{
+    const fu_distance *at = &point->distance;
+    const fu_friction_end *end = &point->friction_end;
+    const double k = contact->law.tangential, mu = contact->law.friction;
+    double w[3], f[3], by_place[9], by_rate[9], along[3];
+    fu_cubic weights = {1.0, {0.0, 0.0}, 0.0, {0.0, 1.0}};
+    fu_surface_past(dim, on, point->r, point->v, w);
+    double depth = point->depth, sinking = point->sinking;
+    if (end->part < 1.0) {
+        weights = fu_cubic_at(end->part);
+        depth = fu_value_within(&of->way.depth, of->way.h, end->part);
+        sinking = fu_rate_within(&of->way.depth, of->way.h, end->part);
+    }
+    const fu_pressing law = fu_press_at(contact, depth, sinking, depth);
+    const double h = of->way.h, sign = end->slid;
+    const double rate = h > 0.0 ? weights.slope / h : 0.0, lag = h > 0.0 ? h * weights.rates[1] : 0.0;
+    const double press[3] = {k * end->stretch / mu, sign * (law.by_depth * weights.change + law.by_rate * rate),
+                             sign * (law.by_depth * lag + law.by_rate * weights.slope_rates[1])};
+    contact->surface.kernel->sliding(at->n, at->H, w, press, x, mu, f, by_place, by_rate, point->by_stretch);
+    fu_surface_out(dim, on, of->along, along);
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            const double held = -k * along[i] * along[j];
+            point->by_stretch[i * dim + j] += held * (1.0 - weights.change);
+            point->by_place[i * dim + j] += by_place[i * dim + j] + held * (1.0 - weights.change);
+            point->by_rate[i * dim + j] += by_rate[i * dim + j] - held * lag;
+        }
+}
+
+void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point)
+{
+    const int dim = model->dim;
+    const fu_distance *at = &point->distance;
+    double x[3], f[3], t[3], by_place[9];
+    path of;
+    path_of(model, contact, on, point, &of);
+    fu_surface_out(dim, on, of.x, x);
+    if (fu_dot(dim, point->mark->normal, point->mark->normal) > 0.0) /* half of what it sinks by turns with this normal, half with that before */
+        for (int d = 0; d < dim; ++d) x[d] -= 0.5 * (point->depth + point->mark->gap) * at->n[d];
+    if (point->friction_end.slid && of.size > 0.0) add_sliding(dim, contact, on, &of, x, point);
+    else {
+        contact->surface.kernel->sticking(at->n, at->H, x, contact->law.tangential, f, by_place, t, point->by_stretch);
+        for (int i = 0; i < dim * dim; ++i) point->by_place[i] += by_place[i];
+    }
+    if (of.from > 0.0) add_touching(dim, on, &of, point);
+}
