@@ -52,6 +52,18 @@ def test_a_chain_that_is_free_has_zero_directions(n):
     assert inertia(csc_array(K)) == Inertia(n // 3 - 1, 5, 2 * (n // 3 - 1))
 
 
+@pytest.mark.parametrize("n", [30, 350])
+def test_no_negative_eigenvalue_and_the_first_one(n):
+    """Close to zero on both sides, and on it within rounding; K all of whose eigenvalues are positive is factored once.
+    """
+    rng = np.random.default_rng(n)
+    K, C = banded(n, 1, rng), constraints(n, 3, rng)
+    least = eigvalsh(K)[0] * np.eye(n)
+    for off, expected in ((1e-6, (0, 0, n)), (1e-15, (0, 1, n - 1)), (-1e-6, (1, 0, n - 1))):
+        assert inertia(csc_array(K - least + off * np.eye(n))) == Inertia(*expected)
+    assert inertia(csc_array(K - least + 1e-6 * np.eye(n)), np.vstack([C, C[:1]])) == Inertia(0, 0, n - 3)
+
+
 def test_rounding_in_a_free_direction_is_no_stiffness():
     K = np.diag([1e9, 1e9, -1e-11])
     assert inertia(K) == Inertia(0, 1, 2)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg import eigvalsh, ldl, null_space, qr
+from scipy.linalg import cholesky_banded, eigvalsh, ldl, null_space, qr
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, triu
 from scipy.sparse.linalg import splu
 
@@ -23,6 +23,8 @@ FLOOR = 1e-6
 direction that is free is not scaled up to a stiffness."""
 DEPENDENT = 1e-10
 """Of a constraint of unit length: what is left of one that follows from others."""
+WIDEST = 100
+"""Diagonals on a side of the band in which Cholesky's factorisation is tried first."""
 SMALL = 300
 """Rows up to which the factorisation is dense, by Bunch and Kaufman."""
 GROWTH = 16.0
@@ -63,6 +65,8 @@ def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float 
     K = csc_array(K, dtype=float)
     n = K.shape[0]
     _check(K)
+    if _is_definite(K, np.ones(n) if units is None else np.asarray(units, dtype=float), zero):
+        return Inertia(0, 0, n - (0 if C is None else _independent(csr_array(C, dtype=float)).shape[0]))
     K, C, _ = scaled((K + K.T) / 2, C, units)
     if n <= DENSE:
         return _by_eigenvalues(K.toarray(), C.toarray(), zero)
@@ -70,6 +74,29 @@ def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float 
     below = negatives(K + shift, C)
     at = negatives(K - shift, C) - below
     return Inertia(below, at, n - C.shape[0] - below - at)
+
+
+def _is_definite(K: csc_array, units: np.ndarray, zero: float) -> bool:
+    """Return whether a factorisation shows that all eigenvalues of K, scaled as by `scaled`, are above this size.
+
+    False, too, where its band is too wide for that to be quick. It is then so on the null space of any constraints.
+    """
+    n = K.shape[0]
+    column = np.repeat(np.arange(n), np.diff(K.indptr))
+    row, width = K.indices, int(np.abs(K.indices - column).max(initial=0))
+    if not n or width > WIDEST or not np.diff(K.indptr).all():
+        return False
+    units = np.where(units > 0, units, 1.0)
+    stiffness = np.maximum.reduceat(np.abs(K.data) / units[row], K.indptr[:-1]) / units
+    scale = 1.0 / (units * np.sqrt(np.maximum(stiffness, FLOOR * stiffness.max())))
+    above, values = np.abs(row - column), K.data * scale[row] * scale[column]
+    at = (width - above) * n + np.maximum(row, column)
+    band = np.bincount(at, np.where(above == 0, values - zero, values / 2), minlength=(width + 1) * n)
+    try:
+        cholesky_banded(band.reshape(width + 1, n), overwrite_ab=True, check_finite=False)
+    except np.linalg.LinAlgError:
+        return False
+    return True
 
 
 def scaled(K: csc_array, C: Any = None, units: np.ndarray | None = None) -> tuple[csc_array, csr_array, np.ndarray]:
