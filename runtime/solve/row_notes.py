@@ -19,6 +19,7 @@ from .penetrations import Penetrations
 from .reduced_strain import ReducedStrain
 from .sensitivity import Sensitivity
 from .straight_struts import StraightStruts
+from .straightened import Straightened
 from .surface_ends import SurfaceEnds
 
 
@@ -56,8 +57,9 @@ class RowNotes:
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
             "coarse meshes": CoarseMeshes(scene, model), "coarse slides": CoarseSlides(scene, model),
-            "sensitivity": self.sensitivity, "meeting points": MeetingPoints(scene, model),
-            "fast turns": self.turns, "folds": Folds(scene, model), "normal forces": self.normal_forces}
+            "straightened": Straightened(scene, model), "sensitivity": self.sensitivity,
+            "meeting points": MeetingPoints(scene, model), "fast turns": self.turns,
+            "folds": Folds(scene, model), "normal forces": self.normal_forces}
         self._noted: dict[str, Noted] = {**self._watched, **self._seen_in_steps}
 
     def see(self, engine: Engine) -> None:
