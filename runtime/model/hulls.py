@@ -10,6 +10,8 @@ import numpy as np
 
 DEGREES = range(3, 8)
 """Of the curves that elements are: those between which the points of an element's hull are sought."""
+FITS = 1e-9
+"""Of the largest share of a vector in the axis: what rounding leaves of it where the degree is enough."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,7 @@ def _hull(on_axis: Any, length: float) -> np.ndarray:
         basis = several * at[:, None] ** order * (1 - at[:, None]) ** (degree - order)
         values = np.array([on_axis(length, length * t)[0] for t in at])
         points, *_ = np.linalg.lstsq(basis, values, rcond=None)
-        if np.abs(basis @ points - values).max() < 1e-9:
+        # by column: the share of a vector grows with a power of the length
+        if np.all(np.abs(basis @ points - values).max(axis=0) <= FITS * np.abs(values).max(axis=0)):
             return points
     raise ValueError(f"the axis of the element is no polynomial of degree {DEGREES[-1]} or less")

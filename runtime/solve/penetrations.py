@@ -44,8 +44,10 @@ def _of_surfaces(scene: SceneData, model: Model) -> list[_Limit]:
 
 
 def _of_crossings(model: Model) -> list[_Limit]:
-    """Return the limits of crossings: where they are as deep, their lines are beyond each other's axes."""
-    return [_Limit(each.name, each.stiffness, each.law[0], each.law[0], "past where its lines touch")
+    """Return the limits of crossings: where they are as deep, their lines are beyond each other's axes; none of lines
+    without a radius, which touch there.
+    """
+    return [_Limit(each.name, each.stiffness, each.law[0] or np.inf, each.law[0], "past where its lines touch")
             for each in model.crossings]
 
 
