@@ -70,6 +70,19 @@ def test_supports_joints_and_springs_are_where_they_act(run, clip):
     assert_allclose(np.linalg.norm(lever.end - lever.start, axis=1), 1.2, rtol=1e-12)
 
 
+@pytest.mark.parametrize(("law", "kind"), [
+    ({"stiffness": 1.0}, "spring"), ({"stiffness": 1.0, "free_play": 0.1}, "spring"), ({"damping": 1.0}, "spring"),
+    ({"stiffness": 1.0, "tension_only": True}, "hanger"),
+    ({"stiffness": 1.0, "tension_only": True, "length": 0}, "hanger"),
+    ({"table": fu.ForceTable(extension=(0, 1), tension=(0, 1)), "tension_only": True}, "hanger"),
+    ({"table": fu.ForceTable(extension=(-1, 0, 1), tension=(-1, 0, 1))}, "spring")])
+def test_what_only_pulls_is_no_coil(law, kind):
+    scene = fu.Scene()
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0))
+    scene.spring("A", (0, 1, 0), name="hanger", **law)
+    assert part(scene.animation().clips[0].segments, "hanger").kind == kind
+
+
 def test_arrows_of_loads_follow_their_signals(run, clip):
     wind = part(clip.segments, "wind")
     along = wind.end - wind.start

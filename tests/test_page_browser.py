@@ -7,6 +7,7 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
+import funicular as fu
 import numpy as np
 import page_animations as animations
 import pytest
@@ -44,6 +45,7 @@ def files(tmp_path_factory):
         "still": replace(beam, clips=(still,)),
         "point": replace(beam, clips=(Clip("point", np.zeros(1), marks=(Mark("P", "point", np.ones((1, 3))),)),)),
         "loads": replace(beam, time_label="load factor", time_unit=""),
+        "catenary": fu.load_scene("catenary").animation(),
         "events": replace(beam, clips=(replace(beam.clips[0], events=tuple(
             EventMark(0.1 * k, f"event {k}") for k in range(1, 15))),)),
     }
@@ -234,6 +236,54 @@ def test_a_followed_body_stays_in_its_place(opened):
         page.drawn()
         places.append(page("f.pixel(f.body('A').position)"))
     np.testing.assert_allclose(places, [places[0]] * 3, atol=0.5)
+
+
+def ends_in_sight(page, cable: str) -> bool:
+    """Whether both ends of a cable are in the picture, with room for the symbols of supports."""
+    width, height = page.page.evaluate(SIZE)
+    points = page("f.cable(a)", cable)
+    pixels = [page("f.pixel(a)", points[end]) for end in (0, -1)]
+    return all(20 < x < width - 20 and 20 < y < height - 20 for x, y in pixels)
+
+
+SIZE = """() => {
+    const { clientWidth, clientHeight } = document.querySelector("canvas");
+    return [clientWidth, clientHeight];
+}"""
+
+
+@pytest.mark.parametrize(("name", "cable"), [("paper51", "wire"), ("catenary", "contact"), ("twisted", "beam")])
+def test_the_start_view_fits_the_window_until_the_reader_moves_it(opened, name, cable):
+    """Both ends of a scene were cut off where the window had changed after loading."""
+    page = opened(name, viewport={"width": 1400, "height": 420})
+    for width, height in ((1280, 800), (1600, 900), (700, 900), (1400, 420), (1280, 800)):
+        page.page.set_viewport_size({"width": width, "height": height})
+        page.page.wait_for_timeout(100)
+        page.drawn()
+        assert ends_in_sight(page, cable), (width, height)
+    box = page.page.locator("canvas").first.bounding_box()
+    page.page.mouse.move(box["x"] + box["width"] / 3, box["y"] + box["height"] / 3)
+    page.page.mouse.wheel(0, -600)
+    page.drawn()
+    first, last = (page("f.cable(a)", cable)[k] for k in (0, -1))
+    across = page("f.pixel(a)", last)[0] - page("f.pixel(a)", first)[0]
+    page.page.set_viewport_size({"width": 1300, "height": 800})
+    page.page.wait_for_timeout(100)
+    page.drawn()
+    assert page("f.pixel(a)", last)[0] - page("f.pixel(a)", first)[0] == pytest.approx(across, rel=1e-3)
+
+
+def test_heads_of_arrows_are_part_of_them(opened):
+    """The weights of droppers, 4 N beside the 120 N of a pantograph, had heads as high as the catenary."""
+    page = opened("catenary", color_scheme="light")
+    page.drawn()
+    picture = image(page)
+    red = (picture[..., 0] > 0.55) & (picture[..., 1] < 0.35) & (picture[..., 2] < 0.35)
+    x = round(page("f.pixel(a)", [20.0, 0, 0])[0] * picture.shape[1] / page.page.evaluate(SIZE)[0])
+    rows = np.flatnonzero(red[:, x - 12:x + 13].any(axis=1))
+    assert np.ptp(rows) > 12  # the pantograph's
+    red[:, x - 12:x + 13] = False
+    assert red.any(axis=1).sum() <= 4
 
 
 def test_axis_views_look_along_axes(opened):

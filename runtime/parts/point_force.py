@@ -40,6 +40,11 @@ class PointForce(Part):
         """Return whether its force has no direction where its points meet."""
         return True
 
+    @property
+    def only_pulls(self) -> bool:
+        """Return whether it draws its ends together and never pushes them apart, as ropes and droppers do."""
+        return False
+
     def at_distance(self, distance: float) -> Self:
         """Return the part complete; distance: of its points at the start, m."""
         return self

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Self
 
 from pydantic import model_validator
 
-from .force_pieces import HAS_NO_FORCE, ForceTable, Piece, pulling, tabulated, with_play
+from .force_pieces import HAS_NO_FORCE, PULLS_ALONE, ForceTable, Piece, pulling, tabulated, with_play
 from .point_force import PointForce
 from .validation import Flag, not_negative
 
@@ -57,6 +57,12 @@ class Spring(PointForce):
             return self.length != 0.0
         meeting = next(piece for piece in self.pieces() if self.length + piece.end > 0)
         return meeting.sense != HAS_NO_FORCE
+
+    @property
+    def only_pulls(self) -> bool:
+        """Return whether it has no force but tension: with tension_only, or by its table."""
+        return self.tension_only or (self.table is not None and all(
+            piece.sense in (PULLS_ALONE, HAS_NO_FORCE) for piece in self.pieces()))
 
     def at_distance(self, distance: float) -> Self:
         """Return the spring with its length, the distance of its points at the start if not given."""

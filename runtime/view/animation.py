@@ -77,7 +77,7 @@ class Segment:
     """A straight connection of two points; ``reference`` is like that of a mark, start and end."""
 
     name: str
-    kind: Literal["spring", "lever", "joint", "load"]
+    kind: Literal["spring", "hanger", "lever", "joint", "load"]  # hanger: a spring that only pulls
     start: np.ndarray  # (T or 1, 3)
     end: np.ndarray  # (T or 1, 3)
     reference: np.ndarray | None = None  # (2, 3), or (T, 2, 3)

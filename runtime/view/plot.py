@@ -38,6 +38,7 @@ MARKERS = {"pin": "^", "clamp": "s", "tie": "P", "joint": "o", "slide": "o", "gr
 SIZES = {"pin": 60, "clamp": 55, "tie": 40, "joint": 16, "slide": 26, "ground": 45, "point": 12}
 SEGMENTS: dict[str, dict[str, Any]] = {
     "spring": {"linestyle": (0, (1, 1)), "linewidth": 1.6},
+    "hanger": {"linestyle": "-", "linewidth": 0.8},
     "lever": {"linestyle": "-", "linewidth": 1.0},
     "joint": {"linestyle": (0, (5, 1)), "linewidth": 1.2},
 }

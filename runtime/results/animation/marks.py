@@ -117,7 +117,7 @@ def segments(frames: Frames, refs: Frames, size: float, arrow: float) -> Iterato
     """
     scene = frames.scene
     for name, spring in scene.point_forces.items():
-        yield _between(frames, refs, name, "spring", spring.a, spring.b)
+        yield _between(frames, refs, name, "hanger" if spring.only_pulls else "spring", spring.a, spring.b)
     for name, joint in scene.joints.items():
         if _apart(place(frames, joint.a), place(frames, joint.b), size):
             yield _between(frames, refs, name, "joint", joint.a, joint.b)
@@ -137,8 +137,8 @@ def _bars(frames: Frames, refs: Frames) -> Iterator[Segment]:
         yield _between(frames, refs, name, "lever", *ends)
 
 
-def _between(frames: Frames, refs: Frames, name: str, kind: Literal["spring", "lever", "joint"], a: Attachment,
-             b: Attachment) -> Segment:
+def _between(frames: Frames, refs: Frames, name: str, kind: Literal["spring", "hanger", "lever", "joint"],
+             a: Attachment, b: Attachment) -> Segment:
     """Return the straight connection of two ends."""
     return Segment(name, kind, place(frames, a), place(frames, b), _both(place(refs, a), place(refs, b)))
 

@@ -22,7 +22,9 @@ export class Cameras {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("start", () => (this.fits = false)); // the reader moves it
     this.preset = "3d";
+    this.fits = false; // whether all is in the picture, as it stays until the camera is moved
   }
 
   resize(width, height) {
@@ -34,6 +36,7 @@ export class Cameras {
     this.flat.left = -this.flat.top * aspect;
     this.flat.right = this.flat.top * aspect;
     this.flat.updateProjectionMatrix();
+    if (this.fits) this.look(this.preset);
   }
 
   /** Look as "3d", "x", "y" or "z" says; all that moves is in the picture. */
@@ -67,6 +70,7 @@ export class Cameras {
     }
     this.camera.updateProjectionMatrix();
     this.controls.update();
+    this.fits = true;
   }
 
   /** Two horizontal directions (positive axes where these are horizontal) and up. */
@@ -119,6 +123,7 @@ export class Cameras {
 
   /** Look at a point from `distance`, in the direction of now. */
   approach(point, distance) {
+    this.fits = false;
     const forward = this.camera.getWorldDirection(new Vector3());
     this.controls.target.copy(point);
     if (this.camera === this.flat) {

@@ -7,8 +7,9 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { frameAt, pointAt } from "./sampling.js";
 
 const COILS = 9;
-const WIDTHS = { spring: 2, lever: 4, joint: 2.5, load: 2.5 };
+const WIDTHS = { spring: 2, hanger: 1.5, lever: 4, joint: 2.5, load: 2.5 };
 const ARROW_PIXELS = 14;
+const HEAD = 0.4; // of its arrow, at most
 
 /** Return a line through points (flat list of coordinates), `width` pixels wide. */
 export function line(points, width) {
@@ -19,7 +20,7 @@ export function line(points, width) {
   return made;
 }
 
-/** A straight connection of two points: a coil for a spring, an arrow for a load, else a bar. */
+/** A straight connection of two points: a coil for a spring, an arrow for a load, else a bar or a line. */
 export class SegmentView {
   constructor(segment) {
     this.segment = segment;
@@ -70,7 +71,7 @@ export class SegmentView {
   }
 
   enlarge(pixel) {
-    this.head?.scale.setScalar(ARROW_PIXELS * pixel);
+    this.head?.scale.setScalar(Math.max(Math.min(ARROW_PIXELS * pixel, HEAD * this.start.distanceTo(this.end)), 1e-9));
   }
 
   colour(colour) {
