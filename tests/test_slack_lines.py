@@ -95,14 +95,20 @@ def test_two_tied_ropes(elements):
     assert found == pytest.approx(29953.453, rel=1e-4 if elements == 30 else 1e-7)
 
 
+def catenary_to_bed(H: float, hanging: float, weight: float, axial: float) -> tuple[float, float]:
+    """Return how far aside and down an elastic line of this hanging length (m) comes to a bed, in m, by H in N."""
+    slope = weight * hanging / H
+    return (H / weight * np.arcsinh(slope) + H * hanging / axial,
+            H / weight * (np.hypot(1, slope) - 1) + weight * hanging**2 / (2 * axial))
+
+
 def on_bed(density: float) -> float:
     """Return the force at the top of the wire of `wire_on_bed` by the elastic catenary that ends on a rigid bed, N."""
     weight, axial, span, drop, length = 0.08 * density * G, 0.08e10, 300.0, 80.0, 330.0
 
     def gaps(unknown):
         H, hanging = np.exp(unknown[0]), unknown[1]
-        along = H / weight * np.arcsinh(weight * hanging / H) + H * hanging / axial
-        down = H / weight * (np.hypot(1, weight * hanging / H) - 1) + weight * hanging**2 / (2 * axial)
+        along, down = catenary_to_bed(H, hanging, weight, axial)
         return along + (length - hanging) * (1 + H / axial) - span, down - drop
 
     logarithm, hanging = fsolve(gaps, [np.log(weight * drop), 200.0], xtol=1e-12)
@@ -117,6 +123,48 @@ def test_a_wire_on_a_bed(changed):
     rest = wire_on_bed(**{"elements": 45} | changed).equilibrium()
     assert pull(rest, "wire") == pytest.approx(on_bed(changed.get("density", 900.0)), rel=1e-3)
     assert not any("compressed" in message for message in rest.messages)
+
+
+def test_moorings_of_a_buoy():
+    """Jointed to a body that an upward load moves by 17 m: each line is a catenary to the bed by the force at its end.
+    """
+    area, modulus, length, lift = np.pi * 0.04**2, 2e10, 225.0, 9e4
+    scene = fu.Scene(gravity=(0, 0, -G))
+    scene.fluid("sea", density=1025)
+    scene.surface("bed", fu.Plane(point=(0, 0, -80), normal=(0, 0, 1)))
+    scene.rigid_body("buoy", mass=2e4, inertia=(1e5, 1e5, 1e5), position=(0, 0, 0))
+    scene.force("buoy", value=(0, 0, 2e4 * G + lift))
+    for k in range(3):
+        out = np.array([np.cos(2 * np.pi * k / 3), np.sin(2 * np.pi * k / 3), 0])
+        line = scene.cable(f"line{k}", start=3 * out, end=200 * out + [0, 0, -80], rest_length=length, elements=40,
+                           element="cable12", up=(0, 0, 1), strain="engineering", section=fu.Circle(radius=0.04),
+                           material=fu.Material(youngs_modulus=modulus, poisson_ratio=0.3, density=7000))
+        scene.drag(line, normal=1.2, diameter=0.08, displaced_area=area)
+        scene.contact(line, "bed", stiffness=1e5, radius=1e-6)
+        scene.pin(line, s=length)
+        scene.joint("spherical", (line.name, 0.0), ("buoy", tuple(3 * out)))
+    rest = scene.equilibrium()
+    assert rest.stable and rest.iterations <= 25
+    weight, axial = area * (7000 - 1025) * G, modulus * area
+    H, hanging = float(np.linalg.norm(rest["line0@225.force"][:2])), lift / 3 / weight
+    along, down = catenary_to_bed(H, hanging, weight, axial)
+    assert along + (length - hanging) * (1 + H / axial) == pytest.approx(197, rel=3e-4)
+    assert down - 80 == pytest.approx(float(rest["buoy.position"][2]), abs=2e-2)
+
+
+def drawn_with_sag(sag: float) -> fu.Scene:
+    """Return the wire of `wire_on_bed` through points on a parabola with this sag in m."""
+    u = np.linspace(0, 1, 15)[:, None]
+    scene = wire_on_bed(45)
+    return scene.replace("wire", points=np.hstack([300 * u, 0 * u, -80 * u - 4 * sag * u * (1 - u)]), rest="straight")
+
+
+@pytest.mark.parametrize("sag", [4.0, 16.0])
+def test_a_wire_drawn_with_another_sag(sag):
+    """Newton's method finds an unstable state from there; strings hang as before."""
+    with pytest.warns(fu.FunicularWarning, match="the search went on to a stable one"):
+        rest = drawn_with_sag(sag).equilibrium()
+    assert pull(rest, "wire") == pytest.approx(on_bed(900.0), rel=1e-3)
 
 
 @pytest.mark.parametrize("elements", [10, 20, 40])

@@ -11,7 +11,8 @@ from scipy.sparse.csgraph import connected_components
 
 from ..model.contacts import ContactModel
 from ..model.drags import DragModel
-from ..model.loads import DeadLoadModel, LoadModel
+from ..model.joints import JointModel
+from ..model.loads import DeadLoadModel, LoadModel, PointForceModel
 from ..model.model import Model
 
 KNOWN_VECTORS = {"r", "r_x", "r_y", "r_z", "r_xx"}
@@ -34,6 +35,9 @@ class StringNodes:
     """The nodes of all cables of a model, numbered cable by cable.
 
     first: of each cable the number of its first node, and the end. r, slope (nodes, dim): dofs of position and of r_x.
+    held (nodes,): those that joints and springs hold to the ground or to bodies, which stay as drawn. others: cables
+    that more acts on than supports, ties, loads, fluids, planes that stand still, and joints to ground and bodies;
+    joined: cables that other cables act on, but by ties.
     """
 
     def __init__(self, model: Model):
@@ -47,6 +51,12 @@ class StringNodes:
             (starts + np.repeat([cable.vectors.index(name) * dim for cable in model.cables], counts))[:, None]
             + np.arange(dim) for name in ("r", "r_x"))
         self.unknown = model.unknown_of_dof[self.r]
+        self._hold()
+
+    @property
+    def fixed(self) -> np.ndarray:
+        """Return (nodes, dim): which coordinates of positions stay as they are."""
+        return (self.unknown == -1) | self.held[:, None]
 
     @cached_property
     def string_node(self) -> np.ndarray:
@@ -69,9 +79,9 @@ class StringNodes:
         return np.concatenate([np.arange(*self.first[c : c + 2]) for c in group])
 
     def can_hang(self, group: np.ndarray) -> bool:
-        """Return whether cables of a group are held anywhere, by supports alone, and have no unknown nodal vectors."""
-        unknown = self.unknown[self.of(group)]
-        return bool((unknown == -1).any() and (unknown >= -1).all()
+        """Return whether cables of a group are held anywhere, act on no others, and have no unknown nodal vectors."""
+        own = self.of(group)
+        return bool(self.fixed[own].any() and (self.unknown[own] >= -1).all() and self.joined.isdisjoint(group.tolist())
                     and all(KNOWN_VECTORS.issuperset(self.model.cables[c].vectors) for c in group))
 
     def smooth_ties(self, group: np.ndarray) -> list[SmoothTie]:
@@ -111,10 +121,34 @@ class StringNodes:
             along = values["r_x"]
         return along / np.linalg.norm(along)
 
-    def touched_otherwise(self) -> set[int]:
-        """Return the cables that more acts on than supports, ties, loads, fluids and planes that stand still."""
-        return set().union(*(_cables_of(coupling) for coupling in self.model.couplings
-                             if not (isinstance(coupling, DeadLoadModel | LoadModel | DragModel) or rests(coupling))))
+    def _hold(self) -> None:
+        """Find what couplings do to cables beside loads, fluids and planes that stand still."""
+        self.held, self.others, self.joined = np.zeros(len(self.cable), dtype=bool), set[int](), set[int]()
+        for coupling in self.model.couplings:
+            if isinstance(coupling, DeadLoadModel | LoadModel | DragModel) or rests(coupling):
+                continue
+            cables = _cables_of(coupling)
+            node = self._node_of(coupling) if len(cables) == 1 else None
+            if node is not None:
+                self.held[node] = True
+            if node is None or not isinstance(coupling, JointModel):
+                self.others |= cables
+            if len(cables) > 1:
+                self.joined |= cables
+
+    def _node_of(self, coupling: object) -> int | None:
+        """Return the node that a joint, or a force on an end of a cable, holds to what is no cable; else None."""
+        if not isinstance(coupling, JointModel | PointForceModel):
+            return None
+        at = next(end for end in coupling.attachments if end.cable >= 0)
+        if at.slide >= 0:
+            return None
+        cable, first = self.model.cables[at.cable], int(self.first[at.cable])
+        own = at.N.reshape(2, -1)[:, cable.vectors.index("r")]
+        if not np.isclose(own.max(), 1.0, rtol=0, atol=1e-9):
+            return None
+        node = at.element + int(np.argmax(own))
+        return first + node if isinstance(coupling, JointModel) or node in (0, cable.shape[0] - 1) else None
 
 
 def rests(coupling: object) -> bool:

@@ -30,17 +30,17 @@ STRAIGHT = 1e-9
 def hang(problem: StaticProblem, every: bool) -> bool:
     """Put cables into the shape of strings at rest under the load that is on; returns whether there are any such.
 
-    every: also cables that are drawn bent or taut, and those that others than supports, planes and loads act on; False:
-    none of these, for which the shape as drawn is as good a start, or better. Cables stay as they are where a part of
+    every: also cables that are drawn bent or taut, and those that more acts on than `StringNodes` knows; False: none of
+    these, for which the shape as drawn is as good a start, or better. Cables stay as they are where a part of
     their string would have no tension.
     """
     model = problem.model
     if not model.cables:
         return False
     nodes, kept = StringNodes(model), problem.keep()
-    q, others = kept["q"], nodes.touched_otherwise()
+    q = kept["q"]
     groups = [group for group in nodes.groups() if nodes.can_hang(group) and (every or (
-        others.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, q)))]
+        nodes.others.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, q)))]
     found = False
     for _ in range(ROUNDS if groups and depend_on_shape(model) else 1):
         force = string_loads(problem, q) if groups else q
@@ -119,7 +119,7 @@ class _Line:
         """Return the strings under forces on the dofs, numbered by `order`."""
         dim = self.model.dim
         r, fixed = np.zeros((self.n, dim)), np.zeros((self.n, dim), dtype=bool)
-        r[self.at], fixed[self.at] = self.q[self.nodes.r[self.own]], self.nodes.unknown[self.own] == -1
+        r[self.at], fixed[self.at] = self.q[self.nodes.r[self.own]], self.nodes.fixed[self.own]
         load = self._load(force)
         links = np.concatenate([np.stack([each[:-1], each[1:]], axis=1) for each in self.along])
         axial = np.concatenate([np.full(len(length), part.material.youngs_modulus * part.section.moments()[0])
