@@ -113,11 +113,13 @@ def run(
     What was computed is in the file also when the run stops early, and --resume goes on from there. Exit code: 1 for an
     error, 130 after Ctrl-C.
     """
+    from .parts.file_paths import save_path
     from .results.files import check_writable
 
     with _reported_without_traceback():
         described = load_scene(scene, library or ())
-        path = Path(output or described.run_settings.get("save") or f"{Path(scene).stem}.nc")
+        named = save_path(described.run_settings) if output is None else output
+        path = named or Path(f"{Path(scene).stem}.nc")
         pictures = plot_dir or (path.parent if plot or forces else None)
         if pictures is not None:
             check_writable(_existing(pictures) / "picture.png")
@@ -125,7 +127,7 @@ def run(
         try:
             result = described.run(duration, tol=tol, absolute_tol=absolute_tol, quantities=_listed(quantities),
                                    step=step, integrator=integrator, spectral_radius=spectral_radius, model=model,
-                                   save=path, resume=resume, estimate=estimate or None)
+                                   save=path if named is None else output, resume=resume, estimate=estimate or None)
         except (EndOfCableError, ConvergenceError) as error:
             result, stopped = error.run, error
         _report(result, path, pictures, forces)

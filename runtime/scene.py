@@ -125,6 +125,8 @@ class Scene(Viewable, DescribedScene):
         if state is not None:
             given["initial"] = "state" if isinstance(initial, Mapping) else "equilibrium"
         settings = RunSettings(**overridden(self.run_settings, given))
+        if "save" not in given:
+            settings = settings.model_copy(update={"save": self.run_settings.get("save")})  # as the file has it
         if settings.initial == "state" and state is None:
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
         chosen = self._chosen_for(settings)

@@ -11,12 +11,14 @@ import os
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import takewhile
 from typing import Any, Protocol, TypeVar
 
 from ..errors import SceneError, SceneFileError, near, shown_path
 from ..kernels.libraries import check_allowed, resolved
 from .end_stops import Stop
 from .event import Event
+from .file_paths import FilePath
 from .flow_profile import Profile
 from .kinds import PARTS
 from .pairs import are_lists
@@ -139,7 +141,7 @@ class _Reader:
         for name in SETTINGS:
             if name in self.tables:
                 try:
-                    setattr(scene, f"{name}_settings", _settings(name, self.tables[name]))
+                    setattr(scene, f"{name}_settings", _settings(name, self.tables[name], self.directory))
                 except SceneError as error:
                     self.note(error, name)
 
@@ -229,15 +231,17 @@ def _numbered(error: SceneError, part: type[Part], index: int) -> SceneError:
     return unnamed[0]
 
 
-def _settings(name: str, table: Any) -> dict:
-    """Return what a table of settings sets, checked."""
+def _settings(name: str, table: Any, directory: str | os.PathLike) -> dict:
+    """Return what a table of settings sets, checked; directory: of the file."""
     if not isinstance(table, dict):
         raise SceneError(f"[{name}]", "must be a table")
     settings = SETTINGS[name](**table).field_values(given=True)
-    save = settings.get("save")
-    if save is not None and not save.endswith(".nc"):  # lest a scene file replace any file of its reader's
-        raise SceneError(f"[{name}]", f'save = "{save}" in a scene file must end in .nc',
-                         "choose another name, or give it on the command line (-o) or in Python (save=)")
+    if settings.get("save") is not None:
+        settings["save"] = FilePath(settings["save"], directory)
+        try:
+            settings["save"].check()
+        except ValueError as error:
+            raise SceneError(f"[{name}]", *error.args, entry="save") from None
     return settings
 
 
@@ -254,6 +258,12 @@ def dumps(scene: SceneData) -> str:
         if settings := getattr(scene, f"{name}_settings"):
             lines += ["", f"[{name}]", *_lines(settings)]
     return "\n".join(lines) + "\n"
+
+
+def parts_text(text: str) -> str:
+    """Return the text of a scene that `dumps` made without its settings, which come last."""
+    heads = {f"[{name}]" for name in SETTINGS}
+    return "\n".join(takewhile(lambda line: line not in heads, text.split("\n"))).rstrip()
 
 
 def plain_data(value: Any) -> Any:

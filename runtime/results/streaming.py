@@ -17,8 +17,9 @@ from ..engine import Engine
 from ..errors import ResultFileError
 from ..model.model import Model
 from ..operating_system import BYTES
+from ..parts.file_paths import GIVE, FilePath
 from ..parts.scene_data import SceneData
-from ..parts.scene_text import dumps
+from ..parts.scene_text import dumps, parts_text
 from ..parts.settings import RunSettings
 from ..solve.pauses import Pauses
 from ..solve.row_notes import RowNotes
@@ -51,9 +52,10 @@ class Stream:
                  read_scene: ReadScene):
         """Check that the file can be written or, to resume, that it holds a run of this scene and these settings.
 
-        From here to the end no other run can write it. Raises ResultFileError.
+        From here to the end no other run can write it. Raises ResultFileError, and SceneError for a path that a scene
+        file may not name.
         """
-        self._path = check_writable(path)
+        self._path = check_writable(path.placed() if isinstance(path, FilePath) else path)
         self._state, self._part = checkpoint_of(self._path), _part_of(self._path)
         self._scene, self._settings, self._read_scene = scene, settings, read_scene
         self._opened: File | None = None
@@ -67,6 +69,8 @@ class Stream:
             if not resume:
                 self._new = claimed_for(self._part, self._path, RUN)
             self._older = self._claim_older()
+            if isinstance(path, FilePath):
+                self._check_own(path)
             self._kept = self._to_resume() if resume else None
         except BaseException:
             self._let_go()
@@ -304,6 +308,21 @@ class Stream:
                 return descriptor
             os.close(descriptor)  # replaced while it was opened
         return -1
+
+    def _check_own(self, path: FilePath) -> None:
+        """Refuse to replace anything but results of this scene where a scene file names the path."""
+        if self._older < 0:
+            if self._state.exists():
+                raise self._refused(f"there is a file {self._state.name}, which the run would replace",
+                                    f"delete it, or {GIVE}")
+            return
+        try:
+            scene = open_file(self._path).attributes["scene"]
+        except (ResultFileError, KeyError):
+            scene = None
+        if not isinstance(scene, str) or parts_text(scene) != parts_text(dumps(self._scene)):
+            raise self._refused(f'save = "{path}" in a scene file replaces results of the same scene alone',
+                                f"delete what is there, choose another name, or {GIVE}")
 
     def _unwritable(self, error: OSError) -> ResultFileError:
         return self._refused(f"the results cannot be written here: {error.strerror}", "give another path")

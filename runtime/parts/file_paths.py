@@ -1,0 +1,58 @@
+"""Paths of results that a scene file names, which may come from a stranger: they stay below the file's folder."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path, PureWindowsPath
+from typing import Any, Self
+
+from ..errors import SceneError
+
+GIVE = "give it on the command line (-o) or in Python (save=)"
+"""What to do where a path of a scene file is not taken."""
+
+
+class FilePath(str):
+    """A path to write to, as a scene file has it; ``folder`` is that of the file."""
+
+    folder: str
+
+    def __new__(cls, text: str, folder: str | os.PathLike = "") -> Self:
+        """Return the path in a file of that folder, by default the working directory."""
+        made = super().__new__(cls, text)
+        made.folder = os.fspath(folder)
+        return made
+
+    def __getnewargs__(self) -> tuple[str, str]:
+        """Return what it is made of, for copies and other processes."""
+        return str(self), self.folder
+
+    def check(self) -> None:
+        """Raise ValueError(cause, remedy) where its words lead out of the folder, or to another kind of file."""
+        if not self.endswith(".nc"):  # lest a scene file replace any file of its reader's
+            raise ValueError(f'save = "{self}" in a scene file must end in .nc', f"choose another name, or {GIVE}")
+        words = PureWindowsPath(self)  # which knows drives and both kinds of slashes
+        if words.drive or words.root or ".." in words.parts:
+            raise ValueError(f'save = "{self}" in a scene file must stay below the folder of the file',
+                             f"choose a name without folders above, or {GIVE}")
+
+    def placed(self) -> Path:
+        """Return the path below the folder, no part of it a link. Raises SceneError."""
+        try:
+            self.check()
+        except ValueError as error:
+            raise SceneError("run", *error.args, entry="save") from None
+        path = Path(os.path.realpath(self.folder or os.curdir))
+        for word in Path(self).parts:
+            path = path / word
+            if path.is_symlink():
+                raise SceneError("run", f'save = "{self}" in a scene file leads over the link {path}',
+                                 f"choose another name, or {GIVE}", "save")
+        return path
+
+
+def save_path(settings: Mapping[str, Any]) -> Path | None:
+    """Return where the settings of a run save its results, None where they do not. Raises SceneError."""
+    save = settings.get("save")
+    return save.placed() if isinstance(save, FilePath) else None if save is None else Path(save)
