@@ -47,6 +47,8 @@ CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", F
           FU_NOT_KNOWN: "not_known"}
 SLIDE_OUTPUTS = {"s_rate": 1, "s_acceleration": 1, "force": 3, "multiplier": 2, "traction": 1, "residual": 3}
 """Numbers of a slide in a row of output, and how many each has; see fu_slide_output."""
+OUTPUT_KINDS = ("slide", "joint", "point_force", "drag", "crossing", "contact", "hard_contact")
+"""Kinds of couplings with numbers in a row of output, which a state of rest has, too."""
 SLACK_STRAIN = FU_SLACK_STRAIN
 """What an element is compressed by at least in its middle where it is slack."""
 cdef int TRACTION = sum([SLIDE_OUTPUTS[name] for name in ("s_rate", "s_acceleration", "force", "multiplier")])
@@ -218,7 +220,7 @@ cdef class Engine(Report):
             shape = (rows, array.items) if array.axes == 2 else (rows,)
             fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
         output = self.arrays.pop("output")
-        for kind in ("slide", "joint", "point_force", "drag", "crossing", "contact", "hard_contact"):
+        for kind in OUTPUT_KINDS:
             self.arrays[kind] = self._outputs(kind, output)
         cdef int status = fu_start(run)
         if status:
@@ -381,15 +383,3 @@ cdef class Engine(Report):
     def static_farthest(self, str kind):
         """(couplings,): how far beyond the ends of its surface anything touches each of a kind in the static state, in m."""
         return np.array([fu_beyond(&self.model, self.couplings[<int>number], &self.run.next) for number in self._of(kind)])
-
-    def joint_forces(self):
-        """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
-        numbers = self._of("joint")
-        out = np.zeros((len(numbers), fu_coupling_type_of(b"joint").n_outputs))
-        cdef double[:, ::1] view = out
-        cdef int k, number
-        for k, number in enumerate(numbers):
-            c = self.couplings[number]
-            fu_joint_outputs(&self.model, <fu_joint *>c, &self.run.next, self.run.next.forces + c.force,
-                             <fu_joint_output *>&view[k, 0])
-        return out

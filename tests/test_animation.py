@@ -395,7 +395,7 @@ def test_short_forms():
     assert repr(fu.Scene()) == "<funicular.Scene: empty>"
     small = fu.load_scene("paper51")
     rest, modes = small.equilibrium(), small.modes(2, as_drawn=True)
-    assert repr(rest) == "<funicular.Equilibrium: stable, under all loads, 8 results>"
+    assert repr(rest) == "<funicular.Equilibrium: stable, under all loads, 18 results>"
     assert repr(modes) == "<funicular.Modes: 2, 0 to 0 Hz, 4 shapes>"
     assert repr(small.equilibrium(load_steps=2).load_path) == "<funicular.LoadPath: 2 states, 0.5 to 1 times the loads>"
     for each in (scene, rest, modes):

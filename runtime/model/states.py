@@ -1,19 +1,15 @@
 """The state of a model, read, in three dimensions whatever the scene's: bodies, joints, point forces, reactions.
 
-All is along the axes of the model, in which the plane of a planar one is z = 0, but for `connection_states`.
+All is along the axes of the model, in which the plane of a planar one is z = 0.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
-from ..parts.contact import Contact
-from ..parts.crossing import Crossing
-from ..parts.drag import Drag
 from ..parts.locations import ends_of, joined, node_of
-from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..rotations import cross, rotate
@@ -184,79 +180,10 @@ def crossing_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
             "sticking": numbers[:, 13]}
 
 
-AT_REST = ("drag", "contact", "hard_contact", "crossing")
-"""The kinds of couplings whose numbers in a row of output a state of rest has, too."""
-
-
-def free_states(model: Model, q: np.ndarray, s: np.ndarray, slide_forces: np.ndarray,
-                alone: str | None = None) -> dict[str, dict[str, np.ndarray]]:
-    """Return where cables, bodies and slides are, by name and quantity, and the forces of slides.
-
-    All arguments have the time first: q (time, n_q), s (time, slides), slide_forces (time, slides, 3). They are along
-    the ground's axes. alone: of this name, None: of all.
-    """
-    found: dict[str, dict[str, np.ndarray]] = {}
-    for cable in model.cables:
-        if alone in (None, cable.name):
-            vectors = spatial(q[:, cable.coordinates].reshape(len(q), *cable.shape))
-            vectors = model.results(cable.name, {"nodal_vectors": vectors})["nodal_vectors"]
-            found[cable.name] = {"nodal_vectors": vectors, "position": vectors[:, :, cable.vectors.index("r")]}
-    for body in model.bodies:
-        if alone in (None, body.name):
-            state = body_state(model, body, q)
-            state |= modal_state(model, body, state, q) if body.modes else {}
-            found[body.name] = model.results(body.name, state)
-    for k, slide in enumerate(model.slides):
-        if alone in (None, slide.name):
-            found[slide.name] = {"s": s[:, k]} | model.results(slide.name, {"force": slide_forces[:, k]})
-    return found
-
-
-def _drag_states(model: Model, forces: np.ndarray, asked: Callable[[str | None], bool]
-                 ) -> dict[str, dict[str, np.ndarray]]:
-    """Return the force of each drag that is asked for, that of all its fluids; forces (time, models of drags, 3)."""
+def drag_states(model: Model, forces: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
+    """Return the force of each drag, that of all its fluids; forces (time, models of drags, 3)."""
     found: dict[str, dict[str, np.ndarray]] = {}
     for k, drag in enumerate(model.drags):
-        if asked(drag.name):
-            before = found[drag.name]["force"] if drag.name in found else 0.0
-            found[drag.name] = {"force": before + forces[:, k]}
+        before = found[drag.name]["force"] if drag.name in found else 0.0
+        found[drag.name] = {"force": before + forces[:, k]}
     return found
-
-
-def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: np.ndarray, joints: np.ndarray,
-                      point_forces: np.ndarray, couplings: Mapping[str, np.ndarray],
-                      alone: str | None = None) -> dict[str, dict[str, dict[str, np.ndarray]]]:
-    """Return forces and moments of supports, ties, joints and forces between points, by group, label and quantity.
-
-    Of a slide it is the moment that keeps its rider's axes. All arguments have the time first: q (time, n_q), reaction
-    (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3),
-    couplings: of the kinds of AT_REST (time, couplings, numbers of one). They are along the ground's axes.
-    alone: of this label, None: of all.
-    """
-    def asked(label: str | None) -> bool:
-        return alone is None or label == alone
-
-    def reactions(supports: Iterable[Support]) -> dict[str, dict[str, np.ndarray]]:
-        return {support.label: support_reaction(model, scene, support, reaction, q) for support in supports
-                if asked(support.label)}
-
-    of_joints = [(joint, joint_state(joint, joints[:, k])) for k, joint in enumerate(model.joints)
-                 if asked(joint.name if joint.slide is None else joint.slide)]
-    found: dict[str, dict[str, dict[str, np.ndarray]]] = {
-        "slides": {joint.slide: {"moment": state["moment"]} for joint, state in of_joints if joint.slide is not None},
-        "pins": {label: {"force": of["force"]} for label, of in reactions(scene.pins).items()},
-        "clamps": reactions(scene.clamps),
-        "motions": reactions(scene.motions),
-        "ties": {name: tie_force(model, scene, tie, reaction, q) for name, tie in scene.ties.items() if asked(name)},
-        "joints": {joint.name: state for joint, state in of_joints if joint.slide is None},
-        PointForce.group: {force.name: point_force_state(model, force, point_forces[:, k], q)
-                           for k, force in enumerate(model.point_forces) if asked(force.name)},
-        Drag.group: _drag_states(model, couplings["drag"], asked),
-        Crossing.group: {crossing.name: crossing_state(couplings["crossing"][:, k])
-                         for k, crossing in enumerate(model.crossings) if asked(crossing.name)},
-        Contact.group: {contact.name: contact_state(contact, couplings["contact"][:, k])
-                        for k, contact in enumerate(model.contacts) if asked(contact.name)}
-        | {name: state for name, state in hard_contact_states(model, couplings["hard_contact"]).items() if asked(name)},
-    }
-    return found if model.plane_axes is None else {
-        group: {label: model.results(label, values) for label, values in of.items()} for group, of in found.items()}

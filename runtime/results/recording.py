@@ -10,14 +10,7 @@ import numpy as np
 from ..engine import Engine
 from ..model.joints import JointModel
 from ..model.model import Model, SlideModel
-from ..model.states import (
-    AT_REST,
-    body_rates,
-    body_state,
-    connection_states,
-    modal_state,
-    spatial,
-)
+from ..model.part_states import States, part_states
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
@@ -53,33 +46,11 @@ class Recording(Rows):
 def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
     """Return the engine's rows by name."""
     rows = engine.rows()
-    q, v, a = rows["q"], rows["v"], rows["acceleration"]
-    cables = {}
-    for cable in model.cables:
-        at, shape = cable.coordinates, (len(q), *cable.shape)
-        vectors = {"nodal_vectors": spatial(q[:, at].reshape(shape)),
-                   "nodal_velocity": spatial(v[:, at].reshape(shape))}
-        cables[cable.name] = model.results(cable.name, vectors) | {
-            "node_s": cable.mesh.node_s,
-            "vector_names": cable.vectors,
-        }
-    bodies, modal = {}, {}
-    for body in model.bodies:
-        state = body_state(model, body, q)
-        bodies[body.name] = model.results(body.name, state | body_rates(model, body, state["orientation"], v, a))
-        if body.modes:
-            modal[body.name] = model.results(body.name, modal_state(model, body, state, q, v))
-    forces = connection_states(model, scene, q, rows["reaction"], rows["joint"], rows["point_force"],
-                               {kind: rows[kind] for kind in AT_REST})
-    slides = {}
-    for k, slide in enumerate(model.slides):
-        own = {"s": rows["s"][:, k], **engine.slide_row(rows["slide"][:, k])}
-        own["residual"] = np.linalg.norm(own["residual"], axis=-1)
-        own = model.results(slide.name, own)
-        slides[slide.name] = own | forces["slides"].get(slide.name, {})
-    parts = {"bodies": bodies, **forces, "slides": slides}
+    found = part_states(model, scene, States.of_rows(rows))
+    cables = {cable.name: found.cables[cable.name] | {"node_s": cable.mesh.node_s, "vector_names": cable.vectors}
+              for cable in model.cables}
     energy = {name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")}
-    return Rows(rows["time"], cables, modal, parts, energy)
+    return Rows(rows["time"], cables, found.modal, found.parts, energy)
 
 
 def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) -> Recording:

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError, near
-from ..model.states import connection_states, free_states, spatial
+from ..model.part_states import part_states
+from ..model.states import spatial
 from ..parts.paths import COMPONENTS
 from ..parts.validation import EXACT
 from ..solve.adjustment import Reader
@@ -93,11 +94,7 @@ class _Values:
         """Return (T, ...): a result by its name, along the ground's axes."""
         part, _, quantity = name.rpartition(".")
         if part not in self.found:
-            at, model = self.at, self.model
-            self.found[part] = free_states(model, at.q, at.s, at.slide_force, part).get(part, {})
-            for group in connection_states(model, self.scene, at.q, at.reaction, at.joint_forces, at.point_force,
-                                           at.couplings, part).values():
-                self.found[part] |= group.get(part, {})
+            self.found[part] = part_states(self.model, self.scene, self.at.states(), part).by_label().get(part, {})
         return self.found[part][quantity]
 
     def _cut(self, name: str, along: Sequence[float]) -> None:

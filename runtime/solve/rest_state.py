@@ -9,7 +9,8 @@ import numpy as np
 
 from ..errors import EquilibriumError, SceneError, UnknownResultError, near
 from ..model.model import Model
-from ..model.states import AT_REST, attachment_points, connection_states, free_states
+from ..model.part_states import States, numbers_at_rest, part_states
+from ..model.states import attachment_points
 from ..named_arrays import NamedArrays
 from ..parts.paths import path_of, value_at
 from ..parts.plane import called
@@ -107,23 +108,22 @@ class Adjustment:
 class RestState(NamedArrays):
     """A state of rest of a scene.
 
-    Quantities by name as in a `Run`, without the time: ``state["wire.nodal_vectors"]`` (node, vector, 3),
-    ``state["A.position"]``, ``state["trolley.s"]``, ``state["wire@0.force"]`` ... load_fraction: how much of the load
-    is on, 1 but in the `EquilibriumError` that says how far it got, and along a path; iterations of Newton; residual:
-    the largest force left over, in N; stability: see `Stability`; path: the states of rest on the way, each under its
-    load_fraction of all loads, in their order, this one last: what a curve of load and displacement is drawn from;
-    critical_points of that path; gravity_fraction: how much of gravity is on, all of it where scale_gravity is off;
-    messages: what the search passed, adjusted or left out; relaxation: how `Scene.relax` came to the state, else None;
-    turned: the angles of motions and driven joints that it has, whole turns counted, in rad by label;
-    adjustment: what the search changed in the scene for given values of the state, else None; ``scene`` is the one with
-    the values found, then.
+    All quantities of a `Run` by name, without the time: ``state["wire.nodal_vectors"]`` (node, vector, 3),
+    ``state["A.position"]``, ``state["drive.traction"]``, ``state["wire@0.force"]`` ... Rates are zero. load_fraction:
+    how much of the load is on, 1 but in the `EquilibriumError` that says how far it got, and along a path; iterations
+    of Newton; residual: the largest force left over, in N; stability: see `Stability`; path: the states of rest on the
+    way, each under its load_fraction of all loads, in their order, this one last: what a curve of load and displacement
+    is drawn from; critical_points of that path; gravity_fraction: how much of gravity is on, all of it where
+    scale_gravity is off; messages: what the search passed, adjusted or left out; relaxation: how `Scene.relax` came to
+    the state, else None; turned: the angles of motions and driven joints that it has, whole turns counted, in rad by
+    label; adjustment: what the search changed in the scene for given values of the state, else None; ``scene`` is the
+    one with the values found, then.
     """
 
     scene: SceneData
     model: Model
     static_state: dict
     reaction: np.ndarray
-    joint_forces: np.ndarray
     load_fraction: float
     iterations: int
     residual: float
@@ -147,10 +147,10 @@ class RestState(NamedArrays):
         units = np.where(problem.weight > 0, problem.weight, np.inf)
         engine = problem.engine
         scene = problem.scene.as_drawn
-        state = cls(scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
-                    problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
+        state = cls(scene, problem.model, problem.keep(), engine.reaction(), problem.fraction,
+                    problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
                     problem.fraction if problem.settings.scale_gravity else 1.0,
-                    {kind: engine.static_outputs(kind) for kind in AT_REST}, heading)
+                    numbers_at_rest(engine), heading)
         state.quantities = state._quantities()
         state.path, state.layout, state.turned = [state], layout(scene), problem.turns.reached
         return state
@@ -276,12 +276,10 @@ class RestState(NamedArrays):
             slide.place_at(float(s), model.cables[slide.cable])
 
     def _quantities(self) -> dict[str, np.ndarray]:
-        model, kept = self.model, self.static_state
-        q = kept["q"][None]
-        free = free_states(model, q, kept["s"][None], kept["force"][None])
-        found = {f"{part}.{name}": value[0] for part, values in free.items() for name, value in values.items()}
-        forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
-                                   self.static_state["point_force"][None],
-                                   {kind: numbers[None] for kind, numbers in self.couplings.items()})
-        return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()
-                        for name, value in values.items() if name != "residual"}
+        kept = self.static_state
+        at = States.at_rest(kept["q"][None], kept["s"][None], self.reaction[None],
+                            {kind: numbers[None] for kind, numbers in self.couplings.items()})
+        found = part_states(self.model, self.scene, at).by_label()
+        for cable in self.model.cables:
+            found[cable.name]["position"] = found[cable.name]["nodal_vectors"][:, :, cable.vectors.index("r")]
+        return {f"{label}.{name}": value[0] for label, values in found.items() for name, value in values.items()}

@@ -8,23 +8,19 @@ from typing import Self
 
 import numpy as np
 
-from ..model.states import AT_REST
+from ..model.part_states import States, numbers_at_rest
 from .static_problem import StaticState
 
 
 @dataclass
 class Snapshots:
-    """T static states of a scene: configurations q (T, n_q), arc-lengths s and forces of slides (T, slides, 3), forces
-    between points (T, point forces, 3), what supports give (T, n_dof), forces of joints (T, joints, 7), and the numbers
-    of other couplings by their kind, of AT_REST (T, couplings, numbers).
+    """T static states of a scene: configurations q (T, n_q), arc-lengths s (T, slides), what supports give (T, n_dof),
+    and the numbers of couplings by their kind, (T, couplings, numbers).
     """
 
     q: np.ndarray
     s: np.ndarray
-    slide_force: np.ndarray
-    point_force: np.ndarray
     reaction: np.ndarray
-    joint_forces: np.ndarray
     couplings: dict[str, np.ndarray]
 
     def __len__(self) -> int:
@@ -38,18 +34,19 @@ class Snapshots:
         reactions: False where no force is asked for that residuals are needed to know, which saves them.
         """
         rows: list[tuple[np.ndarray, ...]] = []
-        couplings: dict[str, list[np.ndarray]] = {kind: [] for kind in AT_REST}
+        couplings: list[dict[str, np.ndarray]] = []
         for state in states:
             if reactions:
                 state.residual()
             kept = state.keep()
-            rows.append((kept["q"], kept["s"], kept["force"], kept["point_force"], state.engine.reaction(),
-                         state.engine.joint_forces()))
-            for kind, numbers in couplings.items():
-                numbers.append(state.engine.static_outputs(kind))
-        q, s, slide_force, point_force, reaction, joint_forces = (np.array(each) for each in zip(*rows, strict=True))
-        return cls(q, s, slide_force, point_force, reaction, joint_forces,
-                   {kind: np.array(numbers) for kind, numbers in couplings.items()})
+            rows.append((kept["q"], kept["s"], state.engine.reaction()))
+            couplings.append(numbers_at_rest(state.engine))
+        q, s, reaction = (np.array(each) for each in zip(*rows, strict=True))
+        return cls(q, s, reaction, {kind: np.array([each[kind] for each in couplings]) for kind in couplings[0]})
+
+    def states(self) -> States:
+        """Return them as what parts tell is read from."""
+        return States.at_rest(self.q, self.s, self.reaction, self.couplings)
 
 
 @dataclass(frozen=True)

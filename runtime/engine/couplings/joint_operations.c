@@ -109,8 +109,9 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
                     const fu_accelerator *work, double *out)
 {
+    const double *multipliers = work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* of rest */
     (void)acceleration;
-    fu_joint_outputs(model, (const fu_joint *)coupling, state, work->multipliers + coupling->multiplier,
+    fu_joint_outputs(model, (const fu_joint *)coupling, state, multipliers,
                      (fu_joint_output *)out);
 }
 

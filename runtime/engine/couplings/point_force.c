@@ -283,11 +283,13 @@ static void own_force(const fu_model *model, const fu_coupling *coupling, const 
     add_forces(model, (const fu_point_force *)coupling, state->q, force, f);
 }
 
+/* work: null in a state of rest, where the force is an unknown. */
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                             const double *acceleration, const fu_accelerator *work, double *out)
 {
-    (void)acceleration, (void)work;
-    force_at(model, coupling, state, out);
+    (void)acceleration;
+    if (work) force_at(model, coupling, state, out);
+    else memcpy(out, state->forces + coupling->force, sizeof(double) * (size_t)coupling->n_forces);
 }
 
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)

@@ -179,10 +179,50 @@ void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const
     add_force_of_frame(model, work, j, lambda, out->force);
 }
 
+/* Returns what joints put on s whose frame goes with a slide, in the balance along its cable. */
+static double of_frame(const fu_model *model, const fu_state *state, int j)
+{
+    double sum = 0.0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        if (model->couplings[k]->type != &fu_joint_type) continue;
+        const fu_joint *joint = (const fu_joint *)model->couplings[k];
+        if (joint->attachments[0].slide != j && joint->attachments[1].slide != j) continue;
+        fu_joint_rows_at at;
+        fu_joint_equations(model, joint, state, &at);
+        for (int e = 0; e < 2; ++e)
+            for (int r = 0; r < joint->kernel->rows && joint->attachments[e].slide == j; ++r)
+                if (!(joint->redundant_rows >> r & 1)) sum += at.J[e][(r + 1) * at.n[e] - 1] * state->forces[joint->base.force + r];
+    }
+    return sum;
+}
+
+/* Makes the numbers of a slide in a state of rest, where its force is along all axes of the ground. */
+static void outputs_at_rest(const fu_model *model, const fu_state *state, int j, fu_slide_output *out)
+{
+    const fu_slide *slide = &model->slides[j];
+    const double *force = state->forces + slide->base.force;
+    const int dim = model->dim, mode = fu_slide_flags_of(model, state, j)->mode;
+    double phi[3], g[FU_SLIDE_COORDINATES + 1], A_t[9];
+    int at[FU_SLIDE_COORDINATES + 1];
+    *out = (fu_slide_output){0};
+    if (mode == FU_LEFT) return;
+    fu_slide_residual(model, state, j, phi, g);
+    const double stretch = fu_slide_frame(model, state, j, A_t);
+    for (int d = 0; d < dim; ++d) {
+        out->force[d] = force[d];
+        out->residual[d] = phi[d];
+        for (int c = 0; c < dim - 1; ++c) out->multiplier[c] += A_t[d * dim + 1 + c] * force[d];
+    }
+    out->traction = g[fu_slide_coordinates(model, state, j, at)] + of_frame(model, state, j);
+    if (slide->drive < 0) out->traction /= stretch; /* of a drive it is the power over the rate of s */
+}
+
+/* work: null in a state of rest. */
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
                     const fu_accelerator *work, double *out)
 {
-    fu_slide_outputs(model, state, coupling->index, acceleration, work, (fu_slide_output *)out);
+    if (work == 0) outputs_at_rest(model, state, coupling->index, (fu_slide_output *)out);
+    else fu_slide_outputs(model, state, coupling->index, acceleration, work, (fu_slide_output *)out);
 }
 
 /* A rigid body is put on its cable when it is drawn; s of one that is not locked follows. */

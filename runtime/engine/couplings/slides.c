@@ -181,14 +181,29 @@ double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, do
     return fu_signal_at(&model->signals[model->slides[j].drive], state->t, rate, second);
 }
 
-/* Returns the Newton step for s from this s, m, and makes the tangent frame there. */
-double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9])
+/* Makes the derivatives of the constraints by s at this s, m, and the tangent frame there; returns the Newton step for s. */
+static double constraints_at(const fu_model *model, const fu_state *state, int j, double s, double C_s[3], double A_t[9])
 {
     const fu_slide *slide = &model->slides[j];
-    double C[3], C_s[3], step;
+    double C[3], step;
     slide_view v;
     look(model, state, j, &v);
     slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->piece[j]), v.e, v.b, v.u,
                               fu_slide_numbers_of(model, state, j)->director, C, C_s, &step, A_t);
     return step;
+}
+
+/* Returns the Newton step for s from this s, m, and makes the tangent frame there. */
+double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9])
+{
+    double C_s[3];
+    return constraints_at(model, state, j, s, C_s, A_t);
+}
+
+/* Makes the tangent frame where a slide is, and returns the length of the centreline there over that without stress. */
+double fu_slide_frame(const fu_model *model, const fu_state *state, int j, double A_t[9])
+{
+    double C_s[3];
+    constraints_at(model, state, j, state->s[j], C_s, A_t);
+    return C_s[0];
 }

@@ -43,14 +43,6 @@ cdef class Report(Statics):
         """Number of steps since the start, which `statistics` has with much else."""
         return self.run.statistics.steps
 
-    def slide_row(self, slides):
-        """Split slides' numbers (..., numbers of a slide) by name; see fu_slide_output."""
-        ends = np.cumsum(list(SLIDE_OUTPUTS.values()))
-        if slides.shape[-1] != ends[-1]:
-            raise ValueError(f"a slide has {slides.shape[-1]} numbers, not {ends[-1]}")
-        return {name: slides[..., end - size:end] if size > 1 else slides[..., end - 1]
-                for (name, size), end in zip(SLIDE_OUTPUTS.items(), ends)}
-
     @property
     def statistics(self):
         """Counts, step sizes, error estimate and seconds by part."""

@@ -65,6 +65,7 @@ double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, do
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g);
 void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K);
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state);
+double fu_slide_frame(const fu_model *model, const fu_state *state, int j, double A_t[9]);
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9]);
 
 /* couplings/slide_steps.c: residual and tangent over a step that conserves energy. */
