@@ -60,3 +60,12 @@ def test_the_energy_that_friction_of_lines_takes(integrator, tol, error):
     """By the ends of steps alone it was off by 9e-3, 3e-3, 1.3e-3 and 6e-5 of what is exchanged."""
     balance = bounced(integrator, tol).energy_balance()
     assert np.abs(balance.residual).max() < error * balance.exchanged
+
+
+@pytest.mark.parametrize("integrator", ["explicit", "radau"])
+@pytest.mark.parametrize("tol", [1e-4, 1e-6])
+def test_a_bar_that_slides_and_sticks_on_a_wire_is_within_tol(integrator, tol):
+    """With explicit steps it was off by 24 tol at 1e-6."""
+    reference = bounced("explicit", 1e-10)["bar.position"]
+    error = np.abs(bounced(integrator, tol)["bar.position"] - reference).max()
+    assert error < 3 * tol * np.abs(reference - reference[0]).max()

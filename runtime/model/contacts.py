@@ -25,7 +25,7 @@ NONE = np.zeros(0)
 MARK_NUMBERS, AXES_NUMBERS, MARK_PLACE = 17, 9, slice(3, 6)
 """That a state keeps of friction: of a point, of a body's axes; places among them (engine/include/contacts.h)."""
 NO_TIME = 1e300
-"""In s: the time of marks as drawn, from where no step begins."""
+"""In s: FU_NO_TIME of engine/include/penalty_friction.h."""
 
 
 @dataclass(kw_only=True)

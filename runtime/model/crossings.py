@@ -17,7 +17,7 @@ from .coupling import CouplingModel
 LEAST_PENETRATION = 1e-30
 """m: what the size of a penetration is not below under a root."""
 
-GRIP_NUMBERS = 8
+GRIP_NUMBERS = 13
 """That a state keeps of friction that sticks: FU_CROSSING_GRIP of engine/include/crossings.h."""
 KERNELS = {2: "planar_crossing", 3: "crossing"}
 

@@ -19,6 +19,14 @@ static double bound(const void *of, double depth, double rate)
     return contact->law.friction * fu_press_at(contact, depth, rate, depth).p;
 }
 
+fu_friction_way fu_contact_way(const fu_contact *contact, const fu_touch_point *point)
+{
+    const fu_friction_mark *mark = point->mark;
+    fu_friction_way way = {.h = point->since, .stiffness = contact->law.tangential, .bound = bound, .of = contact};
+    way.depth = (fu_step_ends){{-mark->gap, point->depth}, {-mark->gap_rate, point->sinking}};
+    return way;
+}
+
 /* Makes the part of a step after which the point touches, and how far it has gone until then. */
 static void begin_at_touch(int dim, const fu_touch_point *point, path *of, double gone[3])
 {
@@ -69,8 +77,7 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     fu_surface_into(dim, on, point->distance.n, out->normal);
     turn_along(dim, mark, out->normal, stretch);
     fu_contact_change(dim, contact, point, out->normal, out->change);
-    out->way = (fu_friction_way){.h = point->since, .stiffness = contact->law.tangential, .bound = bound, .of = contact};
-    out->way.depth = (fu_step_ends){{-mark->gap, point->depth}, {-mark->gap_rate, point->sinking}};
+    out->way = fu_contact_way(contact, point);
     begin_at_touch(dim, point, out, gone);
     for (int d = 0; d < dim; ++d) out->x[d] = (out->from > 0.0 ? 0.0 : stretch[d]) + out->change[d] - gone[d];
     const double across = fu_dot(dim, out->normal, out->x) / fu_dot(dim, out->normal, out->normal);

@@ -6,10 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-/* What a state keeps of the last step: the closest points, the way between them, the stretch along and across the last line; not zero
- * where it has slid, as then the stretch is just what friction allows. */
+/* What a state keeps of the last step: the closest points, the way between them; along and across the last line the stretch and the
+ * velocity of particles past each other; not zero where it has slid, as then the stretch is just what friction allows; the penetration
+ * and its rate; the time. */
 typedef struct {
-    double s[FU_LINES], way[3], stretch[2], slid;
+    double s[FU_LINES], way[3], stretch[2], slid, rate[2], depth, sinking, time;
 } before;
 _Static_assert(sizeof(before) == FU_CROSSING_GRIP * sizeof(double), "numbers of a state are doubles");
 
@@ -23,138 +24,209 @@ static void moved_since(const before *last, const fu_closest_points *points, dou
     for (int line = 0; line < FU_LINES; ++line) e[line] = points->s[line] - last->s[line];
 }
 
-static void grip_since(const fu_crossing *crossing, const before *last, const fu_closest_points *points, double press, fu_crossing_grip *out)
+/* What friction allows, N, by the law of kernel->contact. */
+static double bound(const void *of, double depth, double rate)
+{
+    const fu_crossing *crossing = of;
+    const int dim = crossing->kernel->dim;
+    const double t[6] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+    fu_crossing_contact at;
+    double d[3] = {0.0}, u[3] = {0.0};
+    memset(&at, 0, sizeof at);
+    crossing->kernel->contact(d, t, u, crossing->law, at.normal, at.depth, &at.size, at.force, &at.energy, &at.dissipated);
+    for (int k = 0; k < dim; ++k) {
+        d[k] = (at.depth[0] - depth) * at.normal[k];
+        u[k] = -rate * at.normal[k];
+    }
+    crossing->kernel->contact(d, t, u, crossing->law, at.normal, at.depth, &at.size, at.force, &at.energy, &at.dissipated);
+    return crossing->friction * fmax(at.size, 0.0);
+}
+
+/* A direction along the lines' common tangent plane, as the last line and what is across it, in space. */
+static void in_space(int dim, const double *along, const double *normal, const double parts[2], double out[3])
+{
+    double across[3] = {0.0};
+    if (dim == 3) fu_cross(normal, along, across);
+    for (int d = 0; d < dim; ++d) out[d] = parts[0] * along[d] + parts[1] * across[d];
+}
+
+/* Makes how fast particles of both lines go past each other. */
+static void slip_of(int dim, const fu_closest_points *points, const fu_crossing_contact *contact, double slip[3])
+{
+    for (int d = 0; d < dim; ++d) slip[d] = points->u[d] + contact->depth[1] * contact->normal[d];
+}
+
+/* Makes how friction's spring goes from the last step to points; the grip has the stretches by the kernel. */
+static void travel_since(const fu_crossing *crossing, const before *last, const fu_closest_points *points, const fu_crossing_contact *contact,
+                         double time, const fu_crossing_grip *grip, fu_friction_travel *travel, fu_friction_way *way)
 {
     const int dim = crossing->kernel->dim;
-    double e[FU_LINES];
+    memset(travel, 0, sizeof *travel);
+    for (int d = 0; d < dim; ++d) {
+        travel->stretch[d] = grip->old[d];
+        travel->change[d] = grip->without_sliding[d] - grip->old[d];
+    }
+    in_space(dim, grip->along, contact->normal, last->rate, travel->rates[0]);
+    slip_of(dim, points, contact, travel->rates[1]);
+    *way = (fu_friction_way){.h = time - last->time, .stiffness = crossing->tangential, .bound = bound, .of = crossing};
+    way->depth = (fu_step_ends){{last->depth, contact->depth[0]}, {last->sinking, contact->depth[1]}};
+}
+
+static void grip_since(const fu_crossing *crossing, const before *last, const fu_closest_points *points, const fu_crossing_contact *contact,
+                       double time, fu_crossing_grip *out)
+{
+    const int dim = crossing->kernel->dim;
+    const double most = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
+    double e[FU_LINES], along[3] = {0.0};
+    fu_friction_travel travel;
+    fu_friction_way way;
     memset(out, 0, sizeof *out);
     moved_since(last, points, e);
     crossing->kernel->stretch(points->d, points->t, points->k, crossing->law, e, last->way, last->stretch,
                               out->without_sliding, out->old, out->along);
-    memcpy(out->stretch, out->without_sliding, sizeof out->stretch);
-    out->slides = fu_limit_stretch(dim, crossing->tangential, crossing->friction * fmax(press, 0.0), out->stretch);
-    for (int d = 0; d < dim; ++d) out->force[d] = -crossing->tangential * out->stretch[d];
+    travel_since(crossing, last, points, contact, time, out, &travel, &way);
+    const double size = fu_way_along(dim, &travel, along, &way);
+    if (way.h > 0.0) out->end = fu_end_of_friction(&way);
+    else out->end = (fu_friction_end){fmin(size, most), 1.0, size > most};
+    out->slides = out->end.slid && out->end.part == 1.0;
+    for (int d = 0; d < dim; ++d) {
+        out->stretch[d] = out->end.stretch * along[d];
+        out->force[d] = -crossing->tangential * out->stretch[d];
+    }
     out->sticks = !out->slides && last->slid == 0.0;
     out->energy = 0.5 * crossing->tangential * fu_dot(dim, out->stretch, out->stretch);
 }
 
-void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
-                         fu_crossing_grip *out)
+void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                         const fu_crossing_contact *contact, fu_crossing_grip *out)
 {
-    grip_since(crossing, before_of(crossing, state), points, press, out);
+    grip_since(crossing, before_of(crossing, state), points, contact, state->t, out);
 }
 
-void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
-                                  double F[3], double F_d[9], double F_t[18], double F_u[9])
+/* Makes the derivatives of what has slid within the step and then sticks: parts of those that stick, as a velocity at the end also
+ * moves where it slid last, and of those that slide. */
+static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_grip *grip, double h, const fu_crossing_grip_changes *stuck,
+                            fu_crossing_grip_changes *by)
+{
+    const int dim = crossing->kernel->dim;
+    const fu_cubic at = fu_cubic_at(grip->end.part);
+    const double lag = crossing->tangential * h * at.rates[1], square = fu_dot(dim, grip->stretch, grip->stretch);
+    for (int i = 0; i < dim * dim; ++i) by->F_d[i] = at.change * by->F_d[i] + (1.0 - at.change) * stuck->F_d[i];
+    for (int i = 0; i < dim * dim * (dim - 1); ++i) by->F_t[i] = at.change * by->F_t[i] + (1.0 - at.change) * stuck->F_t[i];
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim && square > 0.0; ++j)
+            by->F_u[i * dim + j] = at.change * by->F_u[i * dim + j] + lag * grip->stretch[i] * grip->stretch[j] / square;
+}
+
+void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                                  const fu_crossing_contact *contact, fu_crossing_grip_changes *by)
 {
     const before *last = before_of(crossing, state);
     const fu_crossing_kernels *kernel = crossing->kernel;
-    const double friction = press > 0.0 ? crossing->friction : 0.0;
+    const double friction = contact->size > 0.0 ? crossing->friction : 0.0;
     double e[FU_LINES];
     fu_crossing_grip grip;
-    fu_crossing_grip_at(crossing, state, points, press, &grip);
+    fu_crossing_grip_changes stuck;
+    fu_crossing_grip_at(crossing, state, points, contact, &grip);
     moved_since(last, points, e);
-    memset(F_u, 0, sizeof(double[9]));
-    if (grip.slides)
-        kernel->sliding(points->d, points->t, points->k, points->w, points->u, crossing->law, friction, e, last->way, last->stretch, F, F_d,
-                        F_t, F_u);
-    else kernel->sticking(points->d, points->t, points->k, crossing->law, crossing->tangential, e, last->way, last->stretch,
-                          F, F_d, F_t);
+    memset(by, 0, sizeof *by);
+    memset(&stuck, 0, sizeof stuck);
+    if (grip.end.slid)
+        kernel->sliding(points->d, points->t, points->k, points->w, points->u, crossing->law, friction, e, last->way, last->stretch, by->F,
+                        by->F_d, by->F_t, by->F_u);
+    if (!grip.slides)
+        kernel->sticking(points->d, points->t, points->k, crossing->law, crossing->tangential, e, last->way, last->stretch, stuck.F, stuck.F_d,
+                         stuck.F_t);
+    if (!grip.end.slid) *by = stuck;
+    else if (!grip.slides) mix_derivatives(crossing, &grip, state->t - last->time, &stuck, by);
+    memcpy(by->F, grip.force, sizeof by->F);
 }
 
-/* Returns what friction has taken since the last place, J: the mean force times the way that the spring has not stretched by. */
-static double slid(const fu_crossing *crossing, const fu_crossing_grip *grip)
+/* Takes the stretch of a grip, null for none, along to points. */
+static void take_along(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact, double time,
+                       const fu_crossing_grip *grip, const double *line, before *last)
 {
-    double sum = 0.0;
-    for (int d = 0; d < crossing->kernel->dim; ++d)
-        sum += 0.5 * crossing->tangential * (grip->old[d] + grip->stretch[d]) * (grip->without_sliding[d] - grip->stretch[d]);
-    return sum;
-}
-
-static void begin_at(const fu_crossing *crossing, const fu_closest_points *points, before *last)
-{
+    const int dim = crossing->kernel->dim;
+    double across[3] = {0.0}, slip[3];
     memset(last, 0, sizeof *last);
     memcpy(last->s, points->s, sizeof last->s);
-    memcpy(last->way, points->d, sizeof(double) * (size_t)crossing->kernel->dim);
+    memcpy(last->way, points->d, sizeof(double) * (size_t)dim);
+    last->depth = contact->depth[0];
+    last->sinking = contact->depth[1];
+    last->time = time;
+    slip_of(dim, points, contact, slip);
+    if (dim == 3) fu_cross(contact->normal, line, across);
+    last->rate[0] = fu_dot(dim, line, slip);
+    last->rate[1] = fu_dot(dim, across, slip);
+    if (!grip) return;
+    last->slid = grip->slides;
+    last->stretch[0] = fu_dot(dim, line, grip->stretch);
+    last->stretch[1] = fu_dot(dim, across, grip->stretch);
 }
 
 void fu_crossing_begin_grip(const fu_crossing *crossing, const fu_closest_points *points, fu_state *state)
 {
-    begin_at(crossing, points, before_of(crossing, state));
-}
-
-/* Takes the stretch of a grip along to where it is. */
-static void take_along(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
-                       const fu_crossing_grip *grip, before *last)
-{
-    const int dim = crossing->kernel->dim;
-    double across[3];
-    begin_at(crossing, points, last);
-    last->slid = grip->slides;
-    last->stretch[0] = fu_dot(dim, grip->along, grip->stretch);
-    if (dim == 2) return;
-    fu_cross(contact->normal, grip->along, across);
-    last->stretch[1] = fu_dot(dim, across, grip->stretch);
+    before here = *before_of(crossing, state);
+    fu_crossing_contact contact;
+    fu_crossing_grip grip;
+    fu_crossing_contact_at(crossing, points, &contact);
+    memcpy(here.s, points->s, sizeof here.s);
+    grip_since(crossing, &here, points, &contact, here.time, &grip); /* of it the direction of the last line */
+    take_along(crossing, points, &contact, state->t, 0, grip.along, before_of(crossing, state));
 }
 
 void fu_crossing_carry_grip(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
                             fu_state *state)
 {
     fu_crossing_grip grip;
-    fu_crossing_grip_at(crossing, state, points, contact->size, &grip);
-    take_along(crossing, points, contact, &grip, before_of(crossing, state));
+    fu_crossing_grip_at(crossing, state, points, contact, &grip);
+    take_along(crossing, points, contact, state->t, &grip, grip.along, before_of(crossing, state));
 }
 
-/* Grips on the way through a step: that at its end at once, that at a place within it, that at the end by this place. */
-typedef struct {
-    fu_crossing_grip once, within, twice;
-} way;
-
-/* Makes the grips from one state to another; the place within is where particles turn round on their way past each other, if `at_turn` is
- * not zero, or half-way. Returns not zero where lines that touch have no closest points. */
-static int go_on_way(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int at_turn, way *out)
+/* Makes the grip at the end of a step, and the way to it; returns whether lines that touch have closest points there. */
+static int grip_over_step(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, fu_crossing_grip *grip,
+                          fu_friction_travel *travel, fu_friction_way *way)
 {
-    const int dim = crossing->kernel->dim;
-    fu_moment moment = {.now = from, .next = to, .h = to->t - from->t, .x = 0.5};
-    fu_closest_points begin, within, end;
+    const before *last = before_of(crossing, from);
+    fu_closest_points end;
     fu_crossing_contact contact;
-    before last = *before_of(crossing, from);
-    double s[FU_LINES];
     fu_find_closest(model, crossing, to, &end);
-    if (!end.found || !(moment.h > 0.0)) return 1;
+    if (!end.found || !(to->t > last->time)) return 0;
     fu_crossing_contact_at(crossing, &end, &contact);
-    const double press = contact.size;
-    grip_since(crossing, &last, &end, press, &out->once);
-    fu_find_closest(model, crossing, from, &begin);
-    if (!begin.found) return 1;
-    const double before = fu_dot(dim, out->once.stretch, begin.u), after = fu_dot(dim, out->once.stretch, end.u);
-    if (at_turn && before * after < 0.0) moment.x = before / (before - after);
-    for (int line = 0; line < FU_LINES; ++line) s[line] = begin.s[line] + moment.x * (end.s[line] - begin.s[line]);
-    fu_find_closest_within(model, crossing, &moment, s, &within);
-    if (!within.found) return 1;
-    fu_crossing_contact_at(crossing, &within, &contact);
-    grip_since(crossing, &last, &within, contact.size, &out->within);
-    take_along(crossing, &within, &contact, &out->within, &last);
-    grip_since(crossing, &last, &end, press, &out->twice);
-    return 0;
+    grip_since(crossing, last, &end, &contact, to->t, grip);
+    travel_since(crossing, last, &end, &contact, to->t, grip, travel, way);
+    return 1;
 }
 
+/* By how much another way leads elsewhere, the parabola without the velocities at the beginning. */
 double fu_crossing_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
 {
     const fu_crossing *crossing = (const fu_crossing *)coupling;
-    way grips;
-    if (!(crossing->friction > 0.0) || !from->flags[coupling->flags] || go_on_way(model, crossing, from, to, 1, &grips)) return 0.0;
-    return fabs(sqrt(fu_dot(model->dim, grips.once.stretch, grips.once.stretch)) -
-                sqrt(fu_dot(model->dim, grips.twice.stretch, grips.twice.stretch)));
+    const int dim = model->dim;
+    fu_crossing_grip grip;
+    fu_friction_travel travel;
+    fu_friction_way way;
+    double along[3] = {0.0}, square = 0.0;
+    if (!(crossing->friction > 0.0) || !from->flags[coupling->flags]) return 0.0;
+    if (!grip_over_step(model, crossing, from, to, &grip, &travel, &way)) return 0.0;
+    for (int d = 0; d < dim; ++d) travel.rates[0][d] = 2.0 * travel.change[d] / way.h - travel.rates[1][d];
+    way.depth.rate[0] = 2.0 * (way.depth.value[1] - way.depth.value[0]) / way.h - way.depth.rate[1];
+    fu_way_along(dim, &travel, along, &way);
+    const fu_friction_end other = fu_end_of_friction(&way);
+    for (int d = 0; d < dim; ++d) {
+        const double off = other.stretch * along[d] - grip.stretch[d];
+        square += off * off;
+    }
+    return sqrt(square);
 }
 
 double fu_crossing_slid_on_way(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int by_ends)
 {
-    way grips;
-    if (go_on_way(model, crossing, from, to, 0, &grips)) return 0.0;
-    const double once = slid(crossing, &grips.once);
-    const double twice = slid(crossing, &grips.within) + slid(crossing, &grips.twice);
-    return by_ends ? once : (4.0 * twice - once) / 3.0;
+    fu_crossing_grip grip;
+    fu_friction_travel travel;
+    fu_friction_way way;
+    if (!grip_over_step(model, crossing, from, to, &grip, &travel, &way)) return 0.0;
+    return crossing->tangential * fu_taken_by_friction(model->dim, &travel, &way, grip.stretch, by_ends);
 }
 
 void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state)
@@ -163,4 +235,5 @@ void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state)
     memset(last, 0, sizeof *last);
     memcpy(last->s, crossing->start, sizeof last->s);
     memcpy(last->way, crossing->way, sizeof last->way);
+    last->time = FU_NO_TIME;
 }

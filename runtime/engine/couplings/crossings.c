@@ -31,7 +31,7 @@ static void add_friction(const fu_crossing *crossing, const fu_state *state, con
     for (int d = 0; d < 3 && crossing->law[FU_LAW_FRICTION] > 0.0; ++d)
         contact->friction[d] = contact->force[d] - contact->size * contact->normal[d];
     if (!(crossing->friction > 0.0)) return;
-    fu_crossing_grip_at(crossing, state, points, contact->size, &grip);
+    fu_crossing_grip_at(crossing, state, points, contact, &grip);
     contact->sticks = grip.sticks;
     contact->energy += grip.energy;
     for (int d = 0; d < 3; ++d) {
@@ -87,10 +87,10 @@ static void add_friction_derivatives(const fu_crossing *crossing, const fu_state
                                      derivatives *by)
 {
     const int dim = crossing->kernel->dim;
-    derivatives of;
+    fu_crossing_grip_changes of;
     fu_crossing_contact contact;
     fu_crossing_contact_at(crossing, points, &contact);
-    fu_crossing_grip_derivatives(crossing, state, points, contact.size, of.F, of.F_d, of.F_t, of.F_u);
+    fu_crossing_grip_derivatives(crossing, state, points, &contact, &of);
     for (int d = 0; d < dim; ++d) by->F[d] += of.F[d];
     for (int i = 0; i < dim * dim; ++i) {
         by->F_d[i] += of.F_d[i];

@@ -6,61 +6,39 @@
 #include <math.h>
 #include <string.h>
 
-#define PARTS 8 /* of a step: those that friction's work is summed over */
-
 /* A point that may touch within a step: at its end, the change of its place and the stretch there. */
 typedef struct {
     fu_touch_point end;
     fu_attachment_state on;
-    double change[3], stretch[3], normal[3];
+    double change[3], stretch[3];
 } step_point;
 
-/* Makes the spring's way to a part of the step: the place, the bound of the stretch, m. */
-static double place_within(int dim, const fu_contact *contact, const step_point *of, double x, double place[3])
+static fu_friction_travel travel_of(int dim, const step_point *of)
 {
-    const fu_friction_mark *mark = of->end.mark;
-    const double h = of->end.since;
-    const fu_step_ends gap = {{-mark->gap, of->end.depth}, {-mark->gap_rate, of->end.sinking}};
-    const double depth = fu_value_within(&gap, h, x), rate = fu_rate_within(&gap, h, x);
-    for (int d = 0; d < dim; ++d) {
-        const fu_step_ends ends = {{0.0, of->change[d]}, {mark->rate[d], of->end.slip[d]}};
-        place[d] = fu_value_within(&ends, h, x);
-    }
-    return depth > 0.0 ? contact->law.friction * fu_press_at(contact, depth, rate, depth).p / contact->law.tangential : 0.0;
+    fu_friction_travel travel = {{0.0}, {0.0}, {{0.0}}};
+    const size_t size = sizeof(double) * (size_t)dim;
+    memcpy(travel.stretch, of->end.mark->stretch, size);
+    memcpy(travel.change, of->change, size);
+    memcpy(travel.rates[0], of->end.mark->rate, size);
+    memcpy(travel.rates[1], of->end.slip, size);
+    return travel;
 }
 
-/* Returns what friction takes over its stiffness, m^2, summed over equal parts of the step. */
-static double taken(int dim, const fu_contact *contact, const step_point *of, int parts)
+static double taken(const fu_model *model, const fu_contact *contact, const step_point *of, int by_ends)
 {
-    double sum = 0.0, stretch[3] = {0.0}, last[3] = {0.0}, place[3];
-    memcpy(stretch, of->end.mark->stretch, sizeof(double) * (size_t)dim);
-    for (int i = 1; i <= parts; ++i) {
-        double without[3], across = 0.0;
-        const double most = place_within(dim, contact, of, (double)i / parts, place);
-        for (int d = 0; d < dim; ++d) without[d] = stretch[d] + place[d] - last[d];
-        across = fu_dot(dim, of->normal, without) / fu_dot(dim, of->normal, of->normal);
-        for (int d = 0; d < dim; ++d) without[d] -= across * of->normal[d];
-        double next[3];
-        memcpy(next, without, sizeof next);
-        fu_limit_stretch(dim, 1.0, most, next);
-        for (int d = 0; d < dim; ++d) {
-            sum += 0.5 * (stretch[d] + next[d]) * (without[d] - next[d]);
-            stretch[d] = next[d];
-            last[d] = place[d];
-        }
-    }
-    return sum + 0.5 * (fu_dot(dim, stretch, stretch) - fu_dot(dim, of->stretch, of->stretch));
+    const fu_friction_travel travel = travel_of(model->dim, of);
+    const fu_friction_way way = fu_contact_way(contact, &of->end);
+    return fu_taken_by_friction(model->dim, &travel, &way, of->stretch, by_ends);
 }
 
 static double taken_by_ends(const fu_model *model, const fu_contact *contact, step_point *of)
 {
-    return taken(model->dim, contact, of, 1);
+    return taken(model, contact, of, 1);
 }
 
-/* Returns the same by two sums, as the error falls with the square of the parts (Richardson). */
 static double taken_on_way(const fu_model *model, const fu_contact *contact, step_point *of)
 {
-    return (4.0 * taken(model->dim, contact, of, PARTS) - taken(model->dim, contact, of, PARTS / 2)) / 3.0;
+    return taken(model, contact, of, 0);
 }
 
 /* Returns how far off the stretch may be at the end, m: by how much another way leads elsewhere, the parabola without the velocities at
@@ -87,11 +65,12 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
 {
     const int dim = model->dim;
     fu_touch_point *end = &out->end;
+    double normal[3];
     fu_contact_place(model, contact, &out->on, to, element, number, end);
     const int touches = fu_contact_touches(model, contact, &out->on, end);
     if (!touches && !(end->mark->gap < 0.0)) return 0;
-    fu_surface_into(dim, &out->on, end->distance.n, out->normal);
-    fu_contact_change(dim, contact, end, out->normal, out->change);
+    fu_surface_into(dim, &out->on, end->distance.n, normal);
+    fu_contact_change(dim, contact, end, normal, out->change);
     memset(out->stretch, 0, sizeof out->stretch);
     for (int d = 0; d < dim && touches; ++d) out->stretch[d] = end->stretch[d];
     return 1;

@@ -12,9 +12,11 @@
 #include "engine.h"
 
 #include <math.h>
+#include <string.h>
 
 #define SAMPLES 3     /* parts of a step that the room to the bound is known at the ends of: of the cubic through it */
 #define REFINEMENTS 2 /* of where that room is least */
+#define PARTS 8       /* of a step: those that friction's work is summed over */
 
 int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
 {
@@ -123,4 +125,48 @@ fu_friction_end fu_end_of_friction(const fu_friction_way *way)
     }
     if (fabs(end.stretch) > bound) end = (fu_friction_end){copysign(bound, end.stretch), 1.0, end.stretch > 0.0 ? 1 : -1};
     return end;
+}
+
+double fu_way_along(int dim, const fu_friction_travel *travel, double along[3], fu_friction_way *way)
+{
+    double square = 0.0;
+    for (int d = 0; d < dim; ++d) {
+        along[d] = travel->stretch[d] + travel->change[d];
+        square += along[d] * along[d];
+    }
+    const double size = sqrt(square);
+    for (int d = 0; d < dim && size > 0.0; ++d) along[d] /= size;
+    way->stretch.value[0] = size - fu_dot(dim, along, travel->change);
+    way->stretch.value[1] = size;
+    for (int e = 0; e < 2; ++e) way->stretch.rate[e] = fu_dot(dim, along, travel->rates[e]);
+    return size;
+}
+
+/* Returns the work over the stiffness, m^2, summed over equal parts of the step. */
+static double taken(int dim, const fu_friction_travel *travel, const fu_friction_way *way, const double *end, int parts)
+{
+    double sum = 0.0, stretch[3], last[3] = {0.0};
+    memcpy(stretch, travel->stretch, sizeof stretch);
+    for (int i = 1; i <= parts; ++i) {
+        const double x = (double)i / parts;
+        double next[3], unused, without[3];
+        for (int d = 0; d < dim; ++d) {
+            const fu_step_ends ends = {{0.0, travel->change[d]}, {travel->rates[0][d], travel->rates[1][d]}};
+            const double place = fu_value_within(&ends, way->h, x);
+            next[d] = without[d] = stretch[d] + place - last[d];
+            last[d] = place;
+        }
+        fu_limit_stretch(dim, 1.0, bound_at(way, x, &unused), next);
+        for (int d = 0; d < dim; ++d) {
+            sum += 0.5 * (stretch[d] + next[d]) * (without[d] - next[d]);
+            stretch[d] = next[d];
+        }
+    }
+    return sum + 0.5 * (fu_dot(dim, stretch, stretch) - fu_dot(dim, end, end));
+}
+
+double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_way *way, const double *end, int by_ends)
+{
+    if (by_ends) return taken(dim, travel, way, end, 1);
+    return (4.0 * taken(dim, travel, way, end, PARTS) - taken(dim, travel, way, end, PARTS / 2)) / 3.0;
 }

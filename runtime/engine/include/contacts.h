@@ -73,6 +73,8 @@ typedef struct {
 
 /* couplings/contact_friction.c: friction where a point touches, and its derivatives, added to those of the normal force. */
 void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
+/* The way of a point's spring through a step but for the stretch: how deep it is. */
+fu_friction_way fu_contact_way(const fu_contact *contact, const fu_touch_point *point);
 /* Makes what a point has moved by along the surface since its mark, m: along the shape's axes, as the normal there is. */
 void fu_contact_change(int dim, const fu_contact *contact, const fu_touch_point *point, const double *normal, double change[3]);
 void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);

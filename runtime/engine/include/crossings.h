@@ -5,6 +5,7 @@
 
 #include "attachments.h"
 #include "coupling.h"
+#include "penalty_friction.h"
 
 enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4, FU_LAW_FRICTION = 6 };
 #define FU_INSTANT 1e-3 /* s: makes lengths of velocities, to compare them */
@@ -30,7 +31,7 @@ extern const fu_coupling_type fu_crossing_type;
 extern const fu_coupling_events fu_crossing_events;
 
 /* Of the numbers of a state. */
-enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3, FU_CROSSING_GRIP = 8 };
+enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3, FU_CROSSING_GRIP = 13 };
 
 /* A point of a line, and its derivatives by arc-length and in time. */
 typedef struct {
@@ -62,8 +63,14 @@ typedef struct {
  * step. */
 typedef struct {
     double stretch[3], without_sliding[3], old[3], along[3], force[3], energy;
+    fu_friction_end end;
     int slides, sticks;
 } fu_crossing_grip;
+
+/* The force of friction on the first line and its derivatives, as kernels give them. */
+typedef struct {
+    double F[3], F_d[9], F_t[18], F_u[9];
+} fu_crossing_grip_changes;
 
 /* Makes how a point moves with its n coordinates: dr = P dq, dt = T dq; the numbers of these for fu_add in `at`. */
 typedef struct {
@@ -102,10 +109,10 @@ double fu_crossing_pass(const fu_model *model, const fu_crossing *crossing, cons
                         double least);
 
 /* crossing_friction.c */
-void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
-                         fu_crossing_grip *out);
-void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, double press,
-                                  double F[3], double F_d[9], double F_t[18], double F_u[9]);
+void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                         const fu_crossing_contact *contact, fu_crossing_grip *out);
+void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                                  const fu_crossing_contact *contact, fu_crossing_grip_changes *by);
 /* Returns what friction takes from one state of lines that touch to another, J; by_ends: by these alone. */
 double fu_crossing_slid_on_way(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int by_ends);
 double fu_crossing_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);

@@ -41,4 +41,17 @@ typedef struct {
 } fu_friction_end;
 fu_friction_end fu_end_of_friction(const fu_friction_way *way);
 
+/* The same with vectors along what is touched: the stretch at the beginning, how far what it holds goes past, m, its velocities at both
+ * ends, m/s. */
+typedef struct {
+    double stretch[3], change[3], rates[2][3];
+} fu_friction_travel;
+/* Makes the direction of the stretch at the end as if nothing slid, and the way along it; returns its size, m. */
+double fu_way_along(int dim, const fu_friction_travel *travel, double along[3], fu_friction_way *way);
+/* Returns the work that friction takes over the stiffness, m^2, where the stretch at the end is as given: by parts of the step, and by
+ * half as many (Richardson), or by the ends alone. */
+double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_way *way, const double *end, int by_ends);
+
+#define FU_NO_TIME 1e300 /* s: of numbers as drawn, from where no step begins */
+
 #endif
