@@ -398,3 +398,18 @@ def test_pictures_show_the_flow_and_the_forces_of_the_law():
     assert way / np.linalg.norm(way) == pytest.approx(np.array([0.8, 0.2, -0.5]) / sqrt(0.93))
     assert not any("could not be computed" in note for note in animation.notes)
     assert "tension" in {quantity.key for quantity in animation.clips[0].cables[0].quantities}
+
+
+def test_a_run_from_rest_in_a_sheared_current_stays_there():
+    """A sphere at rest has the lift C m dU/dy U in a current U(y), by the added mass C m: statics have it, too."""
+    scene = fu.Scene()
+    scene.rigid_body("buoy", mass=2.0, inertia=(0.01,) * 3, position=(0, 2, 0))
+    scene.joint("distance", (0, 0, 0), "buoy", name="tether")
+    scene.fluid(density=WATER, table=fu.VelocityTable(
+        y=(0, 4), velocity=((0, 0, 0), (2, 0, 0)), interpolation="linear"))
+    scene.drag("buoy", volume=4e-3, added_mass=0.5)
+    rest = scene.equilibrium()
+    lift = 0.5 * WATER * 4e-3 * 0.5 * 0.5 * rest["buoy.position"][1]
+    assert rest["tether.force"][1] == pytest.approx(-(2.0 * G + lift), rel=1e-6)
+    run = scene.run(0.5, tol=1e-6, initial=rest)
+    assert np.abs(run["buoy.position"] - rest["buoy.position"]).max() < 1e-8

@@ -188,10 +188,14 @@ class StaticProblem(StaticState):
 
 
 def static_model(scene: SceneData) -> Model:
-    """Return the model of a scene for statics: without the mass that fluids add, on which no state of rest depends."""
+    """Return the model of a scene for statics: without the mass that still fluids add, on which no rest depends.
+
+    The inertia of a fluid that flows acts on what is at rest, too: by its acceleration, and where its velocity changes
+    over the height, by a lift.
+    """
     model = build(scene)
     for drag in model.drags:
-        drag.has_inertia = False
+        drag.has_inertia = drag.has_inertia and drag.fluid.moves
     return model
 
 
