@@ -67,3 +67,10 @@ def test_later_jumps_of_the_rate_are_told():
 def test_a_start_with_velocities_of_its_own_is_not_as_drawn():
     state = fu.InitialState({"walker.velocity": [1.5, 0, 0]})
     assert jumps(footbridge(), initial=state) == []
+
+
+def test_a_run_that_ends_in_energy_of_the_blow_names_it():
+    """An explicit run at a tolerance far too loose: the blow is said beside the growth of energy."""
+    with pytest.raises(fu.ConvergenceError, match=r"energy grew without a source .*; slide \"feet\": moves along .* "
+                                                  r"Start body \"walker\" at velocity \(1\.5, 0, 0\) m/s"):
+        footbridge().run(duration=0.1, tol=1.0, output_step=0.01, integrator="explicit")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..checks.velocity_jumps import velocity_jumps
 from ..engine import Engine
 from ..model.joints import JointModel
 from ..model.model import Model, SlideModel
@@ -116,7 +117,8 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
             now, q, *_ = engine.now()
             points = MeetingPoints(scene, model)
             points.see({"time": np.array([now]), "q": q[None]})
-            return "; ".join([*points.notes(), stopped(model, engine, status, settings)])
+            jumps = [each for each in velocity_jumps(scene.as_drawn, settings.duration) if each in simulation.messages]
+            return "; ".join([*points.notes(), stopped(model, engine, status, settings), *jumps])
         case "event":
             return f'stopped by event "{simulation.watcher.stopped_by}" at {when}'
         case "interrupted":
