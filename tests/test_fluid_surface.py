@@ -326,3 +326,31 @@ def test_pictures_show_the_surface_where_it_is_in_sight(tmp_path):
     assert {body.name for body in run.animation("falls").clips[0].bodies} == {"buoy", "sea"}
     run.save_html(tmp_path / "page.html")
     assert (tmp_path / "page.html").stat().st_size > 10000
+
+
+def thrown(level=0.0, shift=0.0, element="cable12", **drag):
+    """Return a rope that falls aslant into water which flows."""
+    scene = fu.Scene()
+    wire = scene.cable("rope", start=(shift, level + 0.5, 0), end=(shift + 3, level + 1.5, 0), elements=4,
+                       element=element, section=fu.Circle(radius=0.02), material=fu.Material(
+                           youngs_modulus=5e6, poisson_ratio=0, density=700, damping_time=2e-3))
+    scene.fluid("sea", density=WATER, surface=level, velocity=(0.5, 0, 0))
+    scene.drag(wire, normal=1.2, tangential=0.02, **drag)
+    return scene
+
+
+@pytest.mark.parametrize(("integrator", "tol"), [("explicit", 1e-4), ("radau", 1e-5), ("energy", 1e-4)])
+def test_a_rope_that_falls_in_balances_its_energy_with_the_water_that_it_moves(integrator, tol):
+    """Up to the quadrature of where the surface cuts, 1e-5 of what is exchanged."""
+    run = thrown(added_mass=1.0, added_mass_tangential=0.1).run(0.7, tol=tol, integrator=integrator, output_step=0.1)
+    heights = run["rope.position"][:, :, 1]
+    assert heights[3].max() > 0.02 and heights[-1].max() < -0.02
+    assert unaccounted(run) < 2e-5 * run.energy_balance().exchanged
+
+
+def test_a_rope_falls_in_alike_at_another_level_and_in_the_plane():
+    settings = {"tol": 1e-6, "integrator": "radau", "output_step": 0.2}
+    one = thrown().run(0.8, **settings)["rope.position"]
+    for level, shift, element in ((250.0, 40.0, "cable12"), (0.0, 0.0, "cable8p")):
+        other = thrown(level, shift, element).run(0.8, **settings)["rope.position"]
+        assert np.abs(other - [shift, level, 0] - one).max() < 1e-7

@@ -69,7 +69,7 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
         fu_drag_points points;
-        fu_drag_points_on(model, drag, e, at->middle->q + first, &points);
+        fu_drag_points_over(model, drag, e, at->now->q + first, at->next->q + first, &points);
         for (int k = 0; k < points.n; ++k) {
             const fu_quadrature_point point = points.at[k];
             fu_drag_place place[2], middle;

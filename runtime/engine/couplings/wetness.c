@@ -13,7 +13,7 @@
 #define COLUMN_ROUNDING 0.05 /* of half the height of a column: its ends are rounded by this to both sides (runtime/parts/drag.py) */
 #define MOST_DEPTH 0.99      /* of the radius of a section: beyond, matrices leave out the second derivative, which has a pole */
 #define SPANS 4              /* an element is cut into, on each of which heights are a cubic: exact for cubic elements */
-#define MOST_CUTS 12         /* of an element by the ends of a section that two surfaces cut, of a cubic */
+#define MOST_CUTS 24         /* of an element by the ends of a section that two surfaces cut, of two cubics */
 #define REACH 0.35           /* of an element's length, times its steepest slope at the samples: what heights between them differ by */
 #define NARROW 1e-12         /* of an element: shorter parts of it hold no points */
 
@@ -135,10 +135,10 @@ static void cut_at(const heights *of, double level, double cuts[MOST_CUTS], int 
 /* Gauss's rules from 0 to 1. */
 static const double PLAIN[2][4] = {{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262},
                                    {0.1739274225687269, 0.32607257743127305, 0.32607257743127305, 0.1739274225687269}};
-static const double GATHERED[2][6] = {{0.033765242898423975, 0.16939530676686776, 0.3806904069584015, 0.6193095930415985,
-                                       0.8306046932331322, 0.966234757101576},
-                                      {0.08566224618958525, 0.1803807865240693, 0.2339569672863455, 0.2339569672863455,
-                                       0.1803807865240693, 0.08566224618958525}};
+static const double GATHERED[2][8] = {{0.019855071751231912, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751,
+                                       0.5917173212478248, 0.7627662049581645, 0.8983332387068134, 0.9801449282487681},
+                                      {0.05061426814518853, 0.11119051722668721, 0.15685332293894344, 0.18134189168918083,
+                                       0.18134189168918083, 0.15685332293894344, 0.11119051722668721, 0.05061426814518853}};
 
 /* Adds a point at x of an element of n shape functions. */
 static void add_point(const fu_cable *cable, double length, int n, double x, double weight, fu_drag_points *out)
@@ -148,18 +148,25 @@ static void add_point(const fu_cable *cable, double length, int n, double x, dou
     out->at[out->n++] = (fu_quadrature_point){weight, N, N_x, 0};
 }
 
-/* Adds the points of a part of an element: none where it is dry. */
-static void add_part(const fu_drag *drag, const fu_cable *cable, double length, int n, double from, double to, double height,
+/* The shape of an element by the coordinates e, and the heights of its axis over its spans. */
+typedef struct {
+    const double *e;
+    heights of[SPANS];
+} shape;
+
+/* Adds the points of a part of an element, in the middle of which one or two shapes are wet so: none where all are dry. */
+static void add_part(const fu_cable *cable, double length, int n, double from, double to, const fu_wetness *wet, int n_shapes,
                      fu_drag_points *out)
 {
-    const fu_wetness wet = fu_wet_at_height(drag, height);
     const double part = to - from;
-    if (part <= NARROW * length || (wet.part == 0.0 && wet.slope == 0.0)) return;
-    if (wet.slope == 0.0) {
-        for (int k = 0; k < 4; ++k) add_point(cable, length, n, from + part * PLAIN[0][k], part * PLAIN[1][k], out);
-        return;
+    int is_wet = 0, is_cut = 0;
+    for (int k = 0; k < n_shapes; ++k) {
+        is_wet |= wet[k].part != 0.0 || wet[k].slope != 0.0;
+        is_cut |= wet[k].slope != 0.0;
     }
-    for (int k = 0; k < 6; ++k) {
+    if (part <= NARROW * length || !is_wet) return;
+    for (int k = 0; k < 4 && !is_cut; ++k) add_point(cable, length, n, from + part * PLAIN[0][k], part * PLAIN[1][k], out);
+    for (int k = 0; k < 8 && is_cut; ++k) {
         const double x = GATHERED[0][k];
         add_point(cable, length, n, from + part * x * x * (3.0 - 2.0 * x), part * 6.0 * x * (1.0 - x) * GATHERED[1][k], out);
     }
@@ -193,44 +200,72 @@ static int is_uncut(const fu_model *model, const fu_drag *drag, int n, int eleme
     return (low - reach > drag->surface || high + reach < drag->surface) && (low - reach > drag->bottom || high + reach < drag->bottom);
 }
 
-/* Makes the points of an element that a surface cuts, or may cut. */
-static void cut_points(const fu_model *model, const fu_drag *drag, int n, int element, const double *e, fu_drag_points *out)
+/* Makes the heights of a shape, and adds where a surface begins or ceases to cut its section to the cuts. */
+static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double length, shape *of, double cuts[MOST_CUTS], int *n_cuts)
+{
+    const double levels[4] = {drag->surface - drag->extent, drag->surface + drag->extent, drag->bottom - drag->extent,
+                              drag->bottom + drag->extent};
+    const double span = length / SPANS;
+    double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES], h[SPANS + 1], slope[SPANS + 1];
+    for (int k = 0; k <= SPANS; ++k) {
+        model->cables[drag->cable].kernel->on_axis(length, k * span, N, N_x);
+        h[k] = drag->flow.base + along_axis(model, drag, n, N, of->e);
+        slope[k] = span * along_axis(model, drag, n, N_x, of->e);
+    }
+    for (int k = 0; k < SPANS; ++k) {
+        of->of[k] = (heights){k * span, span, {h[k], slope[k], 3.0 * (h[k + 1] - h[k]) - 2.0 * slope[k] - slope[k + 1],
+                                               2.0 * (h[k] - h[k + 1]) + slope[k] + slope[k + 1]}};
+        for (int l = 0; l < 4; ++l) cut_at(&of->of[k], levels[l], cuts, n_cuts);
+    }
+}
+
+/* Makes the points of an element that a surface cuts, or may cut, in one or two shapes. */
+static void cut_points(const fu_model *model, const fu_drag *drag, int n, int element, shape *shapes, int n_shapes, fu_drag_points *out)
 {
     const fu_cable *cable = &model->cables[drag->cable];
     const double length = fu_element_length(cable, element), span = length / SPANS;
-    const double levels[4] = {drag->surface - drag->extent, drag->surface + drag->extent, drag->bottom - drag->extent,
-                              drag->bottom + drag->extent};
-    double cuts[MOST_CUTS], N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES], h[SPANS + 1], slope[SPANS + 1];
-    heights of[SPANS];
+    double cuts[MOST_CUTS];
     int n_cuts = 0;
-    for (int k = 0; k <= SPANS; ++k) {
-        cable->kernel->on_axis(length, k * span, N, N_x);
-        h[k] = drag->flow.base + along_axis(model, drag, n, N, e);
-        slope[k] = span * along_axis(model, drag, n, N_x, e);
-    }
-    for (int k = 0; k < SPANS; ++k) {
-        of[k] = (heights){k * span, span, {h[k], slope[k], 3.0 * (h[k + 1] - h[k]) - 2.0 * slope[k] - slope[k + 1],
-                                           2.0 * (h[k] - h[k + 1]) + slope[k] + slope[k + 1]}};
-        for (int l = 0; l < 4; ++l) cut_at(&of[k], levels[l], cuts, &n_cuts);
-    }
+    for (int s = 0; s < n_shapes; ++s) cut_shape(model, drag, n, length, &shapes[s], cuts, &n_cuts);
     for (int k = 0; k <= n_cuts; ++k) {
         const double from = k ? cuts[k - 1] : 0.0, to = k < n_cuts ? cuts[k] : length, middle = 0.5 * (from + to) / span;
         const int in = middle < SPANS - 1 ? (int)middle : SPANS - 1;
-        add_part(drag, cable, length, n, from, to, height_on(&of[in], middle - in), out);
+        fu_wetness wet[2];
+        for (int s = 0; s < n_shapes; ++s) wet[s] = fu_wet_at_height(drag, height_on(&shapes[s].of[in], middle - in));
+        add_part(cable, length, n, from, to, wet, n_shapes, out);
     }
+}
+
+/* Makes the points of an element that acts in one or two shapes. */
+static void points_of(const fu_model *model, const fu_drag *drag, int element, shape *shapes, int n_shapes, fu_drag_points *out)
+{
+    const int n = model->cables[drag->cable].coordinates / model->dim;
+    out->n = 0;
+    if (drag->wet != FU_ALL_WET) {
+        double height, part[2] = {0.0};
+        int uncut = 1;
+        for (int s = 0; s < n_shapes && uncut; ++s) {
+            uncut = is_uncut(model, drag, n, element, shapes[s].e, &height);
+            if (uncut) part[s] = fu_wet_at_height(drag, height).part;
+        }
+        if (!uncut) {
+            cut_points(model, drag, n, element, shapes, n_shapes, out);
+            return;
+        }
+        if (part[0] == 0.0 && part[1] == 0.0) return;
+    }
+    for (int g = 0; g < drag->n_points; ++g) out->at[out->n++] = fu_drag_point(drag, n, element, g);
 }
 
 void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out)
 {
-    const int n = model->cables[drag->cable].coordinates / model->dim;
-    double height;
-    out->n = 0;
-    if (drag->wet != FU_ALL_WET) {
-        if (!is_uncut(model, drag, n, element, e, &height)) {
-            cut_points(model, drag, n, element, e, out);
-            return;
-        }
-        if (fu_wet_at_height(drag, height).part == 0.0) return;
-    }
-    for (int g = 0; g < drag->n_points; ++g) out->at[out->n++] = fu_drag_point(drag, n, element, g);
+    shape one[1] = {{.e = e}};
+    points_of(model, drag, element, one, 1, out);
+}
+
+void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int element, const double *e, const double *e_next,
+                         fu_drag_points *out)
+{
+    shape both[2] = {{.e = e}, {.e = e_next}};
+    points_of(model, drag, element, both, 2, out);
 }

@@ -47,7 +47,7 @@ typedef struct {
 } fu_quadrature_point;
 
 /* Those of an element that act, with the shape functions of those that stand in no table. */
-#define FU_DRAG_POINTS 80
+#define FU_DRAG_POINTS 200
 typedef struct {
     int n;
     fu_quadrature_point at[FU_DRAG_POINTS];
@@ -94,11 +94,14 @@ fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int p
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
                            fu_quadrature_point point, fu_drag_place *at);
 
-/* wetness.c: the wet part at a height; the height of a place, m; the points of an element with the coordinates e. */
+/* wetness.c: the wet part at a height; the height of a place, m; the points of an element with the coordinates e,
+ * and of one with these at both ends of a step. */
 fu_wetness fu_wet_at_height(const fu_drag *drag, double height);
 double fu_wet_reach(const fu_drag *drag); /* how far from a surface the wet part changes, m */
 double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *r);
 void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out);
+void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int element, const double *e, const double *e_next,
+                         fu_drag_points *out);
 
 /* drag_action.c: makes what the fluid does at a place; A: axes of a body there. */
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
