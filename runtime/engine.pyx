@@ -356,6 +356,18 @@ cdef class Engine(Report):
         fu_contact_densities(&self.model, self.couplings[<int>self._of("contact")[contact]], &self.run.next, &out[0, 0])
         return np.asarray(out)
 
+    def drag_densities(self, int drag, int elements, double t, q, v):
+        """Drag and buoyancy along a cable at a state, at the points of quadrature of its wet part: rows of the number of
+        the element, that of the part between cuts by surfaces, the place in the element and the weight, both in m, and
+        the force (3), N/m.
+        """
+        found = np.zeros((elements * FU_DRAG_POINTS, FU_DRAG_DENSITIES))
+        cdef double[:, ::1] out = found
+        self.set_state(t, q=q)
+        self._view(&self.run.next, "v")[:] = v
+        n = fu_drag_densities(&self.model, self.couplings[<int>self._of("drag")[drag]], &self.run.next, &out[0, 0])
+        return found[:n]
+
     def fluid_inertia_densities(self, int drag, int points, double t, q, v):
         """Inertia of the fluid along a cable at a state without accelerations, at the points of quadrature of its drag.
 

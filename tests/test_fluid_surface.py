@@ -307,13 +307,37 @@ def test_refusals(case):
     assert message in str(error.value)
 
 
-def test_section_forces_by_balance_are_refused():
-    scene = mast()
-    scene.drag("mast", normal=1.2)
-    rest = scene.equilibrium()
-    with pytest.raises(fu.FunicularError, match="do not know the wet part"):
-        rest.section_forces("mast", 1.0)
-    assert np.isfinite(np.array(rest.section_forces("mast", 1.0, method="constitutive")["force"])).all()
+def test_sections_of_a_line_that_stands_in_water_bear_what_is_below():
+    """T = g A (rho (4 - s) - rho_w of what of it is wet), also within the element that the surface cuts."""
+    scene = fu.Scene()
+    wire = scene.cable("line", start=(0, 1.1, 0), end=(0, -2.9, 0), elements=3, element="cable12", strain="engineering",
+                       section=fu.Circle(radius=0.02), material=fu.Material(youngs_modulus=1e11, poisson_ratio=0.0,
+                                                                           density=1700))
+    scene.pin(wire, s=0.0)
+    scene.fluid("sea", density=WATER, surface=0.0)
+    scene.fluid("air", density=1.2)
+    scene.drag(wire, normal=1.2, added_mass=1.0)
+    s = np.array([0.1, 0.7, 1.0, 1.2, 1.3, 2.5, 3.5, 4.0])
+    tension = np.array(scene.equilibrium().section_forces("line", s)["tension"])
+    in_water, below = np.minimum(2.9, 4 - s), 4 - s
+    expected = G * pi * 0.02**2 * (1700 * below - WATER * in_water - 1.2 * (below - in_water))
+    assert tension == pytest.approx(expected, abs=1e-5 * expected[0])
+
+
+def test_sections_at_the_free_end_of_a_rope_that_falls_in_bear_nothing():
+    run = thrown().run(0.6, tol=1e-6, integrator="radau", output_step=0.05)
+    cut = run.section_forces("rope", [1.5, run.scene.cables["rope"].length])
+    for values in (np.array(cut["force"]), np.array(cut["moment"])):
+        assert np.abs(values[:, 1]).max() < 1e-9 * np.abs(values).max()
+
+
+def test_sections_on_both_sides_of_a_node_bear_the_same():
+    """Of a rope with added mass; what acts on its slope is a polynomial from points within the elements to the node."""
+    run = thrown(added_mass=1.0, added_mass_tangential=0.2).run(0.6, tol=1e-6, integrator="radau", output_step=0.05)
+    nodes = run.scene.cables["rope"].length * np.array([0.25, 0.5, 0.75])
+    before, after = (np.array(run.section_forces("rope", nodes, side=side)["force"]) for side in ("before", "after"))
+    assert np.abs(after).max() > 1
+    assert np.abs(after - before).max() < 5e-3 * np.abs(after).max()
 
 
 def test_pictures_show_the_surface_where_it_is_in_sight(tmp_path):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
@@ -10,20 +10,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..engine import Engine
-from ..errors import FunicularError
 from ..kernels.libraries import kernels_of
-from ..kernels.mesh import Mesh
 from ..model.attachments import CARRIED, UP, AttachmentModel
-from ..model.contacts import ContactModel
 from ..model.drag_forces import Turning, densities
 from ..model.drags import DragModel
 from ..model.element_coordinates import element_coordinates, positions
 from ..model.loads import GAUSS
-from ..model.model import CableModel, Kernel, Model
+from ..model.model import CableModel, Model
 from ..model.states import attachment_points, spatial
 from ..parts.load import DistributedForce, Moment
 from ..parts.scene_data import SceneData
 from ..rotations import rotate
+from .spreads import AddedMass, Spread, at_element, lengths_of_rows, rows, shape_on_axis, spread_along
+from .wet_parts import AddedOfParts, WetPart
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
@@ -44,6 +43,12 @@ class Instants:
     weight: float = 1.0
     is_rest: bool = False
 
+    def one(self, k: int) -> Instants:
+        """Return instant number k alone."""
+        here = slice(k, k + 1)
+        return Instants(self.time[here], self.q[here], self.v[here], lambda name: self.value(name)[here], self.load,
+                        self.weight, self.is_rest)
+
 
 @dataclass
 class PointLoad:
@@ -54,86 +59,10 @@ class PointLoad:
     f: np.ndarray
 
 
-@dataclass
-class Spread:
-    """A force a length along an element from x = start to stop (m).
-
-    x (n,): places in between; density (T, n, 3) there, in N/m, a polynomial between them; f (T, vectors, dim).
-    on_slope (T, n, 3), in N: what does work with the change of r_x, likewise a polynomial; None: nothing. couple
-    (T, n, 3), in N: a moment a length, likewise.
-    """
-
-    element: int
-    start: float
-    stop: float
-    x: np.ndarray
-    density: np.ndarray
-    f: np.ndarray
-    on_slope: np.ndarray | None = None
-    couple: np.ndarray | None = None
-
-
-@dataclass
-class AddedMass:
-    """Mass of a fluid that moves with a cable: M (T, elements, points, dim, dim), kg/m, where its drag has points."""
-
-    M: np.ndarray
-    drag: DragModel
-
-    def matrices(self) -> np.ndarray:
-        """Return (T, elements, n, n): mass matrices of the elements, n = vectors dim."""
-        N = np.broadcast_to(self.drag.N, (self.M.shape[1], *self.drag.N.shape[1:]))
-        found = np.einsum("eg,egk,tegij,egl->tekilj", np.broadcast_to(self.drag.weights, N.shape[:2]), N, self.M, N)
-        n = N.shape[2] * self.M.shape[-1]
-        return found.reshape(*found.shape[:2], n, n)
-
-    def spreads(self, cable: CableModel, a: np.ndarray) -> Iterator[Spread]:
-        """Yield the force of the fluid by the accelerations a (T, elements, vectors, dim) of the elements."""
-        N = np.broadcast_to(self.drag.N, (self.M.shape[1], *self.drag.N.shape[1:]))
-        return spread_along(cable, self.drag, spatial(-np.einsum("tegij,egk,tekj->tegi", self.M, N, a)))
-
-
-def spread_along(cable: CableModel, of: DragModel | ContactModel, density: np.ndarray,
-                 on_slope: np.ndarray | None = None, turning: Turning | None = None) -> Iterator[Spread]:
-    """Yield what acts at the points of quadrature of a drag or contact on a cable, (T, elements, points, 3)."""
-    for element in range(cable.n_elements):
-        k, length = 0 if cable.mesh.is_even else element, cable.mesh.length(element)
-        f = np.einsum("g,gk,tgd->tkd", of.weights[k], of.N[k], density[:, element, :, : cable.shape[2]])
-        if isinstance(of, ContactModel):
-            first = element * of.n_points
-            places = of.arc[first : first + of.n_points] - cable.mesh.start(element)
-        else:
-            places = length / 2 * (1 + np.array(GAUSS[0]))
-        slope = None if on_slope is None else on_slope[:, element]
-        if slope is not None and isinstance(of, DragModel):
-            f = f + np.einsum("g,gk,tgd->tkd", of.weights[k], of.N_x[k], slope[..., : cable.shape[2]])
-        if turning is not None and isinstance(of, DragModel):
-            for shape, forces in ((of.N_x, turning.on_slope), (of.N_chord, turning.on_chord)):
-                f = f + np.einsum("g,gk,tgd->tkd", of.weights[k], shape[k], forces[:, element])
-        couple = None if turning is None else turning.couple[:, element]
-        yield Spread(element, 0.0, length, places, density[:, element], f, slope, couple)
-
-
-def at_element(cable: CableModel, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Return the elements that arc-lengths s are in, and x in them; at a node the element that begins there."""
-    return cable.mesh.place(s)
-
-
-def shape_on_axis(cable: CableModel, element: ArrayLike, x: ArrayLike) -> np.ndarray:
-    """Return (..., vectors): shape functions at places x (...) of the centrelines of elements (...)."""
-    at = np.asarray(x, dtype=float)
-    found = rows(cable.kernel("on_axis"), at.size, lengths_of_rows(cable.mesh, element, at.shape), at.ravel())[0]
-    return found.reshape(*at.shape, -1)
-
-
-def lengths_of_rows(mesh: Mesh, element: ArrayLike, shape: tuple[int, ...]) -> ArrayLike:
-    """Return the lengths of elements (...) in m as `rows` takes them: one for all, or one for each entry of a shape."""
-    return mesh.mean if mesh.is_even else np.broadcast_to(mesh.each_length(element), shape).ravel()
-
-
-def rows(kernel: Kernel, n: int, *given: ArrayLike) -> Any:
-    """Call a kernel n times and return its outputs; each argument has the kernel's shape, or that after n."""
-    return kernel.rows(n, *given)
+def _parts(found: np.ndarray) -> list[np.ndarray]:
+    """Return the numbers of the rows of each part, of rows that begin with the numbers of element and part."""
+    changes = np.flatnonzero(np.any(np.diff(found[:, :2], axis=0) != 0, axis=1)) + 1
+    return [rows_of for rows_of in np.split(np.arange(len(found)), changes) if len(rows_of)]
 
 
 class CableLoads:
@@ -147,7 +76,7 @@ class CableLoads:
         self.times, self.gravity = len(at.time), at.weight * np.array(scene.gravity)[: self.dim]
         self.points: dict[int, list[PointLoad]] = {}
         self.spreads: dict[int, list[Spread]] = {}
-        self.added: dict[int, AddedMass] = {}  # a cable has one drag
+        self.added: dict[int, Any] = {}  # AddedMass, or AddedOfParts of a cable that surfaces cut; else it has one drag
         self.cables = cables
         names = [cable.name for cable in model.cables]
         self.number = {name: k for k, name in enumerate(names)}
@@ -229,8 +158,8 @@ class CableLoads:
                 continue
             cable = self.model.cables[drag.cable]
             if drag.wet != "all":
-                raise FunicularError(f'drag "{drag.name}": the surface of its fluid may cut cable "{cable.name}", and '
-                                     'section forces by balance do not know the wet part; take method="constitutive"')
+                self._wet_parts(number, drag, cable)
+                continue
             density, turning = densities(self.model, drag, self.at.time, self.at.q, self.at.v)
             density, on_slope = self.at.load * density, None
             if turning is not None:
@@ -242,6 +171,26 @@ class CableLoads:
                 density, on_slope = density + self.at.load * force, self.at.load * on_slope
                 self.added[drag.cable] = AddedMass(M, drag)
             self.spreads.setdefault(drag.cable, []).extend(spread_along(cable, drag, density, on_slope, turning))
+
+    def _wet_parts(self, number: int, drag: DragModel, cable: CableModel) -> None:
+        """Add what a fluid with a surface does to the wet parts of a cable, at one instant: they are others at each."""
+        assert self.times == 1, "wet parts are those of one instant"
+        (t,), (q,), (v,) = self.at.time, self.at.q, self.at.v
+        found = self._engine.drag_densities(number, cable.n_elements, t, q, v)
+        density, on_slope, M = self.at.load * found[:, 4:], None, None
+        if len(found) == 0:
+            return
+        if drag.has_inertia:
+            force, on_slope, M = self._engine.fluid_inertia_densities(number, len(found), t, q, v)
+            density, on_slope = density + self.at.load * force, self.at.load * on_slope
+        parts = []
+        for rows_of in _parts(found):
+            part = WetPart.of(cable, int(found[rows_of[0], 0]), found[rows_of, 2], found[rows_of, 3])
+            slope = None if on_slope is None else on_slope[rows_of]
+            self.spreads.setdefault(drag.cable, []).append(part.spread(density[rows_of], slope))
+            parts.append((part, None if M is None else M[rows_of]))
+        if drag.has_inertia:
+            self.added.setdefault(drag.cable, AddedOfParts(cable, [])).parts.extend(parts)
 
     def _contacts(self) -> None:
         """Add what surfaces press on cables with, of which `out_of_balance` tells that it is known."""

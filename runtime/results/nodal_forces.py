@@ -11,7 +11,8 @@ from scipy.sparse.linalg import splu
 from ..model.element_coordinates import element_coordinates
 from ..model.model import CableModel, Model
 from ..model.unknowns import by_unknowns
-from .cable_loads import CableLoads, Instants, Spread, rows
+from .cable_loads import CableLoads, Instants
+from .spreads import Spread, rows
 
 
 @dataclass

@@ -23,8 +23,9 @@ from ..model.model import CableModel
 from ..model.states import spatial
 from ..parts.cable import Cable
 from ..parts.validation import EXACT
-from .cable_loads import CableLoads, Spread, lengths_of_rows, rows, shape_on_axis
+from .cable_loads import CableLoads
 from .nodal_forces import ElementForces
+from .spreads import Spread, lengths_of_rows, rows, shape_on_axis
 
 
 class Cuts:
@@ -98,8 +99,9 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: Cabl
     moment = moment - np.cross(r, force)
     for spread in spreads:
         if spread.on_slope is not None:
-            columns = np.flatnonzero((cuts.element == spread.element).any(axis=0))
-            here, of_x = (cuts.element == spread.element)[:, columns, None], cuts.x[:, columns]
+            inside = (cuts.element == spread.element) & spread.holds(cuts.x, model.mesh.length(spread.element))
+            columns = np.flatnonzero(inside.any(axis=0))
+            here, of_x = inside[:, columns, None], cuts.x[:, columns]
             for total, weights in zip((force, change), _lagrange(spread.x, of_x), strict=True):
                 total[:, columns] += np.where(here, _through(weights, spread.on_slope), 0.0)
     return force, moment, change
@@ -156,7 +158,26 @@ def _of_spread(model: CableModel, spread: Spread, x: np.ndarray, e: np.ndarray) 
             moment = moment + np.cross(_at(_slope_on_axis(model, spread.element, at), e), pull)
         if spread.couple is not None:
             moment = moment + _through(_lagrange(spread.x, at)[0], spread.couple) * (weight * length)[..., None]
+    if spread.weights is not None:
+        whole = (x >= spread.stop)[..., None]
+        exact = _of_all(model, spread, e)
+        force, moment = (np.where(whole, *each) for each in zip(exact, (force, moment), strict=True))
     return force, moment, _density(spread, x)
+
+
+def _of_all(model: CableModel, spread: Spread, e: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the force and moment (T, 1 or n, 3) about the element's first node of all of it, by its weights."""
+    assert spread.weights is not None, "a spread without weights"
+
+    def moment_of(shape: np.ndarray, force: np.ndarray) -> np.ndarray:
+        return np.cross(np.einsum("gk,tnkd->tngd", shape, e), force[:, None]).sum(axis=2)
+
+    share = spread.weights[:, None] * spread.density
+    moment = moment_of(shape_on_axis(model, spread.element, spread.x), share)
+    if spread.on_slope is not None:
+        moment = moment + moment_of(_slope_on_axis(model, spread.element, spread.x),
+                                    spread.weights[:, None] * spread.on_slope)
+    return share.sum(axis=1)[:, None], moment
 
 
 def _density(spread: Spread, x: np.ndarray) -> np.ndarray:

@@ -20,12 +20,13 @@ from ..parts.slide import Slide
 from ..parts.validation import EXACT, show
 from ..solve.rest_state import RestState
 from .balance_limits import balanced_cables, out_of_balance
-from .cable_loads import CableLoads, Instants, lengths_of_rows, rows
+from .cable_loads import CableLoads, Instants
 from .nodal_forces import element_forces
 from .section_balance import Cuts, balanced
 from .section_components import balanced_components, components, labels, taut_bending
 from .section_kinks import kinks
 from .section_swings import swinging
+from .spreads import lengths_of_rows, rows
 
 if TYPE_CHECKING:
     import xarray
@@ -102,7 +103,12 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
     if (refusal := out_of_balance(scene, model, number, at.is_rest)) is not None:
         raise refusal
-    loads = CableLoads(scene, model, at, balanced_cables(scene, model, number, at.is_rest))
+    concerned = balanced_cables(scene, model, number, at.is_rest)
+    if len(at.time) > 1 and any(drag.wet != "all" and drag.cable in concerned for drag in model.drags):
+        each = [cut_forces(scene, model, at.one(k), name, s if len(s) == 1 else s[k : k + 1], side=side)
+                for k in range(len(at.time))]  # wet parts are others at each instant
+        return {key: np.concatenate([found[key] for found in each]) for key in each[0]}
+    loads = CableLoads(scene, model, at, concerned)
     forces = element_forces(model, at, loads, number)
     balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
     taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment

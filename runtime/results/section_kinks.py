@@ -12,10 +12,11 @@ from ..model.states import spatial
 from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
 from ..parts.support import Clamp, Motion, Support
-from .cable_loads import CableLoads, shape_on_axis
+from .cable_loads import CableLoads
 from .nodal_forces import ElementForces
 from .section_balance import Cuts, balanced, resultants
 from .section_layer import Kink, fixed_direction
+from .spreads import shape_on_axis
 
 ForceAt = Callable[[np.ndarray, bool], np.ndarray]
 """The force in sections at s (m), on the side after a jump or before it."""

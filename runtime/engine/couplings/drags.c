@@ -97,6 +97,32 @@ static void on_cable(const fu_model *model, const fu_drag *drag, double t, const
     }
 }
 
+int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+{
+    const fu_drag *drag = (const fu_drag *)coupling;
+    const fu_cable *cable = &model->cables[drag->cable];
+    int n = 0;
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        fu_drag_points points;
+        fu_drag_points_on(model, drag, e, state->q + first, &points);
+        for (int g = 0; g < points.n; ++g, ++n, out += FU_DRAG_DENSITIES) {
+            fu_drag_place at;
+            fu_drag_action a;
+            double force[3] = {0.0};
+            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, points.at[g], &at);
+            fu_drag_act(model, drag, state->t, &at, 0, &a);
+            whole_force(model, &a, force);
+            out[0] = e;
+            out[1] = points.part[g];
+            out[2] = points.x[g];
+            out[3] = points.at[g].weight;
+            memcpy(out + 4, force, sizeof force);
+        }
+    }
+    return n;
+}
+
 /* Adds the derivatives of the same to a system. */
 static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, fu_weights weights,
                             fu_system *system)

@@ -188,17 +188,19 @@ void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupli
     const int dim = model->dim, n = cable->coordinates / dim;
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
-        for (int k = 0; k < drag->n_points; ++k, out += FU_INERTIA_DENSITIES) {
+        fu_drag_points points;
+        fu_drag_points_on(model, drag, e, state->q + first, &points);
+        for (int k = 0; k < points.n; ++k, out += FU_INERTIA_DENSITIES) {
             double left[3];
             fu_drag_place at;
             of_length terms;
-            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, fu_drag_point(drag, n, e, k), &at);
+            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, points.at[k], &at);
             const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
             terms_of_length(model, drag, &at, &past, &terms);
             fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, at.v, model->load_fraction, left, 0);
             memset(out, 0, sizeof(double[FU_INERTIA_DENSITIES]));
             for (int d = 0; d < dim; ++d) {
-                out[d] = -left[d];
+                out[d] = model->load_fraction * terms.wet.pull[d] - left[d];
                 out[3 + d] = model->load_fraction * terms.g[d];
             }
             memcpy(out + 6, terms.M, sizeof(double) * (size_t)(dim * dim));

@@ -141,10 +141,12 @@ static const double GATHERED[2][8] = {{0.019855071751231912, 0.10166676129318664
                                        0.18134189168918083, 0.15685332293894344, 0.11119051722668721, 0.05061426814518853}};
 
 /* Adds a point at x of an element of n shape functions. */
-static void add_point(const fu_cable *cable, double length, int n, double x, double weight, fu_drag_points *out)
+static void add_point(const fu_cable *cable, double length, int n, int part, double x, double weight, fu_drag_points *out)
 {
     double *N = out->shapes + (size_t)out->n * 2 * (size_t)n, *N_x = N + n;
     cable->kernel->on_axis(length, x, N, N_x);
+    out->x[out->n] = x;
+    out->part[out->n] = part;
     out->at[out->n++] = (fu_quadrature_point){weight, N, N_x, 0};
 }
 
@@ -155,8 +157,8 @@ typedef struct {
 } shape;
 
 /* Adds the points of a part of an element, in the middle of which one or two shapes are wet so: none where all are dry. */
-static void add_part(const fu_cable *cable, double length, int n, double from, double to, const fu_wetness *wet, int n_shapes,
-                     fu_drag_points *out)
+static void add_part(const fu_cable *cable, double length, int n, int number, double from, double to, const fu_wetness *wet,
+                     int n_shapes, fu_drag_points *out)
 {
     const double part = to - from;
     int is_wet = 0, is_cut = 0;
@@ -165,10 +167,12 @@ static void add_part(const fu_cable *cable, double length, int n, double from, d
         is_cut |= wet[k].slope != 0.0;
     }
     if (part <= NARROW * length || !is_wet) return;
-    for (int k = 0; k < 4 && !is_cut; ++k) add_point(cable, length, n, from + part * PLAIN[0][k], part * PLAIN[1][k], out);
+    for (int k = 0; k < 4 && !is_cut; ++k)
+        add_point(cable, length, n, number, from + part * PLAIN[0][k], part * PLAIN[1][k], out);
     for (int k = 0; k < 8 && is_cut; ++k) {
         const double x = GATHERED[0][k];
-        add_point(cable, length, n, from + part * x * x * (3.0 - 2.0 * x), part * 6.0 * x * (1.0 - x) * GATHERED[1][k], out);
+        add_point(cable, length, n, number, from + part * x * x * (3.0 - 2.0 * x),
+                  part * 6.0 * x * (1.0 - x) * GATHERED[1][k], out);
     }
 }
 
@@ -232,7 +236,7 @@ static void cut_points(const fu_model *model, const fu_drag *drag, int n, int el
         const int in = middle < SPANS - 1 ? (int)middle : SPANS - 1;
         fu_wetness wet[2];
         for (int s = 0; s < n_shapes; ++s) wet[s] = fu_wet_at_height(drag, height_on(&shapes[s].of[in], middle - in));
-        add_part(cable, length, n, from, to, wet, n_shapes, out);
+        add_part(cable, length, n, k, from, to, wet, n_shapes, out);
     }
 }
 
@@ -254,7 +258,11 @@ static void points_of(const fu_model *model, const fu_drag *drag, int element, s
         }
         if (part[0] == 0.0 && part[1] == 0.0) return;
     }
-    for (int g = 0; g < drag->n_points; ++g) out->at[out->n++] = fu_drag_point(drag, n, element, g);
+    for (int g = 0; g < drag->n_points; ++g) {
+        out->x[g] = fu_element_length(&model->cables[drag->cable], element) * PLAIN[0][g];
+        out->part[g] = 0;
+        out->at[out->n++] = fu_drag_point(drag, n, element, g);
+    }
 }
 
 void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out)

@@ -120,7 +120,8 @@ cdef extern from "engine.h" nogil:
         const fu_coupling_type *type
         int index, number, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
     void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
-    int FU_INERTIA_DENSITIES
+    int FU_INERTIA_DENSITIES, FU_DRAG_DENSITIES, FU_DRAG_POINTS
+    int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
     void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
     const fu_coupling_type *fu_coupling_type_of(const char *name)
     ctypedef struct fu_joint:

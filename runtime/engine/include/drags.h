@@ -46,11 +46,14 @@ typedef struct {
     const double *N, *N_x, *N_chord;
 } fu_quadrature_point;
 
-/* Those of an element that act, with the shape functions of those that stand in no table. */
+/* Those of an element that act, with the shape functions of those that stand in no table, their places in it, m, and the part between
+ * two cuts that each is on. */
 #define FU_DRAG_POINTS 200
 typedef struct {
     int n;
+    int part[FU_DRAG_POINTS];
     fu_quadrature_point at[FU_DRAG_POINTS];
+    double x[FU_DRAG_POINTS];
     double shapes[FU_DRAG_POINTS * FU_MAX_COORDINATES];
 } fu_drag_points;
 
@@ -102,6 +105,11 @@ double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *
 void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out);
 void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int element, const double *e, const double *e_next,
                          fu_drag_points *out);
+
+/* drags.c: makes at the points of all elements of a cable the number of the element, that of the part, the place in the element and
+ * the weight, m, and drag with buoyancy, N/m (3): out (points x FU_DRAG_DENSITIES). Returns how many they are. */
+#define FU_DRAG_DENSITIES 7
+int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 
 /* drag_action.c: makes what the fluid does at a place; A: axes of a body there. */
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
