@@ -300,6 +300,7 @@ class SceneMethods(SceneData):
         *,
         on: Named | None = None,
         at: Numbers = (0.0, 0.0, 0.0),
+        inside: bool = False,
     ) -> Surface:
         """Add a Surface, which see."""
 

@@ -203,7 +203,7 @@ ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_bod
               ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume"),
               ("contact", "points"), ("contact", "restitution"), ("contact", "rest_velocity"),
               ("drag", "polar"), ("drag", "span"), ("drag", "chord"), ("drag", "added_mass_tangential"),
-              ("fluid", "table")}
+              ("fluid", "table"), ("surface", "inside")}
 """Fields of parts that are described otherwise, or of other kinds of joints."""
 
 

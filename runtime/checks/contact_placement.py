@@ -18,6 +18,7 @@ from ..parts.section import outer_radius_of
 from ..parts.surface import Surface
 from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
+from ..rotations import conjugate, rotate
 
 SUNK = 0.01
 """Of the radius: what the weight sinks in by with the stiffness that is taken where none is given."""
@@ -62,9 +63,10 @@ def placed_contacts(scene: SceneData, contacts: list[Contact]) -> list[Contact]:
     for contact in contacts:
         contact = _of_surface(scene, contact, own)
         made.append(_complete(scene, contact))
+        _check_fits(scene, made[-1])
         own[contact.a, contact.b] = contact
         starts.append(_start_of(scene, made[-1], starts[-1] if starts else None))
-    n_hard = sum(len(start.drawn) for contact, start in zip(made, starts, strict=True) if contact.is_hard)
+    n_hard = sum(_hard_points(scene, contact) for contact in made if contact.is_hard)
     for contact in made:
         if contact.is_hard:
             _check_hard(scene, contact, n_hard)
@@ -177,13 +179,33 @@ def _check_hard(scene: SceneData, contact: Contact, added: int) -> None:
 
     added: points in hard contact that are being added.
     """
-    n = added + sum(len(other.points or ()) for other in scene.contacts.values() if other.is_hard)
+    n = added + sum(_hard_points(scene, other) for other in scene.contacts.values() if other.is_hard)
     if n > MOST_HARD:
         raise SceneError(contact.where, f"the scene has {n} points in hard contact, and {MOST_HARD} are the most",
                          "give some of the contacts stiffness in place of restitution")
     if contact.radius and isinstance(scene.surfaces[contact.b].shape, HeightField):
         raise SceneError(contact.where, "a height field tells distances where they are nil: hard contact with it is of "
                          "points without radius", "leave radius out, or give stiffness in place of restitution")
+
+
+def _hard_points(scene: SceneData, contact: Contact) -> int:
+    """Return how many constraints a hard contact may take: one a point, and in a hollow box a wall."""
+    return len(contact.points or ()) * len(scene.surfaces[contact.b].geometry.walls(scene.dim))
+
+
+def _check_fits(scene: SceneData, contact: Contact) -> None:
+    """Raise SceneError where what touches a hollow from within is too thick for it."""
+    surface = scene.surfaces[contact.b]
+    if not surface.inside:
+        return
+    shape, radius = surface.geometry, contact.radius or 0.0
+    normal, body = _normal(scene), scene.bodies.get(surface.on or "")
+    if normal is not None:
+        shape = shape.in_plane(normal if body is None else rotate(conjugate(body.frame[1]), normal))
+    if not radius < shape.inner_radius:
+        raise SceneError(contact.where, f'"{contact.a}" does not fit into "{contact.b}": its radius is '
+                         f"{show(radius, 'm')}, that of the hollow {show(shape.inner_radius, 'm')}",
+                         "take a wider hollow, or a smaller radius")
 
 
 def _allowed(contact: Contact, start: _Start) -> tuple[float, str]:

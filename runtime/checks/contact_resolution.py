@@ -53,9 +53,12 @@ def _between_points(contact: Contact, cable: Cable, surface: Surface, radius: fl
 def _bend_radius(surface: Surface, own: float) -> float:
     """Return the least radius, in m, of the curve of a cable's axis where it is bent over a surface.
 
-    own: the radius of the cable, in m. The edges of a box have none: what counts is its least size.
+    own: the radius of the cable, in m. The edges of a box have none: what counts is its least size. What lies within a
+    hollow is bent over its own ends alone, as a chord between two points of a hollow is in it.
     """
     shape = surface.geometry
+    if shape.inside:
+        return np.inf if shape.word == "round" and shape.direction.any() else shape.inner_radius - own
     if shape.word == "terrain":
         return own + 1 / shape.bend if shape.bend > 0 else np.inf
     return own + {"flat": np.inf, "box": float(shape.half_size.min())}.get(shape.word, shape.radius)

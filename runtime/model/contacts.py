@@ -13,7 +13,7 @@ from ..parts.contact import GAUSS_POINTS, Contact
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.surface import Surface
-from ..parts.surface_shapes import WIDE
+from ..parts.surface_shapes import WIDE, Geometry
 from ..parts.validation import Vector
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
@@ -38,6 +38,8 @@ class SurfaceModel:
     round_radius: float
     half_length: float
     half_size: np.ndarray
+    inside: int
+    inset: float
     n_first: int
     n_second: int
     first: np.ndarray
@@ -73,9 +75,10 @@ class ContactModel(CouplingModel, SurfaceModel):
     attachments: list[AttachmentModel] = field(default_factory=list)
 
 
-def surface_entries(surface: Surface, scene: SceneData, attachments: AttachmentBuilder) -> dict[str, Any]:
-    """Return what a model has of a surface, by field: those of `SurfaceModel`."""
-    shape, dim = surface.geometry, scene.dim
+def surface_entries(surface: Surface, scene: SceneData, attachments: AttachmentBuilder,
+                    wall: Geometry | None = None) -> dict[str, Any]:
+    """Return what a model has of a surface, by field: those of `SurfaceModel`; wall: of one of its walls alone."""
+    shape, dim = surface.geometry if wall is None else wall, scene.dim
     origin = tuple(shape.origin.tolist())
     on = attachments.model(Attachment(on=surface.on, at=origin))
     on.axes = shape.axes[:dim, :dim].copy()
@@ -87,7 +90,8 @@ def surface_entries(surface: Surface, scene: SceneData, attachments: AttachmentB
         cells[:, 0, :, 0] = shape.cells
     return {"kernel": KERNELS[dim], "shape": shape.word, "direction": shape.direction[:dim],
             "round_radius": shape.radius, "half_length": shape.half_length,
-            "half_size": shape.half_size[:dim], "n_first": len(first), "n_second": len(second), "first": first,
+            "half_size": shape.half_size[:dim], "inside": int(shape.inside), "inset": 0.0,
+            "n_first": len(first), "n_second": len(second), "first": first,
             "second": second, "heights": cells, "highest": shape.highest,
             "steepest": shape.steepest, "bend": shape.bend, "on": [on]}
 
@@ -97,6 +101,8 @@ def contact_model(part: Contact, scene: SceneData, attachments: AttachmentBuilde
     assert part.stiffness is not None and part.radius is not None, f"{part.where} is not complete"
     surface = scene.surfaces[part.b]
     entries = attachments.once(("surface", part.b), lambda: surface_entries(surface, scene, attachments))
+    if entries["inside"] and entries["shape"] == "box":  # its walls as seen by a sphere's centre
+        entries = entries | {"inset": part.radius, "half_size": entries["half_size"] - part.radius}
     tangential = part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness
     model = ContactModel(
         **entries, type="contact", name=part.name or "",

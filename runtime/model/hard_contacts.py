@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -33,15 +34,16 @@ class HardContactModel(ContactModel):
 
 
 def hard_contact_models(part: Contact, scene: SceneData, attachments: AttachmentBuilder) -> list[HardContactModel]:
-    """Return the models of a hard contact of the scene, one for each of its points."""
+    """Return the models of a hard contact of the scene, one for each of its points, and in a hollow box each wall."""
     assert part.restitution is not None and part.points is not None, f"{part.where} is not complete"
     models, rows = [], scene.dim if part.friction_coefficient else 1
     weight = scene.bodies[part.a].mass * (float(np.linalg.norm(scene.gravity)) or 1.0)
-    surface = surface_entries(scene.surfaces[part.b], scene, attachments)
-    for point in part.points:
+    surface = scene.surfaces[part.b]
+    walls = [surface_entries(surface, scene, attachments, wall) for wall in surface.geometry.walls(scene.dim)]
+    for point, wall in product(part.points, walls):
         at = attachments.model(Attachment(on=part.a, at=point))
         models.append(HardContactModel(
-            **surface, type="hard_contact", name=part.name or "", stiffness=0.0, damping=0.0, friction=0.0,
+            **wall, type="hard_contact", name=part.name or "", stiffness=0.0, damping=0.0, friction=0.0,
             tangential=0.0, hertz=0, cable=-1, radius=part.radius or 0.0, n_points=1, attachments=[at],
             scale=[at.mass] * rows, n_multipliers=rows, sliding=part.friction_coefficient,
             restitution=part.restitution, rest_velocity=part.rest_velocity, weight=weight,

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
+from pydantic import model_validator
 
 from ..rotations import conjugate, rotate
 from .part import Part
 from .plane import FLAT, across
 from .solids import Box, Cylinder, Sphere
 from .surface_shapes import AnySurfaceShape, Capsule, Geometry, geometry
-from .validation import Name, Reference, Vector, show, xyz
+from .validation import Flag, Name, Reference, Vector, show, xyz
 
 
 class Surface(Part):
@@ -21,6 +23,7 @@ class Surface(Part):
     shape: a `Plane`, `HeightField`, `Sphere`, `Cylinder`, `Capsule` or `Box`; on: the body, whose axes those of the
     shape are then, the ground if not given; at: from where the shape's own places count, in m, the origin if not given.
     A cylinder has no ends: beyond its length, which pictures draw, it is touched, too, and a message tells of it.
+    inside: the shape is a hollow, a duct, a tube or a container, and what touches it is within; of what has an inside.
     """
 
     kind: ClassVar[str] = "surface"
@@ -30,11 +33,19 @@ class Surface(Part):
     shape: AnySurfaceShape
     on: Reference | None = None
     at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+    inside: Flag = False
+
+    @model_validator(mode="after")
+    def _has_an_inside(self) -> Surface:
+        if self.inside and not np.isfinite(geometry(self.shape).inner_radius):
+            raise ValueError(f"a {self.shape.kind} has no inside",
+                             "leave inside out; things are on the side of its normal, or of up")
+        return self
 
     @property
     def geometry(self) -> Geometry:
         """Return its geometry in the axes of the ground, or of its body."""
-        return geometry(self.shape).moved(self.at)
+        return replace(geometry(self.shape).moved(self.at), inside=self.inside)
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""

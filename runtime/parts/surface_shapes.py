@@ -141,6 +141,7 @@ class Geometry:
     along its axes, in m; first, second: knots of a height field, and cells (first, second, 4, 4) of its coefficients,
     or (first, 4) where there is no second; highest, steepest, bend: bounds of its height in m, of its slope, and of
     what that changes by along it, in 1/m.
+    inside: it is a hollow, and what touches it is within.
     """
 
     word: str
@@ -156,6 +157,7 @@ class Geometry:
     highest: float = 0.0
     steepest: float = 0.0
     bend: float = 0.0
+    inside: bool = False
 
     def moved(self, by: Any) -> Geometry:
         """Return it with its origin farther by (3,), in m."""
@@ -169,9 +171,29 @@ class Geometry:
         """Return points (..., 3), in m, from its origin along its axes."""
         return (points - self.origin) @ self.axes
 
+    @property
+    def inner_radius(self) -> float:
+        """Return the radius in m of the largest sphere in it; infinite where it has no inside."""
+        if self.word == "box":
+            return float(self.half_size.min())
+        return self.radius if self.word in ("round", "capsule") else np.inf
+
+    def walls(self, dim: int) -> list[Geometry]:
+        """Return the planes of a hollow box that its inside is bounded by, in a scene of dim dimensions; itself of
+        others.
+        """
+        if not (self.inside and self.word == "box"):
+            return [self]
+        sides = [sign * axis for axis in np.eye(3)[:dim] for sign in (1.0, -1.0)]  # the last axis is across a plane
+        return [Geometry("flat", self.origin + self.axes @ (side * self.half_size), self.axes, -side) for side in sides]
+
     def distance(self, points: np.ndarray) -> np.ndarray:
-        """Return the distances (...) of points (..., 3) outside of it, negative inside, in m."""
+        """Return the distances (...) of points (..., 3) outside of it, negative inside, in m; of a hollow the opposite.
+        """
         y = self.into(points)
+        return -self._outside(y) if self.inside else self._outside(y)
+
+    def _outside(self, y: np.ndarray) -> np.ndarray:
         if self.word == "terrain":
             return self._above(y)
         if self.word == "box":

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#define ON_AXIS 1e-12 /* of the radius of a hollow: points nearer to its axis have no direction to its wall */
+
 const char *const fu_surface_role[] = {"surface", 0};
 const char *const fu_surface_shapes[] = {"flat", "round", "capsule", "terrain", "box", 0};
 
@@ -94,12 +96,10 @@ static int nearest_of_box(int dim, const fu_surface *surface, double *y, double 
     return outside < 2;
 }
 
-void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, fu_distance *out)
+/* Makes the distance from a shape, from where it lies outside. */
+static void from_outside(int dim, const fu_surface *surface, const fu_attachment_state *at, double y[3], fu_distance *out)
 {
-    double y[3] = {0.0, 0.0, 0.0}, n[3], H[9], heights[10], half[9], normal[3] = {0.0}, axis[3] = {0.0};
-    local(dim, at, r, y);
-    memcpy(out->y, y, sizeof y);
-    memset(out->H, 0, sizeof out->H);
+    double n[3], H[9], heights[10], half[9], normal[3] = {0.0}, axis[3] = {0.0};
     switch (surface->shape) {
     case FU_FLAT:
         surface->kernel->flat(y, surface->direction, &out->g, n);
@@ -131,6 +131,33 @@ void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment
         for (int j = 0; j < dim; ++j) half[i * dim + j] = fu_dot(dim, at->A + i * dim, H + j * dim);
     for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) out->H[i * dim + j] = fu_dot(dim, half + i * dim, at->A + j * dim);
+}
+
+/* Returns whether a point is on the axis of what is round, or at its centre, where the distance has no gradient. */
+static int is_on_axis(int dim, const fu_surface *surface, const double *y)
+{
+    double along = fu_dot(dim, surface->direction, y), square = 0.0;
+    if (surface->shape == FU_CAPSULE) along = fmin(fmax(along, -surface->half_length), surface->half_length);
+    for (int d = 0; d < dim; ++d) square += (y[d] - along * surface->direction[d]) * (y[d] - along * surface->direction[d]);
+    return square <= ON_AXIS * ON_AXIS * surface->round_radius * surface->round_radius;
+}
+
+void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, fu_distance *out)
+{
+    double y[3] = {0.0, 0.0, 0.0};
+    local(dim, at, r, y);
+    memcpy(out->y, y, sizeof y);
+    memset(out->H, 0, sizeof out->H);
+    if (surface->inside && surface->shape != FU_BOX && is_on_axis(dim, surface, y)) {
+        out->g = surface->round_radius;
+        memset(out->n, 0, sizeof out->n);
+        return;
+    }
+    from_outside(dim, surface, at, y, out);
+    if (!surface->inside) return;
+    out->g = surface->inset - out->g;
+    for (int d = 0; d < dim; ++d) out->n[d] = -out->n[d];
+    for (int i = 0; i < dim * dim; ++i) out->H[i] = -out->H[i];
 }
 
 void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *from, const double *to,
@@ -182,21 +209,28 @@ double fu_surface_beyond(int dim, const fu_surface *surface, const fu_attachment
     return fabs(fu_dot(dim, surface->direction, y)) - surface->half_length;
 }
 
+/* Returns the distance of a point, along the shape's axes, from what is no terrain, m. */
+static double distance_at(int dim, const fu_surface *surface, double y[3])
+{
+    if (surface->shape == FU_BOX) return from_box(dim, surface->half_size, y);
+    double along = fu_dot(dim, surface->direction, y);
+    if (surface->shape == FU_FLAT) return along;
+    if (surface->shape == FU_CAPSULE) along = fmin(fmax(along, -surface->half_length), surface->half_length);
+    for (int d = 0; d < dim; ++d) y[d] -= along * surface->direction[d];
+    return sqrt(fu_dot(dim, y, y)) - surface->round_radius;
+}
+
 double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach)
 {
-    double y[3] = {0.0, 0.0, 0.0}, along;
+    double y[3] = {0.0, 0.0, 0.0};
     local(dim, at, r, y);
     if (surface->shape == FU_TERRAIN) {
         /* the distance is that of the tangent plane: a height over the square root of 1 + slope^2 */
         const double above = y[1] - reach - surface->highest;
         return above > 0.0 ? above / sqrt(1.0 + surface->steepest * surface->steepest) : above;
     }
-    if (surface->shape == FU_BOX) return from_box(dim, surface->half_size, y) - reach;
-    along = fu_dot(dim, surface->direction, y);
-    if (surface->shape == FU_FLAT) return along - reach;
-    if (surface->shape == FU_CAPSULE) along = fmin(fmax(along, -surface->half_length), surface->half_length);
-    for (int d = 0; d < dim; ++d) y[d] -= along * surface->direction[d];
-    return sqrt(fu_dot(dim, y, y)) - surface->round_radius - reach;
+    const double distance = distance_at(dim, surface, y);
+    return (surface->inside ? surface->inset - distance : distance) - reach;
 }
 
 void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r, double *v)

@@ -16,6 +16,9 @@ typedef struct {
     double direction[3];        /* normal of a plane; axis of a cylinder or capsule, zero for a sphere */
     double round_radius, half_length; /* m; a cylinder goes on beyond it */
     double half_size[3];        /* of a box along its axes, m */
+    int inside;                 /* not zero: a hollow; what touches is within. Distances are `inset` less those of the shape */
+    double inset;               /* m: of a hollow box, by how much half_size is less than its own: a sphere of that radius then
+                                 * touches each wall where it is beyond that size, in edges and corners as the sum of the walls */
     int n_first, n_second;      /* knots of a terrain along its horizontal axes, m; no second in the plane */
     const double *first, *second, *heights; /* heights: 4 (or 4 x 4) coefficients of a cell's cubics, from its first knots */
     double highest, steepest, bend; /* bounds of a terrain's height, m, its slope, and how much that changes along it, 1/m */
@@ -69,6 +72,7 @@ extern const char *const fu_surface_shapes[], *const fu_surface_role[];
     {"direction", FU_REAL, offsetof(structure, surface.direction), 3, sizeof(double), NULL},                            \
     FU_SURFACE_FIELD(structure, round_radius, FU_LENGTH, 0), FU_SURFACE_FIELD(structure, half_length, FU_LENGTH, 0),     \
     {"half_size", FU_LENGTH, offsetof(structure, surface.half_size), 3, sizeof(double), NULL},                          \
+    FU_SURFACE_FIELD(structure, inside, FU_INTEGER, 0), FU_SURFACE_FIELD(structure, inset, FU_LENGTH, 0),                \
     FU_SURFACE_FIELD(structure, n_first, FU_INTEGER, 0), FU_SURFACE_FIELD(structure, n_second, FU_INTEGER, 0),           \
     FU_SURFACE_FIELD(structure, first, FU_REALS, 0), FU_SURFACE_FIELD(structure, second, FU_REALS, 0),                   \
     FU_SURFACE_FIELD(structure, heights, FU_REALS, 0), FU_SURFACE_FIELD(structure, highest, FU_LENGTH, 0),               \

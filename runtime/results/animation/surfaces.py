@@ -13,6 +13,8 @@ from ...parts.surface_shapes import Geometry
 from ...view.animation import BodyShape
 from .bodies import box_shape
 from .frames import Frames, one_or_all
+from .hollows import hollow_mesh
+from .meshes import grid_mesh, joined, square_to
 
 PIECES = 12
 """Of a plane to each side, and points of a half circle."""
@@ -55,24 +57,18 @@ def level_shapes(frames: Frames, centre: np.ndarray, size: float) -> list[BodySh
 
 def _net(normal: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
     """Return a square net about the origin."""
-    along, across = _square_to(normal)
+    along, across = square_to(normal)
     u, half = np.linspace(-size, size, 2 * PIECES + 1), STRIP * size / PIECES / 2
     ends = np.array([-size - half, size + half])
-    strips = [_mesh(ends[:, None, None] * one + (at + np.array([-half, half]))[None, :, None] * other)
-              for one, other in ((along, across), (across, along)) for at in u]
-    return (np.concatenate([points for points, _ in strips]),
-            np.concatenate([faces + 4 * k for k, (_, faces) in enumerate(strips)]))
-
-
-def _square_to(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return two unit vectors (3,) that are square to a third and to each other."""
-    along = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-    along /= np.linalg.norm(along)
-    return along, np.cross(along, normal)
+    return joined([grid_mesh(ends[:, None, None] * one + (at + np.array([-half, half]))[None, :, None] * other)
+                   for one, other in ((along, across), (across, along)) for at in u])
 
 
 def _drawn(surface: Surface, shape: Geometry, size: float, offset: np.ndarray) -> dict[str, object]:
     """Return the shape as pictures take it."""
+    if shape.inside:
+        vertices, triangles = hollow_mesh(shape)
+        return {"kind": "mesh", "vertices": vertices, "triangles": triangles, "offset": offset.tolist()}
     if isinstance(surface.shape, Sphere):
         return {"kind": "sphere", "radius": shape.radius, "offset": offset.tolist()}
     if isinstance(surface.shape, Box):
@@ -87,9 +83,9 @@ def _drawn(surface: Surface, shape: Geometry, size: float, offset: np.ndarray) -
 
 def _plane(shape: Geometry, size: float) -> tuple[np.ndarray, np.ndarray]:
     """Return a square piece of a plane about its origin."""
-    along, across = _square_to(shape.direction)
+    along, across = square_to(shape.direction)
     u = np.linspace(-size, size, 2 * PIECES + 1)
-    return _mesh(u[:, None, None] * along + u[None, :, None] * across)
+    return grid_mesh(u[:, None, None] * along + u[None, :, None] * across)
 
 
 def _hills(shape: Geometry, size: float) -> tuple[np.ndarray, np.ndarray]:
@@ -100,12 +96,4 @@ def _hills(shape: Geometry, size: float) -> tuple[np.ndarray, np.ndarray]:
               np.linspace(shape.second[0], shape.second[-1], 4 * PIECES + 1))
     heights = shape.heights(x[:, None], across[None, :])[0]
     points = np.stack(np.broadcast_arrays(x[:, None], heights, across[None, :]), axis=-1)
-    return _mesh(points @ shape.axes.T)
-
-
-def _mesh(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the vertices and triangles of a grid of points (n, m, 3), to be seen from both sides."""
-    n, m = points.shape[:2]
-    k = (np.arange(n - 1)[:, None] * m + np.arange(m - 1)).ravel()
-    one = np.concatenate([np.stack([k, k + 1, k + m], axis=1), np.stack([k + 1, k + m + 1, k + m], axis=1)])
-    return points.reshape(-1, 3), np.concatenate([one, one[:, ::-1]])
+    return grid_mesh(points @ shape.axes.T)
