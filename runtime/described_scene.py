@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from .errors import SceneError, near
 from .parts.event import Event
+from .parts.kinds import plural_of
 from .parts.modal_body import ModalBody
 from .parts.pairs import pairs_of
 from .parts.part import Part
@@ -162,8 +163,7 @@ def _listing(parts: list[Part]) -> str:
 
 def _counted(number: int, thing: str) -> str:
     """Return a number of things in words."""
-    plural = thing[:-1] + "ies" if thing.endswith("y") else thing + "s"
-    return f"{number} {thing if number == 1 else plural}"
+    return f"{number} {thing if number == 1 else plural_of(thing)}"
 
 
 def _modes_of_mesh(body: ModalBody) -> Shape:

@@ -11,7 +11,7 @@ from typing import Any
 
 RENAMED = {"join": "tie", "joins": "ties", "General": "GeneralSection", "Table": "TableSignal",
            "second_moment_yy": "second_moment_about_z", "second_moment_zz": "second_moment_about_y",
-           "springs": "point_forces", "pair": "joint_kind", "hold": "fix", "held": "fixed",
+           "pair": "joint_kind", "hold": "fix", "held": "fixed",
            "rotary_moment_yy": "rotary_moment_about_z", "rotary_moment_zz": "rotary_moment_about_y"}
 """What older versions called parts, keywords, tables of scene files and attributes, and what they are called now."""
 

@@ -24,7 +24,7 @@ def test_attributes_of_the_package():
 
 
 def test_attributes_of_a_scene():
-    for old, new in (("join", "tie"), ("joins", "ties"), ("springs", "point_forces")):
+    for old, new in (("join", "tie"), ("joins", "ties")):
         with refused(AttributeError, f"'Scene' object has no attribute '{old}': it is called \"{new}\" now"):
             getattr(fu.Scene(), old)
     with refused(AttributeError, "'Scene' object has no attribute 'cabel'"):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from funicular import FunicularWarning, Material, Rectangle, Scene, SceneError
+from funicular.parts.kinds import KINDS, plural_of
 from numpy.testing import assert_allclose
 
 
@@ -148,3 +149,23 @@ def test_unnamed_events_are_all_kept(scene):
         ("event_1", 0.1), ("event_2", 0.2), ("event_3", 0.3)]
     with pytest.raises(SceneError, match='event "event_2": there is already an event of that name'):
         scene.event("event_2", quantity="A.position.x")
+
+
+def test_every_kind_of_part_has_a_view_by_the_plural_of_its_name():
+    """Kinds that share a group, such as springs and other forces between points, have views of their own."""
+    scene = Scene()
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0))
+    scene.spring("A", (0, 1, 0), stiffness=1.0, name="string")
+    scene.force("A", value=(1, 0, 0), name="push")
+    scene.moment("A", value=(1, 0, 0), name="twist")
+    for kind in KINDS:
+        view = getattr(scene, plural_of(kind.kind))
+        assert isinstance(view, dict if kind.is_named() else list)
+        assert all(type(part) is kind for part in (view.values() if kind.is_named() else view))
+        assert plural_of(kind.kind) in dir(scene)
+    assert list(scene.springs) == ["string"] and scene.springs["string"] is scene.point_forces["string"]
+    assert list(scene.forces) == ["push"] and list(scene.moments) == ["twist"] and list(scene.rigid_bodies) == ["A"]
+    with pytest.raises(SceneError, match="for reading"):
+        del scene.springs["string"]
+    with pytest.raises(SceneError, match="springs cannot be set"):
+        scene.springs = {}

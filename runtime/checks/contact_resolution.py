@@ -1,16 +1,14 @@
-"""What lies between the points by which a cable touches a surface, in words: a warning, never a refusal."""
+"""How fine the points must be by which a cable touches a surface."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
-from ..parts.cable import Cable
 from ..parts.contact import GAUSS_POINTS, Contact
 from ..parts.scene_data import SceneData
 from ..parts.surface import Surface
-from ..parts.validation import show
 
 APART = float(np.diff(np.polynomial.legendre.leggauss(GAUSS_POINTS)[0]).max()) / 2
 """Of an element: how far points of its quadrature are from each other at most; across a node they are closer."""
@@ -30,24 +28,21 @@ def radius_of(scene: SceneData, contact: Contact) -> float:
     return contact.radius if contact.radius > least else 0.0
 
 
-def unseen_contact(scene: SceneData) -> Iterator[str]:
-    """Yield a note for each cable that may sink into a surface, by more than its radius, between points that touch."""
-    for contact in scene.contacts.values():
-        cable, surface = scene.cables.get(contact.a), scene.surfaces[contact.b]
-        if cable is not None:
-            yield from _between_points(contact, cable, surface, radius_of(scene, contact))
+class Resolution(NamedTuple):
+    """How deep a cable may be below a surface unseen, and the chord of the surface of that height, in m."""
+
+    allowed: float
+    chord: float
 
 
-def _between_points(contact: Contact, cable: Cable, surface: Surface, radius: float) -> Iterator[str]:
-    apart, bend = APART * float(cable.mesh.lengths.max()), _bend_radius(surface, radius)
+def resolved(scene: SceneData, contact: Contact) -> Resolution | None:
+    """Return what points of a cable must resolve of a surface; None where it is flat."""
+    radius = radius_of(scene, contact)
+    bend = _bend_radius(scene.surfaces[contact.b], radius)
     if not np.isfinite(bend):
-        return
+        return None
     allowed = min(radius or SUNK * bend, bend)
-    chord = 2 * np.sqrt(allowed * (2 * bend - allowed))  # whose height the cable may sink by
-    if apart > chord:
-        yield (f'{contact.where}: "{contact.a}" touches by points that are up to {apart:.3g} m apart; between them it '
-               f'may be more than {show(allowed, "m")} below "{contact.b}", or pass through it, unseen; where it '
-               f'touches, take elements of at most {chord / APART:.3g} m')
+    return Resolution(allowed, float(2 * np.sqrt(allowed * (2 * bend - allowed))))
 
 
 def _bend_radius(surface: Surface, own: float) -> float:

@@ -11,7 +11,7 @@ from ..parts.attachment import Attachment
 from ..parts.crossing import Crossing
 from ..parts.crossing_start import Start, radii, sign_of, start_of
 from ..parts.modal_body import ModalBody
-from ..parts.scene_data import SceneData
+from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.validation import EXACT, show
 from .placement import placed_attachment
 
@@ -86,7 +86,7 @@ def _check_start(scene: SceneData, part: Crossing, start: Start, radius: float) 
         message = (f"{part.where}: the lines overlap by {overlap:.6g} m as drawn, where the contact force is "
                    f"{part.stiffness * overlap**part.exponent:.4g} N; draw them apart, or start with "
                    'initial="equilibrium"')
-        scene.messages.append(message)
+        scene.messages.append(OfDrawing(message))
         warnings.warn(message, FunicularWarning, stacklevel=4)
 
 

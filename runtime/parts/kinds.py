@@ -20,5 +20,11 @@ KINDS: tuple[type[Part], ...] = (Cable, Pin, Clamp, Motion, Tie, RigidBody, Moda
                                  DistributedForce, Moment, Spring, Fluid, Drag, Crossing, Surface, Contact, Event)
 """In the order in which they can be added: a slide needs its cable and its body."""
 
+
+def plural_of(name: str) -> str:
+    """Return the plural of a kind's name."""
+    return name[:-1] + "ies" if name.endswith("y") else name + "s"
+
+
 PARTS = {part.kind: part for part in KINDS}
 """The kinds by their names in scene files and in messages."""

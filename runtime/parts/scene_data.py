@@ -18,7 +18,7 @@ from .event import Event
 from .fluid import Fluid
 from .groups import PartsByName, PartsInOrder
 from .joint import Joint
-from .kinds import KINDS
+from .kinds import KINDS, plural_of
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
 from .part import Part
@@ -35,11 +35,16 @@ RESERVED = ("energy", "time")
 """Names that results have of themselves."""
 
 
+class OfDrawing(str):
+    """A message on what is drawn, which does not hold in runs from another state."""
+
+
 class SceneData:
     """What a scene is, as checks, model, solvers and results take it; `funicular.Scene` adds what can be done with it.
 
     ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
-    else a list; both are for reading. ``messages`` lists what was adjusted; ``run_settings``, ``equilibrium_settings``
+    else a list; both are for reading. Kinds that share a group have their own, too: ``springs``, ``rigid_bodies``,
+    ``forces``. ``messages`` lists what was adjusted; ``run_settings``, ``equilibrium_settings``
     and ``relax_settings`` hold the settings that a scene file gives; ``title`` is what pictures are called, the name of
     its file without the ending.
     """
@@ -81,13 +86,23 @@ class SceneData:
         self.relax_settings: dict[str, Any] = {}
 
     def __getattr__(self, name: str) -> Any:
-        """Refuse an attribute that there is not; of an older version's, say what it is called now."""
+        """Return the parts of one kind, where its group has other kinds, too: ``scene.springs`` of ``point_forces``.
+
+        Refuse an attribute that there is not; of an older version's, say what it is called now.
+        """
+        if (kind := _views().get(name)) is not None:
+            return PartsByName((label, part) for label, part in getattr(self, kind.group).items()
+                               if type(part) is kind)
         check_renamed(f"{type(self).__name__!r} object", name, dir(self))
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
+    def __dir__(self) -> list[str]:
+        """Return the names of its attributes, those of kinds that share a group included."""
+        return [*super().__dir__(), *_views()]
+
     def __setattr__(self, name: str, value: Any) -> None:
         """Refuse other parts in the place of a group. Raises SceneError."""
-        if name in _groups() and not isinstance(value, PartsByName | PartsInOrder):
+        if name in _views() or (name in _groups() and not isinstance(value, PartsByName | PartsInOrder)):
             raise SceneError("scene", f"{name} cannot be set", "add parts with the scene's methods for their kinds")
         super().__setattr__(name, value)
 
@@ -257,6 +272,13 @@ class SceneData:
                 free = middle
         numbers = (number for number in count(free) if not is_taken(number))
         return [f"{stem}_{number}" for number in islice(numbers, n)]
+
+
+@cache
+def _views() -> dict[str, type[Part]]:
+    """Return the kinds of parts by the plural of their names, where that is no group."""
+    named = {plural_of(kind.kind): kind for kind in KINDS}
+    return {name: kind for name, kind in named.items() if name not in _groups()}
 
 
 @cache

@@ -15,7 +15,7 @@ from ..errors import FunicularWarning, UnknownResultError, near
 from ..named_arrays import NamedArrays
 from ..parts.cable import Cable
 from ..parts.laid import laid
-from ..parts.scene_data import SceneData
+from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.slide import Slide
@@ -102,7 +102,9 @@ class Run(Viewable, NamedArrays):
             **recording.report,
             "status": recording.status,
             "message": recording.message,
-            "messages": [*scene.messages, *recording.report.get("messages", [])],
+            "messages": [*(message for message in scene.messages
+                           if settings.initial == "drawn" or not isinstance(message, OfDrawing)),
+                         *recording.report.get("messages", [])],
             "settings": settings.field_values(),
         }
         return cls(variables, coords, report, SceneText(scene.copied(), read_scene, scene.libraries))

@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..model.contact_points import distances
 from ..model.contacts import ContactModel
 from ..model.model import Model
-from ..model.states import body_state, spatial
 from ..parts.scene_data import SceneData
-from ..rotations import conjugate, rotate
 
 
 def resolve_contact_edges(model: Model, scene: SceneData, q: np.ndarray) -> None:
@@ -23,23 +22,9 @@ def resolve_contact_edges(model: Model, scene: SceneData, q: np.ndarray) -> None
     """
     for contact in model.contacts:
         if contact.cable >= 0 and not contact.hertz:
-            depth = contact.radius - _distances(model, scene, contact, q)
+            depth = contact.radius - distances(model, scene, contact, q[None]).ravel()
             if np.any(depth > 0) and np.any(depth <= 0):
                 _weigh(contact, model.cables[contact.cable].n_elements, depth)
-
-
-def _distances(model: Model, scene: SceneData, contact: ContactModel, q: np.ndarray) -> np.ndarray:
-    """Return (points,): distances of all points of a cable from the surface that it touches, in m."""
-    cable, surface = model.cables[contact.cable], scene.surfaces[scene.contacts[contact.name].b]
-    vectors = q[cable.coordinates].reshape(cable.shape)
-    both = np.concatenate([vectors[:-1], vectors[1:]], axis=1)
-    points = spatial(np.einsum("egk,ekd->egd", np.broadcast_to(contact.N, (len(both), *contact.N.shape[1:])), both))
-    points = points.reshape(-1, 3)
-    if surface.on is not None:
-        body = next(each for each in model.bodies if each.name == surface.on)
-        frame = body_state(model, body, q[None])
-        points = rotate(conjugate(frame["orientation"]), points - frame["position"])
-    return surface.geometry.distance(points)
 
 
 def _weigh(contact: ContactModel, elements: int, depth: np.ndarray) -> None:

@@ -16,7 +16,6 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from ..checks.contact_resolution import unseen_contact
 from ..checks.plausibility import implausible
 from ..engine import Engine
 from ..errors import EquilibriumError, FunicularWarning
@@ -35,6 +34,7 @@ from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem, static_model
 from .surface_ends import beyond_ends
 from .turned_rest import turned_rest
+from .unseen_contact import unseen_contact
 
 LOG = logging.getLogger(__name__)
 
@@ -364,7 +364,8 @@ def _told(problem: StaticProblem, motion: _Motion, found: Stability, made: type[
                          *coarse(problem.scene, problem.model, state.static_state["q"]),
                          *coarse_at_slides(problem.scene, problem.model, state.static_state),
                          *penetrations(problem.scene, problem.model, state.couplings),
-                         *beyond_ends(problem.scene, problem.model, problem.engine), *unseen_contact(problem.scene)]
+                         *beyond_ends(problem.scene, problem.model, problem.engine),
+                         *unseen_contact(problem.scene, problem.model, state.static_state["q"])]
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=5)
     LOG.info("relaxation: %d steps, %d resets, %.3g N left over", motion.report.steps, motion.report.resets,

@@ -21,6 +21,7 @@ from .sensitivity import Sensitivity
 from .straight_struts import StraightStruts
 from .straightened import Straightened
 from .surface_ends import SurfaceEnds
+from .unseen_contact import UnseenContact
 
 
 class Noted(Protocol):
@@ -59,7 +60,8 @@ class RowNotes:
             "coarse meshes": CoarseMeshes(scene, model), "coarse slides": CoarseSlides(scene, model),
             "straightened": Straightened(scene, model), "sensitivity": self.sensitivity,
             "meeting points": MeetingPoints(scene, model), "fast turns": self.turns,
-            "folds": Folds(scene, model), "normal forces": self.normal_forces}
+            "folds": Folds(scene, model), "unseen contact": UnseenContact(scene, model),
+            "normal forces": self.normal_forces}
         self._noted: dict[str, Noted] = {**self._watched, **self._seen_in_steps}
 
     def see(self, engine: Engine) -> None:

@@ -11,7 +11,6 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..checks.contact_resolution import unseen_contact
 from ..checks.plausibility import implausible
 from ..checks.velocity_jumps import velocity_jumps
 from ..engine import Engine
@@ -118,7 +117,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
             stream.settled()
     messages += run.changed.gaps + _warned([*_broken_velocities(run.model, run.changed.velocities),
                                             *velocity_jumps(scene.as_drawn, settings.duration, _given(initial)),
-                                            *unresolved(scene.as_drawn, settings), *unseen_contact(scene)])
+                                            *unresolved(scene.as_drawn, settings)])
     started, status = run.began - begin - set_up, run.status
     if status in (None, "running"):
         status = run.engine.advance(run.follow, pace.every, stream)

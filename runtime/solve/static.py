@@ -11,7 +11,6 @@ import logging
 import warnings
 from typing import Generic, TypeVar
 
-from ..checks.contact_resolution import unseen_contact
 from ..checks.plausibility import implausible
 from ..errors import EquilibriumError, FunicularWarning
 from ..model.drag_forces import outside_tables
@@ -29,6 +28,7 @@ from .stability import stability
 from .static_problem import StaticProblem, fitted
 from .surface_ends import beyond_ends
 from .turned_rest import turned_rest
+from .unseen_contact import unseen_contact
 
 LOG = logging.getLogger(__name__)
 
@@ -91,7 +91,8 @@ def note(problem: StaticProblem, state: RestState) -> None:
     LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
              state.iterations, state.residual)
     problem.messages += [*penetrations(problem.scene, problem.model, state.couplings),
-                         *beyond_ends(problem.scene, problem.model, problem.engine), *unseen_contact(problem.scene)]
+                         *beyond_ends(problem.scene, problem.model, problem.engine),
+                         *unseen_contact(problem.scene, problem.model, state.static_state["q"])]
     state.messages = problem.messages + implausible(problem.scene)
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=4)
