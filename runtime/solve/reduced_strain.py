@@ -31,8 +31,8 @@ class ReducedStrain:
         for cable in self._cables:
             nodes = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
             chords = np.linalg.norm(np.diff(nodes, axis=1), axis=-1) / cable.mesh.lengths - 1
-            for k in np.flatnonzero((chords < -STABILISATION).any(axis=1)):  # of bent elements the chord is shorter
-                chords[k] = _strain(cable, rows["q"][k])
+            for row in np.flatnonzero((chords < -STABILISATION).any(axis=1)):  # of bent elements the chord is shorter
+                chords[row] = _strain(cable, rows["q"][row])
             strain = chords.min(axis=1)
             k = int(np.argmin(strain))
             if cable.name not in self.found or strain[k] < self.found[cable.name][0]:

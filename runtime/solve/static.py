@@ -163,6 +163,7 @@ class _Search(Generic[S]):
         if found is None:
             problem.restore(drawn)
         self.state = self.made.of(problem, found or stability(problem))
+        problem.begin = problem.keep()["q"]
         moved = problem.distance(drawn)
         if found is not None and moved > MOVED * problem.size:
             what = "loads" if problem.settings.scale_gravity else "loads, under its weight"

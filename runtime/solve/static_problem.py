@@ -96,6 +96,7 @@ class StaticProblem(StaticState):
     def __init__(self, scene: SceneData, settings: EquilibriumSettings, turned: Mapping[str, float] | None = None):
         super().__init__(scene, settings, turned=turned)
         self.restore(with_moved_supports(self.model, self.keep()))
+        self.as_drawn = self.begin = self.keep()["q"]  # begin: that, or what it comes to without loads
         drawn = self.residual()
         self.size = self._extent()
         self.mass = self.engine.matrix(1.0, 0.0, 0.0)

@@ -30,17 +30,20 @@ STRAIGHT = 1e-9
 def hang(problem: StaticProblem, every: bool) -> bool:
     """Put cables into the shape of strings at rest under the load that is on; returns whether there are any such.
 
-    every: also cables that are drawn bent or taut, and those that more acts on than `StringNodes` knows; False: none of
-    these, for which the shape as drawn is as good a start, or better. Cables stay as they are where a part of
-    their string would have no tension.
+    every: wherever the search is, also cables that are drawn bent or taut, and those that more acts on than
+    `StringNodes` knows; False: none of these, for which the shape as drawn is as good a start, or better, and where
+    the search begins alone: load steps stay on their path. Cables stay as they are where a part of their string would
+    have no tension.
     """
     model = problem.model
     if not model.cables:
         return False
     nodes, kept = StringNodes(model), problem.keep()
     q = kept["q"]
+    if not (every or np.array_equal(q, problem.begin)):
+        return False
     groups = [group for group in nodes.groups() if nodes.can_hang(group) and (every or (
-        nodes.others.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, q)))]
+        nodes.others.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, problem.as_drawn)))]
     found = False
     for _ in range(ROUNDS if groups and depend_on_shape(model) else 1):
         force = string_loads(problem, q) if groups else q
@@ -65,7 +68,7 @@ def _at_rest(problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: n
 
 
 def _is_straight_and_slack(nodes: StringNodes, group: np.ndarray, q: np.ndarray) -> bool:
-    """Return whether all cables of a group are straight at a configuration, and one is shorter than at rest."""
+    """Return whether all cables of a group are straight at a configuration, and one is shorter than without stress."""
     slack = False
     for c in group:
         r, length = q[nodes.r[nodes.of(np.array([c]))]], nodes.model.cables[c].mesh.total
