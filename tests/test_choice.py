@@ -1,5 +1,7 @@
 """The model for a tolerance: what is chosen of cables, by what indicators, and how true the estimate is."""
 
+import warnings
+from dataclasses import replace
 from types import SimpleNamespace
 
 import funicular as fu
@@ -18,6 +20,7 @@ from funicular.results.trajectories import distance, largest_change
 from model_cells import models
 from model_choice import chosen, simulate, true_error
 from model_scenes import SCENES
+from random_motions import motion as random_motion
 from typer.testing import CliRunner
 
 RUBBER = fu.Material(youngs_modulus=2e6, poisson_ratio=0.3, density=1000)
@@ -134,7 +137,11 @@ def test_errors_of_meshes_follow_from_their_differences():
         errors = [3.0 * level**-order for level in (2, 4, 8)]
         found = mesh_error([2, 4, 8], [errors[0] - errors[1], errors[1] - errors[2]])
         assert found.order == pytest.approx(order) and found.error == pytest.approx(errors[2])
-        assert found.level_for(1e-3) == pytest.approx((3.0 / 1e-3) ** (1 / order))
+        exact = replace(found, margin=0.0)
+        assert exact.level_for(1e-3) == pytest.approx((3.0 / 1e-3) ** (1 / order))
+        for level in (4, 8, 32):  # a mesh may err by more, if the order is another one
+            assert found.error * found.growth(level) > exact.error * exact.growth(level)
+        assert found.error * found.growth(found.level_for(1e-3)) == pytest.approx(1e-3)
     assert mesh_error([2, 4], [np.inf]).error == np.inf
 
 
@@ -459,3 +466,21 @@ def test_the_shape_of_a_scene_at_rest_keeps_the_tolerance():
                   exact["line.nodal_vectors"][None])
     found = along(run.scene.cables["line"], run["line.nodal_vectors"])
     assert distance(found, shape) < 3 * tol * 60.0
+
+
+@pytest.mark.parametrize("seed", [98, 120, 219, 285])
+def test_what_is_kept_is_within_tol(seed):
+    """These random scenes erred by 1.4 to 1.6 tol and were said to be kept: the order of their meshes, seen once, was
+    taken for known. The reference has four times the elements and steps for a thirtieth of the tolerance.
+    """
+    made, tol = random_motion(seed), 1e-3
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        choice = made.scene.choose(tol, duration=made.duration, free="all")
+        finer = remade(choice.scene, {name: replace(model, elements=4 * model.elements)
+                                      for name, model in choice.models.items()})
+        step = made.duration / 20
+        run = choice.scene.run(output_step=step, progress=False)
+        exact = motion(finer, finer.run(output_step=step, tol=choice.time_tol / 30, progress=False))
+    assert choice.kept and choice.error <= 1.01 * tol
+    assert distance(motion(choice.scene, run), exact) <= tol * largest_change(exact)

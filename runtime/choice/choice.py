@@ -41,8 +41,9 @@ class Choice(Generic[S]):
     """What was chosen for a tolerance.
 
     scene: an ordinary scene with the chosen models, whose run settings have the integrator and its tolerance; tol: the
-    tolerance asked for; time_tol: that of the integrator; models: by cable; kept: whether the
-    estimate says that the tolerance is kept; error: the estimate, over the largest change of a quantity; cost: the CPU
+    tolerance asked for; time_tol: that of the integrator; models: by cable; kept: whether
+    the error is within the tolerance; error: the estimate, with what it may be off itself, over the largest change of a
+    quantity; cost: the CPU
     seconds that a run is estimated to take; reasons: why, in sentences; table: the alternatives; probes: how many short
     runs that took, seconds: their CPU time with all else; given: cables whose element or mesh was given: what these err
     by is not in the estimate; planar: what is said of a spatial scene that was chosen planar, else empty; mesh_error:

@@ -276,12 +276,12 @@ class Chooser(Generic[S]):
         kept = bool(error <= self.tol * (1 + ROUNDED)) and not self.unresolved
         if self._base:
             self.reasons.append(f"the error of {mesh.level} times the coarsest meshes is about {mesh.error:.1e}, of "
-                                f"order {mesh.order:.1f} in the length of an element")
+                                f"order {mesh.order:.1f} in the length of an element, at least {mesh.lowest:.1f}")
         stiff = [each.cable.where for each in self.free if self._is_stiff(each.cable, estimate.probes[-1])]
         if stiff:
             self.reasons.append(f"{', '.join(stiff)}: deforms by less than tol; a rigid or a modal body may do")
         if error > self.tol * (1 + ROUNDED):
-            self.reasons.append(f"no model at hand keeps tol = {self.tol:g}: the finest is taken, which errs by about "
+            self.reasons.append(f"no model at hand keeps tol = {self.tol:g}: the finest is taken, which may err by "
                                 f"{error:.1e}")
         unchanged = estimate.probes[-1].unchanged
         if unchanged:

@@ -48,8 +48,9 @@ def _meshed(estimate: Estimate, kinds: Mapping[str, Kind], tol: float, most: int
     levels = dict.fromkeys(kinds, 1.0)
     if meshed:
         work = [each.base * kinds[each.cable.name].work for each in meshed]
-        errors = [estimate.of_cable[each.cable.name] for each in meshed]
-        longer = balanced(errors, work, estimate.mesh.order, max(left, LEAST * tol))
+        mesh, left = estimate.mesh, max(left, LEAST * tol)
+        errors = [estimate.of_cable[each.cable.name] * mesh.growth(mesh.level) for each in meshed]
+        longer = balanced(errors, work, mesh.lowest if sum(errors) > left else mesh.highest, left)
         for each, ratio in zip(meshed, longer, strict=True):
             levels[each.cable.name] = min(max(estimate.mesh.level / ratio, estimate.least), max(most // each.base, 1))
     return {each.cable.name: each.model(kinds[each.cable.name], levels[each.cable.name]) for each in estimate.free}

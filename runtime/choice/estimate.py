@@ -57,7 +57,7 @@ class Estimate:
     least: int = 1
 
     def error(self, models: Mapping[str, CableModel]) -> float:
-        """Return the error of models of all cables."""
+        """Return what models of all cables err by at most: the estimate, with what it may be off."""
         left_out = [self.shear.get(name, 0.0) for name, model in models.items()
                     if not Kind(model.element, model.law).is_beam]
         return self.time + self.mesh_error(models) + sum(left_out)
@@ -66,7 +66,7 @@ class Estimate:
         """Return what of the error of models comes from their meshes."""
         levels = {each.cable.name: models[each.cable.name].elements / each.base for each in self.free
                   if each.fixed is None}
-        return sum(self.of_cable[name] * (self.mesh.level / level) ** self.mesh.order for name, level in levels.items())
+        return sum(self.of_cable[name] * self.mesh.growth(level) for name, level in levels.items())
 
     def cost(self, models: Mapping[str, CableModel]) -> float:
         """Return the CPU seconds of a run: those of the finest probe, by its elements, their work, and its steps."""
