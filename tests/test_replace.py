@@ -172,7 +172,7 @@ OTHERS = {
     "moment": {"on": "B", "s": 0.25, "value": (0, 0, 2), "scale": 2.0, "name": "x"},
     "spring": {"a": "A", "b": (0, -4, 0), "stiffness": 20.0, "damping": 2.0, "length": 1.0, "tension_only": True,
                "free_play": 0.1, "name": "x"},
-    "fluid": {"name": "breeze", "density": 1.3, "velocity": (0, 0, 2.0), "scale": 2.0,
+    "fluid": {"name": "breeze", "density": 1.3, "surface": -3.0, "velocity": (0, 0, 2.0), "scale": 2.0,
               "profile": fu.PowerProfile(exponent=0.2, reference_height=10)},
     "drag": {"on": "hook", "fluid": "air", "normal": 1.0, "tangential": 0.01, "diameter": 0.03, "displaced_area": 0.0,
              "lift": 0.2, "added_mass": 1.0,
@@ -200,7 +200,7 @@ REFUSED = {
 ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_body", "data"), ("modal_body", "position"),
               ("modal_body", "orientation"), ("joint", "second_axis"), ("joint", "up"), ("joint", "distance"),
               ("joint", "velocity"), ("joint", "length"), ("slide", "body_s"), ("spring", "table"),
-              ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume"),
+              ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume"), ("drag", "height"),
               ("contact", "points"), ("contact", "restitution"), ("contact", "rest_velocity"),
               ("drag", "polar"), ("drag", "span"), ("drag", "chord"), ("drag", "added_mass_tangential"),
               ("fluid", "table"), ("surface", "inside")}

@@ -16,9 +16,10 @@ from .paths import entry, from_kernel, unit
 
 def wetness(family: CouplingFamily) -> list[Relation]:
     """Return the relations of wet parts, and of what their change adds to the inertia of the fluid."""
-    dim = family.dim
-    turns = 3 if dim == 3 else 1
+    return [*_wet_parts(), *_entry(family.dim)]
 
+
+def _wet_parts() -> list[Relation]:
     def per_root(output: str) -> Any:
         """Return an output of a section over the derivative of u by the angle, at an angle moved by t."""
         def moved(k, s, t, j):
@@ -44,14 +45,28 @@ def wetness(family: CouplingFamily) -> list[Relation]:
     def column(s, y):
         return (1 + y + s["delta"][0]) / (4 * s["delta"][0])
 
-    def impulse(k: Any, s: State, point: bool) -> Any:
-        return k("impulse_of_point" if point else "impulse_of_cable", s)["p"]
+    rates = ("e", "c"), ("c", "c_u"), ("c_u", "c_uu")
+    return [
+        Relation("wet_sphere", "e", "integral of depth over the volume", 0, depth(0, sphere)),
+        Relation("wet_section", "e", "integral of depth over the area", 0, depth(0, circle)),
+        Relation("wet_column", "e", "integral of depth over the volume", 0, depth(1, column)),
+        *(Relation(kernel, rate, f"d {of} by u", 1, from_kernel(kernel, of, u=entry("u")), 1)
+          for kernel in ("wet_sphere", "wet_column") for of, rate in rates),
+        *(Relation("wet_section", rate, f"d {of} by u", 1, per_root(of), 1) for of, rate in rates),
+    ]
 
-    def rate(point):
-        return lambda k, s, t, j: s["n"].dot(s["v"]) * impulse(k, s, point)
 
-    def energy(point):
-        return lambda k, s, t, j: impulse(k, s, point).dot(s["w"]) / 2 * s["n"]
+def _entry(dim: int) -> list[Relation]:
+    turns = 3 if dim == 3 else 1
+
+    def impulse(k: Any, s: State, kernel: str) -> Any:
+        return k("impulse_of_point" if kernel == point else "impulse_of_cable", s)["p"]
+
+    def rate(kernel):
+        return lambda k, s, t, j: s["n"].dot(s["v"]) * impulse(k, s, kernel)
+
+    def energy(kernel):
+        return lambda k, s, t, j: impulse(k, s, kernel).dot(s["w"]) / 2 * s["n"]
 
     def force(kernel, change):
         def moved(k, s, t, j):
@@ -66,20 +81,9 @@ def wetness(family: CouplingFamily) -> list[Relation]:
         return {**s, "A": s["A"] + t * swung_axes(np.eye(turns, dtype=int)[j], s["A"])}
 
     cable, point = "entry_of_cable", "entry_of_point"
-    parts = [(kernel, pair) for kernel in ("wet_sphere", "wet_column") for pair in (("e", "c"), ("c", "c_u"),
-                                                                                      ("c_u", "c_uu"))]
     return [
-        Relation("wet_sphere", "e", "integral of depth over the volume", 0, depth(0, sphere)),
-        Relation("wet_section", "e", "integral of depth over the area", 0, depth(0, circle)),
-        Relation("wet_column", "e", "integral of depth over the volume", 0, depth(1, column)),
-        *(Relation(kernel, rate_of, f"d {of} by u", 1, from_kernel(kernel, of, u=entry("u")), 1)
-          for kernel, (of, rate_of) in parts),
-        *(Relation("wet_section", rate_of, f"d {of} by u", 1, per_root(of), 1)
-          for of, rate_of in (("e", "c"), ("c", "c_u"), ("c_u", "c_uu"))),
-        *(Relation(kernel, "p_rate", "rate of c times the impulse", 0, rate(kernel == point))
-          for kernel in (cable, point)),
-        *(Relation(kernel, "g", "energy times the derivative of c", 0, energy(kernel == point))
-          for kernel in (cable, point)),
+        *(Relation(kernel, "p_rate", "rate of c times the impulse", 0, rate(kernel)) for kernel in (cable, point)),
+        *(Relation(kernel, "g", "energy times the derivative of c", 0, energy(kernel)) for kernel in (cable, point)),
         *(Relation(kernel, f"f_{name}", f"d (p_rate - g) by {name}", 1, force(kernel, along(name)), dim)
           for kernel, names in ((cable, "twvn"), (point, "wvn")) for name in names),
         Relation(point, "f_turn", "d (p_rate - g) by a turn", 1, force(point, swung), turns),
