@@ -378,3 +378,20 @@ def test_a_rope_falls_in_alike_at_another_level_and_in_the_plane():
     for level, shift, element in ((250.0, 40.0, "cable12"), (0.0, 0.0, "cable8p")):
         other = thrown(level, shift, element).run(0.8, **settings)["rope.position"]
         assert np.abs(other - [shift, level, 0] - one).max() < 1e-7
+
+
+def table(low, high, slow=1.0):
+    return fu.VelocityTable(y=[low, high], velocity=[[slow, 0, 0], [1, 0, 0]], interpolation="linear")
+
+
+def test_a_table_of_the_water_reaches_up_to_its_surface():
+    """What is above the surface, or floats in it, does not leave the table."""
+    scene = buoy(1.0)
+    scene.fluid("deep", density=1100, surface=-50.0, table=table(-100, -50))
+    scene.drag("buoy", fluid="deep", area=1.0)
+    scene = scene.replace("sea", table=table(-50, 0, slow=0.0))
+    run = scene.run(3.0, tol=1e-4, output_step=0.5)
+    assert run["buoy.velocity"][-1, 0] > 0.2 and not run.report["messages"]
+    scene.fluid("oil", density=800, surface=2.0, table=table(5, 9))
+    with pytest.raises(fu.SceneError, match="outside of the table"):
+        scene.drag("buoy", fluid="oil", area=1.0)

@@ -45,7 +45,8 @@ def _check_table(scene: SceneData, drag: Drag, places_of: Callable[[], np.ndarra
     """Raise SceneError where a drag begins outside of the table of its fluid; places_of: gives places (n, 3), in m."""
     for fluid in scene.fluids_of(drag):
         if fluid.table is not None:
-            _check_in_table(drag, fluid, fluid.table, places_of())
+            places = fluid.nearest(places_of(), scene.up, scene.fluids.values())
+            _check_in_table(drag, fluid, fluid.table, places)
 
 
 def _check_in_table(drag: Drag, fluid: Fluid, table: VelocityTable, places: np.ndarray) -> None:

@@ -95,6 +95,8 @@ def outside_tables(model: Model, q: np.ndarray) -> list[str]:
             r = q[cable.coordinates].reshape(cable.shape)[:, 0]
         else:
             r = attachment_points(model, drag.attachments[0], q[None])[:, : model.dim]
+        height = drag.base + r @ drag.up
+        r = r + (np.clip(height, drag.bottom, drag.surface) - height)[:, None] * drag.up  # the nearest of the fluid
         margin, axis = drag.fluid.table.margin(np.zeros(len(r)), _place(drag, r))
         if margin < -EXACT:
             found.append(f'drag "{drag.name}" is on what lies beyond the table of its fluid along {axis}, by '

@@ -155,17 +155,11 @@ def _wet(part: Drag, fluid: Fluid, scene: SceneData) -> dict[str, Any]:
     return {"wet": kind if is_cut else "all", "extent": part.extent(cable), "surface": fluid.top, "bottom": bottom}
 
 
-def up_of(scene: SceneData) -> np.ndarray:
-    """Return (3,): the direction in which heights are counted, against gravity, along y without gravity."""
-    size = float(np.linalg.norm(scene.gravity))
-    return -np.array(scene.gravity) / size if size else np.array([0.0, 1.0, 0.0])
-
-
 def _height(scene: SceneData) -> tuple[np.ndarray, float]:
     """Return up (3,) along the axes of the model, and the height of their origin, m; those of a plane are not the
     ground's.
     """
-    axes, up = scene.plane_axes, up_of(scene.as_drawn)
+    axes, up = scene.plane_axes, scene.as_drawn.up
     return (up, 0.0) if axes is None else (axes.plane.into(up), float(up @ axes.plane.origin))
 
 

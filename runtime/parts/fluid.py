@@ -67,6 +67,11 @@ class Fluid(Part):
         """Return the height above which it is, in m, among the fluids of its scene; minus `NO_SURFACE`: everywhere."""
         return max((other.top for other in fluids if other.top < self.top), default=-NO_SURFACE)
 
+    def nearest(self, places: np.ndarray, up: np.ndarray, fluids: Iterable[Fluid]) -> np.ndarray:
+        """Return the places (..., 3) of the fluid that are nearest to these along the vertical, in m."""
+        height = places @ up
+        return places + (np.clip(height, self.bottom(fluids), self.top) - height)[..., None] * up
+
     def velocity_at(self, time: np.ndarray, height: np.ndarray, place: np.ndarray | None = None) -> np.ndarray:
         """Return the velocity (..., 3) in m/s at times (s) and heights (m), which are broadcast.
 

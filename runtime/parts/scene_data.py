@@ -8,6 +8,8 @@ from functools import cache
 from itertools import count, islice
 from typing import Any, Self
 
+import numpy as np
+
 from ..errors import SceneError, check_renamed
 from .attachment import Attachment
 from .cable import Cable
@@ -138,6 +140,12 @@ class SceneData:
     def supports(self) -> list[Support]:
         """Return all supports of nodes: pins, clamps and motions."""
         return [*self.pins, *self.clamps, *self.motions]
+
+    @property
+    def up(self) -> np.ndarray:
+        """Return (3,): the direction in which heights are counted, against gravity, along y without gravity."""
+        size = float(np.linalg.norm(self.gravity))
+        return -np.array(self.gravity) / size if size else np.array([0.0, 1.0, 0.0])
 
     def fluids_of(self, drag: Drag) -> list[Fluid]:
         """Return the fluids that a drag is in: the one that it names, else all."""

@@ -7,6 +7,15 @@
 #define OF_TABLE 1 /* watches of the table, before those of surfaces */
 #define AT_EDGE 1e-9 /* of an axis of a table: what is beyond its edge by less is at it, as a run that ends with a table */
 
+/* Returns how far within the table a place is, of what has a surface the nearest place of the fluid above or below. */
+static double margin_at(const fu_model *model, const fu_drag *drag, double t, const double *r)
+{
+    const double height = fu_drag_height(model, drag, r), to = fmin(fmax(height, drag->bottom), drag->surface);
+    double at[3];
+    for (int d = 0; d < model->dim; ++d) at[d] = r[d] + (to - height) * drag->flow.up[d];
+    return fu_flow_margin(model, &drag->flow, t, at);
+}
+
 /* Returns how far within its table all of what a fluid acts on is, as a part of the table's axes; negative beyond its edges. */
 static double margin(const fu_model *model, const fu_drag *drag, const fu_state *state)
 {
@@ -14,11 +23,11 @@ static double margin(const fu_model *model, const fu_drag *drag, const fu_state 
     if (drag->cable >= 0) {
         const fu_cable *cable = &model->cables[drag->cable];
         for (int k = 0; k <= cable->n_elements; ++k)
-            least = fmin(least, fu_flow_margin(model, &drag->flow, state->t, state->q + cable->first + k * cable->per_node));
+            least = fmin(least, margin_at(model, drag, state->t, state->q + cable->first + k * cable->per_node));
     } else {
         fu_attachment_state end;
         fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT, &end);
-        least = fu_flow_margin(model, &drag->flow, state->t, end.p);
+        least = margin_at(model, drag, state->t, end.p);
     }
     return least + AT_EDGE;
 }

@@ -7,7 +7,6 @@ from typing import Literal
 
 import numpy as np
 
-from ...model.drags import up_of
 from ...parts.attachment import Attachment
 from ...parts.load import DistributedForce, Force, Load, Moment
 from ...parts.locations import ends_of, node_of
@@ -189,7 +188,7 @@ def _flows(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
     in proportion to each other.
     """
     scene, found = frames.scene, []
-    up = up_of(scene)
+    up = scene.up
     time = frames.time if frames.moves else np.zeros(len(frames))
     for name, drag in scene.drags.items():
         fluids = [fluid for fluid in scene.fluids_of(drag) if fluid.moves]

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.drags import up_of
 from ...parts.solids import Box, Sphere
 from ...parts.surface import Surface
 from ...parts.surface_shapes import Geometry
@@ -44,7 +43,7 @@ def surface_shape(frames: Frames, name: str, centre: np.ndarray, size: float) ->
 
 def level_shapes(frames: Frames, centre: np.ndarray, size: float) -> list[BodyShape]:
     """Return the surfaces of fluids that are in sight as nets that stand still; centre (3,), size: of the scene, m."""
-    up, found = up_of(frames.scene), []
+    up, found = frames.scene.up, []
     for name, fluid in frames.scene.fluids.items():
         if fluid.surface is not None and abs(above := fluid.surface - up @ centre) <= IN_SIGHT * size:
             position = np.broadcast_to(centre + above * up, (len(frames.time), 3))
