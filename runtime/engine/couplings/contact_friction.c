@@ -91,6 +91,15 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     out->way.stretch.rate[1] = fu_dot(dim, out->along, point->slip);
 }
 
+void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point,
+                     fu_friction_way *way, double along[3])
+{
+    path of;
+    path_of(model, contact, on, point, &of);
+    *way = of.way;
+    memcpy(along, of.along, sizeof of.along);
+}
+
 void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point)
 {
     const int dim = model->dim;

@@ -249,4 +249,4 @@ const fu_coupling_type fu_contact_type = {
     .events = &fu_contact_events, .residual = residual, .tangent = tangent, .step_residual = fu_contact_step_residual, .step_tangent = fu_contact_step_tangent,
     .step_dissipation = fu_contact_step_dissipation, .force = force, .energy = fu_contact_energy, .dissipation = fu_contact_dissipation,
     .lost_in_step = fu_contact_lost, .outputs = fu_contact_outputs, .reset = fu_contact_reset, .carry = fu_contact_carry,
-    .carried_error = fu_contact_carried_error};
+    .carried_error = fu_contact_carried_error, .kinks = fu_contact_kinks};

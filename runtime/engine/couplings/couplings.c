@@ -195,6 +195,18 @@ double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_sta
     return total;
 }
 
+int fu_coupling_kinks(const fu_model *model, const fu_state *from, const fu_state *to, int n, const double *b, const double *c, double *f)
+{
+    const fu_equations step = {.now = from, .next = to};
+    const fu_couplings near = fu_acting_in_step(model, &step);
+    int found = 0;
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *coupling = near.list[k];
+        if (coupling->type->kinks) found |= coupling->type->kinks(model, coupling, from, to, n, b, c, f);
+    }
+    return found;
+}
+
 void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state *state)
 {
     for (int k = 0; k < model->n_others; ++k) {

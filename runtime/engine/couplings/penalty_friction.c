@@ -127,6 +127,23 @@ fu_friction_end fu_end_of_friction(const fu_friction_way *way)
     return end;
 }
 
+/* Returns the cubic of values from the beginning of a step to a part of it. */
+static fu_step_ends first_part(const fu_step_ends *ends, double h, double x)
+{
+    return (fu_step_ends){{ends->value[0], fu_value_within(ends, h, x)}, {ends->rate[0], fu_rate_within(ends, h, x)}};
+}
+
+double fu_friction_within(const fu_friction_way *way, double x)
+{
+    if (!(x > way->from)) return 0.0;
+    fu_friction_way part = *way;
+    part.stretch = first_part(&way->stretch, way->h, x);
+    part.depth = first_part(&way->depth, way->h, x);
+    part.h = x * way->h;
+    part.from = way->from / x;
+    return fu_end_of_friction(&part).stretch;
+}
+
 double fu_way_along(int dim, const fu_friction_travel *travel, double along[3], fu_friction_way *way)
 {
     double square = 0.0;

@@ -73,6 +73,9 @@ typedef struct {
 
 /* couplings/contact_friction.c: friction where a point touches, and its derivatives, added to those of the normal force. */
 void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
+/* Makes the way of a point through a step as fu_contact_stretch does, and the direction of its spring, along the shape's axes. */
+void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point,
+                     fu_friction_way *way, double along[3]);
 /* The way of a point's spring through a step but for the stretch: how deep it is. */
 fu_friction_way fu_contact_way(const fu_contact *contact, const fu_touch_point *point);
 /* Makes what a point has moved by along the surface since its mark, m: along the shape's axes, as the normal there is. */
@@ -118,6 +121,8 @@ void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], c
 double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
                       int number, double *rate, fu_surface_end *end);
 /* couplings/friction_paths.c */
+int fu_contact_kinks(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
+                     const double *c, double *f);
 double fu_contact_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 
 /* Calls `visit` with each point that touches. */

@@ -137,6 +137,11 @@ struct fu_coupling_type {
     /* Returns how far off what `carry` takes along may be after a step from one state to another, m. */
     double (*carried_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 
+    /* Adds to f what the mean force over a step from one state to another is off by, N, where a rule of n weights b at parts c of the step
+     * makes it, as the force has kinks within; returns whether it has. */
+    int (*kinks)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
+                 const double *c, double *f);
+
     /* Returns whether a start may be off the constraints by a small gap. */
     int (*may_start_open)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     /* Finds own coordinates that follow from the others; returns not zero where there are none. */

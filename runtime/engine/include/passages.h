@@ -11,6 +11,7 @@ int fu_count_passages(const fu_run *run);
 void fu_undo_passages(fu_run *run);
 void fu_note_passages(fu_run *run, double h);
 double fu_passage_error(fu_run *run, double h);
+double fu_kink_error(fu_run *run, double h);
 int fu_take_passage(fu_run *run);
 
 #endif

@@ -41,6 +41,9 @@ typedef struct {
 } fu_friction_end;
 fu_friction_end fu_end_of_friction(const fu_friction_way *way);
 
+/* The same at a part of the step. */
+double fu_friction_within(const fu_friction_way *way, double x);
+
 /* The same with vectors along what is touched: the stretch at the beginning, how far what it holds goes past, m, its velocities at both
  * ends, m/s. */
 typedef struct {

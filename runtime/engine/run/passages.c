@@ -140,6 +140,19 @@ double fu_passage_error(fu_run *run, double h)
     return size_of_response(run, run->before, DOUBLE * h * h);
 }
 
+/* Returns the local error of positions by kinks of forces within the step just made that its estimate may not see, m: one of momentum, which
+ * goes on for the rest of the run. */
+double fu_kink_error(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const fu_integrator *integrator = run->integrator;
+    if (!integrator->quadrature || !integrator->has_matrix || run->order <= 2 || run->fixed_step > 0.0) return 0.0;
+    const fu_quadrature rule = integrator->quadrature(run);
+    memset(run->before, 0, sizeof(double) * (size_t)model->n_dof);
+    if (!fu_coupling_kinks(model, &run->now, &run->next, rule.n, rule.b, rule.c, run->before)) return 0.0;
+    return size_of_response(run, run->before, h * h);
+}
+
 /* Makes the earliest of passages and slack cables that the caller does not know of the run's event; returns 0 where there is
  * none. */
 int fu_take_passage(fu_run *run)

@@ -89,7 +89,7 @@ static int make(fu_run *run, double h)
 /* Returns the estimate of the step's error, m. */
 static double error_of(fu_run *run, double h)
 {
-    const double begin = uncounted(run), error = fmax(run->integrator->error(run, h), fu_passage_error(run, h));
+    const double begin = uncounted(run), error = fmax(fmax(run->integrator->error(run, h), fu_passage_error(run, h)), fu_kink_error(run, h));
     const double carried = fu_carried_error(run->model, &run->now, &run->next) / (CARRIED * fu_allowed_error(run));
     run->statistics.time_error += uncounted(run) - begin;
     return fmax(error, run->allowed * pow(carried, 0.5 * run->order)); /* what is carried errs by the square of the step at least */

@@ -1,0 +1,112 @@
+/* Kinks of contact within a step: where a point touches or comes off, begins to slide or sticks. The force is continuous there, its rate
+ * jumps, and a rule of quadrature that an integrator has is off by a part of that. Estimates of its error rest on smooth forces.
+ */
+#include "engine.h"
+
+#include <math.h>
+#include <string.h>
+
+#define INTERVALS 16   /* of a step, that a force is summed over by Simpson's rule */
+#define ROUNDED 1e-9   /* of a stretch: what it may be below the bound of one that slides */
+
+/* A point over a step, as friction has it; without friction the way has no bound. */
+typedef struct {
+    const fu_contact *contact;
+    fu_touch_point end;
+    fu_friction_mark mark;
+    fu_friction_way way;
+    double along[3];
+} step_point;
+
+/* Makes the normal force and friction at a part of the step, N (a length). */
+static void forces_at(const step_point *of, double x, double out[2])
+{
+    const fu_contact *contact = of->contact;
+    const double depth = fu_value_within(&of->way.depth, of->way.h, x);
+    out[0] = depth > 0.0 ? fu_press_at(contact, depth, fu_rate_within(&of->way.depth, of->way.h, x), depth).p : 0.0;
+    out[1] = contact->law.friction > 0.0 && x > 0.0 ? -contact->law.tangential * fu_friction_within(&of->way, x) : 0.0;
+    if (contact->law.friction > 0.0 && x == 0.0) out[1] = -contact->law.tangential * of->way.stretch.value[0] * (of->way.from == 0.0);
+}
+
+/* Makes by how much the mean forces of a rule are off. */
+static void error_of_rule(const step_point *of, int n, const double *b, const double *c, double out[2])
+{
+    double at[2];
+    out[0] = out[1] = 0.0;
+    for (int k = 0; k < n; ++k) {
+        forces_at(of, c[k], at);
+        for (int i = 0; i < 2; ++i) out[i] += b[k] * at[i];
+    }
+    for (int k = 0; k <= INTERVALS; ++k) {
+        const double weight = (k == 0 || k == INTERVALS ? 1.0 : k % 2 ? 4.0 : 2.0) / (3.0 * INTERVALS);
+        forces_at(of, (double)k / INTERVALS, at);
+        for (int i = 0; i < 2; ++i) out[i] -= weight * at[i];
+    }
+}
+
+/* Returns whether friction slides forwards, 1, backwards, -1, or not, at a part of the step. */
+static int slides_at(const step_point *of, double x)
+{
+    double at[2];
+    forces_at(of, x, at);
+    return fabs(at[1]) >= (1.0 - ROUNDED) * of->contact->law.friction * at[0] ? (at[1] < 0.0) - (at[1] > 0.0) : 0;
+}
+
+/* Returns whether the force has a kink: the point is pressed at one end alone, or does not stick, or slide one way, all the while. */
+static int has_kink(const step_point *of)
+{
+    double at[2][2];
+    for (int e = 0; e < 2; ++e) forces_at(of, e, at[e]);
+    if ((at[0][0] > 0.0) != (at[1][0] > 0.0)) return 1;
+    if (of->contact->law.friction == 0.0 || at[0][0] == 0.0) return 0;
+    const int begin = slides_at(of, 0.0), end = slides_at(of, 1.0);
+    return begin != end || (end ? slides_at(of, 0.5) != end : of->end.friction_end.slid);
+}
+
+/* Makes a point over the step; returns whether it touches at one of the ends. */
+static int point_over_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state on[2], const fu_state *from,
+                           const fu_state *to, int element, int number, step_point *out)
+{
+    fu_touch_point begin;
+    out->contact = contact;
+    fu_contact_place(model, contact, &on[1], to, element, number, &out->end);
+    const int touches = fu_contact_touches(model, contact, &on[1], &out->end);
+    if (contact->law.friction > 0.0) out->mark = *out->end.mark;
+    else {
+        fu_contact_place(model, contact, &on[0], from, element, number, &begin);
+        fu_contact_slip(model, contact, &on[0], &begin);
+        out->mark.gap = -begin.depth;
+        out->mark.gap_rate = -begin.sinking;
+    }
+    if (!touches && !(out->mark.gap < 0.0)) return 0;
+    out->way.h = to->t - from->t;
+    out->way.depth = (fu_step_ends){{-out->mark.gap, out->end.depth}, {-out->mark.gap_rate, out->end.sinking}};
+    memset(out->along, 0, sizeof out->along);
+    if (contact->law.friction > 0.0 && touches) fu_contact_path(model, contact, &on[1], &out->end, &out->way, out->along);
+    return contact->law.friction == 0.0 || touches;
+}
+
+int fu_contact_kinks(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
+                     const double *c, double *f)
+{
+    const fu_contact *contact = (const fu_contact *)coupling;
+    const int dim = model->dim;
+    int found = 0;
+    fu_attachment_state on[2];
+    step_point of;
+    fu_surface_at(model, &contact->surface, from, &on[0]);
+    fu_surface_at(model, &contact->surface, to, &on[1]);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on[0], from, e, 0.0) && !fu_contact_may_touch(model, contact, &on[1], to, e, 0.0)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            double off[2], along[3];
+            if (!point_over_step(model, contact, on, from, to, e, k, &of) || !has_kink(&of)) continue;
+            error_of_rule(&of, n, b, c, off);
+            fu_surface_out(dim, &on[1], of.along, along);
+            for (int d = 0; d < dim; ++d) of.end.f[d] = off[0] * of.end.distance.n[d] + off[1] * along[d];
+            fu_contact_add_force(model, contact, to, &on[1], e, k, &of.end, f);
+            found = 1;
+        }
+    }
+    return found;
+}
