@@ -10,6 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..model.contacts import ContactModel
+from ..model.crossings import CrossingModel
 from ..model.drags import DragModel
 from ..model.joints import JointModel
 from ..model.loads import DeadLoadModel, LoadModel, PointForceModel
@@ -37,7 +38,7 @@ class StringNodes:
     first: of each cable the number of its first node, and the end. r, slope (nodes, dim): dofs of position and of r_x.
     held (nodes,): those that joints and springs hold to the ground or to bodies, which stay as drawn. others: cables
     that more acts on than supports, ties, loads, fluids, planes that stand still, and joints to ground and bodies;
-    joined: cables that other cables act on, but by ties.
+    joined: cables that other cables act on, but by ties; touched: those that touch what strings would pass through.
     """
 
     def __init__(self, model: Model):
@@ -79,9 +80,12 @@ class StringNodes:
         return np.concatenate([np.arange(*self.first[c : c + 2]) for c in group])
 
     def can_hang(self, group: np.ndarray) -> bool:
-        """Return whether cables of a group are held anywhere, act on no others, and have no unknown nodal vectors."""
+        """Return whether cables of a group are held anywhere, act on no others, touch nothing but planes, and have no
+        unknown nodal vectors.
+        """
         own = self.of(group)
-        return bool(self.fixed[own].any() and (self.unknown[own] >= -1).all() and self.joined.isdisjoint(group.tolist())
+        return bool(self.fixed[own].any() and (self.unknown[own] >= -1).all()
+                    and (self.joined | self.touched).isdisjoint(group.tolist())
                     and all(KNOWN_VECTORS.issuperset(self.model.cables[c].vectors) for c in group))
 
     def smooth_ties(self, group: np.ndarray) -> list[SmoothTie]:
@@ -123,7 +127,8 @@ class StringNodes:
 
     def _hold(self) -> None:
         """Find what couplings do to cables beside loads, fluids and planes that stand still."""
-        self.held, self.others, self.joined = np.zeros(len(self.cable), dtype=bool), set[int](), set[int]()
+        self.held = np.zeros(len(self.cable), dtype=bool)
+        self.others, self.joined, self.touched = set[int](), set[int](), set[int]()
         for coupling in self.model.couplings:
             if isinstance(coupling, DeadLoadModel | LoadModel | DragModel) or rests(coupling):
                 continue
@@ -135,6 +140,8 @@ class StringNodes:
                 self.others |= cables
             if len(cables) > 1:
                 self.joined |= cables
+            if isinstance(coupling, ContactModel | CrossingModel):
+                self.touched |= cables
 
     def _node_of(self, coupling: object) -> int | None:
         """Return the node that a joint, or a force on an end of a cable, holds to what is no cable; else None."""
