@@ -35,7 +35,13 @@ def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
 
 
 def _independent(rows: csr_array, of_contacts: list[int]) -> csr_array:
-    """Return the constraints without those of contacts that are open, whose rows are nil, and that others imply."""
+    """Return the constraints without those that hold nothing, such as of a slide between two supported nodes, and those
+    of contacts that others imply.
+    """
+    sizes = abs(rows).max(axis=1).toarray().ravel() if rows.shape[0] else np.zeros(0)
+    if not sizes.all():
+        place = {row: k for k, row in enumerate(np.flatnonzero(sizes))}
+        rows, of_contacts = rows[np.flatnonzero(sizes)], [place[row] for row in of_contacts if row in place]
     if not of_contacts:
         return rows
     own = rows[of_contacts].toarray()

@@ -42,6 +42,8 @@ FIXED_ERROR = 5e-3
 """Of the largest motion: errors of a fixed step that are noted."""
 MOST = 5.0
 """Exponent, at most, by which a note says how much errors may grow: by then they are as large as the motion."""
+CERTAIN = 500.0
+"""Exponent by which any error is larger than any motion."""
 TURNING = "spherical", "revolute", "universal"
 """Joints about which a body can fall over."""
 
@@ -102,8 +104,10 @@ class Sensitivity:
         EI = E * (moments[1] if self._model.dim == 2 else min(moments[1:3]))
         mass = part.material.density * part.section.mass_moments()[0]
         N = EA * np.maximum(-strain, 0.0)
-        k = np.clip(np.sqrt(N / (2 * EI)), np.pi / part.length, np.pi / cable.mesh.lengths)
-        return np.sqrt(np.maximum(k**2 * (N - EI * k**2), 0.0) / mass)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of a rope without stiffness
+            k = np.clip(np.nan_to_num(np.sqrt(N / (2 * EI)), posinf=np.inf), np.pi / part.length,
+                        np.pi / cable.mesh.lengths)
+            return np.nan_to_num(np.sqrt(np.maximum(k**2 * (N - EI * k**2), 0.0) / mass))
 
     def _of_joint(self, k: int, joint: JointModel, rows: dict[str, np.ndarray]) -> np.ndarray:
         """Return (times, 1): the larger rate at which a body at one of its ends falls over, 1/s."""
@@ -123,7 +127,7 @@ def sensitive(engine: Engine, settings: RunSettings, found: Sensitivity) -> list
     total = engine.statistics["sum_of_local_error_estimates_m"]
     fixed, motion = settings.step is not None, engine.controlled_motion
     allowed = FIXED_ERROR * motion if fixed else settings.tol * motion + max(engine.absolute_tol, 0.0)
-    if not (engine.moves and exponent >= BEGUN and total * np.exp(exponent) > SAID * allowed):
+    if not (engine.moves and exponent >= BEGUN and total * np.exp(min(exponent, CERTAIN)) > SAID * allowed):
         return []
     grown = total * np.exp(min(exponent, MOST))
     may = f"{min(grown / motion, 1.0):.1g} of the largest motion, or more" if fixed else _times(grown / allowed)

@@ -80,7 +80,7 @@ class Pencil:
             rows = np.asarray(size.tocsc()[:, heavy].max(axis=1).todense()).ravel()
             for at in np.flatnonzero(~heavy):  # as large in the constraints as the coordinates with inertia
                 column = size.tocsc()[:, [at]].toarray().ravel()
-                if column.any():
+                if rows[column > 0].any():  # or no coordinate with inertia is in them
                     scale[at] = rows[column > 0].max() / column.max()
         by = diags_array(scale)
         self.scale = scale

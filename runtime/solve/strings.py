@@ -291,6 +291,6 @@ def rest_of(strings: Strings) -> Rest | None:
                 search.step()
                 if not np.isfinite(search.mean()):
                     return None
-        except LinAlgError:
+        except (LinAlgError, OverflowError):  # of numbers without NumPy
             pass
     return None

@@ -162,7 +162,8 @@ cdef class Statics(Translation):
         cdef double[::1] moved = np.ascontiguousarray(change, dtype=float)
         if moved.shape[0] != self.run.newton.n + self.run.newton.m:
             raise ValueError(f"change must have {self.run.newton.n + self.run.newton.m} entries")
-        fu_static_move(&self.run, &moved[0])
+        if moved.shape[0]:
+            fu_static_move(&self.run, &moved[0])
 
     def static_residual(self):
         """(n,): left side of equilibrium over the unknowns: internal minus external forces; constraints."""
