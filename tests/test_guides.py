@@ -3,6 +3,7 @@
 import os
 import re
 import runpy
+import subprocess
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -36,6 +37,42 @@ def test_runs(guide, tmp_path, monkeypatch):
     matplotlib.use("Agg")
     runpy.run_path(str(guide))
     matplotlib.pyplot.close("all")
+
+
+def test_a_site_without_its_pages_is_refused(tmp_path, monkeypatch, capsys):
+    """An installed package lacks the pages beside the code: their part of the site was left out, with warnings."""
+    from funicular.guides.site import __main__ as command
+    from funicular.guides.site import build
+
+    monkeypatch.setattr(build, "REPOSITORY", tmp_path / "site-packages")
+    monkeypatch.setattr(command.sys, "argv", ["site", str(tmp_path / "out")])
+    assert command.main() == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: site: {tmp_path}/site-packages has no runtime/README.md, derive/README.md, tests")
+    assert said.endswith("build the site in a copy of the repository\n")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("failed", [0, 1])
+def test_a_site_that_fails_leaves_the_older_one(failed, tmp_path, monkeypatch):
+    """Sphinx is stood in for: it takes minutes."""
+    from funicular.guides.site import build
+
+    def sphinx(command: list[str], check: bool) -> subprocess.CompletedProcess:
+        made = Path(command[-1])
+        (made / "guides").mkdir(parents=True)
+        (made / "index.html").write_text("newer")
+        (made / "guides" / "a.html").write_text("newer")
+        return subprocess.CompletedProcess(command, failed)
+
+    monkeypatch.setattr(build, "_collect", lambda work: 0)
+    monkeypatch.setattr(build.subprocess, "run", sphinx)
+    (tmp_path / "work").mkdir()
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "index.html").write_text("older")
+    assert build.build(tmp_path / "out", tmp_path / "work") == failed
+    assert (tmp_path / "out" / "index.html").read_text() == ("older" if failed else "newer")
+    assert (tmp_path / "out" / "guides").exists() != failed
 
 
 @pytest.mark.site

@@ -6,6 +6,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from funicular.errors import FunicularError
+
 from .build import build
 
 
@@ -15,7 +17,11 @@ def main() -> int:
         print("usage: python -m funicular.guides.site DIR", file=sys.stderr)
         return 2
     with tempfile.TemporaryDirectory() as work:
-        return build(Path(sys.argv[1]), Path(work))
+        try:
+            return build(Path(sys.argv[1]), Path(work))
+        except FunicularError as error:
+            print(f"error: {error}", file=sys.stderr)
+            return 1
 
 
 if __name__ == "__main__":

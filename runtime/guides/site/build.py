@@ -10,12 +10,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from funicular.errors import FunicularError
 from funicular.scene_schema import scene_schema
+from funicular.written_files import write_whole
 
 SITE = Path(__file__).parent
 GUIDES = SITE.parent
 REPOSITORY = GUIDES.parents[1]
-"""Where the package is built from; installed, there is none, and the pages beside the code are left out."""
+"""Where the package is built from; installed, there is none."""
 
 PAGES = {"runtime/README.md": "reference.md", "derive/README.md": "derivation.md",
          "tests/benchmarks/README.md": "benchmarks.md"}
@@ -23,7 +25,30 @@ PAGES = {"runtime/README.md": "reference.md", "derive/README.md": "derivation.md
 
 
 def build(out: Path, work: Path) -> int:
-    """Build the site and return 0, or 1 if the theory is wrong or Sphinx warned. work: an empty directory."""
+    """Build the site and return 0, or 1 if the theory is wrong or Sphinx warned: then ``out`` stays what it was.
+
+    work: an empty directory. Raises FunicularError where pages are missing, as in an installed package.
+    """
+    if missing := [page for page in PAGES if not (REPOSITORY / page).is_file()]:
+        raise FunicularError(f"site: {REPOSITORY} has no {', '.join(missing)}: an installed funicular is without the "
+                             "pages beside its code; build the site in a copy of the repository")
+    sources, made = work / "sources", work / "made"
+    sources.mkdir()
+    failed = _collect(sources) or subprocess.run(
+        [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", str(sources), str(made)],
+        check=False).returncode
+    if not failed:
+        shutil.copytree(made, out, dirs_exist_ok=True, ignore=shutil.ignore_patterns(".doctrees"), copy_function=_put)
+    return failed
+
+
+def _put(made: str, target: str) -> None:
+    """Copy a file of the site to its place, whole. Raises ResultFileError."""
+    write_whole(target, lambda part: shutil.copyfile(made, part), "the site")
+
+
+def _collect(work: Path) -> int:
+    """Collect what the site is made of in an empty directory; return 1 if the theory is wrong."""
     for file in SITE.glob("*.md"):
         shutil.copy(file, work)
     shutil.copy(SITE / "conf.py", work)
@@ -31,9 +56,8 @@ def build(out: Path, work: Path) -> int:
     shutil.copytree(GUIDES, work / "guides_source", ignore=shutil.ignore_patterns("site", "__*"))
     (work / "guides_source" / "GALLERY_HEADER.rst").write_text(GALLERY_HEADER, encoding="utf-8")
     for page, name in PAGES.items():
-        if (REPOSITORY / page).is_file():
-            (work / name).write_text(_moved((REPOSITORY / page).read_text(encoding="utf-8"), page), encoding="utf-8")
-            _copy_pictures(REPOSITORY / page, work)
+        (work / name).write_text(_moved((REPOSITORY / page).read_text(encoding="utf-8"), page), encoding="utf-8")
+        _copy_pictures(REPOSITORY / page, work)
     (work / "scene_files.md").write_text(scene_files(), encoding="utf-8")
     (work / "command_line.md").write_text(command_line(), encoding="utf-8")
     (work / "extra").mkdir()
@@ -42,8 +66,7 @@ def build(out: Path, work: Path) -> int:
     if subprocess.run(theory, check=False).returncode:
         return 1
     (work / "theory.md").write_text(theory_page(work / "extra"), encoding="utf-8")
-    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", str(work), str(out)]
-    return subprocess.run(command, check=False).returncode
+    return 0
 
 
 GALLERY_HEADER = """Guides
