@@ -210,3 +210,52 @@ def test_a_straight_slack_rope_is_said_to_bear_what_is_left():
     said = float(note.partition("under a compression of ")[2].partition(" N")[0])
     assert said == pytest.approx(-run.section_forces("rope", s=0.5, method="constitutive").tension[-1].item(), rel=0.01)
     assert said == pytest.approx(LEFT * SLACK_EA * 0.16 * 0.5, rel=0.01)
+
+
+def pulled_down():
+    """Return a rope of two elements with a body at its end, which a spring pulls across."""
+    scene = fu.Scene()
+    scene.cable("w", start=(0, 0, 0), end=(1, 0, 0), elements=2, element="cable8p", section=fu.Circle(radius=0.005),
+                membrane="tension_only", material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000))
+    scene.pin("w", s=0.0)
+    scene.rigid_body("A", mass=1.0, inertia=(1e-3,) * 3, position=(1, 0, 0))
+    scene.joint("spherical", ("w", 1.0), "A")
+    scene.spring("A", (1, 0.25, 0), stiffness=600.0, length=0.2)
+    return scene
+
+
+def growing(run):
+    return [message for message in run.report["messages"] if "small differences grow" in message]
+
+
+def off(run, reference, name):
+    """Return the largest error of positions over the largest motion."""
+    exact = reference[f"{name}.position"]
+    return np.abs(run[f"{name}.position"] - exact).max() / np.abs(exact - exact[0]).max()
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize(("make", "name", "settings"), [
+    (pulled_down, "A", {"duration": 1.0, "output_step": 0.01}),
+    (lambda: wire("tension_only", elements=4, stretch=1 / 1.02), "wire", {"duration": 0.5, "output_step": 5e-3})])
+def test_growing_errors_of_slack_cables_are_noted(make, name, settings):
+    """Nothing is compressed by much; errors were 200 tol and more without a word."""
+    run, reference = (make().run(tol=tol, **settings) for tol in (1e-4, 1e-8))
+    assert off(run, reference, name) > 1e-2
+    [note] = growing(run)
+    assert f'cable "{"w" if name == "A" else name}" becomes slack: from t = ' in note and "tenfold in" in note
+    times = float(note.partition("errors may become ")[2].split()[0])
+    assert 0.1 * times * 1e-4 < off(run, reference, name) < 10 * times * 1e-4
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize(("make", "name", "settings"), [
+    (lambda: let_loose("cable8p"), "wire", {"duration": 0.15, "output_step": 1e-3, "tol": 1e-3}),
+    (lambda: wire("tension_only", stretch=1 / 1.005), "wire", {"duration": 0.1, "output_step": 1e-3, "tol": 1e-3}),
+    (shortened, "rope", {"duration": 0.3, "output_step": 1e-2, "tol": 1e-6}),
+    (pulled_down, "A", {"duration": 0.1, "output_step": 1e-3, "tol": 1e-4})])
+def test_slack_cables_whose_errors_stay_small_say_nothing(make, name, settings):
+    run = make().run(**settings)
+    assert run.slack_elements(next(iter(run.scene.cables))).values.any() or name == "A"
+    assert off(run, make().run(**settings | {"tol": 1e-3 * settings["tol"]}), name) < 3 * settings["tol"]
+    assert not growing(run)

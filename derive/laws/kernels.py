@@ -48,7 +48,8 @@ def taken(element: Element, law: str | type) -> dict[str, str]:
     """
     if not isinstance(law, str):  # a law of the user's has its own
         return {}
-    traits, found = law_traits(law), {}
+    traits = law_traits(law)
+    found: dict[str, str] = {}
     for kernels, like in (DAMPING, traits.damped_like), (ALGORITHMIC, traits.relaxed_like or traits.damped_like):
         if like in element.laws:
             found |= dict.fromkeys(kernels, like)

@@ -18,6 +18,7 @@ from .normal_forces import NormalForces
 from .penetrations import Penetrations
 from .reduced_strain import ReducedStrain
 from .sensitivity import Sensitivity
+from .slack_growth import SlackMotion
 from .straight_struts import StraightStruts
 from .straightened import Straightened
 from .surface_ends import SurfaceEnds
@@ -50,15 +51,16 @@ class SeenInSteps(Noted, Protocol):
 class RowNotes:
     """What is noted of output rows and of steps, which are seen as they come, a batch after the other."""
 
-    def __init__(self, scene: SceneData, model: Model, step: float = 0.0):
+    def __init__(self, scene: SceneData, model: Model, step: float = 0.0, duration: float = 1.0):
         self.sensitivity, self.turns = Sensitivity(scene, model), FastTurns(model, step)
+        self.slack = SlackMotion(scene, model, duration)
         self.normal_forces = NormalForces(scene, model)
         self._seen_in_steps: dict[str, SeenInSteps] = {"penetrations": Penetrations(scene, model),
                                                        "surface ends": SurfaceEnds(scene, model)}
         self._watched: dict[str, Watched] = {
             "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
             "coarse meshes": CoarseMeshes(scene, model), "coarse slides": CoarseSlides(scene, model),
-            "straightened": Straightened(scene, model), "sensitivity": self.sensitivity,
+            "straightened": Straightened(scene, model), "sensitivity": self.sensitivity, "slack motion": self.slack,
             "meeting points": MeetingPoints(scene, model), "fast turns": self.turns,
             "folds": Folds(scene, model), "unseen contact": UnseenContact(scene, model),
             "normal forces": self.normal_forces}

@@ -7,6 +7,7 @@ import time
 import warnings
 from collections.abc import Container
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -35,6 +36,7 @@ from .sensitivity import sensitive
 from .shared_trials import SharedTrials
 from .signal_steps import unresolved
 from .sink import Sink
+from .slack_growth import grown
 from .threads import share_elements
 from .trial_run import on_trial
 from .uncontrolled_errors import uncontrolled_errors
@@ -129,6 +131,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     messages += _controlled_alone(run.engine, settings)
     if status not in FAILED:
         grows = [] if settings.estimate else [*sensitive(run.engine, settings, run.row_notes.sensitivity),
+                                              *grown(run.engine, settings, run.row_notes.slack,
+                                                     partial(_rows_again, scene, initial, method)),
                                               *uncontrolled_errors(scene, run.engine, settings, run.row_notes)]
         messages += _warned([*notes(run.engine, settings), *trapped(scene, run.engine), *run.row_notes.notes(), *grows])
     noted = time.perf_counter() - ended
@@ -137,6 +141,15 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     for message in messages:
         LOG.info("run: %s", message)
     return Simulation(run.model, run.engine, run.watcher, status, messages, reason, set_up, started, noted, total, cpu)
+
+
+def _rows_again(scene: SceneData, initial: Start | None, method: Integrator,
+                settings: RunSettings) -> dict[str, np.ndarray]:
+    """Return the rows of a second run of a scene with other settings and the same method, which says nothing."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FunicularWarning)
+        second = settings.model_copy(update={"integrator": method.name})
+        return simulate(scene, second, Meter(), initial).engine.rows()
 
 
 def _given(initial: Start | None) -> Container[str]:
@@ -202,7 +215,7 @@ def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: In
     """Return a run of what is prepared, which the stream takes; on_trial: it may begin anew with another method."""
     model, engine, watcher = ready.model, ready.engine, ready.watcher
     status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
-    row_notes = RowNotes(scene, model, settings.step_taken or 0.0)
+    row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
         stream.start(model, engine, pace, watcher.happened, row_notes, on_trial)
     follow = LongRun(model, engine, settings, watcher, meter)
