@@ -220,6 +220,13 @@ def test_no_unstable_state_is_returned_unless_asked_for():
         assert bead_on_an_arch().equilibrium(seek_stable=False).unstable_directions == 1
 
 
+def test_a_line_without_tension_on_its_bed_is_refused_with_the_cause():
+    """330 m, of which 80 m hang and 240 m reach the anchor: nothing puts the rest in tension."""
+    scene = wire_on_bed(20).replace("wire", end=(240, 0, -80))
+    with pytest.raises(fu.EquilibriumError, match=r'"wire" is so long that .* % of it would have no tension'):
+        scene.equilibrium()
+
+
 def test_no_run_goes_on_from_an_unstable_state():
     """Not even where the scene's settings ask `equilibrium` for such a state."""
     scene = bead_on_an_arch()

@@ -182,14 +182,14 @@ class RestState(NamedArrays):
         """Return whether no direction lowers the energy; False also where that could not be counted."""
         return self.stability.known and self.stability.unstable == 0
 
-    def check_stable(self) -> None:
-        """Raise EquilibriumError where the state is known to be unstable."""
+    def check_stable(self, cause: str = "") -> None:
+        """Raise EquilibriumError where the state is known to be unstable; cause: as the message goes on."""
         if self.stability.unstable and not self.stability.bound:
             other = ("equilibrium() searches in another way" if self.relaxation is not None else
                      "take relax(), a damped motion, or seek_stable=False, which returns this state")
-            raise EquilibriumError(f"no stable equilibrium was found: the state of rest that was found is "
-                                   f"{self.stability}; {other}, or draw the scene nearer to its rest; the state is "
-                                   "kept in .state", self, self.load_fraction)
+            raise EquilibriumError(
+                f"no stable equilibrium was found: the state of rest found is {self.stability}{cause}; {other}, "
+                "or draw the scene nearer to its rest; the state is kept in .state", self, self.load_fraction)
 
     def keys(self) -> list[str]:
         """Return the names of all quantities."""

@@ -66,9 +66,9 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
             remedy = f"; {problem.turns}" + (f"; {problem.turns.lost}" if problem.turns.lost else remedy)
         raise EquilibriumError(
             f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
-            f"{remedy}; the state there is kept in .state", state, reached)
+            f"{remedy}{problem.cause()}; the state there is kept in .state", state, reached)
     if settings.seek_stable and settings.method == "newton":
-        state.check_stable()
+        state.check_stable(problem.cause())
     return state
 
 

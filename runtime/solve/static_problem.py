@@ -107,6 +107,7 @@ class StaticProblem(StaticState):
         self.fastest = max(fastest(stiffness, self.mass, points), self._falls(drawn, points))
         self.coordinates = coordinates_of(self.model)
         self.point_entries = _point_entries(self.model)
+        self.slack: dict[str, float] = {}  # parts of cables that would have no tension as strings
         self.pushed = False  # off an unstable branch, in a direction that nothing prefers
         self.messages: list[str] = []
 
@@ -179,6 +180,15 @@ class StaticProblem(StaticState):
             if size <= self.settings.tolerance * self.size:
                 return self.on_cables()
         return False
+
+    def cause(self) -> str:
+        """Return why no stable state may be found, as messages end; empty where nothing says so."""
+        if not self.slack:
+            return ""
+        name, part = max(self.slack.items(), key=lambda item: item[1])
+        return (f'; cable "{name}" is so long that {100 * part:.2g} % of it would have no tension as a string: its '
+                "bending stiffness alone decides on the shape there; a shorter rest_length, or other supports, put it "
+                "in tension")
 
     def on_cables(self) -> bool:
         """Return whether no slide is past an end of its cable, where the last element would go on for ever."""

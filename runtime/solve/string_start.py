@@ -51,6 +51,8 @@ def hang(problem: StaticProblem, every: bool) -> bool:
             line, rest = _at_rest(problem, nodes, group, q, force)
             if rest is not None and rest.taut.all():
                 q, found = line.laid(q, rest), True
+            elif rest is not None:
+                problem.slack |= line.slack(rest)
     if found:
         problem.restore(kept | {"q": q})
     return found
@@ -205,6 +207,12 @@ class _Line:
         ways = (np.diff(r[along], axis=0) / length[:, None] for along, length in
                 zip(self.along, self.lengths, strict=True))
         return max((float(np.linalg.norm(np.diff(way, axis=0), axis=1).max(initial=0.0)) for way in ways), default=0.0)
+
+    def slack(self, rest: Rest) -> dict[str, float]:
+        """Return the part of its length over which strings at rest are slack, of each cable where they are."""
+        taut = np.split(rest.taut, np.cumsum([len(length) for length in self.lengths])[:-1])
+        return {part.name: float(length[~own].sum() / length.sum())
+                for part, length, own in zip(self.drawn, self.lengths, taut, strict=True) if not own.all()}
 
     def _drawn_order(self, rest: Rest) -> np.ndarray:
         r = np.empty_like(rest.r)
