@@ -349,6 +349,8 @@ def test_pictures_show_the_surface_where_it_is_in_sight(tmp_path):
     assert np.ptp(corners[:, 1]) < 1e-12 and corners[0, 1] == pytest.approx(30)
     assert {body.name for body in run.animation("falls").clips[0].bodies} == {"buoy", "sea"}
     run.save_html(tmp_path / "page.html")
+    rope = thrown().run(0.4, tol=1e-3, output_step=0.1)
+    assert not any("could not be computed" in note for note in rope.animation("falls").notes)
     assert (tmp_path / "page.html").stat().st_size > 10000
 
 

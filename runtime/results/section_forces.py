@@ -19,7 +19,7 @@ from ..parts.section_stiffness import section_stiffness
 from ..parts.slide import Slide
 from ..parts.validation import EXACT, show
 from ..solve.rest_state import RestState
-from .balance_limits import balanced_cables, out_of_balance
+from .balance_limits import balanced_cables, is_cut, out_of_balance
 from .cable_loads import CableLoads, Instants
 from .nodal_forces import element_forces
 from .section_balance import Cuts, balanced
@@ -104,7 +104,7 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     if (refusal := out_of_balance(scene, model, number, at.is_rest)) is not None:
         raise refusal
     concerned = balanced_cables(scene, model, number, at.is_rest)
-    if len(at.time) > 1 and any(drag.wet != "all" and drag.cable in concerned for drag in model.drags):
+    if len(at.time) > 1 and is_cut(model, concerned):
         each = [cut_forces(scene, model, at.one(k), name, s if len(s) == 1 else s[k : k + 1], side=side)
                 for k in range(len(at.time))]  # wet parts are others at each instant
         return {key: np.concatenate([found[key] for found in each]) for key in each[0]}
