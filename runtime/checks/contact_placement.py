@@ -28,7 +28,7 @@ OVERLAP = 0.5
 SAMPLES = 8
 """Of an element, at which it is looked at for that."""
 OVERLAP_HARD = 1e-9
-"""Of 1 m and of the largest coordinate: rounding of places, by which a start of hard contact may be below."""
+"""Of the lengths that a distance is computed from: rounding, by which a start of hard contact may be below."""
 MOST_HARD = 48
 """Points in hard contact of a scene: FU_MOST_HARD_CONTACTS of engine/include/hard_contacts.h."""
 
@@ -208,14 +208,22 @@ def _check_fits(scene: SceneData, contact: Contact) -> None:
                          "take a wider hollow, or a smaller radius")
 
 
-def _allowed(contact: Contact, start: _Start) -> tuple[float, str]:
+def _allowed(scene: SceneData, contact: Contact, start: _Start) -> tuple[float, str]:
     """Return how deep below the surface a start may be, in m, and why, in words."""
     if contact.is_hard:
-        return OVERLAP_HARD * (1 + np.abs(start.drawn).max()), ": a hard contact has no depth"
+        return OVERLAP_HARD * _largest_length(scene, contact), ": a hard contact has no depth"
     assert contact.radius is not None and contact.stiffness is not None, f"{contact.where} is not complete"
     sinks = (start.weight / contact.stiffness) ** (1 / contact.exponent)
     allowed = max(OVERLAP * contact.radius, 10 * sinks)
     return allowed, f"; {show(float(allowed), 'm')} is allowed"
+
+
+def _largest_length(scene: SceneData, contact: Contact) -> float:
+    """Return the largest length in m that the distance of a body from a surface is computed from."""
+    surface = scene.surfaces[contact.b]
+    carriers = [scene.bodies[name].frame[0] for name in (contact.a, surface.on) if name is not None]
+    return max(np.abs(np.array([*(contact.points or ()), *carriers])).max(), contact.radius or 0.0,
+               surface.geometry.largest_length)
 
 
 def _normal(scene: SceneData) -> np.ndarray | None:
@@ -239,7 +247,7 @@ def _check_depths(scene: SceneData, contacts: list[Contact], starts: list[_Start
         first = 0
         for k in numbers:
             n = len(starts[k].drawn)
-            error = _too_deep(contacts[k], starts[k], distance[first:first + n])
+            error = _too_deep(scene, contacts[k], starts[k], distance[first:first + n])
             first += n
             if error is not None:
                 found.append((k, error))
@@ -248,9 +256,9 @@ def _check_depths(scene: SceneData, contacts: list[Contact], starts: list[_Start
         raise min(found, key=lambda each: each[0])[1]
 
 
-def _too_deep(contact: Contact, start: _Start, distance: np.ndarray) -> SceneError | None:
+def _too_deep(scene: SceneData, contact: Contact, start: _Start, distance: np.ndarray) -> SceneError | None:
     """Return what is wrong where a point is too deep; distance: of the points (n,) from the surface, in m."""
-    allowed, why = _allowed(contact, start)
+    allowed, why = _allowed(scene, contact, start)
     k = int(distance.argmin())
     depth = (contact.radius or 0.0) - distance[k]
     if not depth > allowed:

@@ -178,6 +178,12 @@ class Geometry:
             return float(self.half_size.min())
         return self.radius if self.word in ("round", "capsule") else np.inf
 
+    @property
+    def largest_length(self) -> float:
+        """Return the largest length in m that distances from it are computed from."""
+        lengths = [*self.origin, self.radius, self.half_length, *self.half_size, self.highest]
+        return float(max(abs(length) for length in lengths if np.isfinite(length)))
+
     def walls(self, dim: int) -> list[Geometry]:
         """Return the planes of a hollow box that its inside is bounded by, in a scene of dim dimensions; itself of
         others.
