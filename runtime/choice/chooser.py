@@ -33,6 +33,7 @@ from ..integrators import AUTO
 from ..parts.cable import Cable
 from ..parts.settings import RunSettings
 from ..results.trajectories import largest_change
+from .candidates import Kind
 from .choice import Choice, of_unchanged
 from .deciding import LEAST, ROUNDED, decide
 from .estimate import Estimate, Free
@@ -98,11 +99,24 @@ class Chooser(Generic[S]):
                 self.time = self.time.automatic(self.tol, f"{DAMPING} damps short waves")
         self.reasons.append(self.time.why)
         shear = self._model_errors(second)
-        mesh, levels = self._trusted_ladder(max(level, self.least), second)
-        probes = [self.probe(at) for at in levels[-2:]]
-        estimate = Estimate(mesh, self._shares(mesh, levels), shear, self.time.error, probes, self.free,
-                            self.time.longer, self.least)
+        estimate = self._estimate(max(level, self.least), second, shear)
+        taken = self._kinds_of(decide(estimate, self.tol, MOST_ELEMENTS))
+        doubtful = any(probe.grows for probe in estimate.probes) or not estimate.mesh.regular
+        if doubtful and taken != self.kinds:  # cables do not tell what beams err by there
+            self.kinds = taken
+            estimate = self._estimate(max(level, self.least), second, shear)
         return self._result(estimate, time.process_time() - begin)
+
+    def _estimate(self, level: int, second: int, shear: dict[str, float]) -> Estimate:
+        """Return the estimate of errors and costs, from a ladder of meshes of the kinds of elements that are probed."""
+        mesh, levels = self._trusted_ladder(level, second)
+        probes = [self.probe(at) for at in levels[-2:]]
+        return Estimate(mesh, self._shares(mesh, levels), shear, self.time.error, probes, self.free, self.time.longer,
+                        self.least)
+
+    def _kinds_of(self, models: Mapping[str, CableModel]) -> dict[str, Kind]:
+        """Return the kinds of elements of models, by cable."""
+        return {name: Kind(model.element, model.law) for name, model in models.items()}
 
     def _ladder(self, level: int) -> tuple[MeshError, list[int]]:
         """Return the error of the finest mesh that was run, and the levels from coarse to fine: until the mesh that is

@@ -77,6 +77,7 @@ def mesh_error(levels: Sequence[int], differences: Sequence[float]) -> MeshError
     if len(ratios) > 1 and ratios[0] < 0:  # differences grew just before: they fall by chance in part
         order = float(orders.mean())
     steady = len(orders) > 1 and float(np.ptp(orders)) < SAME
-    seen = "twice" if steady else "once" if len(orders) else "assumed"
-    return MeshError(levels[-1], finite[-1] / (2**order - 1), order, MARGINS[seen], FAR if steady else NEAR,
-                     bool(np.all(all_ratios >= ORDERS[0])))
+    seen, regular = "twice" if steady else "once" if len(orders) else "assumed", bool(np.all(all_ratios >= ORDERS[0]))
+    if not regular and order > FIRST_ORDER:  # it is chance: a whip was kept at 2.0 tol by it. The lower one is cautious
+        order, seen = FIRST_ORDER, "twice"
+    return MeshError(levels[-1], finite[-1] / (2**order - 1), order, MARGINS[seen], FAR if steady else NEAR, regular)

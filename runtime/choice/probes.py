@@ -16,6 +16,7 @@ from ..results.equilibrium import Equilibrium
 from ..results.run import Run
 from ..results.trajectories import distance, largest_change
 from ..scene_methods import SceneMethods
+from ..solve.sensitivity import GROWS
 from .motion import MOTION, samples
 from .remaking import CableModel, remade
 
@@ -66,6 +67,11 @@ class Probe(Generic[S]):
         return [name for name, values in self.sampled.items()
                 if not largest_change(values) > max(ROUNDED * float(np.abs(values).max(initial=0.0)),
                                                     allowed if name == MOTION else 0.0)]
+
+    @property
+    def grows(self) -> bool:
+        """Return whether its run says that small differences grow in the motion."""
+        return self.run is not None and any(GROWS in message for message in self.run.report["messages"])
 
     @property
     def scales(self) -> dict[str, float]:

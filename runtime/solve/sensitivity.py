@@ -44,6 +44,8 @@ MOST = 5.0
 """Exponent, at most, by which a note says how much errors may grow: by then they are as large as the motion."""
 CERTAIN = 500.0
 """Exponent by which any error is larger than any motion."""
+GROWS = "small differences grow"
+"""What a note says where they do."""
 TURNING = "spherical", "revolute", "universal"
 """Joints about which a body can fall over."""
 
@@ -133,7 +135,7 @@ def sensitive(engine: Engine, settings: RunSettings, found: Sensitivity) -> list
     may = f"{min(grown / motion, 1.0):.1g} of the largest motion, or more" if fixed else _times(grown / allowed)
     what = "is compressed while it moves, and buckles" if where in [part.where for part in found.cables] else (
         "pushes a body that falls over")
-    return [f"{where} {what}: from t = {since:.3g} s on small differences grow, and errors may become {may}. "
+    return [f"{where} {what}: from t = {since:.3g} s on {GROWS}, and errors may become {may}. "
             f"Give estimate=True, which measures them, or a smaller {'step' if fixed else 'tol'}, or more damping"]
 
 

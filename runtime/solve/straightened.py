@@ -18,6 +18,7 @@ from ..model.model import CableModel, Model
 from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
 from ..rotations import cross
+from .sensitivity import GROWS
 
 PARTS = (0.1, 0.5, 0.9)
 """Of the length of an element: where its curvature is looked at."""
@@ -61,7 +62,7 @@ class Straightened:
         """Return a note for each cable in which differences grew far."""
         return [f'cable "{name}" is drawn curved and free of stress, and bends to less than that, to '
                 f"{100 * left:.2g} % of its drawn curvature: a cable has no section axes, and its stiffness across "
-                f"such a bend is negative. Small differences grow by exp({max(exponents):.2g}) in the run, and results "
+                f"such a bend is negative: {GROWS} by exp({max(exponents):.2g}) in the run, and results "
                 'depend on steps and mesh. Take element="beam24", which keeps its shape in space, or rest="straight"'
                 for name, (exponents, _, left) in self.found.items() if max(exponents) > GROWN]
 
