@@ -220,6 +220,17 @@ def test_no_unstable_state_is_returned_unless_asked_for():
         assert bead_on_an_arch().equilibrium(seek_stable=False).unstable_directions == 1
 
 
+@pytest.mark.parametrize(("waves", "force"), [(0.0, on_bed(900.0)), (0.5, 130119.0), (2.0, 135707.0)])
+def test_a_wire_on_an_uneven_bed(waves, force):
+    """A height field, even or in waves of 126 m; 45 elements against 100, or the catenary; it had been refused."""
+    scene, x = wire_on_bed(45, anchor=-79.9), np.linspace(-50, 400, 91)
+    heights = tuple(-80 + waves * np.sin((x - 300) / 20))
+    scene = scene.replace("bed", shape=fu.HeightField(x=tuple(x), heights=heights, along=(1, 0, 0), up=(0, 0, 1)))
+    rest = scene.equilibrium()
+    assert pull(rest, "wire") == pytest.approx(force, rel=1e-3)
+    assert rest.iterations <= 10
+
+
 def test_a_line_without_tension_on_its_bed_is_refused_with_the_cause():
     """330 m, of which 80 m hang and 240 m reach the anchor: nothing puts the rest in tension."""
     scene = wire_on_bed(20).replace("wire", end=(240, 0, -80))

@@ -29,6 +29,7 @@ from .coarse_slides import coarse_at_slides
 from .diagnosis import describe_dof
 from .folds import folds
 from .penetrations import penetrations
+from .reduced_strain import compressed
 from .rest_state import Relaxation, RestState
 from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem, static_model
@@ -361,6 +362,7 @@ def _told(problem: StaticProblem, motion: _Motion, found: Stability, made: type[
     state = made.of(problem, found)
     state.relaxation = motion.report
     problem.messages += [*folds(problem.scene, problem.model, state.static_state["q"]),
+                         *compressed(problem.scene, problem.model, state.static_state["q"]),
                          *coarse(problem.scene, problem.model, state.static_state["q"]),
                          *coarse_at_slides(problem.scene, problem.model, state.static_state),
                          *penetrations(problem.scene, problem.model, state.couplings),

@@ -159,8 +159,8 @@ class StringNodes:
 
 
 def rests(coupling: object) -> bool:
-    """Return whether a coupling is a cable's contact with a plane that stands still."""
-    return (isinstance(coupling, ContactModel) and coupling.cable >= 0 and coupling.shape == "flat"
+    """Return whether a coupling is a cable's contact with a plane, or a height field, that stands still."""
+    return (isinstance(coupling, ContactModel) and coupling.cable >= 0 and coupling.shape in ("flat", "terrain")
             and all(on.cable == on.body == on.slide == -1 for on in coupling.on))
 
 

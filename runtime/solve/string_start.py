@@ -23,6 +23,8 @@ ROUNDS = 3
 LARGEST_TURN = 0.3
 """rad: by which a string may turn from an element to the next, before elements have several links."""
 MOST_PARTS = 8
+TANGENT = 1e-3
+"""m: over which a height field is taken for its tangent plane."""
 STRAIGHT = 1e-9
 """Of the length: what nodes on a line may be off it, and by what a cable is slack."""
 
@@ -45,7 +47,8 @@ def hang(problem: StaticProblem, every: bool) -> bool:
     groups = [group for group in nodes.groups() if nodes.can_hang(group) and (every or (
         nodes.others.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, problem.as_drawn)))]
     found = False
-    for _ in range(ROUNDS if groups and depend_on_shape(model) else 1):
+    uneven = any(rests(contact) and contact.shape == "terrain" for contact in model.contacts)
+    for _ in range(ROUNDS if groups and (uneven or depend_on_shape(model)) else 1):
         force = string_loads(problem, q) if groups else q
         for group in groups:
             line, rest = _at_rest(problem, nodes, group, q, force)
@@ -89,6 +92,8 @@ class _Line:
 
     def __init__(self, problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray, parts: int):
         self.model, self.nodes, self.group, self.q, self.parts = problem.model, nodes, group, q, parts
+        self.surfaces = {part.name: problem.scene.surfaces[part.b].geometry
+                         for part in problem.scene.contacts.values() if part.b in problem.scene.surfaces}
         self.drawn = [problem.scene.cables[self.model.cables[c].name] for c in group]
         own = nodes.of(group)
         number = np.full(len(nodes.cable), -1)
@@ -195,11 +200,29 @@ class _Line:
             share = np.convolve(self.lengths[k], (0.5, 0.5), "full")
             free = ~fixed[self.along[k]].all(axis=1)
             at, share = self.along[k][free], share[free]
-            normal = np.asarray(contact.direction, dtype=float)
-            height = float(normal @ np.asarray(contact.on[0].u)[:dim]) + contact.radius
-            found.append((at, np.tile(normal, (len(at), 1)), np.full(len(at), height),
-                          1 / (share * _stiffness(contact, np.abs(load[at] @ normal) / share))))
+            normals, heights = self._below(contact, k, free)
+            found.append((at, normals, heights + contact.radius, 1 / (share * _stiffness(
+                contact, np.abs((load[at] * normals).sum(axis=1)) / share))))
         return tuple(np.concatenate(each) for each in zip(*found, strict=True))
+
+    def _below(self, contact: ContactModel, k: int, free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return normals (n, dim) and heights (n,) of the planes below free nodes of the k-th cable: of a height field
+        the tangent ones where the nodes are.
+        """
+        dim, n = self.model.dim, int(np.count_nonzero(free))
+        if contact.shape == "flat":
+            normal = np.asarray(contact.direction, dtype=float)
+            return np.tile(normal, (n, 1)), np.full(n, float(normal @ np.asarray(contact.on[0].u)[:dim]))
+        r = self.q[self.nodes.r[self.nodes.first[self.group[k]] : self.nodes.first[self.group[k] + 1]]]
+        steps, nodes = np.arange(len(free)) / self.parts, np.arange(len(r))
+        points = np.zeros((n, 3))
+        points[:, :dim] = np.stack([np.interp(steps, nodes, column) for column in r.T], axis=1)[free]
+        off = TANGENT * np.eye(3)[:dim, None]
+        above = self.surfaces[contact.name].distance
+        gradient = ((above(points + off) - above(points - off)) / (2 * TANGENT)).T
+        size = np.linalg.norm(gradient, axis=1)
+        normals = gradient / size[:, None]
+        return normals, (normals * points[:, :dim]).sum(axis=1) - above(points) / size
 
     def turn(self, rest: Rest) -> float:
         """Return the largest angle by which strings at rest turn from a link to the next, about, in rad."""
