@@ -24,7 +24,7 @@ class FilePath(str):
         made.folder = os.fspath(folder)
         return made
 
-    def __getnewargs__(self) -> tuple[str, str]:
+    def __getnewargs__(self) -> tuple[str, str]:  # type: ignore[override]  # str's own has one
         """Return what it is made of, for copies and other processes."""
         return str(self), self.folder
 
@@ -42,7 +42,7 @@ class FilePath(str):
         try:
             self.check()
         except ValueError as error:
-            raise SceneError("run", *error.args, entry="save") from None
+            raise SceneError("run", error.args[0], error.args[1], "save") from None
         path = Path(os.path.realpath(self.folder or os.curdir))
         for word in Path(self).parts:
             path = path / word

@@ -16,7 +16,7 @@ def _refuse(*given: Any, **named: Any) -> Never:
 class PartsByName(dict):
     """Parts by name."""
 
-    __setitem__ = __delitem__ = __ior__ = clear = pop = popitem = setdefault = update = _refuse  # type: ignore[assignment]
+    __setitem__ = __delitem__ = __ior__ = clear = pop = popitem = setdefault = update = _refuse
 
     def put(self, name: str, part: Any) -> None:
         """Add a part, or put it in the place of the one of that name; for the scene."""
@@ -34,8 +34,8 @@ class PartsByName(dict):
 class PartsInOrder(list):
     """Parts without names."""
 
-    __setitem__ = __delitem__ = __iadd__ = __imul__ = append = extend = insert = _refuse  # type: ignore[assignment]
-    remove = pop = clear = sort = reverse = _refuse  # type: ignore[assignment]
+    __setitem__ = __delitem__ = __iadd__ = __imul__ = append = extend = insert = _refuse
+    remove = pop = clear = sort = reverse = _refuse
 
     def put(self, part: Any) -> None:
         """Add a part; for the scene."""

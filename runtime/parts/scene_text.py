@@ -241,7 +241,7 @@ def _settings(name: str, table: Any, directory: str | os.PathLike) -> dict:
         try:
             settings["save"].check()
         except ValueError as error:
-            raise SceneError(f"[{name}]", *error.args, entry="save") from None
+            raise SceneError(f"[{name}]", error.args[0], error.args[1], "save") from None
     return settings
 
 

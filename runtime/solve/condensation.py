@@ -40,7 +40,7 @@ def _independent(rows: csr_array, of_contacts: list[int]) -> csr_array:
     """
     sizes = abs(rows).max(axis=1).toarray().ravel() if rows.shape[0] else np.zeros(0)
     if not sizes.all():
-        place = {row: k for k, row in enumerate(np.flatnonzero(sizes))}
+        place = {row: k for k, row in enumerate(np.flatnonzero(sizes).tolist())}
         rows, of_contacts = rows[np.flatnonzero(sizes)], [place[row] for row in of_contacts if row in place]
     if not of_contacts:
         return rows
