@@ -397,3 +397,21 @@ def test_a_table_of_the_water_reaches_up_to_its_surface():
     scene.fluid("oil", density=800, surface=2.0, table=table(5, 9))
     with pytest.raises(fu.SceneError, match="outside of the table"):
         scene.drag("buoy", fluid="oil", area=1.0)
+
+
+def test_a_barge_of_columns_heels_as_its_waterplane_and_the_middles_of_the_columns_have_it():
+    """K = rho g sum(A x²) + m g h, with the height h of the middles over the mass centre."""
+    scene = fu.Scene()
+    mass, inertia, arm, height, up = 400.0, 150.0, 0.8, 1.0, 0.1
+    scene.rigid_body("barge", mass=mass, inertia=(inertia, inertia, inertia), position=(0, 0.05, 0))
+    scene.fluid("sea", density=WATER, surface=0.0)
+    for x in (-arm, arm):
+        scene.drag("barge", at=(x, up, 0), volume=0.4, height=height)
+    rest = scene.equilibrium()
+    waterplane = 2 * 0.4 / height
+    assert rest["barge.position"][1] + up == pytest.approx(height / 2 - mass / WATER / waterplane, abs=1e-9)
+    heel = sqrt((WATER * G * waterplane * arm**2 + mass * G * up) / inertia)
+    heave = sqrt(WATER * G * waterplane / mass)
+    found = scene.modes(6, about=rest).angular_frequency
+    for expected in (heel, heave):
+        assert np.abs(found - expected).min() < 1e-6 * expected

@@ -77,7 +77,8 @@ class Drag(Part):
     circle of the diameter d (without one, of the displaced area), below the surface, at each place along it. A body is
     taken as a sphere of its ``volume`` about ``at`` (without a volume, of its ``area``), or with ``height``, in m, as a
     column that is upright in all attitudes and has the same section over this height, half of it below ``at``; both its
-    ends are rounded by a fortieth of the height. Buoyancy acts at ``at`` in any case: what heels takes several drags.
+    ends are rounded by a fortieth of the height. Buoyancy acts at ``at``, and not at the middle of the wet part: what
+    heels takes several drags, and is too stiff by its weight times the distance of the two.
     """
 
     kind: ClassVar[str] = "drag"
