@@ -185,3 +185,32 @@ def test_pictures_show_what_is_inside_of_a_hollow(shape):
     run = ball(PIPES["pipe"], restitution=0.0).run(duration=0.1, tol=1e-3)
     [drawn] = [body for body in run.animation("falls").clips[0].bodies if body.name == "hollow"]
     assert drawn.shape["kind"] == "mesh"
+
+
+def catheter(elements):
+    """Return a rod of 1.003 m, clamped at both ends 1 m apart, in a tube that leaves it 4 mm."""
+    scene = fu.Scene(gravity=(0, -G, 0))
+    scene.cable("rod", start=(0, 0, 0), end=(1, 0, 0), rest_length=1.003, elements=elements, element="cable12",
+                section=fu.Circle(radius=0.002),
+                material=fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1500))
+    scene.clamp("rod", s=0.0)
+    scene.clamp("rod", s=1.003)
+    scene.surface("tube", fu.Cylinder(radius=0.006, length=1.2, axis=(1, 0, 0), at=(0.5, 0, 0)), inside=True)
+    scene.contact("rod", "tube", stiffness=1e5, name="wall")
+    return scene
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+def test_a_rod_that_buckles_in_its_tube_stays_in_it():
+    """Also between the points at which it touches, with long elements, which a note tells."""
+    for elements, told in (5, True), (24, False):
+        rest = catheter(elements).equilibrium()
+        l, u = 1.003 / elements, np.linspace(0, 1, 50)[:, None, None]
+        (r, slope), (r_end, slope_end) = (rest["rod.nodal_vectors"][part].transpose(1, 0, 2)
+                                          for part in (slice(None, -1), slice(1, None)))
+        axis = (r * (1 - 3 * u**2 + 2 * u**3) + l * slope * (u - 2 * u**2 + u**3)
+                + r_end * (3 * u**2 - 2 * u**3) + l * slope_end * (u**3 - u**2))
+        off = np.linalg.norm(axis[..., 1:], axis=-1)
+        assert 0.004 < off.max() < 0.004 + 2 * rest["wall.penetration"]
+        assert any("too long" in message for message in rest.messages) == told
+        assert -rest["rod@1.003.force"][0] == pytest.approx(rest["rod@0.force"][0], rel=1e-6)
