@@ -10,12 +10,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from .lying import left, lying
 from .softening import Softening
 from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem
 from .string_start import hang
 
 MOST_RELAXATIONS = 400
+MOST_SHORT_STEPS = 1000
+"""Of a relaxation whose steps are no longer than a tenth of a cable's radius."""
 LARGEST_MOVE = 0.2
 """Of the scene's size, in a step."""
 GONE = 10.0
@@ -36,6 +39,23 @@ def find_rest(problem: StaticProblem) -> Stability | None:
 
     What was passed on the way, and what is doubtful, is added to problem.messages.
     """
+    places = lying(problem.scene, problem.model, problem.keep()["q"])
+    begin, told = problem.keep(), list(problem.messages)
+    found = _search(problem)
+    if problem.settings.seek_stable and places and not problem.held and (found is None or left(problem, places)):
+        problem.held = True  # it is long, and a second time no better
+        away, messages = problem.keep(), problem.messages
+        problem.restore(begin)
+        problem.messages = told
+        if (held := relax(problem, min(place.step for place in places), MOST_SHORT_STEPS)) is not None:
+            return held
+        problem.restore(away)
+        problem.messages = messages
+    return found
+
+
+def _search(problem: StaticProblem) -> Stability | None:
+    """Do the same without regard to what cables lie on."""
     begin, passed = problem.keep(), None
     passed_at, problem.pushed = begin, False
     if problem.settings.seek_stable and (stable := from_strings(problem, every=False)) is not None:
@@ -84,20 +104,21 @@ def from_strings(problem: StaticProblem, every: bool = True) -> Stability | None
     return stable
 
 
-def relax(problem: StaticProblem) -> Stability | None:
+def relax(problem: StaticProblem, longest: float = np.inf, most: int = MOST_RELAXATIONS) -> Stability | None:
     """Relax by pseudo-transient continuation (Kelley & Keyes 1998): implicit Euler without regard to accuracy, its step
     growing as the motion fades; to a stable state, or None.
 
     A step never goes along a direction of negative curvature: it is made shorter until mass outweighs that, so that it
     descends (the test of curvature is that of Chiang & Zavala 2016). A state that its symmetry keeps at rest on an
     unstable branch is pushed off along the direction of the least curvature. Where any state of rest will do
-    (seek_stable), neither is done.
+    (seek_stable), neither is done. longest: of the steps, m; most: so many.
     """
+    longest = min(longest, LARGEST_MOVE * problem.size)
     mass, near, kept, begin = 1e-3 * problem.fastest, 1e-5, problem.keep(), problem.keep()
     least, descends = LEAST_MASS * problem.fastest, problem.settings.seek_stable
-    for _ in range(MOST_RELAXATIONS):
+    for _ in range(most):
         problem.iterations += 1
-        change, size, heavier = _correction(problem, mass, descends)
+        change, size, heavier = _correction(problem, mass, descends, longest)
         if change is None:
             mass *= heavier
             if not mass < 1e30:
@@ -111,7 +132,7 @@ def relax(problem: StaticProblem) -> Stability | None:
         kept = problem.keep()
         if problem.distance(begin) > GONE * problem.size:
             return None
-        mass = max(least, mass * (0.5 if size < 0.1 * LARGEST_MOVE * problem.size else 1.0))
+        mass = max(least, mass * (0.5 if size < 0.1 * longest else 1.0))
         if mass > 100 * least and size > near * problem.size:
             continue
         if descends and stability(problem).unstable:
@@ -130,7 +151,8 @@ def relax(problem: StaticProblem) -> Stability | None:
     return None
 
 
-def _correction(problem: StaticProblem, mass: float, descends: bool) -> tuple[np.ndarray | None, float, float]:
+def _correction(problem: StaticProblem, mass: float, descends: bool,
+                longest: float) -> tuple[np.ndarray | None, float, float]:
     """Return a correction with so much mass, its size in m, and, where there is none, what the mass must grow by.
 
     There is none where the matrix is singular, the correction is too large or, if it is to descend, goes along a
@@ -141,7 +163,7 @@ def _correction(problem: StaticProblem, mass: float, descends: bool) -> tuple[np
     except RuntimeError:
         return None, np.inf, 10.0
     size = problem.length(change)
-    if not size < LARGEST_MOVE * problem.size or (descends and problem.curvature(change, mass) < 0):
+    if not size < longest or (descends and problem.curvature(change, mass) < 0):
         return None, size, 4.0
     return change, size, 1.0
 

@@ -20,6 +20,7 @@ from .carried_states import carried
 from .coarse_meshes import coarse
 from .coarse_slides import coarse_at_slides
 from .folds import folds
+from .lying import left, lying, not_held
 from .path_following import Critical, Point, follow
 from .penetrations import penetrations
 from .reduced_strain import compressed
@@ -64,6 +65,8 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
                   'limit point, which method="arc_length" passes; or take more load_steps or max_iterations')
         if problem.turns.fraction < 1.0:
             remedy = f"; {problem.turns}" + (f"; {problem.turns.lost}" if problem.turns.lost else remedy)
+        if slides := not_held(problem, lying(problem.scene, problem.model, problem.model.q)):
+            remedy = f"; {slides}{remedy}"
         raise EquilibriumError(
             f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
             f"{remedy}{problem.cause()}; the state there is kept in .state", state, reached)
@@ -90,8 +93,10 @@ def note(problem: StaticProblem, state: RestState) -> None:
         problem.messages.append(f"the state is {state.stability}{leaves}")
     LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
              state.iterations, state.residual)
+    places = lying(problem.scene, problem.model, problem.model.q)
     problem.messages += [*penetrations(problem.scene, problem.model, state.couplings),
                          *beyond_ends(problem.scene, problem.model, problem.engine),
+                         *(left(problem, places) if state.load_fraction == 1.0 else []),
                          *unseen_contact(problem.scene, problem.model, state.static_state["q"])]
     state.messages = problem.messages + implausible(problem.scene)
     for message in problem.messages:

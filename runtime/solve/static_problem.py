@@ -108,6 +108,7 @@ class StaticProblem(StaticState):
         self.coordinates = coordinates_of(self.model)
         self.point_entries = _point_entries(self.model)
         self.slack: dict[str, float] = {}  # parts of cables that would have no tension as strings
+        self.held = False  # on what cables lie on, by short steps
         self.pushed = False  # off an unstable branch, in a direction that nothing prefers
         self.messages: list[str] = []
 
