@@ -25,6 +25,8 @@ POINTS = ("position", "velocity")
 BODY = ("position", "orientation", "velocity", "angular_velocity")
 MODAL = (*BODY, "modal_coordinates", "modal_velocities")
 SLIDE = ("s",)
+ITERATED = 1e-7
+"""Of the largest change: how exactly a state fits its ties, where the iteration of `radau` left it."""
 
 
 class InitialState(Mapping[str, np.ndarray]):
@@ -193,8 +195,8 @@ def _check_supports(model: Model, change: np.ndarray, does: str, unit: str) -> N
     cables = slice(0, model.cables[-1].coordinates.stop)
     change = change[cables]
     expected = as_supports_leave(change, model.unknown_of_dof[cables], model.combinations)
-    wrong = np.abs(change - expected) * model.weight[cables]
-    if np.any(wrong > EXACT * max(cable.mesh.total for cable in model.cables)):
+    wrong, largest = (np.abs(each) * model.weight[cables] for each in (change - expected, change))
+    if np.any(wrong > max(EXACT * max(cable.mesh.total for cable in model.cables), ITERATED * largest.max())):
         dof = int(np.argmax(wrong))
         where, k = next((node.where, k) for nodes in model.nodes.values() for k, node in enumerate(nodes)
                         if node.first <= dof < node.first + node.vectors.size)
