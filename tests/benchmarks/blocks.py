@@ -63,8 +63,8 @@ int main(void)
 }
 """
 LOOP = """    {
-        static const double A[] = {@A@}, e0[] = {@e@}, v0[] = {@v@};
-        const fu_elements some = {@l@, @tau@, e, v, A, @n@, 0};
+        static const double A[] = {@A@}, e0[] = {@e@}, v0[] = {@v@}, l = @l@;
+        const fu_elements some = {.l = &l, .tau = @tau@, .e = e, .v = v, .A = A, .per_node = @n@};
         fill(e, e0, @n@);
         fill(v, v0, @n@);
         double begin = now();
@@ -100,7 +100,7 @@ def loops() -> tuple[str, dict[str, int]]:
             kernel = program.name.removeprefix(f"{family.name}_")
             operations[program.name] = sum(program.operations().values())
             n = values["e"].size
-            places = {"e": f"e + k * {n}", "v": f"v + k * {n}", "A": "A", "l": "some.l", "tau": "some.tau"}
+            places = {"e": f"e + k * {n}", "v": f"v + k * {n}", "A": "A", "l": "l", "tau": "some.tau"}
             given = ", ".join(places[a.name] for a in program.inputs)
             size = program.outputs[0].size
             fill = {"A": _numbers(values["A"]), "e": _numbers(values["e"]), "v": _numbers(values.get("v", [0.0] * n)),

@@ -1,0 +1,113 @@
+"""Covering arrays of strength two: few rows of levels, one of each factor, in which every pair of levels occurs.
+
+The array is adaptive. Rows are drawn one by one, and each is answered: it worked, or a set of its levels was refused.
+Later rows avoid that set, so that one refusal hides no other pair. The same answers give the same rows.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import combinations
+
+Level = tuple[str, str]
+"""A factor and one of its levels."""
+
+Row = dict[str, str]
+"""By factor, one of its levels."""
+
+
+def pairs_of(row: Mapping[str, str]) -> Iterator[frozenset[Level]]:
+    """Yield the pairs of levels in a row."""
+    return map(frozenset, combinations(row.items(), 2))
+
+
+class CoveringArray:
+    """The pairs of levels of factors that are still open, and the sets of levels that were refused.
+
+    factors: by factor its levels, the first of which is its neutral one. pairs: those to cover, all if not given.
+    """
+
+    def __init__(self, factors: Mapping[str, Sequence[str]], pairs: Sequence[frozenset[Level]] | None = None):
+        self.factors = {factor: list(levels) for factor, levels in factors.items()}
+        self.open = dict.fromkeys(all_pairs(factors) if pairs is None else pairs)
+        self.refused: list[frozenset[Level]] = []
+        self.masked: list[frozenset[Level]] = []
+        self._used: Counter[Level] = Counter()
+
+    def rows(self) -> Iterator[Row]:
+        """Yield rows until no pair is open; each must be answered by `worked` or `refuse`."""
+        while self.open:
+            pair = next(iter(self.open))
+            row = self._row(pair)
+            if row is None:  # each row with this pair has a refused set
+                self._close([pair])
+                self.masked.append(pair)
+            else:
+                before = len(self.open), len(self.refused)
+                yield row
+                assert (len(self.open), len(self.refused)) != before, f"the row {row} was not answered"
+
+    def worked(self, row: Row) -> None:
+        """Close the pairs of a row."""
+        self._close(list(pairs_of(row)))
+
+    def refuse(self, levels: frozenset[Level]) -> None:
+        """Leave out a set of levels from now on, and close the pairs that it makes impossible."""
+        self.refused.append(levels)
+        self._close([pair for pair in self.open if levels <= pair])
+
+    def _close(self, pairs: Sequence[frozenset[Level]]) -> None:
+        for pair in pairs:
+            self.open.pop(pair, None)
+
+    def _row(self, pair: frozenset[Level]) -> Row | None:
+        """Return a row with this pair and with many others that are open; None if every one has a refused set."""
+        row = dict(pair)
+        if not self._is_possible(row):
+            return None
+        row = self._filled(row, [factor for factor in self.factors if factor not in row])
+        if row is not None:
+            self._used.update(row.items())
+        return row
+
+    def _filled(self, row: Row, left: list[str]) -> Row | None:
+        """Return a row with levels for what is left, found by search with return."""
+        if not left:
+            return row
+        factor, *others = left
+        for level in sorted(self.factors[factor], key=lambda level: self._worth(row, (factor, level))):
+            longer = row | {factor: level}
+            if self._is_possible(longer) and (found := self._filled(longer, others)) is not None:
+                return found
+        return None
+
+    def _worth(self, row: Row, level: Level) -> tuple[int, int]:
+        """Return what sorts the levels of a factor: most open pairs first, then least used."""
+        return -sum(frozenset((level, other)) in self.open for other in row.items()), self._used[level]
+
+    def _is_possible(self, row: Row) -> bool:
+        levels = set(row.items())
+        return not any(refused <= levels for refused in self.refused)
+
+
+def all_pairs(factors: Mapping[str, Sequence[str]]) -> list[frozenset[Level]]:
+    """Return every pair of levels of two factors."""
+    return [frozenset(((one, a), (other, b))) for (one, of_one), (other, of_other) in combinations(factors.items(), 2)
+            for a in of_one for b in of_other]
+
+
+def smallest(row: Row, neutral: Mapping[str, Sequence[str]], is_so: Callable[[Row], bool]) -> frozenset[Level]:
+    """Return levels of a row that suffice for what is so of it: without one of them it is not.
+
+    neutral: by factor, levels in the place of which it must be so as well if that factor has no part in it. Factors
+    with several of them come last, when few other levels can hide their part.
+    """
+    found, part = dict(row), set()
+    for factor, level in sorted(row.items(), key=lambda item: len(neutral[item[0]])):
+        others = [other for other in neutral[factor] if other != level]
+        if all(is_so(found | {factor: other}) for other in others):
+            found[factor] = neutral[factor][0]
+        else:
+            part.add((factor, level))
+    return frozenset(part)

@@ -1,0 +1,280 @@
+"""What can be asked of a scene, a run, a state of rest and modes, each as a function of a scene."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import funicular as fu
+import jsonschema
+import numpy as np
+import pytest
+from funicular.results import streaming
+from funicular.scene_file import loads
+from funicular.scene_schema import scene_schema
+from interrupted_runs import Killed, failing
+from matplotlib import pyplot
+from meeting_scenes import TIME
+
+VALIDATOR = jsonschema.Draft7Validator(scene_schema())
+
+
+@dataclass
+class Asked:
+    """A scene, the integrator of its runs, and a folder for files."""
+
+    scene: fu.Scene
+    integrator: str
+    folder: Path
+
+    def run(self, **settings) -> fu.Run:
+        """Return a run whose numbers are all finite."""
+        run = self.scene.run(integrator=self.integrator, progress=False, **settings)
+        finite(run)
+        return run
+
+
+def finite(found) -> None:
+    """Check that all arrays of a result are numbers; arc-lengths and places are NaN where nothing touches."""
+    for name in found.keys():
+        if name.rpartition(".")[2] not in ("first", "last", "s", "s_b", "gap"):
+            assert np.isfinite(found[name]).all(), f"{name} is not finite"
+
+
+def same(one: fu.Run, other: fu.Run) -> None:
+    """Check that two runs have the same bits."""
+    assert list(one.keys()) == list(other.keys())
+    for name in one.keys():
+        assert np.array_equal(one[name], other[name], equal_nan=True), f"{name} differs"
+
+
+def data(toml: str) -> str:
+    """Return a scene file without the comment that says that the function of an event is lost."""
+    return re.sub(r'# event "\w+" watches a function, .*\n\n', "", toml)
+
+
+def drawn(figure) -> None:
+    """Close a figure."""
+    assert figure.axes
+    pyplot.close(figure)
+
+
+# ---- runs
+
+def motion(on: Asked) -> None:
+    run = on.run()
+    assert run.status in ("completed", "event")
+    assert run.summary() and run.overview() and run.dataset.sizes["time"] == len(run.time)
+    run.energy_balance()
+
+
+def fixed_steps(on: Asked) -> None:
+    on.scene.run_settings.pop("tol")
+    on.run(step=TIME / (1000 if on.integrator == "explicit" else 300))
+
+
+def from_rest(on: Asked) -> None:
+    on.run(initial="equilibrium")
+
+
+def from_relaxed(on: Asked) -> None:
+    on.scene.relax_settings = {"max_steps": 3000}
+    on.run(initial="relaxed")
+
+
+def from_another_run(on: Asked) -> None:
+    run = on.run()
+    on.scene.run(integrator=on.integrator, progress=False, initial=run.at(float(run.time[-1])))
+
+
+def from_arrays(on: Asked) -> None:
+    vectors = on.scene.cables["wire"].nodal_vectors
+    on.run(initial={"wire.nodal_vectors": vectors, "wire.nodal_velocity": 0 * vectors})
+
+
+def named_quantities(on: Asked) -> None:
+    on.run(quantities=["wire.position.y"])
+
+
+def on_threads(on: Asked) -> None:
+    same(on.run(threads=2), on.run())
+
+
+def many(on: Asked) -> None:
+    run = on.run()
+    (other,) = fu.run_many([on.scene], integrator=run.report["integrator"])
+    if isinstance(other, fu.FunicularError):
+        raise other
+    fu.combine([run, other], mass=[1.0, 2.0])
+
+
+def errors(on: Asked) -> None:
+    run = on.run(estimate=True)
+    assert "errors" in run.report or "the run's errors are not estimated" in str(run.report["messages"])
+
+
+def saved(on: Asked) -> None:
+    run, path = on.run(), on.folder / "run.nc"
+    run.save(path)
+    loaded = fu.load_run(path)
+    same(loaded, run)
+    assert loaded.scene.to_toml() == data(run.scene_toml)
+    loaded.section_forces("wire")
+
+
+def resumed(on: Asked) -> None:
+    """Kill a run as it writes its third row or so, and go on."""
+    settings = {"integrator": on.integrator, "save": on.folder / "resumed.nc", "output_step": TIME / 8}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+        failing(patch, 15, Killed())
+        with suppress(Killed):  # an event may end it before
+            on.scene.run(**settings, progress=False)
+    same(on.scene.run(**settings, resume=True, progress=False), on.run(output_step=TIME / 8))
+
+
+# ---- results and pictures
+
+def forces_in_sections(on: Asked) -> None:
+    run = on.run()
+    for name in on.scene.cables:
+        for method in ("constitutive", "balance"):
+            forces = run.section_forces(name, method=method)
+            assert np.isfinite(forces["tension"]).all()
+        run.slack_elements(name)
+
+
+def forces_at_a_slide(on: Asked) -> None:
+    run = on.run()
+    for slide in on.scene.slides.values():
+        run.section_forces(slide.along, slide)
+
+
+def page_of_run(on: Asked) -> None:
+    run = on.run()
+    assert run.save_html(on.folder / "run.html", run).stat().st_size > 1000
+
+
+def plots_of_run(on: Asked) -> None:
+    assert on.run().save_plots(on.folder, forces=True)
+
+
+def film_of_run(on: Asked) -> None:
+    assert on.run().save_video(on.folder / "run.gif", speed=TIME / 0.1, colour="tension").stat().st_size > 1000
+
+
+def files_for_paraview(on: Asked) -> None:
+    assert list(on.run().save_vtk(on.folder / "vtk").iterdir() if (on.folder / "vtk").is_dir() else [1])
+
+
+def picture_of_run(on: Asked) -> None:
+    assert on.run().save_png(on.folder / "run.png").stat().st_size > 1000
+
+
+def page_of_scene(on: Asked) -> None:
+    on.scene.save_html(on.folder / "scene.html")
+    assert on.scene.overview()
+
+
+def plots(on: Asked) -> None:
+    """Draw the scene, its state of rest and its modes."""
+    drawn(on.scene.plot())
+    state = on.scene.equilibrium()
+    drawn(state.plot())
+    drawn(on.scene.modes(2, about=state).plot())
+
+
+# ---- statics and modes
+
+def rest(on: Asked) -> None:
+    found = on.scene.equilibrium()
+    finite(found)
+    assert found.overview()
+
+
+def forces_at_rest(on: Asked) -> None:
+    found = on.scene.equilibrium()
+    for name in on.scene.cables:
+        for method in ("constitutive", "balance"):
+            assert np.isfinite(found.section_forces(name, method=method)["tension"]).all()
+        found.slack_elements(name)
+
+
+def page_of_rest(on: Asked) -> None:
+    found = on.scene.equilibrium()
+    found.save_html(on.folder / "rest.html")
+
+
+def load_path(on: Asked) -> None:
+    found = on.scene.equilibrium(method="arc_length", largest_step=0.5)
+    found.load_path.save_html(on.folder / "path.html")
+    finite(found)
+
+
+def loads_in_steps(on: Asked) -> None:
+    finite(on.scene.equilibrium(load_steps=2, start=on.scene.equilibrium()))
+
+
+def relaxed(on: Asked) -> None:
+    finite(on.scene.relax(max_steps=3000))
+
+
+def adjusted(on: Asked) -> None:
+    """Change the density of the cable until a node lies a little lower."""
+    path, node = "wire.material.density", 1
+    s = float(on.scene.cables["wire"].mesh.node_s[node])
+    height = float(on.scene.equilibrium()["wire.position"][node, 1]) - 1e-4
+    found = on.scene.equilibrium(adjust=[path], to={f"wire@{s!r}.position.y": height})
+    assert path in found.adjusted
+
+
+def modes_at_rest(on: Asked) -> None:
+    found = on.scene.modes(3, about=on.scene.equilibrium())
+    assert np.isfinite(found.frequency).all() and found.overview()
+
+
+def modes_as_drawn(on: Asked) -> None:
+    found = on.scene.modes(3)
+    assert np.isfinite(found.frequency).all()
+    found.save_html(on.folder / "modes.html")
+
+
+# ---- scenes
+
+def text(on: Asked) -> None:
+    toml = on.scene.to_toml()
+    assert loads(toml, "copy").to_toml() == data(toml)
+
+
+def schema(on: Asked) -> None:
+    VALIDATOR.validate(tomllib.loads(on.scene.to_toml()))
+
+
+def replaced(on: Asked) -> None:
+    other = on.scene.replace("wire", material=fu.Material(youngs_modulus=2e7, poisson_ratio=0.0, density=900))
+    other.run(integrator=on.integrator, progress=False)
+
+
+def remeshed(on: Asked) -> None:
+    finer = on.scene.remeshed(lambda cable: 2 * cable.elements)
+    finer.run(integrator=on.integrator, progress=False)
+
+
+def chosen(on: Asked) -> None:
+    assert on.scene.choose(tol=0.1, integrator=on.integrator).reasons
+
+
+def swept(on: Asked) -> None:
+    fu.sweep(on.scene, {"wire.material.density": [900.0, 1100.0]}, keep=["wire.position.y"], workers=0,
+             integrator=on.integrator)
+
+
+QUESTIONS: dict[str, Callable[[Asked], None]] = {question.__name__: question for question in (
+    motion, fixed_steps, from_rest, from_relaxed, from_another_run, from_arrays, named_quantities, on_threads, many,
+    errors, saved, resumed, forces_in_sections, forces_at_a_slide, page_of_run, plots_of_run, film_of_run,
+    files_for_paraview, picture_of_run, page_of_scene, plots, rest, forces_at_rest, page_of_rest, load_path,
+    loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, text, schema, replaced, remeshed, chosen, swept)}

@@ -1,0 +1,357 @@
+"""Small scenes from one level of each of ten factors: a cable, its law, shape, section and support, what rides it, a
+joint, a load, a fluid, a contact, an event.
+
+Levels come from the lists of the project. A kind in a list without an entry in a table here fails `test_meetings.py`:
+give it one, and it meets everything else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import funicular as fu
+import numpy as np
+from funicular.kernels.elements import built_in
+from funicular.parts.cable_laws import possible_laws
+from funicular.parts.joint import DRIVEN
+from funicular.parts.joint import KINDS as JOINTS
+
+TIME = 0.02
+"""Duration of a run, s."""
+
+SECTIONS = {"circle": fu.Circle(radius=0.01), "rectangle": fu.Rectangle(height=0.02, width=0.02),
+            "tube": fu.Tube(outer_radius=0.01, inner_radius=0.006),
+            "general": fu.GeneralSection(area=3e-4, second_moment_about_z=8e-9)}
+SIGNALS = {"ramp": fu.Ramp(start=0, end=TIME, after=0.01), "pulse": fu.Pulse(start=0, end=TIME, height=0.01),
+           "harmonic": fu.Harmonic(amplitude=0.01, frequency=20),
+           "table": fu.TableSignal(time=[0, TIME, 3 * TIME], value=[0, 0.01, 0.0])}
+SOLIDS = {"box": lambda folder: fu.Box(size=(0.1, 0.05, 0.05)), "sphere": lambda folder: fu.Sphere(radius=0.05),
+          "cylinder": lambda folder: fu.Cylinder(radius=0.03, length=0.1),
+          "mesh": lambda folder: fu.MeshShape(file=str(_tetrahedron(folder)))}
+PROFILES = {"power": fu.PowerProfile(exponent=0.2, reference_height=10),
+            "table": fu.TableProfile(height=[-5, 0, 5], factors=[0.5, 1.0, 1.2])}
+STOPS = {"hard": fu.HardStop(restitution=0.5), "buffer": fu.Buffer(length=0.1, stiffness=100, damping=1)}
+SURFACES: dict[str, Callable[[np.ndarray], object]] = {
+    "plane": lambda top: fu.Plane(point=top, normal=(0, 1, 0)),
+    "height_field": lambda top: fu.HeightField(x=[-2, -1, 0, 1, 2, 3, 4], heights=[float(top[1])] * 7),
+    "sphere": lambda top: fu.Sphere(radius=0.3, at=top - (0, 0.3, 0)),
+    "cylinder": lambda top: fu.Cylinder(radius=0.3, length=1.0, axis=(0, 0, 1), at=top - (0, 0.3, 0)),
+    "capsule": lambda top: fu.Capsule(radius=0.3, length=1.0, axis=(0, 0, 1), at=top - (0, 0.3, 0)),
+    "box": lambda top: fu.Box(size=(0.4, 0.2, 0.4), at=top - (0, 0.1, 0))}
+"""The surface whose highest point is there; the plane z = 0 cuts each."""
+
+DRAWN = {"straight": {}, "taut": {"rest_length": 0.995}, "hanging": {"shape": "hanging", "rest_length": 1.02},
+         "curved": {"points": [(0, 0, 0), (0.5, -0.1, 0), (1, 0, 0)]},
+         "bent": {"points": [(0, 0, 0), (0.5, -0.1, 0), (1, 0, 0)], "rest": "straight"},
+         "uneven": {"nodes": [0, 0.2, 0.5, 1.0]}}
+DAMPING = {"none": {}, "damping_time": {"damping_time": 1e-4}, "mass_damping": {"mass_damping": 2.0}}
+STICK = fu.Friction(coefficient=0.3, model="stick")
+
+
+@dataclass
+class Site:
+    """A scene that grows: its cable, the middle of it, and a folder for files."""
+
+    scene: fu.Scene
+    folder: Path
+    cable: fu.Cable
+    planar: bool
+
+    def at(self, part: float) -> float:
+        """Return the arc-length at a part of the cable, in m."""
+        return part * self.cable.length
+
+    def below(self, part: float, gap: float) -> np.ndarray:
+        """Return the point that far below the cable, in m."""
+        return np.array(self.cable.point(self.at(part))) - (0, gap, 0)
+
+    def body(self, name: str, position, **given) -> str:
+        """Add a rigid body of 0.1 kg and return its name."""
+        self.scene.rigid_body(name, mass=0.1, inertia=(1e-4, 1e-4, 1e-4), position=position, **given)
+        return name
+
+    def held(self, name: str, position, **given) -> str:
+        """Add a body on springs to the ground, which hold its turns, too, and return its name."""
+        self.body(name, position, **given)
+        for k, arm in enumerate([(0.1, 0, 0), (0, 0.1, 0), (0, 0, 0.1)][: 2 if self.planar else 3]):
+            for sign in (1, -1):
+                end = tuple(np.add(position, np.multiply(arm, 3 * sign)))
+                self.scene.spring((name, tuple(np.multiply(arm, sign))), end, stiffness=300.0, damping=1.0,
+                                  length=0.1, name=f"{name}_holds_{k}_{sign + 1}")
+        return name
+
+    def cross_cable(self, name: str, y: float) -> fu.Cable:
+        """Add a taut cable of the same element below the middle, across in space, along in the plane; return it."""
+        x, _, _ = self.below(0.5, 0)
+        ends = {"start": (x - 0.4, y, 0), "end": (x + 0.4, y, 0)} if self.planar else {
+            "start": (x, y, -0.4), "end": (x, y, 0.4)}
+        other = self.scene.cable(name, **ends, elements=2, element=self.cable.element, rest_length=0.795, up=(0, 1, 0),
+                                 section=fu.Circle(radius=0.01), material=self.cable.material)
+        self.scene.pin(other, s=0)
+        self.scene.pin(other, s=other.length)
+        return other
+
+
+# ---- supports of the cable's start
+
+SUPPORTS: dict[str, Callable[[Site], object]] = {
+    "pin": lambda on: on.scene.pin("wire", s=0),
+    "clamp": lambda on: on.scene.clamp("wire", s=0),
+    "clamp all": lambda on: on.scene.clamp("wire", s=0, fix="all"),
+    "motion, turned": lambda on: on.scene.motion("wire", s=0, rotation=((0, 0, 1), SIGNALS["ramp"])),
+    "motion, free along": lambda on: on.scene.motion("wire", s=0, displacement=("free", SIGNALS["ramp"], 0)),
+    **{f"motion by {form}": lambda on, signal=signal: on.scene.motion("wire", s=0, displacement=(0, signal, 0))
+       for form, signal in SIGNALS.items()}}
+
+
+def _tied(on: Site, rotation: str) -> None:
+    """Tie another cable to the end of the wire, which a spring holds as well."""
+    end = on.cable.point(on.cable.length)
+    other = on.scene.cable("rope", start=end, end=(1.5, 0, 0), elements=2, element=on.cable.element, up=(0, 1, 0),
+                           rest_length=0.4975, section=fu.Circle(radius=0.01), material=on.cable.material)
+    on.scene.pin(other, s=other.length)
+    on.scene.spring(("wire", on.cable.length), (1, 0.3, 0), stiffness=1e4, name="hangs")
+    on.scene.tie(on.cable, s=on.cable.length, to=other, at=0.0, rotation=rotation)
+
+
+ENDS = {"pin": lambda on: on.scene.pin("wire", s=on.cable.length), **{
+    f"tie, {rotation}": partial(_tied, rotation=rotation) for rotation in ("rigid", "free")}}
+
+
+# ---- what rides the cable
+
+def _rides(on: Site, **given) -> None:
+    on.scene.slide(on.held("A", on.below(0.4, 0)), along="wire", s=on.at(0.4), name="trolley", **given)
+
+
+def _modal_rider(on: Site, boundary: str) -> None:
+    top = on.below(0.4, 0)
+    on.scene.modal_body("A", start=top, end=top - (0, 0.3, 0), section=fu.Circle(radius=0.01), elements=2, modes=2,
+                        material=fu.Material(youngs_modulus=1e8, poisson_ratio=0.3, density=500), law="structural",
+                        element="beam12p" if on.planar else "beam24", boundary=boundary, up=(1, 0, 0))
+    on.scene.spring("A", tuple(np.add(top, (-0.5, -0.1, 0))), stiffness=300, name="holds_A")
+    at = (-0.15, 0, 0) if boundary == "free" else (0, 0, 0)  # whose frame is at its mass centre
+    on.scene.slide("A", at=at, along="wire", s=on.at(0.4), name="trolley")
+
+
+def _hanging_cable(on: Site) -> None:
+    top = on.below(0.4, 0)
+    on.scene.cable("hanger", start=top, end=top - (0, 0.3, 0), elements=2, element=on.cable.element, up=(1, 0, 0),
+                   section=fu.Circle(radius=0.01), material=on.cable.material)
+    on.scene.spring(("hanger", 0.0), tuple(np.add(top, (-0.5, 0, 0))), stiffness=300, name="holds_hanger")
+    on.scene.slide(("hanger", 0.0), along="wire", s=on.at(0.4), name="trolley")
+
+
+def _at_its_end(on: Site, end: object) -> None:
+    at = on.cable.length
+    on.scene.slide(on.held("A", on.below(0.95, 0), velocity=(0.1, 0, 0)), along="wire", s=0.95 * at, name="trolley",
+                   at_start=end, at_end=end)
+
+
+RIDERS: dict[str, Callable[[Site], object]] = {
+    "none": lambda on: None,
+    "point": _rides,
+    "tangent": partial(_rides, frame="tangent"),
+    "tangent, fixed": partial(_rides, frame="tangent", roll="fixed"),
+    "section": partial(_rides, frame="section"),
+    "drive": lambda on: _rides(on, drive=fu.Ramp(start=0, end=TIME, before=on.at(0.4), after=on.at(0.42))),
+    "velocity": partial(_rides, velocity=SIGNALS["harmonic"]),
+    "regularised friction": partial(_rides, friction=fu.Friction(coefficient=0.2, viscous=0.1, rolling=0.01)),
+    "sticking friction": partial(_rides, friction=STICK),
+    "eyelet": lambda on: on.scene.slide(tuple(on.below(0.4, 0)), along="wire", s=on.at(0.4), name="trolley"),
+    "cable": _hanging_cable,
+    **{f"modal, {boundary}": partial(_modal_rider, boundary=boundary) for boundary in ("free", "attached")},
+    **{f"{stop} stop": partial(_at_its_end, end=end) for stop, end in STOPS.items()},
+    **{f"{word} at the end": partial(_at_its_end, end=word) for word in ("error", "leave")}}
+
+
+# ---- joints
+
+AXES = {"revolute": {"axis": (0, 0, 1)}, "universal": {"axis": (0, 0, 1), "second_axis": (1, 0, 0)},
+        "prismatic": {"axis": (0, 1, 0)}, "cylindrical": {"axis": (0, 1, 0)}}
+
+
+def _joint(on: Site, kind: str, driven: bool) -> None:
+    """Hold a body below the cable to it, or, driven, to the ground."""
+    place, above = tuple(on.below(0.6, 0.2)), tuple(on.below(0.6, 0))
+    on.held("J", place)
+    signal = {DRIVEN[kind]: fu.Ramp(start=0, end=TIME, before=0.2, after=0.21) if kind == "distance" else
+              SIGNALS["ramp"]} if driven else {}
+    other = (above if kind == "distance" else place) if driven else ("wire", on.at(0.6))
+    ends = (other, "J") if driven or kind == "distance" else (other, ("J", (0, 0.2, 0)))
+    tangent_alone = not on.planar and not on.cable.kind_of_element.director
+    up = {"up": (0, 1, 0)} if tangent_alone and not driven and (kind in AXES or kind == "weld") else {}
+    on.scene.joint(kind, *ends, **AXES.get(kind, {}), **signal, **up, name="joint")
+
+
+JOINED: dict[str, Callable[[Site], object]] = {
+    "none": lambda on: None,
+    **{kind: partial(_joint, kind=kind, driven=False) for kind in JOINTS},
+    **{f"driven {kind}": partial(_joint, kind=kind, driven=True) for kind in DRIVEN}}
+
+
+# ---- loads and springs
+
+def _sprung(on: Site, **given) -> None:
+    on.held("B", tuple(on.below(0.7, 0.3)))
+    on.scene.spring(("wire", on.at(0.7)), "B", name="spring", **given)
+
+
+LOADS: dict[str, Callable[[Site], object]] = {
+    "none": lambda on: None,
+    **{f"force by {form}": lambda on, signal=signal: on.scene.force("wire", s=on.at(0.3), value=(0, -20, 0),
+                                                                    scale=signal) for form, signal in SIGNALS.items()},
+    "force": lambda on: on.scene.force("wire", s=on.at(0.3), value=(0, -1, 0)),
+    "following force": lambda on: on.scene.force("wire", s=on.at(0.3), value=(1, 0, 0), follower=True),
+    "line load": lambda on: on.scene.distributed_force("wire", value=(0, -1, 0), start=0.1, stop=on.at(0.5)),
+    "following line load": lambda on: on.scene.distributed_force("wire", value=(1, 0, 0), follower=True),
+    "moment": lambda on: on.scene.moment("wire", s=on.at(0.3), value=(0, 0, 0.01)),
+    "force on a body": lambda on: on.scene.force(on.held("B", tuple(on.below(0.7, 0.3))), value=(1, 0, 0),
+                                                 at=(0, 0.05, 0), follower=True),
+    "moment on a body": lambda on: on.scene.moment(on.held("B", tuple(on.below(0.7, 0.3))), value=(0, 0, 0.01)),
+    "spring": partial(_sprung, stiffness=50, damping=0.5, length=0.2),
+    "spring that pulls": partial(_sprung, stiffness=50, damping=0.5, length=0.29, tension_only=True),
+    "spring with play": partial(_sprung, stiffness=50, length=0.3, free_play=0.01),
+    "spring by table": partial(_sprung, length=0.25, table=fu.ForceTable(extension=[0, 0.1], tension=[0, 5])),
+    "spring without length": partial(_sprung, stiffness=5, length=0.0)}
+
+
+# ---- fluids
+
+def _drag(on: Site, fluid: dict | None = None, **given) -> None:
+    on.scene.fluid("water", density=300, **fluid or {"velocity": (0.3, 0, 0)})
+    on.scene.drag("wire", **{"normal": 1.2, "tangential": 0.02} | given, name="drag")
+
+
+def _body_drag(on: Site, **given) -> None:
+    on.scene.fluid("water", density=300, velocity=(0.3, 0, 0))
+    span = {"span": (0, 0, 1)} if {"lift", "polar"} & given.keys() else {}
+    on.scene.drag(on.held("D", tuple(on.below(0.8, 0.3))), area=0.01, name="drag", **span, **given)
+
+
+POLAR = fu.Polar(angle=np.linspace(-np.pi, np.pi, 5), drag=[1.0, 0.8, 0.5, 0.8, 1.0], lift=[0.0, -0.1, 0.0, 0.1, 0.0],
+                 moment=[0.0, 0.1, 0.0, -0.1, 0.0])
+"""It turns the chord into the flow."""
+
+BODY_POLAR = fu.Polar(angle=[-np.pi, 0, np.pi], drag=[1.0, 0.5, 1.0], lift=[0.0, 0.2, 0.0])
+FLUIDS: dict[str, Callable[[Site], object]] = {
+    "none": lambda on: None,
+    "drag": _drag,
+    "added mass": partial(_drag, added_mass=1.0, added_mass_tangential=0.1),
+    "lift": partial(_drag, lift=0.3),
+    "polar": lambda on: _drag(on, {"velocity": (0, 0.3, 0)}, normal=0.0, polar=POLAR, chord=(0, -1, 0.1)),
+    "current that changes": partial(_drag, fluid={"velocity": (0.3, 0, 0), "scale": SIGNALS["harmonic"]},
+                                    added_mass=1.0),
+    "table of velocities": partial(_drag, fluid={"table": fu.VelocityTable(
+        interpolation="linear", time=[0, 0.5, 1.0], y=[-2, 0, 2], velocity=0.2 * np.ones((3, 3, 3)) * [1, 0, 0])}),
+    **{f"profile by {form}": partial(_drag, fluid={"velocity": (0.3, 0, 0), "profile": profile})
+       for form, profile in PROFILES.items()},
+    "drag of a body": partial(_body_drag, coefficient=0.5, volume=1e-5, at=(0, 0.01, 0)),
+    "added mass of a body": partial(_body_drag, added_mass=0.5, volume=1e-5),
+    "polar of a body": partial(_body_drag, polar=BODY_POLAR, chord=(1, 0, 0)),
+    "lift of a body": partial(_body_drag, lift=0.2)}
+
+
+# ---- contact and crossings
+
+def _bed(on: Site, shape: str, **given) -> None:
+    """Let the cable lie against a surface below its middle."""
+    on.scene.surface("bed", SURFACES[shape](on.below(0.5, 0.0099)))
+    on.scene.contact("wire", "bed", **{"stiffness": 2e3, "damping": 0.1, "name": "lying", "radius": 0.01} | given)
+
+
+def _foot(on: Site, shape: str, **given) -> None:
+    """Let a held body stand on a surface beside the cable."""
+    top = np.array([3.0, -0.5, 0.0])
+    on.scene.surface("floor", SURFACES[shape](top))
+    on.held("T", (3.0, -0.4 if "restitution" in given else -0.4001, 0.0))
+    on.scene.contact("T", "floor", **{"points": [(0, -0.1, 0)], "name": "foot"} | given)
+
+
+def _bar(on: Site, on_body: bool, **given) -> None:
+    x, y, _ = on.below(0.5, 0.0199)
+    across = {} if on.planar else {"axis": (0, 0, 1), "length": 0.3}
+    body = {"b": on.held("C", (x, y, 0.0))} if on_body else {"at": (x, y, 0.0)}
+    on.scene.crossing("wire", **body, **across, radius=0.02, stiffness=2e3, name="crossing", **given)
+
+
+def _crossed(on: Site, **given) -> None:
+    across = on.cross_cable("across", on.below(0.5, 0.0199)[1])
+    on.scene.crossing("wire", across, stiffness=2e3, name="crossing", radius=0.02, **given)
+
+
+TOUCHING: dict[str, Callable[[Site], object]] = {
+    "none": lambda on: None,
+    **{f"cable on {shape}": partial(_bed, shape=shape) for shape in SURFACES},
+    **{f"body on {shape}": partial(_foot, shape=shape, stiffness=2e3, damping=0.1) for shape in SURFACES},
+    **{f"hard on {shape}": partial(_foot, shape=shape, restitution=0.3) for shape in SURFACES},
+    "cable on rough plane": partial(_bed, shape="plane", friction=0.3),
+    "body on rough plane": partial(_foot, shape="plane", stiffness=2e3, friction=0.3, exponent=1.5, radius=0.01,
+                                   tangential_stiffness=1e3),
+    "hard on rough plane": partial(_foot, shape="plane", restitution=0.3, friction=0.3),
+    "bar": partial(_bar, on_body=False),
+    "bar on a body": partial(_bar, on_body=True, friction=0.2, exponent=1.5, damping=0.1),
+    "cables": _crossed,
+    "cables that stick": partial(_crossed, friction=STICK)}
+
+
+# ---- events, and pictures of bodies
+
+def _drawn_body(on: Site, kind: str) -> None:
+    on.held("P", (0.5, 1.0, 0.0), shape=SOLIDS[kind](on.folder))
+
+
+EVENTS: dict[str, Callable[[Site], object]] = {
+    "none": lambda on: None,
+    "record": lambda on: on.scene.event(quantity="wire.velocity.y", s=on.at(1.0), value=-1e-3),
+    "stop": lambda on: on.scene.event(quantity="wire.velocity.y", s=0.0, value=0.5, action="stop", direction="rising"),
+    "function": lambda on: on.scene.event(function=lambda time, state: time - TIME / 3, name="later"),
+    **{f"drawn {kind}": partial(_drawn_body, kind=kind) for kind in SOLIDS}}
+
+
+def laws() -> dict[str, list[str]]:
+    """Return the laws that each element can be given."""
+    return {element: possible_laws(kind) for element, kind in built_in().items()}
+
+
+FACTORS: dict[str, list[str]] = {
+    "element": ["cable12", *sorted(built_in().keys() - {"cable12"})],
+    "law": ["default", *dict.fromkeys(law for of in laws().values() for law in of)],
+    "drawn": [*DRAWN], "section": [*SECTIONS], "damping": [*DAMPING], "support": [*SUPPORTS], "end": [*ENDS],
+    "rider": [*RIDERS], "joint": [*JOINED], "load": [*LOADS], "fluid": [*FLUIDS], "touch": [*TOUCHING],
+    "event": [*EVENTS]}
+"""By factor its levels, the first of which is neutral."""
+
+ADDED = {"support": SUPPORTS, "end": ENDS, "rider": RIDERS, "joint": JOINED, "load": LOADS, "fluid": FLUIDS,
+         "touch": TOUCHING, "event": EVENTS}
+
+
+def build(row: dict[str, str], folder: Path) -> fu.Scene:
+    """Return the scene of a row of levels. Raises FunicularError where it is refused."""
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    section, law = SECTIONS[row["section"]], {} if row["law"] == "default" else {"law": row["law"]}
+    if row["section"] == "general" and row["element"].startswith("beam"):
+        section = fu.GeneralSection(area=3e-4, second_moment_about_z=8e-9, torsion_constant=1.5e-8,
+                                    shear_factors=(0.9, 0.9))
+    material = fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000, **DAMPING[row["damping"]])
+    shape = DRAWN[row["drawn"]]
+    line = shape if "points" in shape else {"start": (0, 0, 0), "end": (1, 0, 0)} | shape
+    mesh = {} if "nodes" in shape else {"elements": 3}
+    wire = scene.cable("wire", **line, **mesh, element=row["element"], section=section, material=material, **law)
+    on = Site(scene, folder, wire, planar=wire.dim == 2)
+    for factor, levels in ADDED.items():
+        levels[row[factor]](on)
+    scene.run_settings = {"duration": TIME, "tol": 1e-2, "output_step": TIME / 2}
+    return scene
+
+
+def _tetrahedron(folder: Path) -> Path:
+    path = folder / "solid.stl"
+    corners = np.array([(0, 0, 0), (0.1, 0, 0), (0, 0.1, 0), (0, 0, 0.1)])
+    faces = "".join("facet normal 0 0 0\nouter loop\n" + "".join("vertex {} {} {}\n".format(*corners[k]) for k in face)
+                    + "endloop\nendfacet\n" for face in [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+    path.write_text(f"solid body\n{faces}endsolid body\n", encoding="utf-8")
+    return path

@@ -1,0 +1,189 @@
+"""Every pair of what a scene can have and what can be asked of it works, or is refused before any work.
+
+The factors are those of `meeting_scenes.py`, the integrators and the questions of `meeting_questions.py`. Each question
+meets every level; a slow test covers all pairs of levels. A pair works if a row with it does: a result of finite
+numbers, without a RuntimeWarning.
+"""
+
+import inspect
+import re
+import tempfile
+import warnings
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from functools import cache
+from pathlib import Path
+
+import funicular as fu
+import matplotlib
+import meeting_questions
+import pytest
+from covering import CoveringArray, Level, Row, all_pairs, smallest
+from funicular.integrators import AUTO, INTEGRATORS
+from funicular.parts.end_stops import STOPS as ALL_STOPS
+from funicular.parts.flow_profile import PROFILES as ALL_PROFILES
+from funicular.parts.kinds import PARTS
+from funicular.parts.section import SHAPES
+from funicular.parts.signal import FORMS
+from funicular.parts.solids import SOLIDS as ALL_SOLIDS
+from funicular.parts.surface_shapes import SURFACE_SHAPES
+from funicular.results.equilibrium import Equilibrium
+from funicular.results.modes import Modes
+from funicular.results.run import Run
+from meeting_questions import QUESTIONS, Asked
+from meeting_scenes import FACTORS, PROFILES, SECTIONS, SIGNALS, SOLIDS, STOPS, SURFACES, build, laws
+
+SLOW = ("plots", "plots_of_run", "film_of_run", "picture_of_run", "page_of_run", "page_of_scene", "page_of_rest",
+        "modes_as_drawn", "load_path", "relaxed", "from_relaxed", "files_for_paraview")
+"""Questions that take long: pictures, and searches with many steps."""
+
+EVERY = FACTORS | {"integrator": [AUTO, *INTEGRATORS]}
+NEUTRAL = {factor: levels if factor == "element" else levels[:1] for factor, levels in EVERY.items()}
+
+NOT_ASKED = {
+    "add", "add_pairs", "animation", "as_drawn", "attachments", "check", "events", "replaced", "start", "summary_rows",
+    "changed", "check_name", "copied", "dim", "drawn", "free_name",
+    "free_names", "from_toml", "group", "libraries", "part_named", "parts", "plane", "plane_axes", "put", "supports",
+    "touching", "with_parts",  # what the methods above are made of
+    "from_recording", "items", "model", "of", "sketch", "view",
+    "adjustment", "check_adjusted", "check_fits", "check_supports", "heading", "neutral_directions", "relaxation",
+    "stable", "unstable_directions", "about"}
+"""Methods of scenes and results that no question calls by name: parts of those that are called, or plain data."""
+
+WORKS, REFUSED, TOLD = "", "refused", "told"
+
+
+@contextmanager
+def strict() -> Iterator[None]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        warnings.simplefilter("error", RuntimeWarning)
+        yield
+
+
+def outcome(row: Row) -> str:
+    """What a row comes to: that it works, that it is refused, or the error that it must not end in."""
+    with tempfile.TemporaryDirectory() as place, strict():
+        try:
+            scene = build(row, Path(place))
+            if "question" in row:
+                QUESTIONS[row["question"]](Asked(scene, row["integrator"], Path(place)))
+            else:
+                _begin(scene, row["integrator"]) if is_picky(row) else scene.check()
+        except fu.EquilibriumError as error:
+            return f"{TOLD}: {error}"
+        except (fu.ConvergenceError, fu.EndOfCableError) as error:
+            return f"{type(error).__name__}: {error}"
+        except fu.FunicularError as error:
+            return f"{REFUSED}: {error}"
+        except Exception as error:
+            return f"{type(error).__name__}: {error}"
+    return WORKS
+
+
+def _begin(scene: fu.Scene, integrator: str) -> None:
+    scene.run(1e-6, output_step=1e-6, integrator=integrator, progress=False)
+
+
+def is_picky(row: Row) -> bool:
+    """Return whether the integrator of a row does not take every scene."""
+    return row["integrator"] == "energy"
+
+
+def same(one: str, other: str) -> bool:
+    """Return whether two outcomes are of one cause: errors of one kind, at one part of the scene if they are refusals.
+    """
+    parts = 2 if one.startswith(REFUSED) else 1
+    return one.split(":")[:parts] == other.split(":")[:parts]
+
+
+def answered(array: CoveringArray, neutral: dict[str, list[str]]) -> dict[frozenset[Level], str]:
+    """Ask all rows of an array; return by smallest set of levels the errors that they end in.
+
+    A search for rest may say that it found none, in a few rows: the scene is too hard for it, not the combination.
+    """
+    errors, counts = {}, Counter()
+    for row in array.rows():
+        found = outcome(row)
+        counts[found.partition(":")[0]] += 1
+        if found == WORKS or found.startswith(TOLD):
+            array.worked(row)
+        else:
+            levels = smallest(row, neutral, lambda row: same(found, outcome(row)))  # noqa: B023
+            array.refuse(levels)
+            if not found.startswith(REFUSED):
+                errors[levels] = found
+    assert counts[TOLD] <= 1 + 0.05 * counts[WORKS], counts
+    return errors
+
+
+@cache
+def descriptions() -> tuple[CoveringArray, dict[frozenset[Level], str]]:
+    """The array of all scenes and integrators, described and checked, with the errors in which that ends.
+
+    The pairs of elements and laws that the lists of the project do not have are left out from the start.
+    """
+    array = CoveringArray(EVERY)
+    for element, of in laws().items():
+        for law in set(FACTORS["law"]) - {"default", *of}:
+            array.refuse(frozenset({("element", element), ("law", law)}))
+    return array, answered(array, NEUTRAL)
+
+
+def asked(questions: Sequence[str], everything: bool) -> dict[frozenset[Level], str]:
+    """The errors that questions end in: of each with each level, or of all pairs of levels."""
+    factors = EVERY | {"question": list(questions)}
+    array = CoveringArray(factors, [pair for pair in all_pairs(factors)
+                                    if everything or any(factor == "question" for factor, _ in pair)])
+    for levels in descriptions()[0].refused:
+        array.refuse(levels)
+    errors = answered(array, NEUTRAL | {"question": questions[:1]})
+    assert frozenset() not in array.refused, "it is never answered"
+    return errors
+
+
+def told(errors: dict[frozenset[Level], str]) -> str:
+    return "\n".join(f"{dict(levels)}: {error}" for levels, error in errors.items())
+
+
+def test_scenes_are_described_or_refused():
+    array, errors = descriptions()
+    assert not errors, told(errors)
+    assert min(map(len, array.refused)) == 2
+
+
+@pytest.mark.parametrize("question", [pytest.param(question, marks=[pytest.mark.slow] * (question in SLOW))
+                                      for question in QUESTIONS])
+def test_each_question_with_each_level(question):
+    matplotlib.use("Agg")
+    errors = asked([question], everything=False)
+    assert not errors, told(errors)
+
+
+@pytest.mark.slow
+def test_every_pair():
+    errors = asked([question for question in QUESTIONS if question not in SLOW], everything=True)
+    assert not errors, told(errors)
+
+
+def test_every_kind_in_the_lists_of_the_project_is_here():
+    """A new kind needs a value in `meeting_scenes.py`; laws, elements, joints and integrators enter by their lists."""
+    for here, there in ((SECTIONS, SHAPES), (SIGNALS, FORMS), (SOLIDS, ALL_SOLIDS), (PROFILES, ALL_PROFILES),
+                        (STOPS, ALL_STOPS), (SURFACES, SURFACE_SHAPES)):
+        assert here.keys() == there.keys()
+
+
+def test_every_kind_of_part_is_in_some_scene(tmp_path):
+    neutral, kinds = {factor: levels[0] for factor, levels in EVERY.items()}, set()
+    for factor, levels in FACTORS.items():
+        for level in levels:
+            with strict(), suppress(fu.FunicularError):  # of another element
+                kinds |= {part.kind for part in build(neutral | {factor: level}, tmp_path).parts()}
+    assert kinds == PARTS.keys()
+
+
+def test_every_method_of_a_scene_and_its_results_is_asked():
+    methods = {name for kind in (fu.Scene, Run, Equilibrium, Modes) for name in dir(kind) if not name.startswith("_")}
+    names = set(re.findall(r"\.(\w+)", inspect.getsource(meeting_questions)))
+    assert methods - names - PARTS.keys() - NOT_ASKED == set()
