@@ -24,7 +24,7 @@ from funicular.derive.codegen import rendering as emit
 from funicular.derive.verify import timing
 from funicular.derive.verify.compiled import compiler
 from funicular.generated import kernels as compiled
-from table import arguments, show
+from table import Parser, arguments, show
 
 ELEMENTS = 16
 FLAGS = ["-std=c11", "-O3", "-fno-math-errno"]
@@ -86,6 +86,11 @@ LOOP = """    {
 """
 
 
+def times(operations: int) -> int:
+    """How often a kernel of so many operations is called."""
+    return 1 if Parser.smallest else int(2e6 / ELEMENTS * 100 / operations)
+
+
 def loops() -> tuple[str, dict[str, int]]:
     """C text of a loop for every kernel that has a block version, and operations by kernel."""
     manifest = json.loads((drift.folder() / "manifest.json").read_text(encoding="utf-8"))
@@ -106,7 +111,7 @@ def loops() -> tuple[str, dict[str, int]]:
             fill = {"A": _numbers(values["A"]), "e": _numbers(values["e"]), "v": _numbers(values.get("v", [0.0] * n)),
                     "l": repr(float(values["l"])), "tau": repr(float(values.get("tau", 1.0))), "n": str(n),
                     "CALL": f"{program.name}({given}, out + k * {size})", "LAW": family.name, "KERNEL": kernel,
-                    "TIMES": str(int(2e6 / ELEMENTS * 100 / operations[program.name])), "ELEMENTS": str(ELEMENTS)}
+                    "TIMES": str(times(operations[program.name])), "ELEMENTS": str(ELEMENTS)}
             loop = LOOP
             for name, value in fill.items():
                 loop = loop.replace(f"@{name}@", value)
@@ -129,10 +134,10 @@ def rows(repetitions: int) -> list[dict]:
         source, binary = Path(folder) / "blocks_loop.c", Path(folder) / "blocks_loop"
         source.write_text(program.replace("@ELEMENTS@", str(ELEMENTS)), encoding="utf-8")
         laws = [drift.folder() / f"{name}.c" for name, family in families().items() if family.role == "law"]
-        units = []
+        units, flags = [], [*FLAGS, *["-O0"] * Parser.smallest]
         for unit in (drift.folder() / "blocks.c", *laws, source):
             units.append(Path(folder) / f"{unit.stem}.o")
-            subprocess.run([*compiler(), *FLAGS, f"-I{drift.folder()}", "-c", unit, "-o", units[-1]], check=True)
+            subprocess.run([*compiler(), *flags, f"-I{drift.folder()}", "-c", unit, "-o", units[-1]], check=True)
         subprocess.run([*compiler(), *units, "-lm", "-o", binary], check=True)
         for _ in range(repetitions):
             for line in subprocess.run([binary], capture_output=True, text=True, check=True).stdout.splitlines():

@@ -25,7 +25,7 @@ from funicular import Scene
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from table import parser, show
+from table import few, parser, show
 
 SIZES = (20, 100, 300, 1000)
 STEP = 1e-3
@@ -139,8 +139,8 @@ def measure(name: str, n: int, steps: int, repetitions: int) -> dict:
 def main() -> None:
     """Measure and print."""
     options = parser(__doc__, repetitions=(3, "of every run"), steps=(100, "of a run"),
-                     largest=(1000, "number of bodies")).parse_args()
-    show([measure(name, n, options.steps, options.repetitions) for name in SCENES for n in SIZES
+                     largest=(1000, "number of bodies", 20)).parse_args()
+    show([measure(name, n, options.steps, options.repetitions) for name in few(SCENES) for n in SIZES
           if n <= options.largest], options.out)
 
 

@@ -31,7 +31,7 @@ from funicular import Circle, Material, Plane, Scene, Sphere
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from table import arguments, show
+from table import arguments, few, show
 from test_contact import LIFTED, LIGHT, L, R, capstan, end_of_mooring, heaviest, mooring
 
 
@@ -137,11 +137,11 @@ def main() -> None:
     """Print the tables."""
     warnings.simplefilter("ignore")
     options = arguments(__doc__)
-    rows = [line(n, 0.0, 2.4e5) for n in (30, 60, 120, 240)]
-    rows += [line(120, 0.0, k) for k in (2.4e4, 2.4e6)]
-    rows += [line(n, 0.3, 2.4e5) for n in (30, 60, 120)]
+    rows = [line(n, 0.0, 2.4e5) for n in few((30, 60, 120, 240))]
+    rows += [line(120, 0.0, k) for k in few((2.4e4, 2.4e6))]
+    rows += [line(n, 0.3, 2.4e5) for n in few((30, 60, 120))]
     show(rows, options.out)
-    show([drum(mu) for mu in (0.1, 0.3)])
+    show([drum(mu) for mu in few((0.1, 0.3))])
     show(cost())
     show(far())
 

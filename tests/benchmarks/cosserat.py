@@ -30,7 +30,7 @@ from typing import Any
 
 from cosseratbench import registry
 from cosseratbench.experiment import run
-from table import parser, show
+from table import few, parser, show
 
 METRICS = {"catenary": ("shape_error", "sag_error"), "cantilever": ("tip_deflection_error", None),
            "pendulum": ("period_error", "amplitude_change"), "twist": ("critical_twist_error", None),
@@ -103,4 +103,4 @@ if __name__ == "__main__":
     command.add_argument("--solvers", default=",".join(SOLVERS), help="names, by commas (default: all)")
     command.add_argument("--meshes", action="store_true", help="funicular with half, once and twice the elements")
     given = command.parse_args()
-    show(rows(given.experiments.split(","), given.solvers.split(","), given.meshes), given.out)
+    show(rows(few(given.experiments.split(",")), few(given.solvers.split(",")), given.meshes), given.out)

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from funicular import Run
 from sliding import sliding_mass
-from table import parser, show
+from table import few, parser, show
 
 ELEMENTS, DURATION = 12, 1.0
 STEPS = (1e-3, 5e-4, 2.5e-4, 1.25e-4)
@@ -68,7 +68,7 @@ def main() -> None:
     options.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the picture")
     options = options.parse_args()
     rows, runs = [], {}
-    for step in STEPS:
+    for step in few(STEPS):
         for element in ("cable12", "cable18"):
             runs[element] = simulate(element, step)
             found = jumps(runs[element])

@@ -24,7 +24,7 @@ from funicular.derive.codegen import drift
 from funicular.derive.verify import timing
 from funicular.derive.verify.compiled import compile_units, compiler
 from funicular.generated import kernels as compiled
-from table import arguments, show
+from table import Parser, arguments, show
 
 AIMS = {
     ("cable12", "elastic_force"): 0.08, ("cable12", "elastic_tangent"): 0.6,
@@ -44,6 +44,8 @@ OTHERS = {
 
 def options() -> list[str]:
     """The optimisation of the package's own build."""
+    if Parser.smallest:
+        return ["-std=c11", "-O0"]
     modules = tomllib.loads((making.ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]
     (given,) = (m["extra-compile-args"] for m in modules["ext-modules"] if m["name"] == "funicular.generated.kernels")
     return ["-std=c11", *(flag for flag in given if flag.startswith("-O"))]
@@ -69,7 +71,7 @@ def rows(repetitions: int) -> list[dict]:
 def main() -> None:
     """Measure and print."""
     given = arguments(__doc__, repetitions=(7, "of the round of kernels"),
-                        derivations=(1, "of every family"), builds=(1, "of a clean clone"))
+                        derivations=(1, "of every family", 0), builds=(1, "of a clean clone", 0))
     print("compiled with", *compiler(), *options())
     table = rows(given.repetitions)
     show(table, given.out)

@@ -22,7 +22,7 @@ from funicular.choice.motion import motion
 from funicular.choice.remaking import remade
 from funicular.results.trajectories import distance, largest_change
 from hard_cases import crossings
-from table import parser, show
+from table import few, parser, show
 
 WAVE = np.sqrt(0.05 * 0.4e9 * 1.05 / 4200)
 """Speed of transverse waves of the riders' rope, m/s."""
@@ -180,8 +180,8 @@ def main() -> None:
     options = options.parse_args()
     warnings.simplefilter("ignore", fu.FunicularWarning)
     rows = []
-    for name in SCENES:
-        for tol in map(float, options.tols.split(",") if options.only in name else ()):
+    for name in few(name for name in SCENES if options.only in name):
+        for tol in map(float, few(options.tols.split(","))):
             rows.append(row(name, tol, options.finer))
             print(rows[-1], flush=True)
     show(rows, options.out)

@@ -15,7 +15,7 @@ Here the force on the cable is that of f alone.
 
 import numpy as np
 from paper51 import REFERENCE, integrate
-from table import arguments, show
+from table import arguments, few, show
 
 STEPS = [2e-3 / 2**k for k in range(6)] + [2e-5, 1e-5]
 
@@ -26,7 +26,7 @@ def main() -> None:
     rows = []
     for from_rest in (False, True):
         before = None
-        for step in STEPS:
+        for step in few(STEPS):
             engine, _ = integrate(step=step, from_rest=from_rest)
             found = engine.rows()
             deviations = found["s"][:, 0] - REFERENCE["s_m"], found["q"][:, -6] - REFERENCE["y_m"]

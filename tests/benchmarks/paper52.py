@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from funicular import Material, Rectangle, Run, Scene, load_scene
-from table import parser, show
+from table import few, parser, show
 
 LENGTH, SIDE, MASS, BALL = 0.5, 0.03, 1.89, 1.0
 START = 0.25
@@ -135,7 +135,7 @@ def main() -> None:
     options.add_argument("--plots", type=Path, metavar="FOLDER", help="draw the figures")
     options.add_argument("--tol", type=float, default=1e-4)
     options = options.parse_args()
-    links, stiff = ({kind: moved(scene(kind, stiffer=by), options.tol) for kind in KINDS} for by in (1.0, 100.0))
+    links, stiff = ({kind: moved(scene(kind, stiffer=by), options.tol) for kind in few(KINDS)} for by in (1.0, 100.0))
     flat, path = (moved(scene("rigid", **how), options.tol) for how in ({"planar": True}, {"aside": 1.0}))
     rows = [row(f"{LABELS[kind]}, {name}", m, of["rigid"])
             for name, of in (("of the print", links), ("100 times as stiff", stiff)) for kind, m in of.items()]

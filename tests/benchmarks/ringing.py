@@ -17,7 +17,7 @@ from functools import cache
 import funicular as fu
 import numpy as np
 from ringing_scenes import SCENES, Ringing
-from table import parser, show
+from table import few, parser, show
 
 OUTPUTS = 50
 FIXED = ("radau", "genalpha")
@@ -85,7 +85,8 @@ def main() -> None:
     options = parser(__doc__, repetitions=(1, "runs of each, of which the median of the CPU time counts"))
     options.add_argument("--only", default="", help="scenes whose name holds this")
     options = options.parse_args()
-    show([row for name in SCENES if options.only in name for row in cells(name, options.repetitions)], options.out)
+    show([row for name in few(name for name in SCENES if options.only in name)
+          for row in cells(name, options.repetitions)], options.out)
 
 
 if __name__ == "__main__":

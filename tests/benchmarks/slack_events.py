@@ -17,11 +17,11 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import time
 import warnings
 
-import catenary as lines
 import funicular as fu
 import numpy as np
+import pantographs as lines
 from funicular import catenary
-from table import parser, show
+from table import few, parser, show
 
 
 def hanging(speed: float, **law) -> fu.Scene:
@@ -172,15 +172,15 @@ def main() -> None:
         if options.random:
             show(random_rows(options.random, options.integrator, options.tol), options.out)
             return
-        for name in options.scene:
+        for name in few(options.scene):
             reference = simulate(name, integrator="radau", tol=1e-5 if name.startswith("catenary") else 1e-9)[0]
-            for integrator in options.integrator:
+            for integrator in few(options.integrator):
                 if integrator == "energy" and name.startswith("catenary"):
                     continue  # it has no discrete gradient of the pantograph's contact
                 of = {"integrator": integrator}
-                by_tol += [row(name, reference, of | {"tol": tol}) for tol in options.tol]
+                by_tol += [row(name, reference, of | {"tol": tol}) for tol in few(options.tol)]
                 if integrator != "explicit" and not name.startswith("catenary"):
-                    by_step += [row(name, reference, of | {"step": step}) for step in options.steps]
+                    by_step += [row(name, reference, of | {"step": step}) for step in few(options.steps)]
     for rows in filter(None, (by_tol, by_step)):
         show(rows, options.out if rows is by_tol else None)
 

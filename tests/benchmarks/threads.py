@@ -22,7 +22,7 @@ from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
 from linear_cost import STEP, scene
-from table import parser, show
+from table import few, parser, show
 
 NAMES = ("pendulum", "three riders", "three cables", "ladder")
 STEPS, DURATION, TOL = 600, 2e-2, 1e-3
@@ -63,7 +63,7 @@ def main() -> None:
     made.add_argument("--elements", type=int, nargs="+", default=[100, 300, 1000, 2000])
     options = made.parse_args()
     show([compare(name, elements, case, options.repetitions)
-          for case in CASES for name in NAMES for elements in options.elements], options.out)
+          for case in few(CASES) for name in few(NAMES) for elements in few(options.elements)], options.out)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ import funicular as fu
 from funicular.choice.motion import motion
 from funicular.results.trajectories import distance, largest_change
 from model_scenes import crane, robot, rubber_pendulum, shaken, slackline
-from table import arguments, write
+from table import arguments, few, write
 
 TOLS = (1e-2, 1e-3, 1e-4)
 INSTANTS = 25
@@ -57,13 +57,13 @@ def main() -> None:
     warnings.simplefilter("ignore")
     columns = "".join(f"  {mesh:>14} {'error':>8} {'CPU s':>6}" for mesh in ("equal", "unequal"))
     print(f"{'scene':28} {'tol':>6}{columns}")
-    for name, (make, duration, initial) in SCENES.items():
+    for name, (make, duration, initial) in few(SCENES.items()):
         scene = opened(make())
         settings = {"output_step": duration / INSTANTS, "initial": initial, "progress": False}
         fine = scene.choose(TOLS[-1], duration=duration, initial=initial, unequal=True).scene
         fine = fine.remeshed(lambda cable: 2 * cable.elements)
         exact = motion(fine, fine.run(duration, tol=1e-5, integrator="radau", **settings))
-        for tol in TOLS:
+        for tol in few(TOLS):
             row: dict[str, object] = {"scene": name, "tol": tol}
             line = f"{name:28} {tol:6.0e}"
             for unequal in (False, True):
