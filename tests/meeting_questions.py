@@ -238,7 +238,7 @@ def modes_at_rest(on: Asked) -> None:
 
 
 def modes_as_drawn(on: Asked) -> None:
-    found = on.scene.modes(3)
+    found = on.scene.modes(3, as_drawn=True)
     assert np.isfinite(found.frequency).all()
     found.save_html(on.folder / "modes.html")
 
@@ -259,6 +259,12 @@ def replaced(on: Asked) -> None:
     other.run(integrator=on.integrator, progress=False)
 
 
+def without_a_part(on: Asked) -> None:
+    """Leave out what rides the cable, or a joint or a support where nothing does."""
+    part, *_ = (*on.scene.slides.values(), *on.scene.joints.values(), *on.scene.pins)
+    on.scene.without(part).run(integrator=on.integrator, progress=False)
+
+
 def remeshed(on: Asked) -> None:
     finer = on.scene.remeshed(lambda cable: 2 * cable.elements)
     finer.run(integrator=on.integrator, progress=False)
@@ -277,4 +283,5 @@ QUESTIONS: dict[str, Callable[[Asked], None]] = {question.__name__: question for
     motion, fixed_steps, from_rest, from_relaxed, from_another_run, from_arrays, named_quantities, on_threads, many,
     errors, saved, resumed, forces_in_sections, forces_at_a_slide, page_of_run, plots_of_run, film_of_run,
     files_for_paraview, picture_of_run, page_of_scene, plots, rest, forces_at_rest, page_of_rest, load_path,
-    loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, text, schema, replaced, remeshed, chosen, swept)}
+    loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, text, schema, replaced, without_a_part,
+    remeshed, chosen, swept)}

@@ -59,11 +59,12 @@ def rows(repetitions: int) -> list[dict]:
         units = compile_units((drift.folder() / f"{name}.c" for name in manifest["families"]), flags, Path(folder))
         program = timing.build(families().values(), manifest, compiled, units, flags, Path(folder))
         times, sizes = timing.times(program, repetitions), timing.code_sizes(program)
+    none = {operation: 0 for kernel in manifest["kernels"].values() for operation in kernel["operations"]}
     found = []
     for name, kernel in manifest["kernels"].items():
         of = kernel["family"].partition("_")[0], name.removeprefix(kernel["family"] + "_")
         found.append({"kernel": name, "us": median(times[name]), "least": min(times[name]), "aim": AIMS.get(of, ""),
-                      "operations": sum(kernel["operations"].values()), **kernel["operations"],
+                      "operations": sum(kernel["operations"].values()), **none | kernel["operations"],
                       "bytes": sizes.get(name, ""), "others_us": OTHERS.get(of, "")})
     return found
 
