@@ -256,7 +256,7 @@ def _control(settings: RunSettings, scene: SceneData, model: Model) -> dict[str,
 
     Raises SceneError for a quantity whose error is not estimated.
     """
-    weights = None
+    weights: Any = None
     if settings.quantities is not None:
         weights = controlled_weights(settings.quantities, scene, model)
         weights = weights, counted_weights(settings.quantities, weights, scene, model)
