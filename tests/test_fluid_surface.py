@@ -307,39 +307,6 @@ def test_refusals(case):
     assert message in str(error.value)
 
 
-def test_sections_of_a_line_that_stands_in_water_bear_what_is_below():
-    """T = g A (rho (4 - s) - rho_w of what of it is wet), also within the element that the surface cuts."""
-    scene = fu.Scene()
-    wire = scene.cable("line", start=(0, 1.1, 0), end=(0, -2.9, 0), elements=3, element="cable12", strain="engineering",
-                       section=fu.Circle(radius=0.02), material=fu.Material(youngs_modulus=1e11, poisson_ratio=0.0,
-                                                                           density=1700))
-    scene.pin(wire, s=0.0)
-    scene.fluid("sea", density=WATER, surface=0.0)
-    scene.fluid("air", density=1.2)
-    scene.drag(wire, normal=1.2, added_mass=1.0)
-    s = np.array([0.1, 0.7, 1.0, 1.2, 1.3, 2.5, 3.5, 4.0])
-    tension = np.array(scene.equilibrium().section_forces("line", s)["tension"])
-    in_water, below = np.minimum(2.9, 4 - s), 4 - s
-    expected = G * pi * 0.02**2 * (1700 * below - WATER * in_water - 1.2 * (below - in_water))
-    assert tension == pytest.approx(expected, abs=1e-5 * expected[0])
-
-
-def test_sections_at_the_free_end_of_a_rope_that_falls_in_bear_nothing():
-    run = thrown().run(0.6, tol=1e-6, integrator="radau", output_step=0.05)
-    cut = run.section_forces("rope", [1.5, run.scene.cables["rope"].length])
-    for values in (np.array(cut["force"]), np.array(cut["moment"])):
-        assert np.abs(values[:, 1]).max() < 1e-9 * np.abs(values).max()
-
-
-def test_sections_on_both_sides_of_a_node_bear_the_same():
-    """Of a rope with added mass; what acts on its slope is a polynomial from points within the elements to the node."""
-    run = thrown(added_mass=1.0, added_mass_tangential=0.2).run(0.6, tol=1e-6, integrator="radau", output_step=0.05)
-    nodes = run.scene.cables["rope"].length * np.array([0.25, 0.5, 0.75])
-    before, after = (np.array(run.section_forces("rope", nodes, side=side)["force"]) for side in ("before", "after"))
-    assert np.abs(after).max() > 1
-    assert np.abs(after - before).max() < 5e-3 * np.abs(after).max()
-
-
 def test_pictures_show_the_surface_where_it_is_in_sight(tmp_path):
     scene = buoy(2.0, level=30.0)
     scene.fluid("deep", density=1100, surface=-5000.0)
@@ -349,37 +316,7 @@ def test_pictures_show_the_surface_where_it_is_in_sight(tmp_path):
     assert np.ptp(corners[:, 1]) < 1e-12 and corners[0, 1] == pytest.approx(30)
     assert {body.name for body in run.animation("falls").clips[0].bodies} == {"buoy", "sea"}
     run.save_html(tmp_path / "page.html")
-    rope = thrown().run(0.4, tol=1e-3, output_step=0.1)
-    assert not any("could not be computed" in note for note in rope.animation("falls").notes)
     assert (tmp_path / "page.html").stat().st_size > 10000
-
-
-def thrown(level=0.0, shift=0.0, element="cable12", **drag):
-    """Return a rope that falls aslant into water which flows."""
-    scene = fu.Scene()
-    wire = scene.cable("rope", start=(shift, level + 0.5, 0), end=(shift + 3, level + 1.5, 0), elements=4,
-                       element=element, section=fu.Circle(radius=0.02), material=fu.Material(
-                           youngs_modulus=5e6, poisson_ratio=0, density=700, damping_time=2e-3))
-    scene.fluid("sea", density=WATER, surface=level, velocity=(0.5, 0, 0))
-    scene.drag(wire, normal=1.2, tangential=0.02, **drag)
-    return scene
-
-
-@pytest.mark.parametrize(("integrator", "tol"), [("explicit", 1e-4), ("radau", 1e-5), ("energy", 1e-4)])
-def test_a_rope_that_falls_in_balances_its_energy_with_the_water_that_it_moves(integrator, tol):
-    """Up to the quadrature of where the surface cuts, 1e-5 of what is exchanged."""
-    run = thrown(added_mass=1.0, added_mass_tangential=0.1).run(0.7, tol=tol, integrator=integrator, output_step=0.1)
-    heights = run["rope.position"][:, :, 1]
-    assert heights[3].max() > 0.02 and heights[-1].max() < -0.02
-    assert unaccounted(run) < 2e-5 * run.energy_balance().exchanged
-
-
-def test_a_rope_falls_in_alike_at_another_level_and_in_the_plane():
-    settings = {"tol": 1e-6, "integrator": "radau", "output_step": 0.2}
-    one = thrown().run(0.8, **settings)["rope.position"]
-    for level, shift, element in ((250.0, 40.0, "cable12"), (0.0, 0.0, "cable8p")):
-        other = thrown(level, shift, element).run(0.8, **settings)["rope.position"]
-        assert np.abs(other - [shift, level, 0] - one).max() < 1e-7
 
 
 def table(low, high, slow=1.0):
