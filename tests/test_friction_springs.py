@@ -152,11 +152,16 @@ def thrown(make, integrator, tol):
     return found if found.ndim == 2 else found[:, :, 0]
 
 
-@pytest.mark.parametrize("make", [rope, bar])
-@pytest.mark.parametrize("integrator", ["auto", "radau", "explicit"])
-@pytest.mark.parametrize("tol", [1e-3, 1e-4, 1e-5])
+def ropes():
+    """Return a rope of four elements whose contact has less damping."""
+    return rope(4, damping=0.2)
+
+
+@pytest.mark.parametrize(("make", "integrator"), [
+    *((make, integrator) for make in (rope, bar) for integrator in ("auto", "radau", "explicit")), (ropes, "radau")])
+@pytest.mark.parametrize("tol", [1e-3, 1e-4, 1e-5, 1e-6])
 def test_a_rope_and_a_bar_on_rough_ground_are_within_tol(make, integrator, tol):
-    """They were off by up to 177 and 41 tol, without a word; references by both integrators differed by 1e-5."""
+    """They were off by up to 450 and 66 tol, without a word; references by both integrators differed by 1e-5."""
     reference = thrown(make, "explicit", 1e-9)
     motion = np.abs(reference - reference[0]).max()
     assert np.abs(thrown(make, integrator, tol) - reference).max() < 3 * tol * motion
@@ -165,4 +170,4 @@ def test_a_rope_and_a_bar_on_rough_ground_are_within_tol(make, integrator, tol):
 @pytest.mark.parametrize("make", [rope, bar])
 def test_references_agree(make):
     explicit, radau = thrown(make, "explicit", 1e-9), thrown(make, "radau", 1e-9)
-    assert np.abs(explicit - radau).max() < 1e-7
+    assert np.abs(explicit - radau).max() < 1e-8

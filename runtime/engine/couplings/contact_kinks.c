@@ -82,8 +82,8 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
     out->way.h = to->t - from->t;
     out->way.depth = (fu_step_ends){{-out->mark.gap, out->end.depth}, {-out->mark.gap_rate, out->end.sinking}};
     memset(out->along, 0, sizeof out->along);
-    if (contact->law.friction > 0.0 && touches) fu_contact_path(model, contact, &on[1], &out->end, &out->way, out->along);
-    return contact->law.friction == 0.0 || touches;
+    if (contact->law.friction > 0.0) fu_contact_path(model, contact, &on[1], &out->end, &out->way, out->along);
+    return 1;
 }
 
 int fu_contact_kinks(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
