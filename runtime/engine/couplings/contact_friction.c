@@ -108,7 +108,7 @@ void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const 
     path of;
     path_of(model, contact, on, point, &of);
     if (of.way.h > 0.0) point->friction_end = fu_end_of_friction(&of.way);
-    else point->friction_end = (fu_friction_end){fmin(of.size, most), 1.0, of.size > most};
+    else point->friction_end = (fu_friction_end){fmin(of.size, most), 1.0, of.size > most || most == 0.0};
     point->slides = point->friction_end.slid != 0 && point->friction_end.part == 1.0;
     for (int d = 0; d < dim; ++d) point->stretch[d] = point->friction_end.stretch * of.along[d];
     fu_surface_out(dim, on, point->stretch, x);

@@ -70,9 +70,9 @@ void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, co
     if (point->mark && of.p > 0.0) fu_contact_friction_derivatives(model, contact, on, point);
 }
 
-/* Makes friction over a step: that of the mean stretch, which at the end is as what presses allows. */
-static void step_friction(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double press,
-                          const fu_touch_point *now, const fu_touch_point *next, double f[3], double by_stretch[9])
+/* Makes friction over a step: that of the mean stretch, which at the end is as what presses allows; by_depth: what that changes by. */
+static void step_friction(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double press, double by_depth,
+                          const fu_touch_point *now, const fu_touch_point *next, double f[3], double by_next[9], double by_stretch[9])
 {
     const int dim = model->dim;
     fu_touch_point end = *next, begin = *now;
@@ -86,10 +86,23 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
     fu_contact_stretch(model, contact, on, &end);
     for (int d = 0; d < dim; ++d) f[d] = 0.5 * (begin.f[d] + end.f[d]);
     const double part = now->mark->gap > 0.0 ? next->depth / (next->depth + now->mark->gap) : 1.0; /* of the way, after it touches */
+    const fu_distance *at = &end.distance;
+    const double none[3] = {0.0}, law[3] = {press, by_depth, 0.0};
+    double own[3], x[3], of_end[3], by_place[9], by_rate[9];
     if (!end.slides)
         for (int d = 0; d < dim; ++d)
-            for (int e = 0; e < dim; ++e)
-                by_stretch[d * dim + e] = -0.5 * part * contact->law.tangential * ((d == e) - end.distance.n[d] * end.distance.n[e]);
+            for (int e = 0; e < dim; ++e) by_place[d * dim + e] = by_stretch[d * dim + e] = contact->law.tangential * (at->n[d] * at->n[e] - (d == e));
+    else if (press > 0.0) {
+        fu_friction_way way;
+        fu_contact_path(model, contact, on, &end, &way, own);
+        for (int d = 0; d < dim; ++d) own[d] *= way.stretch.value[1];
+        fu_surface_out(dim, on, own, x);
+        contact->surface.kernel->sliding(at->n, at->H, none, law, x, contact->law.friction, of_end, by_place, by_rate, by_stretch);
+    } else memset(by_place, 0, sizeof by_place);
+    for (int i = 0; i < dim * dim; ++i) {
+        by_stretch[i] *= 0.5 * part;
+        by_next[i] += end.slides ? 0.5 * by_place[i] : by_stretch[i];
+    }
 }
 
 /* Makes the normal force and friction over a step of h, s, between two places of a point in axes where the surface stays, and what they
@@ -121,7 +134,9 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
         for (int e = 0; e < dim; ++e) by_next[d * dim + e] = 0.5 * press * at.H[d * dim + e] - by_depth * n[d] * next->distance.n[e];
     }
     if (!now->mark || !(press > 0.0)) return (press - elastic) * sunk;
-    step_friction(model, contact, on, press, now, next, friction, by_stretch);
-    for (int i = 0; i < dim * dim; ++i) by_next[i] += by_stretch[i];
+    /* the bound at the end, with the rate there by that at the beginning: the mean over the step would lag by half of it */
+    const fu_pressing last = fu_press_at(contact, to, 2.0 * rate + now->mark->gap_rate, to);
+    step_friction(model, contact, on, to > 0.0 ? last.p : 0.0, to > 0.0 ? last.by_depth + 2.0 * last.by_rate / h : 0.0, now, next, friction,
+                  by_next, by_stretch);
     return (press - elastic) * sunk;
 }
