@@ -18,6 +18,7 @@ from ..model.middle_strain import middle_strain
 from ..model.model import Model
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
+from .sensitivity import GROWS
 
 KEPT = 32
 """Intervals of the run, at whose ends positions are kept."""
@@ -116,7 +117,7 @@ def grown(engine: Engine, settings: RunSettings, seen: SlackMotion, again: Again
         return []
     since = float(times[here][np.argmax(errors > 0.1 * errors[-1])])
     tenfold = f", tenfold in {np.log(10) / rate:.2g} s" if rate else ""
-    return [f'cable "{seen.cables[0].name}" becomes slack: from t = {since:.3g} s on small differences grow{tenfold}, '
+    return [f'cable "{seen.cables[0].name}" becomes slack: from t = {since:.3g} s on {GROWS}{tenfold}, '
             f"and errors may become {float(f'{expected / allowed:.1g}'):.0f} times what is allowed: a run with "
             f"{'larger steps' if fixed else '10 tol'} is {apart[-1]:.2g} m away at t = {until:.3g} s. Give "
             f"estimate=True, which measures them, or a smaller {'step' if fixed else 'tol'}, or more damping"]
