@@ -159,7 +159,7 @@ void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, 
 static void on_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a, const fu_drag_sums *sums)
 {
     const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim, n = cable->coordinates / dim;
+    const int dim = model->dim;
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
         fu_drag_points points;
@@ -185,7 +185,7 @@ void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupli
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim, n = cable->coordinates / dim;
+    const int dim = model->dim;
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
         fu_drag_points points;

@@ -64,7 +64,7 @@ static void wet_length_over_step(const fu_model *model, const fu_drag *drag, con
 static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
 {
     const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim, n = cable->coordinates / dim;
+    const int dim = model->dim;
     const fu_state *ends[2] = {at->now, at->next};
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
