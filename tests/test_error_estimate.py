@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from funicular import Circle, Material, Scene, load_run
+from funicular import Circle, Material, Ramp, Scene, load_run, load_scene
 from funicular.results.trajectories import default_outputs, relative, trajectory
 
 RUBBER = Material(youngs_modulus=5e6, poisson_ratio=0.0, density=1100)
@@ -73,10 +73,10 @@ def test_a_state_that_is_given_is_of_one_mesh(tmp_path):
 
 def test_an_equilibrium_of_the_settings_is_found_on_both_meshes():
     scene = pendulum(support=Scene.clamp)
-    scene.force("rod", s=1, value=(0, -1, 0))
+    scene.force("rod", s=1, value=(0, -1, 0), scale=Ramp(start=0, end=0.1, before=1, after=2))
     scene.motion("rod", s=1, displacement=("free", "free", 0))
     errors = scene.run(0.1, initial="equilibrium", estimate=True).report["errors"]
-    assert errors["mesh"] >= 0
+    assert 0 < errors["mesh"] < math.inf
 
 
 def test_a_run_that_stops_early_is_not_estimated():
@@ -85,3 +85,19 @@ def test_a_run_that_stops_early_is_not_estimated():
     run = scene.run(0.1, estimate=True)
     assert "errors" not in run.report
     assert "the run's errors are not estimated: it ended with status \"event\"" in run.report["messages"]
+
+
+def test_the_mesh_of_what_stays_at_rest_is_not_estimated():
+    """A tenth of a second of a buoy at rest in its current, at (100, 40) m: it moves by 7e-15 m."""
+    run = load_scene("mooring").run(0.1, step=0.05, output_step=0.05, estimate=True)
+    errors = run.report["errors"]
+    assert errors["time"] == 0 and math.isnan(errors["mesh"]) and math.isnan(errors["both"])
+    assert any('the error "mesh" is not estimated: nothing moves' in message for message in run.report["messages"])
+
+
+def test_an_error_beside_no_motion_is_infinite():
+    scene = pendulum()
+    still, moved = np.ones((3, 3)), np.array([[1.0, 1, 1], [1, 1, 1], [1, 1, 3]])
+    assert relative(scene, {"rod.tip": still + 1e-15}, {"rod.tip": still}) == 0
+    assert relative(scene, {"rod.tip": still}, {"rod.tip": moved}) == 1
+    assert relative(scene, {"rod.tip": still + 1}, {"rod.tip": still}) == math.inf

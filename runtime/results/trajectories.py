@@ -57,6 +57,10 @@ def _place(scene: SceneData, name: str) -> tuple[str, float] | None:
     return (cable, s) if 0 <= s <= length else None
 
 
+ROUNDED = 1e-14
+"""What rounding moves at rest, over the largest coordinate."""
+
+
 def unit(scene: SceneData, name: str) -> str:
     """Return the unit of an output."""
     if name in ENERGIES:
@@ -94,9 +98,20 @@ def largest_change(exact: np.ndarray) -> float:
 
 
 def relative(scene: SceneData, found: dict[str, np.ndarray], exact: dict[str, np.ndarray]) -> float:
-    """Return the largest of the outputs' errors, over the largest motion that an output of the same unit makes."""
+    """Return the largest of the outputs' errors, over the largest motion that an output of the same unit makes.
+
+    Errors within rounding of the outputs are none. Others are infinite where the motion is rounding alone.
+    """
     largest: dict[str, float] = {}
     for name, motion in exact.items():
-        largest[unit(scene, name)] = max(largest.get(unit(scene, name), 0.0), largest_change(motion))
+        change = largest_change(motion)
+        moved = change if change > _rounding(motion) else 0.0
+        largest[unit(scene, name)] = max(largest.get(unit(scene, name), 0.0), moved)
     errors = {name: distance(found[name], exact[name]) for name in exact}
-    return max((error / largest[unit(scene, name)] for name, error in errors.items() if error > 0), default=0.0)
+    return max((error / largest[unit(scene, name)] if largest[unit(scene, name)] else np.inf
+                for name, error in errors.items() if error > _rounding(exact[name])), default=0.0)
+
+
+def _rounding(motion: np.ndarray) -> float:
+    """Return how much of a trajectory is rounding."""
+    return ROUNDED * float(np.abs(motion).max(initial=0.0))
