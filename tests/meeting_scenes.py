@@ -308,7 +308,7 @@ EVENTS: dict[str, Callable[[Site], object]] = {
     "none": lambda on: None,
     "record": lambda on: on.scene.event(quantity="wire.velocity.y", s=on.at(1.0), value=-1e-3),
     "stop": lambda on: on.scene.event(quantity="wire.velocity.y", s=0.0, value=0.5, action="stop", direction="rising"),
-    "function": lambda on: on.scene.event(function=lambda time, state: time - TIME / 3, name="later"),
+    "function": lambda on: on.scene.event(function=lambda time, state: time - TIME / np.pi, name="later"),
     **{f"drawn {kind}": partial(_drawn_body, kind=kind) for kind in SOLIDS}}
 
 
