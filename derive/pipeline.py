@@ -13,6 +13,7 @@ A family whose specs, tools and file are those that the manifest records is not 
 
 from __future__ import annotations
 
+from funicular.errors import ResultFileError
 from rich.console import Console
 from rich.progress import Progress
 
@@ -69,7 +70,7 @@ def main(names: list[str], check: bool = False) -> int:
         # a check believes no hash: it derives everything
         files = generate(names or (None if check else changed()), show=err.is_terminal)
         written = [] if check else drift.write(files)
-    except (KeyError, OSError, FamilyError) as problem:
+    except (KeyError, OSError, FamilyError, ResultFileError) as problem:
         err.print(f"funicular derive: {problem.args[0] if isinstance(problem, KeyError) else problem}")
         return 1
     unknown = [] if names else drift.extra(families())

@@ -201,10 +201,10 @@ class Scene(Viewable, DescribedScene):
                    progress: bool | Callable[[float], None] | None, chosen: Choice | None = None,
                    trials: SharedTrials | None = None) -> Run:
         """Return the run with these settings, however it ended, from a state or as the settings say."""
-        from .results.recording import recorded  # brings SciPy and the engine
-        from .solve.run import simulate
-
         with uninterrupted(), self._saving(settings, resume) as stream, one_blas_thread, enough_memory():
+            from .results.recording import recorded  # brings SciPy and the engine
+            from .solve.run import simulate
+
             given = state
             if settings.initial in ("equilibrium", "relaxed") and state is None:
                 with interruptible():

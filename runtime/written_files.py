@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import secrets
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -58,4 +57,4 @@ def _beside(path: Path) -> Path:
     """Return a new name in the same folder that nobody can foresee, with the same ending, by which libraries choose a
     format.
     """
-    return path.with_name(f".{path.stem[:32]}-{secrets.token_hex(8)}.part{path.suffix}")
+    return path.with_name(f".{path.stem[:32]}-{os.urandom(8).hex()}.part{path.suffix}")

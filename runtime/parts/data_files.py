@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -80,6 +79,8 @@ def _numbers(shape: tuple[int, ...], dtype: np.dtype) -> int:
 
 def _sizes_in_npz(file: Path) -> dict[str, int]:
     """Return the numbers in each array of an .npz, by the arrays' own headers. Raises what damage leads to."""
+    import zipfile  # which few scenes need
+
     sizes = {}
     with zipfile.ZipFile(file) as archive:
         for name in archive.namelist():
