@@ -52,7 +52,7 @@ struct fu_run {
     long most_evaluations; /* after which fu_advance returns; 0: after any number */
     double duration, output_step, fixed_step, tol;
     double absolute_tol; /* m: error allowed beside tol times the motion; negative until the start: a part of the scene's size */
-    double lever; /* m: the longest length from which couplings compute positions; distances are rounded relative to it */
+    double lever; /* m: the longest length from which constraints compute positions; distances are rounded relative to it */
     const double *controlled; /* n_dof: model->weight of what tol is the error of, 0 of the rest */
     const double *counted;    /* n_dof: the weight of each in the error, that of what acts on it included */
     fu_state now, next;

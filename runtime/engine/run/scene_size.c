@@ -120,13 +120,14 @@ static double length_of(int dim, const fu_field *field, const char *item)
     return sqrt(fu_dot(dim, place, place));
 }
 
-/* Returns the longest length from which the couplings compute positions, m: points in the axes of bodies and of the ground,
- * sizes of shapes. A distance between two of them is rounded relative to it, however close to the origin the scene is. */
+/* Returns the longest length from which constraints compute positions, m: points in the axes of bodies and of the ground, sizes
+ * of shapes. A distance between two of them is rounded relative to it, however close to the origin the scene is. */
 double fu_longest_lever(const fu_model *model)
 {
     double longest = 0.0;
     for (int c = 0; c < model->n_couplings; ++c) {
         const char *structure = (const char *)model->couplings[c];
+        if (model->couplings[c]->row < 0) continue;
         for (const fu_field *field = model->couplings[c]->type->fields; field->name; ++field) {
             if (field->kind != FU_LENGTH && field->kind != FU_ATTACHMENT) continue;
             for (int i = 0; i < field->most; ++i)
