@@ -4,7 +4,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from expectations import refused
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 ROPE = {"section": fu.Circle(radius=0.01), "material": fu.Material(youngs_modulus=1e7, poisson_ratio=0, density=1000)}
@@ -160,6 +160,7 @@ SHAPES = {
        outputs=st.sampled_from([1, 3]))
 def test_no_touch_is_missed(shape, size, speed, aside, integrator, hard, moves, outputs):
     """A point flies straight on: its way is known, and on many places of it whether it is within the surface."""
+    assume(not (integrator == "energy" and hard and moves and shape != "plane"))  # which is refused
     at, duration, radius = (5.0, aside * size, 0.0), 10 / speed, 0.02
     scene = fu.Scene(gravity=(0, 0, 0))
     ball(scene, "A", (0, 0, 0), (speed * (0.5 if moves else 1), 0, 0))

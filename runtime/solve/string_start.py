@@ -198,7 +198,7 @@ class _Line:
                 continue
             k = int(np.searchsorted(self.group, contact.cable))
             share = np.convolve(self.lengths[k], (0.5, 0.5), "full")
-            free = ~fixed[self.along[k]].all(axis=1)
+            free = np.logical_not(fixed[self.along[k]].all(axis=1))
             at, share = self.along[k][free], share[free]
             normals, heights = self._below(contact, k, free)
             found.append((at, normals, heights + contact.radius, 1 / (share * _stiffness(
