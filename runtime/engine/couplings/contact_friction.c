@@ -9,7 +9,7 @@
 /* The way of a point since its mark, along the shape's axes: by the end of it, by its beginning; the stretch as if nothing slid, with its
  * direction; where the way is not known in time, as in statics, h is 0. */
 typedef struct {
-    double normal[3], change[3], x[3], along[3], size, from;
+    double normal[3], change[3], begin[3], x[3], along[3], size, from;
     fu_friction_way way;
 } path;
 
@@ -79,7 +79,10 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     fu_contact_change(dim, contact, point, out->normal, out->change);
     out->way = fu_contact_way(contact, point);
     begin_at_touch(dim, point, out, gone);
-    for (int d = 0; d < dim; ++d) out->x[d] = (out->from > 0.0 ? 0.0 : stretch[d]) + out->change[d] - gone[d];
+    for (int d = 0; d < dim; ++d) {
+        out->begin[d] = out->from > 0.0 ? 0.0 : stretch[d];
+        out->x[d] = out->begin[d] + out->change[d] - gone[d];
+    }
     const double across = fu_dot(dim, out->normal, out->x) / fu_dot(dim, out->normal, out->normal);
     for (int d = 0; d < dim; ++d) out->along[d] = out->x[d] - across * out->normal[d];
     out->size = sqrt(fu_dot(dim, out->along, out->along));
@@ -89,6 +92,20 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     out->way.stretch.value[1] = out->size;
     out->way.stretch.rate[0] = fu_dot(dim, out->along, mark->rate);
     out->way.stretch.rate[1] = fu_dot(dim, out->along, point->slip);
+}
+
+/* Turns the stretch of a point that slides, in space, along the velocity at its end in place of its way over the step: friction is against
+ * that, and against the way it would lag by half a step. Returns the time that the way takes, s, 0 where nothing is turned. */
+static double turn_to_slip(int dim, const fu_touch_point *point, path *of)
+{
+    const double h = (1.0 - of->from) * of->way.h, sign = point->friction_end.stretch < 0.0 ? -1.0 : 1.0;
+    if (dim != 3 || !(h > 0.0) || !point->slides) return 0.0;
+    for (int d = 0; d < dim; ++d) of->x[d] = of->begin[d] + h * point->slip[d];
+    const double across = fu_dot(dim, of->normal, of->x) / fu_dot(dim, of->normal, of->normal);
+    for (int d = 0; d < dim; ++d) of->along[d] = of->x[d] - across * of->normal[d];
+    const double size = sqrt(fu_dot(dim, of->along, of->along));
+    for (int d = 0; d < dim && size > 0.0; ++d) of->along[d] *= sign / size;
+    return h;
 }
 
 void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point,
@@ -110,6 +127,7 @@ void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const 
     if (of.way.h > 0.0) point->friction_end = fu_end_of_friction(&of.way);
     else point->friction_end = (fu_friction_end){fmin(of.size, most), 1.0, of.size > most || most == 0.0};
     point->slides = point->friction_end.slid != 0 && point->friction_end.part == 1.0;
+    turn_to_slip(dim, point, &of);
     for (int d = 0; d < dim; ++d) point->stretch[d] = point->friction_end.stretch * of.along[d];
     fu_surface_out(dim, on, point->stretch, x);
     for (int d = 0; d < dim; ++d) {
@@ -187,6 +205,7 @@ void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *co
     double x[3], f[3], t[3], by_place[9];
     path of;
     path_of(model, contact, on, point, &of);
+    const double h = turn_to_slip(dim, point, &of);
     fu_surface_out(dim, on, of.x, x);
     if (fu_dot(dim, point->mark->normal, point->mark->normal) > 0.0) /* half of what it sinks by turns with this normal, half with that before */
         for (int d = 0; d < dim; ++d) x[d] -= 0.5 * (point->depth + point->mark->gap) * at->n[d];
@@ -194,6 +213,11 @@ void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *co
     else {
         contact->surface.kernel->sticking(at->n, at->H, x, contact->law.tangential, f, by_place, t, point->by_stretch);
         for (int i = 0; i < dim * dim; ++i) point->by_place[i] += by_place[i];
+    }
+    for (int i = 0; i < dim * dim && h > 0.0; ++i) {
+        point->by_place[i] -= point->by_stretch[i];
+        point->by_rate[i] += h * point->by_stretch[i];
+        point->by_stretch[i] = 0.0;
     }
     if (of.from > 0.0) add_touching(dim, on, &of, point);
 }
