@@ -25,6 +25,8 @@ LARGEST_TURN = 0.3
 MOST_PARTS = 8
 TANGENT = 1e-3
 """m: over which a height field is taken for its tangent plane."""
+SHORTEST = 0.95
+"""Of the length of links without tension: where bending alone keeps nodes so far apart, the shape is a start, too."""
 STRAIGHT = 1e-9
 """Of the length: what nodes on a line may be off it, and by what a cable is slack."""
 
@@ -35,7 +37,7 @@ def hang(problem: StaticProblem, every: bool) -> bool:
     every: wherever the search is, also cables that are drawn bent or taut, and those that more acts on than
     `StringNodes` knows; False: none of these, for which the shape as drawn is as good a start, or better, and where
     the search begins alone: load steps stay on their path. Cables stay as they are where a part of their string would
-    have no tension.
+    have no tension, every: and would become much shorter.
     """
     model = problem.model
     if not model.cables:
@@ -52,7 +54,7 @@ def hang(problem: StaticProblem, every: bool) -> bool:
         force = string_loads(problem, q) if groups else q
         for group in groups:
             line, rest = _at_rest(problem, nodes, group, q, force)
-            if rest is not None and rest.taut.all():
+            if rest is not None and (rest.taut.all() or (every and rest.shortest > SHORTEST)):
                 q, found = line.laid(q, rest), True
             elif rest is not None:
                 problem.slack |= line.slack(rest)

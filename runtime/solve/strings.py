@@ -83,11 +83,13 @@ class Strings:
 
 @dataclass
 class Rest:
-    """Where nodes rest (n, dim), in m; whether links are taut (m,), to about the tolerance; after how many iterations.
+    """Where nodes rest (n, dim), in m; whether links are taut (m,), to about the tolerance; of the links the least
+    distance of their nodes over the length; after how many iterations.
     """
 
     r: np.ndarray
     taut: np.ndarray
+    shortest: float
     iterations: int
 
 
@@ -272,6 +274,10 @@ class _Search:
         """Return the mean of constraints times multipliers, J."""
         return float(self.tension @ self.slack + self.pressure @ self.height) / (len(self.tension) + len(self.pressure))
 
+    def shortest(self) -> float:
+        """Return the least distance of a link's nodes over its length."""
+        return float(np.sqrt((self.d * self.along).sum(axis=1).min()))
+
     def is_at_rest(self) -> bool:
         """Return whether forces balance, and slack links have no tension."""
         loose = (self.tension * self.slack / self.strings.length).max(initial=0.0)
@@ -287,7 +293,7 @@ def rest_of(strings: Strings) -> Rest | None:
             search = _Search(strings)
             for iteration in range(MOST_ITERATIONS):
                 if search.is_at_rest():
-                    return Rest(search.r, search.slack < SLACK, iteration)
+                    return Rest(search.r, search.slack < SLACK, search.shortest(), iteration)
                 search.step()
                 if not np.isfinite(search.mean()):
                     return None
