@@ -78,7 +78,7 @@ def main() -> None:
     """Measure, print and write."""
     reads = parser(__doc__.split("\n\n")[0], tasks=(200, "tasks of each length", 30),
                    points=(4000, "most points of a row", 4000), workers=(2, "worker processes"),
-                   scenes=(120, "points of the first scene", 15))
+                   scenes=(120, "points of the first scene", 60))
     given = reads.parse_args()
     with tempfile.TemporaryDirectory() as folder, local_cluster(given.workers) as cluster:
         measured(cluster, given.workers, 10, 20, 200, Path(folder) / "warm.nc")
