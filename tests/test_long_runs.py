@@ -43,7 +43,8 @@ def test_the_bar_shows_rate_and_end(monkeypatch, capsys):
 
 
 def test_a_run_of_few_steps_says_nothing():
-    assert stiff().run(1e-3, integrator="explicit").report["messages"] == []
+    messages = stiff().run(1e-3, integrator="explicit").report["messages"]
+    assert not [message for message in messages if "steps" in message]
 
 
 def test_knots_of_a_table_are_named_as_what_the_steps_are_for(monkeypatch):
