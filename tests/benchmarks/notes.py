@@ -31,8 +31,8 @@ LONGEST = 2.0
 """CPU seconds of a run: longer ones are given up."""
 SILENT = 3.0
 """tol: an error above it must be noted."""
-WARNS = re.compile(r"errors may|energy balance|perfectly straight|beyond the ends|more elements|"
-                   r"past each other|folded|too long|are rounded|turns by|shock|estimated error")
+WARNS = re.compile(r"errors may|energy balance|perfectly straight|beyond the ends|"
+                   r"past each other|folded|step is too long|are rounded|turns by|shock|estimated error")
 """What messages say that warn of errors."""
 
 

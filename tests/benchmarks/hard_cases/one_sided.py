@@ -54,8 +54,8 @@ def thrown() -> Scene:
     it flies slack, and snaps taut."""
     scene = Scene()
     rope = scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=8, element="cable12", membrane="tension_only",
-                       section=Circle(radius=2e-3), rest_length=1 / 1.001,
-                       material=Material(youngs_modulus=2e8, poisson_ratio=0.3, density=7850, damping_time=1e-4))
+                       section=Circle(radius=6e-3), rest_length=1 / 1.001,
+                       material=Material(youngs_modulus=2e8, poisson_ratio=0.3, density=872, damping_time=1e-4))
     scene.pin(rope, s=0.0)
     nearer = TableSignal(time=[0, 0.1, 0.25, 0.35], value=[0, -0.1, -0.1, 0.0], interpolation="cubic")
     scene.motion(rope, s=rope.length, displacement=(nearer, 0, 0))
