@@ -25,8 +25,10 @@ def jumps(scene, **settings):
     return [message for message in run.report["messages"] if "slide" in message]
 
 
-def test_a_rider_drawn_at_rest_is_told_with_both_rates():
-    assert jumps(footbridge()) == [
+@pytest.mark.parametrize("initial", ["drawn", "equilibrium"])
+def test_a_rider_drawn_at_rest_is_told_with_both_rates(initial):
+    """A run from rest starts at the velocities of the scene, too."""
+    assert jumps(footbridge(), initial=initial) == [
         'slide "feet": moves along cable "deck" at 1.5 m/s from t = 0, but body "walker" is drawn at 0 m/s along it; '
         'this jump is a blow to rider and cable, which depends on the mesh. Start body "walker" at velocity '
         "(1.5, 0, 0) m/s, or let the rate begin at 0 m/s, as that of a Ramp does"]

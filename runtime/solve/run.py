@@ -20,6 +20,7 @@ from ..integrators import Integrator
 from ..interruptions import interruptible
 from ..model.build import build
 from ..model.controlled import controlled_weights, counted_weights
+from ..model.initial_state import InitialState
 from ..model.knots import knots
 from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
@@ -153,9 +154,10 @@ def _rows_again(scene: SceneData, initial: Start | None, method: Integrator,
 
 
 def _given(initial: Start | None) -> Container[str]:
-    """Return the names of results that a state to start from is made of; none of one at rest, which keeps velocities.
+    """Return the names of results that a state to start from is made of; none of one at rest, from which a run starts
+    at the velocities of the scene.
     """
-    return initial if isinstance(initial, Container) else ()
+    return initial if isinstance(initial, InitialState) else ()
 
 
 def _warned(messages: list[str]) -> list[str]:
