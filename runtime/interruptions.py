@@ -10,7 +10,6 @@ both do nothing.
 
 from __future__ import annotations
 
-import signal
 import threading
 from collections.abc import Callable
 from types import FrameType
@@ -28,7 +27,7 @@ class _Now:
     """Whether Ctrl-C is passed on at once."""
     is_noted = False
     """Whether there was one that was not passed on."""
-    handler: Handler = staticmethod(signal.default_int_handler)
+    handler: Handler
     """What it is passed on to: the handler before the outermost block."""
 
 
@@ -44,6 +43,8 @@ def _take(number: int, frame: FrameType | None) -> None:
 
 def _pass_on() -> None:
     """Let the handler have what was noted."""
+    import signal  # here and below: 1,600 calls, which the import of the package does without
+
     _Now.is_noted = False
     _Now.handler(signal.SIGINT, None)
 
@@ -63,6 +64,8 @@ class uninterrupted:  # noqa: N801  for ``with``
         if not _is_here():
             return
         if _Now.depth == 0:
+            import signal
+
             handler = signal.getsignal(signal.SIGINT)
             if not callable(handler):  # SIGINT is ignored, ends the process, or is for a program around Python
                 return
@@ -74,6 +77,8 @@ class uninterrupted:  # noqa: N801  for ``with``
 
     def __exit__(self, kind: type[BaseException] | None, *exception: object) -> None:
         """Pass Ctrl-C on, unless it has been already, as KeyboardInterrupt."""
+        import signal
+
         if not self._entered:
             return
         self._entered = False

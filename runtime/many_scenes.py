@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from threading import Event
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -18,6 +17,9 @@ from .results.run import Run
 from .scene import Scene
 from .solve.shared_trials import SharedTrials
 from .solve.threads import available, one_blas_thread
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 Result: TypeAlias = Run | dict[str, np.ndarray] | FunicularError
 
@@ -109,6 +111,8 @@ def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: 
             return _bare(error)
 
     trials = SharedTrials(is_open=settings.get("integrator") in (None, AUTO) and settings.get("step") is None)
+    from concurrent.futures import ThreadPoolExecutor, wait  # which one scene does without
+
     waiting: deque[Future[Result]] = deque()
     with one_blas_thread, ThreadPoolExecutor(threads, "funicular") as pool:
         try:

@@ -31,7 +31,7 @@ static wet_step wet_over_step(const fu_model *model, const fu_drag *drag, const 
     return out;
 }
 
-/* Takes the wet part of the change dp of an impulse, which is p at both ends of a step by the masses M; makes what acts on the place. */
+/* Takes the wet part of the change dp of an impulse, which is p at both ends of a step by the masses M, and makes the force that acts on the place. */
 static void take_wet_step(int dim, const wet_step *wet, const fu_fluid_past past[2], double p[2][3], double M[2][9], double dp[3],
                           double on_place[3])
 {
