@@ -109,7 +109,7 @@ static void motion_of_surface(const fu_model *model, const fu_contact *contact, 
     fu_turn_attachment(model, contact->surface.on, psi, out->turned, dim == 3 ? 3 : 1, n, 0);
     fu_turn_attachment(model, contact->surface.on, psi, out->K, n, n, 0);
     for (int i = 0; i < n; ++i) {
-        double of_force[3], of_rate[3], origin[3], moment[3];
+        double of_force[3], of_rate[3], origin[3] = {0.0}, moment[3];
         turn_of(dim, T, n, i, f, of_force);
         turn_of(dim, T, n, i, w, of_rate);
         for (int d = 0; d < dim; ++d) own[d * n + i] = of_force[d] - fu_dot(dim, point->by_rate + d * dim, of_rate);
