@@ -95,7 +95,7 @@ def summary(rows: list[dict]) -> list[dict]:
 def silent_part(rows: list[dict]) -> float:
     """The part of the runs with a reference that err by more than `SILENT` tol without a note."""
     known = [row for row in rows if np.isfinite(row["error/tol"])]
-    return sum(row["error/tol"] > SILENT and not row["noted"] for row in known) / len(known)
+    return sum(row["error/tol"] > SILENT and not row["noted"] for row in known) / max(len(known), 1)
 
 
 def main() -> None:
