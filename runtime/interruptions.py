@@ -64,7 +64,7 @@ class uninterrupted:  # noqa: N801  for ``with``
         if not _is_here():
             return
         if _Now.depth == 0:
-            import signal
+            import signal  # see _pass_on
 
             handler = signal.getsignal(signal.SIGINT)
             if not callable(handler):  # SIGINT is ignored, ends the process, or is for a program around Python
@@ -77,7 +77,7 @@ class uninterrupted:  # noqa: N801  for ``with``
 
     def __exit__(self, kind: type[BaseException] | None, *exception: object) -> None:
         """Pass Ctrl-C on, unless it has been already, as KeyboardInterrupt."""
-        import signal
+        import signal  # see _pass_on
 
         if not self._entered:
             return
