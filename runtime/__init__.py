@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from . import command_start  # noqa: F401  first: its Ctrl-C holds while the others are imported
 from .errors import (
     ConvergenceError,
     EndOfCableError,

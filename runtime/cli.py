@@ -11,10 +11,11 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TextIO
+from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 
+from .command_start import EXIT_INTERRUPTED, INTERRUPTED, raise_at_ctrl_c
 from .errors import ConvergenceError, EndOfCableError, FunicularError, FunicularWarning
 from .scene_file import bundled_scenes, load_scene
 from .written_files import write_text
@@ -22,9 +23,44 @@ from .written_files import write_text
 if TYPE_CHECKING:
     from .results.run import Run
 
-app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
-EXIT_INTERRUPTED = 130
+@contextmanager
+def _reported_without_traceback() -> Iterator[None]:
+    """Print errors and warnings of funicular as a line on stderr each; an error ends the command with 1."""
+    def tell(message: Warning | str, category: type[Warning], filename: str, lineno: int,
+             file: TextIO | None = None, line: str | None = None) -> None:
+        if not issubclass(category, FunicularWarning):
+            return show(message, category, filename, lineno, file, line)
+        print(f"note: {message}", file=sys.stderr)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", FunicularWarning)
+        show, warnings.showwarning = warnings.showwarning, tell
+        try:
+            raise_at_ctrl_c()
+            yield
+        except FunicularError as error:
+            print(f"error: {error}", file=sys.stderr)
+            raise typer.Exit(1) from None
+        except MemoryError:
+            print("error: that takes more memory than this machine has", file=sys.stderr)
+            raise typer.Exit(1) from None
+        except KeyboardInterrupt:
+            print(INTERRUPTED, file=sys.stderr)
+            raise typer.Exit(EXIT_INTERRUPTED) from None
+
+
+class _Commands(typer.core.TyperGroup):
+    """All commands, within one report of errors, warnings and Ctrl-C."""
+
+    def invoke(self, ctx: typer.Context) -> Any:
+        """Run the command that the context names."""
+        with _reported_without_traceback():
+            return super().invoke(ctx)
+
+
+app = typer.Typer(cls=_Commands, no_args_is_help=True, pretty_exceptions_enable=False)
+
 Libraries = Annotated[list[Path] | None, typer.Option(
     "--library", metavar="DIR", help="your own elements that the scene may load, machine code; repeatable")]
 
@@ -54,31 +90,6 @@ def _options(
                                           help="print the version and exit")] = False,
 ) -> None:
     """Very flexible cables and whatever slides along them."""
-
-
-@contextmanager
-def _reported_without_traceback() -> Iterator[None]:
-    """Print errors and warnings of funicular as a line on stderr each; an error ends the command with 1."""
-    def tell(message: Warning | str, category: type[Warning], filename: str, lineno: int,
-             file: TextIO | None = None, line: str | None = None) -> None:
-        if not issubclass(category, FunicularWarning):
-            return show(message, category, filename, lineno, file, line)
-        print(f"note: {message}", file=sys.stderr)
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("always", FunicularWarning)
-        show, warnings.showwarning = warnings.showwarning, tell
-        try:
-            yield
-        except FunicularError as error:
-            print(f"error: {error}", file=sys.stderr)
-            raise typer.Exit(1) from None
-        except MemoryError:
-            print("error: that takes more memory than this machine has", file=sys.stderr)
-            raise typer.Exit(1) from None
-        except KeyboardInterrupt:
-            print("interrupted", file=sys.stderr)
-            raise typer.Exit(EXIT_INTERRUPTED) from None
 
 
 @app.command()
@@ -116,23 +127,22 @@ def run(
     from .parts.file_paths import save_path
     from .results.files import check_writable
 
-    with _reported_without_traceback():
-        described = load_scene(scene, library or ())
-        named = save_path(described.run_settings) if output is None else output
-        path = named or Path(f"{Path(scene).stem}.nc")
-        pictures = plot_dir or (path.parent if plot or forces else None)
-        if pictures is not None:
-            check_writable(_existing(pictures) / "picture.png")
-        stopped = None
-        try:
-            result = described.run(duration, tol=tol, absolute_tol=absolute_tol, quantities=_listed(quantities),
-                                   step=step, integrator=integrator, spectral_radius=spectral_radius, model=model,
-                                   save=path if named is None else output, resume=resume, estimate=estimate or None)
-        except (EndOfCableError, ConvergenceError) as error:
-            result, stopped = error.run, error
-        _report(result, path, pictures, forces)
-        if stopped is not None:
-            raise stopped
+    described = load_scene(scene, library or ())
+    named = save_path(described.run_settings) if output is None else output
+    path = named or Path(f"{Path(scene).stem}.nc")
+    pictures = plot_dir or (path.parent if plot or forces else None)
+    if pictures is not None:
+        check_writable(_existing(pictures) / "picture.png")
+    stopped = None
+    try:
+        result = described.run(duration, tol=tol, absolute_tol=absolute_tol, quantities=_listed(quantities),
+                               step=step, integrator=integrator, spectral_radius=spectral_radius, model=model,
+                               save=path if named is None else output, resume=resume, estimate=estimate or None)
+    except (EndOfCableError, ConvergenceError) as error:
+        result, stopped = error.run, error
+    _report(result, path, pictures, forces)
+    if stopped is not None:
+        raise stopped
     if result.status == "interrupted":
         raise typer.Exit(EXIT_INTERRUPTED)
 
@@ -151,14 +161,13 @@ def choose(
     library: Libraries = None,
 ) -> None:
     """Choose element, law and mesh of each cable, and the integrator, for a tolerance, and say why."""
-    with _reported_without_traceback():
-        described = load_scene(scene, library or ())
-        chosen = described.choose(tol, duration=duration, quantities=quantities.split(",") if quantities else (),
-                                  free=free, unequal=unequal)
-        print(chosen)
-        if output is not None:
-            write_text(output, chosen.scene.to_toml())
-            print(f"written: {output}")
+    described = load_scene(scene, library or ())
+    chosen = described.choose(tol, duration=duration, quantities=quantities.split(",") if quantities else (),
+                              free=free, unequal=unequal)
+    print(chosen)
+    if output is not None:
+        write_text(output, chosen.scene.to_toml())
+        print(f"written: {output}")
 
 
 def _existing(directory: Path) -> Path:
@@ -213,8 +222,7 @@ def view(
     from .view_command import view as write
 
     outputs = Outputs(output, png, [film for film in (gif, mp4) if film], vtk, speed, colour)
-    with _reported_without_traceback():
-        written = write(files, Wanted(equilibrium, relaxed, path, modes, as_drawn), outputs, open_it, library or ())
+    written = write(files, Wanted(equilibrium, relaxed, path, modes, as_drawn), outputs, open_it, library or ())
     for file in written:
         print(f"written: {file}")
 
@@ -261,9 +269,8 @@ def sweep(
     given = {"duration": duration, "tol": tol, "output_step": output_step, "integrator": integrator}
     options = SweepOptions(method, samples, seed, 0 if serial else workers, cluster, batch, record_invalid,
                            retry_failed, {name: value for name, value in given.items() if value is not None})
-    with _reported_without_traceback():
-        whole = run_sweep(scene, values, _listed(",".join(keep)) or [],
-                          output or Path(f"{Path(scene).stem}-sweep.nc"), options, library or [], estimate)
+    whole = run_sweep(scene, values, _listed(",".join(keep)) or [],
+                      output or Path(f"{Path(scene).stem}-sweep.nc"), options, library or [], estimate)
     if not whole:
         raise typer.Exit(EXIT_INTERRUPTED)
 
@@ -293,17 +300,16 @@ def bench(
     from .bench.report import print_table, save
     from .results.files import check_writable
 
-    with _reported_without_traceback():
-        described, name = load_scene(scene, library or ()), f"{Path(scene).stem}-bench"
-        numbers = _numbers(tols)
-        tried = grid(described, integrators=_listed(integrators), tols=numbers, elements=_listed(elements),
-                     outputs=_listed(outputs), duration=duration, output_step=output_step, repetitions=repetitions)
-        check_writable(_existing(out) / f"{name}.csv")
-        with Console(stderr=True).status("") as status:
-            result = bench(described, tried, status.update)
-        print_table(result, Console())
-        for path in save(result, out, name):
-            print(f"written: {path}")
+    described, name = load_scene(scene, library or ()), f"{Path(scene).stem}-bench"
+    numbers = _numbers(tols)
+    tried = grid(described, integrators=_listed(integrators), tols=numbers, elements=_listed(elements),
+                 outputs=_listed(outputs), duration=duration, output_step=output_step, repetitions=repetitions)
+    check_writable(_existing(out) / f"{name}.csv")
+    with Console(stderr=True).status("") as status:
+        result = bench(described, tried, status.update)
+    print_table(result, Console())
+    for path in save(result, out, name):
+        print(f"written: {path}")
 
 
 def _listed(text: str | None) -> list[str] | None:
@@ -338,8 +344,7 @@ def schema(
     if output is None:
         print(text, end="")
     else:
-        with _reported_without_traceback():
-            write_text(output, text)
+        write_text(output, text)
 
 
 @app.command()
@@ -358,8 +363,7 @@ def derive(
         raise typer.Exit(main(names or [], check))
     from funicular.derive.user_elements.command import main as make_library
 
-    with _reported_without_traceback():
-        make_library(spec, out)
+    make_library(spec, out)
 
 
 @app.command()

@@ -1,8 +1,10 @@
 """The command line with the real engine, as a user starts it."""
 
+import os
 import signal
 import subprocess
 import sys
+import sysconfig
 import time
 from functools import partial
 
@@ -11,6 +13,10 @@ import pytest
 from funicular import EndOfCableError, load_run, load_scene
 
 COMMAND = [sys.executable, "-m", "funicular"]
+SCRIPT = [os.path.join(sysconfig.get_path("scripts"), "funicular")]
+
+# a shell's background jobs ignore Ctrl-C, and so would their children: commands under test must not
+listen = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
 
 
 def funicular(*args: str, cwd) -> subprocess.CompletedProcess:
@@ -72,8 +78,6 @@ def test_end_of_cable_in_python(tmp_path):
 
 def test_ctrl_c_keeps_what_was_computed(tmp_path):
     long = [*COMMAND, "run", "paper51", "--step", "1e-7", "-o", "x.nc"]
-    # a shell's background jobs ignore Ctrl-C, and so would their children: the run under test must not
-    listen = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
     process = subprocess.Popen(long, cwd=tmp_path, stderr=subprocess.PIPE, text=True, preexec_fn=listen)
     end = time.monotonic() + 60
     while not any(tmp_path.iterdir()) and time.monotonic() < end:  # until the first rows are written
@@ -86,6 +90,34 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path):
     run = load_run(tmp_path / "x.nc")
     assert run.status == "interrupted"
     assert 0 < len(run.time) < 501
+
+
+AT_IMPORT = """
+import signal, sys
+class Finder:
+    def find_spec(self, name, *_):
+        if name == {!r}:
+            signal.raise_signal(signal.SIGINT)
+sys.meta_path.insert(0, Finder())
+"""
+
+
+@pytest.mark.parametrize(("module", "command"), [
+    ("numpy", COMMAND), ("numpy", SCRIPT), ("typer", COMMAND), ("typer", SCRIPT), ("funicular.results.files", SCRIPT),
+    ("scipy", COMMAND)])
+def test_ctrl_c_while_the_command_starts(module, command, tmp_path):
+    """SIGINT comes at an import: of the package, of the command line, of the command, of its work."""
+    (tmp_path / "sitecustomize.py").write_text(AT_IMPORT.format(module))
+    done = subprocess.run([*command, "run", "paper51"], cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(tmp_path)},
+                          capture_output=True, text=True, preexec_fn=listen)
+    assert (done.returncode, done.stderr, done.stdout) == (130, "interrupted\n", "")
+    assert not list(tmp_path.glob("paper51*"))
+
+
+def test_imported_elsewhere_the_package_leaves_ctrl_c_alone():
+    code = "import signal, funicular; print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, preexec_fn=listen)
+    assert done.stdout == "True\n"
 
 
 def test_progress_reaches_the_caller():
