@@ -34,7 +34,7 @@ def end_at_ctrl_c() -> None:
 
 def raise_at_ctrl_c() -> None:
     """Let Ctrl-C raise KeyboardInterrupt again, once there is somebody to catch it."""
-    import signal
+    import signal  # see interruptions.py
 
     if signal.getsignal(signal.SIGINT) is _end:
         signal.signal(signal.SIGINT, signal.default_int_handler)
