@@ -42,7 +42,27 @@ int fu_prepare(fu_run *run)
     return FU_RUNNING;
 }
 
-/* Starts a run: closes small gaps, makes the state consistent, records the first row; returns a status. run->before has then the
+/* Makes the first state: on its cables, small gaps closed, velocities as constraints ask for; returns a status. What friction carries is
+ * as from where its springs are anchored to where gaps are closed, with the velocities there: no part of closing a gap is a motion. */
+static int begin_state(fu_run *run)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    const size_t size = sizeof(double) * (size_t)model->n_numbers;
+    memcpy(run->next.numbers, now->numbers, size);
+    if (fu_prepare(run)) return FU_SINGULAR;
+    if (fu_may_start_open(model, now)) {
+        if (fu_close(run)) return FU_SINGULAR;
+        memcpy(now->numbers, run->next.numbers, size);
+        fu_carry(model, now);
+    }
+    memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
+    if (fu_start_scheme(run, 1)) return FU_SINGULAR;
+    fu_carry(model, now);
+    return FU_RUNNING;
+}
+
+/* Starts a run: makes the first state, records the first row; returns a status. run->before has then the
  * change of velocities that constraints asked for. */
 int fu_start(fu_run *run)
 {
@@ -50,10 +70,7 @@ int fu_start(fu_run *run)
     fu_state *now = &run->now;
     run->ceiling = run->duration;
     if (model->proximity) model->proximity->is_known = 0;
-    if (fu_prepare(run)) return FU_SINGULAR;
-    if (fu_may_start_open(model, now) && fu_close(run)) return FU_SINGULAR;
-    memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
-    if (fu_start_scheme(run, 1)) return FU_SINGULAR;
+    if (begin_state(run)) return FU_SINGULAR;
     if (fu_couplings_can_act(model)) {
         memcpy(run->psi, run->before, sizeof(double) * (size_t)model->n_dof); /* what the start asked for, for the caller */
         if (fu_begin_couplings(run) || fu_start_scheme(run, 0)) return FU_SINGULAR;
