@@ -5,13 +5,16 @@ specs      elements, laws, bodies and couplings, as `catalogue.families` lists t
 programs   `codegen.rendering.derive` runs the builder of a family: SymPy expressions, staged, without what no output
            needs -> programs, one a kernel
 text       `codegen.rendering.render` fills the templates with programs printed as C -> text by file name
-manifest   `codegen.rendering.manifest` says what was made, from what, with which tools
+manifest   `codegen.manifest.text` says what was made, from what, with which tools
 files      `codegen.drift` compares the texts with generated/, or writes those that differ
 
-A family whose specs, tools and file are those that the manifest records is not derived again.
+A family whose specs, tools and file are those that the manifest records is not derived again. Comments and docstrings
+of a spec do not count.
 """
 
 from __future__ import annotations
+
+from collections.abc import Collection
 
 from funicular.errors import ResultFileError
 from rich.console import Console
@@ -19,9 +22,9 @@ from rich.progress import Progress
 
 from .algebra import section_points
 from .catalogue import families, named, whole_groups
-from .codegen import drift
+from .codegen import drift, manifest, provenance
 from .codegen import rendering as emit
-from .codegen.family import FamilyError
+from .codegen.family import Family, FamilyError
 
 
 def generate(names: list[str] | None = None, show: bool = False) -> dict[str, str]:
@@ -42,23 +45,44 @@ def generate(names: list[str] | None = None, show: bool = False) -> dict[str, st
                 progress.update(task, description=f"derive {name}")
                 known.append(emit.derive(family))
                 progress.advance(task)
-            elif old := emit.recorded(family, record):
+            elif old := manifest.recorded(family, record):
                 known.append(old)
         progress.update(task, description="print")
         files = emit.render(known, wanted, lambda _: progress.advance(task))
-    kept = {name: drift.current(name) for d in known if d.family.name not in wanted for name in drift.of(d.family)}
-    files[drift.MANIFEST] = emit.manifest(known, {n: text for n, text in kept.items() if text is not None} | files,
+    own = {name: files.get(name, drift.current(name)) for d in known for name in drift.of(d.family)}
+    files[drift.MANIFEST] = manifest.text(known, _origin(record, None if names is None else wanted.keys()),
+                                          {name: text for name, text in own.items() if text is not None},
                                           more={"section_points": section_points.table()})
     return files
+
+
+def _origin(record: dict, wanted: Collection[str] | None) -> manifest.Origin:
+    """Return what the files of all families are made from once those of the wanted ones (None: of all) are.
+
+    While another family is stale, its record must stay that of the sources that it was made from.
+    """
+    if wanted is not None and stale(record).keys() - wanted:
+        return manifest.Origin(record.get("tools", {}), record.get("sources", {}))
+    return manifest.origin(families().values())
+
+
+def stale(record: dict) -> dict[str, Family]:
+    """Return the families by name whose specs or tools are not those that a manifest records."""
+    every = families()
+    if record.get("tools") != emit.tools():
+        return every
+    now = provenance.hashes(every.values())
+    changed = {file for file, hash_now in now.items() if record["sources"].get(file) != hash_now}
+    return {name: family for name, family in every.items()
+            if record["families"].get(name) != {"doc": family.doc}
+            or not changed.isdisjoint(provenance.deciding(family.modules))}
 
 
 def changed() -> list[str]:
     """Return the names of the families whose specs, tools or files are not those that the manifest records."""
     record = drift.record()
-    if record.get("tools") != emit.tools():
-        return list(families())
-    return [name for name, family in families().items()
-            if record.get("families", {}).get(name, {}).get("spec_hash") != emit.came_from(family)[1]
+    outdated = stale(record)
+    return [name for name, family in families().items() if name in outdated
             or any(record["files"].get(file) != emit.digest(drift.current(file) or "") for file in drift.of(family))]
 
 
@@ -78,7 +102,7 @@ def main(names: list[str], check: bool = False) -> int:
         out.print("\n".join([f"{len(files)} files, {len(written)} written" + (": " if written else "")
                              + ", ".join(written), *unknown]))
         return 0
-    found = drift.differences(files)
+    found = drift.differences(files, stale(drift.record()).values())
     for paragraph in [*found, *unknown]:
         out.print(paragraph)
     if found:

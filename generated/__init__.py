@@ -2,9 +2,9 @@
 
 
 def described(manifest: dict) -> dict[str, dict]:
-    """The kernels of a manifest by name: their inputs and outputs, which it numbers, with name, shape, unit and doc.
+    """The kernels of a manifest by name, with name, shape, unit and doc of their inputs and outputs.
 
-    Raises IndexError for a number that it does not have.
+    Raises KeyError for an argument that it does not have.
     """
     every = manifest["arguments"]
     return {name: entry | {of: [every[k] for k in entry[of]] for of in ("inputs", "outputs")}

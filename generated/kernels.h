@@ -74,7 +74,7 @@ extern "C" {
 #define FU_KERNEL
 #define FU_NUMBER(x) (x)
 
-/* beam24: fully parameterised spatial ANCF beam, solid of volume, with torsion and rotary inertia */
+/* beam24.c */
 /* mass matrix m of M = m (x) I: l [m]; density [kg/m^3]; section 6[m^2, m^4, m^4, m^6, m^6, m^6] -> m 8x8[kg, kg m,
  * kg m^2] */
 void beam24_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
@@ -96,7 +96,7 @@ void beam24_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real
  * N, N m] */
 void beam24_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
-/* cable12: spatial ANCF cable, cubic, axial and bending stiffness */
+/* cable12.c */
 /* mass matrix m of M = m (x) I: l [m]; density [kg/m^3]; section 6[m^2, m^4, m^4, m^6, m^6, m^6] -> m 4x4[kg, kg m,
  * kg m^2] */
 void cable12_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
@@ -118,7 +118,7 @@ void cable12_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_rea
  * N, N m] */
 void cable12_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
-/* cable18: spatial cable, quintic: a slide crosses its nodes without a jump of acceleration */
+/* cable18.c */
 /* mass matrix m of M = m (x) I: l [m]; density [kg/m^3]; section 6[m^2, m^4, m^4, m^6, m^6, m^6] -> m 6x6[kg, kg m,
  * kg m^2] */
 void cable18_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
@@ -140,7 +140,7 @@ void cable18_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_rea
  * N, N m] */
 void cable18_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
-/* beam12p: fully parameterised planar ANCF beam, shear deformable */
+/* beam12p.c */
 /* mass matrix m of M = m (x) I: l [m]; density [kg/m^3]; section 6[m^2, m^4, m^4, m^6, m^6, m^6] -> m 6x6[kg, kg m,
  * kg m^2] */
 void beam12p_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
@@ -162,7 +162,7 @@ void beam12p_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_rea
  * N, N m] */
 void beam12p_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
-/* cable8p: planar ANCF cable, cubic, axial and bending stiffness */
+/* cable8p.c */
 /* mass matrix m of M = m (x) I: l [m]; density [kg/m^3]; section 6[m^2, m^4, m^4, m^6, m^6, m^6] -> m 4x4[kg, kg m,
  * kg m^2] */
 void cable8p_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
@@ -184,7 +184,7 @@ void cable8p_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_rea
  * N m] */
 void cable8p_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
-/* beam24_continuum: elastic law continuum on beam24 */
+/* beam24_continuum.c */
 /* constants of the law from the stiffness of the section: l [m]; S 9x6[N, N m^2, N m^2, N m^4, N m^4, N m^4] -> A
  * 61[N m] */
 void beam24_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -214,7 +214,7 @@ void beam24_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_re
  * -> force 3[N]; moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void beam24_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* beam24_continuum_curved: elastic law continuum_curved on beam24 */
+/* beam24_continuum_curved.c */
 /* constants of the law from the stiffness of the section: l [m]; e0 8x3[m, 1]; at 3[m]; D 9[N m] -> A 406[N m]; G0
  * 28[1] */
 void beam24_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const fu_real *at, const fu_real *D, fu_real *A, fu_real *G0);
@@ -234,7 +234,7 @@ void beam24_continuum_curved_step_stiffness(fu_real l, const fu_real *e, const f
  * e0 8x3[m, 1] -> force 3[N]; moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void beam24_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* beam24_structural: elastic law structural on beam24 */
+/* beam24_structural.c */
 /* constants of the law from the stiffness of the section and the reference: l [m]; e0 8x3[m, 1]; S 9[N, N m^2] -> A
  * 31[N, N m^2, 1, 1/m] */
 void beam24_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
@@ -257,7 +257,7 @@ void beam24_structural_dissipation(fu_real l, const fu_real *e, const fu_real *v
  * moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void beam24_structural_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_green_exact: elastic law green_exact on cable12 */
+/* cable12_green_exact.c */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable12_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 2[N, N m^2] -> U 1[J] */
@@ -287,7 +287,7 @@ void cable12_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_green_linear: elastic law green_linear on cable12 */
+/* cable12_green_linear.c */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable12_green_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 2[N, N m^2] -> U 1[J] */
@@ -303,7 +303,7 @@ void cable12_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_r
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_engineering_exact: elastic law engineering_exact on cable12 */
+/* cable12_engineering_exact.c */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable12_engineering_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 2[N, N m^2] -> U 1[J] */
@@ -330,7 +330,7 @@ void cable12_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, co
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_engineering_linear: elastic law engineering_linear on cable12 */
+/* cable12_engineering_linear.c */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable12_engineering_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 2[N, N m^2] -> U 1[J] */
@@ -346,7 +346,7 @@ void cable12_engineering_linear_discrete_force(fu_real l, const fu_real *e, cons
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_green_exact_assumed: elastic law green_exact_assumed on cable12 */
+/* cable12_green_exact_assumed.c */
 /* constants of the law from the stiffness of the section: l [m]; S 3[N, N m^2, N] -> A 3[N, N m^2, N] */
 void cable12_green_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 3[N, N m^2, N] -> U 1[J] */
@@ -365,7 +365,7 @@ void cable12_green_exact_assumed_step_stiffness(fu_real l, const fu_real *e, con
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_green_linear_assumed: elastic law green_linear_assumed on cable12 */
+/* cable12_green_linear_assumed.c */
 /* constants of the law from the stiffness of the section: l [m]; S 3[N, N m^2, N] -> A 3[N, N m^2, N] */
 void cable12_green_linear_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 3[N, N m^2, N] -> U 1[J] */
@@ -381,7 +381,7 @@ void cable12_green_linear_assumed_discrete_force(fu_real l, const fu_real *e, co
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_engineering_exact_assumed: elastic law engineering_exact_assumed on cable12 */
+/* cable12_engineering_exact_assumed.c */
 /* constants of the law from the stiffness of the section: l [m]; S 3[N, N m^2, N] -> A 3[N, N m^2, N] */
 void cable12_engineering_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 3[N, N m^2, N] -> U 1[J] */
@@ -397,7 +397,7 @@ void cable12_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_engineering_linear_assumed: elastic law engineering_linear_assumed on cable12 */
+/* cable12_engineering_linear_assumed.c */
 /* constants of the law from the stiffness of the section: l [m]; S 3[N, N m^2, N] -> A 3[N, N m^2, N] */
 void cable12_engineering_linear_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 3[N, N m^2, N] -> U 1[J] */
@@ -413,7 +413,7 @@ void cable12_engineering_linear_assumed_discrete_force(fu_real l, const fu_real 
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_green_exact_curved: elastic law green_exact_curved on cable12 */
+/* cable12_green_exact_curved.c */
 /* constants of the law from the stiffness of the section: l [m]; e0 4x3[m, 1]; S 2[N, N m^2] -> A 32[N, N m^2, 1] */
 void cable12_green_exact_curved_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 32[N, N m^2, 1] -> U 1[J] */
@@ -429,7 +429,7 @@ void cable12_green_exact_curved_discrete_force(fu_real l, const fu_real *e, cons
  * moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_engineering_exact_curved: elastic law engineering_exact_curved on cable12 */
+/* cable12_engineering_exact_curved.c */
 /* constants of the law from the stiffness of the section: l [m]; e0 4x3[m, 1]; S 2[N, N m^2] -> A 32[N, N m^2, 1] */
 void cable12_engineering_exact_curved_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 32[N, N m^2, 1] -> U 1[J] */
@@ -445,7 +445,7 @@ void cable12_engineering_exact_curved_discrete_force(fu_real l, const fu_real *e
  * moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable12_engineering_exact_tension_only: elastic law engineering_exact_tension_only on cable12 */
+/* cable12_engineering_exact_tension_only.c */
 /* constants of the law from the stiffness of the section: l [m]; S 4[N, N m^2, 1, 1] -> A 4[N, N m^2, 1, 1] */
 void cable12_engineering_exact_tension_only_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x3[m, 1]; A 4[N, N m^2, 1, 1] -> U 1[J] */
@@ -472,7 +472,7 @@ void cable12_engineering_exact_tension_only_dissipation(fu_real l, const fu_real
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_exact_tension_only_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable18_green_exact: elastic law green_exact on cable18 */
+/* cable18_green_exact.c */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable18_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 6x3[m, 1]; A 2[N, N m^2] -> U 1[J] */
@@ -502,7 +502,7 @@ void cable18_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable18_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable18_engineering_exact: elastic law engineering_exact on cable18 */
+/* cable18_engineering_exact.c */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable18_engineering_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 6x3[m, 1]; A 2[N, N m^2] -> U 1[J] */
@@ -529,7 +529,7 @@ void cable18_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, co
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable18_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable18_green_exact_assumed: elastic law green_exact_assumed on cable18 */
+/* cable18_green_exact_assumed.c */
 /* constants of the law from the stiffness of the section: l [m]; S 3[N, N m^2, N] -> A 3[N, N m^2, N] */
 void cable18_green_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 6x3[m, 1]; A 3[N, N m^2, N] -> U 1[J] */
@@ -548,7 +548,7 @@ void cable18_green_exact_assumed_step_stiffness(fu_real l, const fu_real *e, con
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable18_green_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable18_engineering_exact_assumed: elastic law engineering_exact_assumed on cable18 */
+/* cable18_engineering_exact_assumed.c */
 /* constants of the law from the stiffness of the section: l [m]; S 3[N, N m^2, N] -> A 3[N, N m^2, N] */
 void cable18_engineering_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 6x3[m, 1]; A 3[N, N m^2, N] -> U 1[J] */
@@ -564,7 +564,7 @@ void cable18_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable18_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* beam12p_continuum: elastic law continuum on beam12p */
+/* beam12p_continuum.c */
 /* constants of the law from the stiffness of the section: l [m]; S 4x6[N, N m^2, N m^2, N m^4, N m^4, N m^4] -> A
  * 31[N m] */
 void beam12p_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -594,7 +594,7 @@ void beam12p_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_r
  * -> force 3[N]; moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void beam12p_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* beam12p_continuum_curved: elastic law continuum_curved on beam12p */
+/* beam12p_continuum_curved.c */
 /* constants of the law from the stiffness of the section: l [m]; e0 6x2[m, 1]; at 3[m]; D 4[N m] -> A 120[N m]; G0
  * 15[1] */
 void beam12p_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const fu_real *at, const fu_real *D, fu_real *A, fu_real *G0);
@@ -614,7 +614,7 @@ void beam12p_continuum_curved_step_stiffness(fu_real l, const fu_real *e, const 
  * e0 6x2[m, 1] -> force 3[N]; moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void beam12p_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* beam12p_structural: elastic law structural on beam12p */
+/* beam12p_structural.c */
 /* constants of the law from the stiffness of the section and the reference: l [m]; e0 6x2[m, 1]; S 4[N, N m^2] -> A
  * 15[N, N m^2, 1, 1/m] */
 void beam12p_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
@@ -637,7 +637,7 @@ void beam12p_structural_dissipation(fu_real l, const fu_real *e, const fu_real *
  * moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void beam12p_structural_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable8p_green_exact: elastic law green_exact on cable8p */
+/* cable8p_green_exact.c */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable8p_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x2[m, 1]; A 2[N, N m^2] -> U 1[J] */
@@ -667,7 +667,7 @@ void cable8p_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable8p_green_linear: elastic law green_linear on cable8p */
+/* cable8p_green_linear.c */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable8p_green_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x2[m, 1]; A 2[N, N m^2] -> U 1[J] */
@@ -683,7 +683,7 @@ void cable8p_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_r
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable8p_engineering_exact: elastic law engineering_exact on cable8p */
+/* cable8p_engineering_exact.c */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable8p_engineering_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x2[m, 1]; A 2[N, N m^2] -> U 1[J] */
@@ -710,7 +710,7 @@ void cable8p_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, co
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable8p_engineering_linear: elastic law engineering_linear on cable8p */
+/* cable8p_engineering_linear.c */
 /* constants of the law from the stiffness of the section: l [m]; S 2[N, N m^2] -> A 2[N, N m^2] */
 void cable8p_engineering_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x2[m, 1]; A 2[N, N m^2] -> U 1[J] */
@@ -726,7 +726,7 @@ void cable8p_engineering_linear_discrete_force(fu_real l, const fu_real *e, cons
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable8p_green_exact_assumed: elastic law green_exact_assumed on cable8p */
+/* cable8p_green_exact_assumed.c */
 /* constants of the law from the stiffness of the section: l [m]; S 3[N, N m^2, N] -> A 3[N, N m^2, N] */
 void cable8p_green_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x2[m, 1]; A 3[N, N m^2, N] -> U 1[J] */
@@ -745,7 +745,7 @@ void cable8p_green_exact_assumed_step_stiffness(fu_real l, const fu_real *e, con
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_green_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable8p_green_linear_assumed: elastic law green_linear_assumed on cable8p */
+/* cable8p_green_linear_assumed.c */
 /* constants of the law from the stiffness of the section: l [m]; S 3[N, N m^2, N] -> A 3[N, N m^2, N] */
 void cable8p_green_linear_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x2[m, 1]; A 3[N, N m^2, N] -> U 1[J] */
@@ -761,7 +761,7 @@ void cable8p_green_linear_assumed_discrete_force(fu_real l, const fu_real *e, co
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_green_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable8p_engineering_exact_assumed: elastic law engineering_exact_assumed on cable8p */
+/* cable8p_engineering_exact_assumed.c */
 /* constants of the law from the stiffness of the section: l [m]; S 3[N, N m^2, N] -> A 3[N, N m^2, N] */
 void cable8p_engineering_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x2[m, 1]; A 3[N, N m^2, N] -> U 1[J] */
@@ -777,7 +777,7 @@ void cable8p_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable8p_engineering_linear_assumed: elastic law engineering_linear_assumed on cable8p */
+/* cable8p_engineering_linear_assumed.c */
 /* constants of the law from the stiffness of the section: l [m]; S 3[N, N m^2, N] -> A 3[N, N m^2, N] */
 void cable8p_engineering_linear_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x2[m, 1]; A 3[N, N m^2, N] -> U 1[J] */
@@ -793,7 +793,7 @@ void cable8p_engineering_linear_assumed_discrete_force(fu_real l, const fu_real 
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* cable8p_engineering_exact_tension_only: elastic law engineering_exact_tension_only on cable8p */
+/* cable8p_engineering_exact_tension_only.c */
 /* constants of the law from the stiffness of the section: l [m]; S 4[N, N m^2, 1, 1] -> A 4[N, N m^2, 1, 1] */
 void cable8p_engineering_exact_tension_only_stiffness(fu_real l, const fu_real *S, fu_real *A);
 /* elastic energy: l [m]; e 4x2[m, 1]; A 4[N, N m^2, 1, 1] -> U 1[J] */
@@ -820,7 +820,7 @@ void cable8p_engineering_exact_tension_only_dissipation(fu_real l, const fu_real
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_exact_tension_only_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
-/* rigid: rigid body */
+/* rigid.c */
 /* position and Jacobian of a point: b 7[m, 1]; u 3[m] -> p 3[m]; p_q 3x6[1, m] */
 void rigid_place(const fu_real *b, const fu_real *u, fu_real *p, fu_real *p_q);
 /* position, Jacobian, velocity and acceleration bias of a point: b 7[m, 1]; u 3[m]; w 6[m/s, rad/s] -> p 3[m]; p_q
@@ -863,7 +863,7 @@ void rigid_rate(const fu_real *b, const fu_real *w, fu_real *b_rate);
 /* translation and small turn that a change of b is: b 7[m, 1]; change 7[m, 1] -> step 6[m, rad] */
 void rigid_increment(const fu_real *b, const fu_real *change, fu_real *step);
 
-/* planar_rigid: planar rigid body */
+/* planar_rigid.c */
 /* position and Jacobian of a point: b 4[m, 1]; u 2[m] -> p 2[m]; p_q 2x3[1, m] */
 void planar_rigid_place(const fu_real *b, const fu_real *u, fu_real *p, fu_real *p_q);
 /* position, Jacobian, velocity and acceleration bias of a point: b 4[m, 1]; u 2[m]; w 3[m/s, rad/s] -> p 2[m]; p_q
@@ -906,7 +906,7 @@ void planar_rigid_rate(const fu_real *b, const fu_real *w, fu_real *b_rate);
 /* translation and small turn that a change of b is: b 4[m, 1]; change 4[m, 1] -> step 3[m, rad] */
 void planar_rigid_increment(const fu_real *b, const fu_real *change, fu_real *step);
 
-/* modal: modal body on a rigid frame */
+/* modal.c */
 /* inertia and weight of a modal body: force, moment about its origin: b 7[m, 1]; w 6[m/s, rad/s]; a 6[m/s^2,
  * rad/s^2]; g 3[m/s^2]; mass [kg]; S 3[kg m]; S1 3[kg m]; S2 3[kg m]; X 3x3[kg m^2]; X1 3x3[kg m^2]; X2 3x3[kg m^2]
  * -> f 6[N, N m] */
@@ -961,7 +961,7 @@ void modal_attachment_mode_follower(const fu_real *b, const fu_real *u, const fu
  * 3[rad/m]; phi_l 3[1]; psi_l 3[rad/m]; c 3[N] -> K 1[N/m] */
 void modal_attachment_pair_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K);
 
-/* planar_modal: modal body on a planar_rigid frame */
+/* planar_modal.c */
 /* inertia and weight of a modal body: force, moment about its origin: b 4[m, 1]; w 3[m/s, rad/s]; a 3[m/s^2,
  * rad/s^2]; g 2[m/s^2]; mass [kg]; S 2[kg m]; S1 2[kg m]; S2 2[kg m]; X 2x2[kg m^2]; X1 2x2[kg m^2]; X2 2x2[kg m^2]
  * -> f 3[N, N m] */
@@ -1016,7 +1016,7 @@ void planar_modal_attachment_mode_follower(const fu_real *b, const fu_real *u, c
  * 1[rad/m]; phi_l 2[1]; psi_l 1[rad/m]; c 2[N] -> K 1[N/m] */
 void planar_modal_attachment_pair_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K);
 
-/* slide_beam24_rigid: sliding joint of a rigid rider on a beam24 cable */
+/* slide_beam24_rigid.c */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 8x3[m, 1]; b 7[m, 1]; u 3[m]; director 3[1] -> C 3[m]; C_s 3[1];
  * s_step 1[m]; A_t 3x3[1] */
 void slide_beam24_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -1034,7 +1034,7 @@ void slide_beam24_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu
  * 7[m, 1] -> G 3x31[1, m] */
 void slide_beam24_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
-/* slide_beam24_point: sliding joint of a point rider on a beam24 cable */
+/* slide_beam24_point.c */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 8x3[m, 1]; b 3[m]; u 3[m]; director 3[1] -> C 3[m]; C_s 3[1];
  * s_step 1[m]; A_t 3x3[1] */
 void slide_beam24_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -1052,7 +1052,7 @@ void slide_beam24_point_tangent(fu_real l, fu_real x, const fu_real *e, const fu
  * 1] -> G 3x28[1, m] */
 void slide_beam24_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
-/* slide_cable12_rigid: sliding joint of a rigid rider on a cable12 cable */
+/* slide_cable12_rigid.c */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 4x3[m, 1]; b 7[m, 1]; u 3[m]; director 3[1] -> C 3[m]; C_s 3[1];
  * s_step 1[m]; A_t 3x3[1] */
 void slide_cable12_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -1070,7 +1070,7 @@ void slide_cable12_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const f
  * 7[m, 1] -> G 3x19[1, m] */
 void slide_cable12_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
-/* slide_cable12_point: sliding joint of a point rider on a cable12 cable */
+/* slide_cable12_point.c */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 4x3[m, 1]; b 3[m]; u 3[m]; director 3[1] -> C 3[m]; C_s 3[1];
  * s_step 1[m]; A_t 3x3[1] */
 void slide_cable12_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -1088,7 +1088,7 @@ void slide_cable12_point_tangent(fu_real l, fu_real x, const fu_real *e, const f
  * 1] -> G 3x16[1, m] */
 void slide_cable12_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
-/* slide_cable18_rigid: sliding joint of a rigid rider on a cable18 cable */
+/* slide_cable18_rigid.c */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 6x3[m, 1]; b 7[m, 1]; u 3[m]; director 3[1] -> C 3[m]; C_s 3[1];
  * s_step 1[m]; A_t 3x3[1] */
 void slide_cable18_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -1106,7 +1106,7 @@ void slide_cable18_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const f
  * 7[m, 1] -> G 3x25[1, m] */
 void slide_cable18_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
-/* slide_cable18_point: sliding joint of a point rider on a cable18 cable */
+/* slide_cable18_point.c */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 6x3[m, 1]; b 3[m]; u 3[m]; director 3[1] -> C 3[m]; C_s 3[1];
  * s_step 1[m]; A_t 3x3[1] */
 void slide_cable18_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -1124,7 +1124,7 @@ void slide_cable18_point_tangent(fu_real l, fu_real x, const fu_real *e, const f
  * 1] -> G 3x22[1, m] */
 void slide_cable18_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
-/* slide_beam12p_planar_rigid: sliding joint of a planar_rigid rider on a beam12p cable */
+/* slide_beam12p_planar_rigid.c */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 6x2[m, 1]; b 4[m, 1]; u 2[m]; director 2[1] -> C 2[m]; C_s 2[1];
  * s_step 1[m]; A_t 2x2[1] */
 void slide_beam12p_planar_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -1142,7 +1142,7 @@ void slide_beam12p_planar_rigid_tangent(fu_real l, fu_real x, const fu_real *e, 
  * 4[m, 1] -> G 2x16[1, m] */
 void slide_beam12p_planar_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
-/* slide_beam12p_planar_point: sliding joint of a planar_point rider on a beam12p cable */
+/* slide_beam12p_planar_point.c */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 6x2[m, 1]; b 2[m]; u 2[m]; director 2[1] -> C 2[m]; C_s 2[1];
  * s_step 1[m]; A_t 2x2[1] */
 void slide_beam12p_planar_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -1160,7 +1160,7 @@ void slide_beam12p_planar_point_tangent(fu_real l, fu_real x, const fu_real *e, 
  * 1] -> G 2x15[1, m] */
 void slide_beam12p_planar_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
-/* slide_cable8p_planar_rigid: sliding joint of a planar_rigid rider on a cable8p cable */
+/* slide_cable8p_planar_rigid.c */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 4x2[m, 1]; b 4[m, 1]; u 2[m]; director 2[1] -> C 2[m]; C_s 2[1];
  * s_step 1[m]; A_t 2x2[1] */
 void slide_cable8p_planar_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -1178,7 +1178,7 @@ void slide_cable8p_planar_rigid_tangent(fu_real l, fu_real x, const fu_real *e, 
  * 4[m, 1] -> G 2x12[1, m] */
 void slide_cable8p_planar_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
-/* slide_cable8p_planar_point: sliding joint of a planar_point rider on a cable8p cable */
+/* slide_cable8p_planar_point.c */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 4x2[m, 1]; b 2[m]; u 2[m]; director 2[1] -> C 2[m]; C_s 2[1];
  * s_step 1[m]; A_t 2x2[1] */
 void slide_cable8p_planar_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -1196,7 +1196,7 @@ void slide_cable8p_planar_point_tangent(fu_real l, fu_real x, const fu_real *e, 
  * 1] -> G 2x11[1, m] */
 void slide_cable8p_planar_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
-/* frame: frame of two vectors in space */
+/* frame.c */
 /* frame of two vectors, and its turn by them: a 3[1]; b 3[1] -> A 3x3[1]; T 3x6[rad] */
 void frame_axes(const fu_real *a, const fu_real *b, fu_real *A, fu_real *T);
 /* angular velocity and acceleration of the frame: a 3[1]; b 3[1]; a_rate 3[1/s]; b_rate 3[1/s]; a_second 3[1/s^2];
@@ -1206,7 +1206,7 @@ void frame_motion(const fu_real *a, const fu_real *b, const fu_real *a_rate, con
  * K 6x6[N m] */
 void frame_moment(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
 
-/* planar_frame: frame of two vectors in the plane */
+/* planar_frame.c */
 /* frame of two vectors, and its turn by them: a 2[1]; b 2[1] -> A 2x2[1]; T 1x4[rad] */
 void planar_frame_axes(const fu_real *a, const fu_real *b, fu_real *A, fu_real *T);
 /* angular velocity and acceleration of the frame: a 2[1]; b 2[1]; a_rate 2[1/s]; b_rate 2[1/s]; a_second 2[1/s^2];
@@ -1216,7 +1216,7 @@ void planar_frame_motion(const fu_real *a, const fu_real *b, const fu_real *a_ra
  * K 4x4[N m] */
 void planar_frame_moment(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
 
-/* joint_spherical: spherical joint between two frames */
+/* joint_spherical.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 3[N, N m] -> phi 3[m, 1]; J 3x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_spherical_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1224,7 +1224,7 @@ void joint_spherical_force(const fu_real *gap, const fu_real *A1, const fu_real 
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 3[m/s, 1/s]; Q_d 3[m/s^2, 1/s^2] */
 void joint_spherical_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_revolute: revolute joint between two frames */
+/* joint_revolute.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 5[N, N m] -> phi 5[m, 1]; J 5x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_revolute_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1232,7 +1232,7 @@ void joint_revolute_force(const fu_real *gap, const fu_real *A1, const fu_real *
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 5[m/s, 1/s]; Q_d 5[m/s^2, 1/s^2] */
 void joint_revolute_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_revolute_angle: revolute angle joint between two frames */
+/* joint_revolute_angle.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 6[N, N m] -> phi 6[m, 1]; J 6x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_revolute_angle_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1240,7 +1240,7 @@ void joint_revolute_angle_force(const fu_real *gap, const fu_real *A1, const fu_
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 6[m/s, 1/s]; Q_d 6[m/s^2, 1/s^2] */
 void joint_revolute_angle_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_universal: universal joint between two frames */
+/* joint_universal.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 4[N, N m] -> phi 4[m, 1]; J 4x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_universal_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1248,7 +1248,7 @@ void joint_universal_force(const fu_real *gap, const fu_real *A1, const fu_real 
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 4[m/s, 1/s]; Q_d 4[m/s^2, 1/s^2] */
 void joint_universal_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_cylindrical: cylindrical joint between two frames */
+/* joint_cylindrical.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 4[N, N m] -> phi 4[m, 1]; J 4x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_cylindrical_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1256,7 +1256,7 @@ void joint_cylindrical_force(const fu_real *gap, const fu_real *A1, const fu_rea
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 4[m/s, 1/s]; Q_d 4[m/s^2, 1/s^2] */
 void joint_cylindrical_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_cylindrical_angle: cylindrical angle joint between two frames */
+/* joint_cylindrical_angle.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 5[N, N m] -> phi 5[m, 1]; J 5x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_cylindrical_angle_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1264,7 +1264,7 @@ void joint_cylindrical_angle_force(const fu_real *gap, const fu_real *A1, const 
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 5[m/s, 1/s]; Q_d 5[m/s^2, 1/s^2] */
 void joint_cylindrical_angle_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_cylindrical_distance: cylindrical distance joint between two frames */
+/* joint_cylindrical_distance.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 5[N, N m] -> phi 5[m, 1]; J 5x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_cylindrical_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1272,7 +1272,7 @@ void joint_cylindrical_distance_force(const fu_real *gap, const fu_real *A1, con
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 5[m/s, 1/s]; Q_d 5[m/s^2, 1/s^2] */
 void joint_cylindrical_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_prismatic: prismatic joint between two frames */
+/* joint_prismatic.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 5[N, N m] -> phi 5[m, 1]; J 5x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_prismatic_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1280,7 +1280,7 @@ void joint_prismatic_force(const fu_real *gap, const fu_real *A1, const fu_real 
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 5[m/s, 1/s]; Q_d 5[m/s^2, 1/s^2] */
 void joint_prismatic_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_prismatic_distance: prismatic distance joint between two frames */
+/* joint_prismatic_distance.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 6[N, N m] -> phi 6[m, 1]; J 6x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_prismatic_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1288,7 +1288,7 @@ void joint_prismatic_distance_force(const fu_real *gap, const fu_real *A1, const
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 6[m/s, 1/s]; Q_d 6[m/s^2, 1/s^2] */
 void joint_prismatic_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_weld: weld joint between two frames */
+/* joint_weld.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 6[N, N m] -> phi 6[m, 1]; J 6x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_weld_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1296,7 +1296,7 @@ void joint_weld_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, 
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 6[m/s, 1/s]; Q_d 6[m/s^2, 1/s^2] */
 void joint_weld_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_distance: distance joint between two frames */
+/* joint_distance.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 1[N, N m] -> phi 1[m, 1]; J 1x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1304,7 +1304,7 @@ void joint_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 1[m/s, 1/s]; Q_d 1[m/s^2, 1/s^2] */
 void joint_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_aligned: aligned joint between two frames */
+/* joint_aligned.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 2[N, N m] -> phi 2[m, 1]; J 2x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_aligned_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1312,7 +1312,7 @@ void joint_aligned_force(const fu_real *gap, const fu_real *A1, const fu_real *A
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 2[m/s, 1/s]; Q_d 2[m/s^2, 1/s^2] */
 void joint_aligned_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_locked: locked joint between two frames */
+/* joint_locked.c */
 /* equations, their derivatives, and those of the force J' f: gap 3[m]; A1 3x3[1]; A2 3x3[1]; c 3[m or rad, 1, 1]; f
  * 3[N, N m] -> phi 3[m, 1]; J 3x9[1, m]; K 9x9[N/m, N, N m] */
 void joint_locked_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1320,7 +1320,7 @@ void joint_locked_force(const fu_real *gap, const fu_real *A1, const fu_real *A2
  * 3[rad/s]; omega2 3[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 3[m/s, 1/s]; Q_d 3[m/s^2, 1/s^2] */
 void joint_locked_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_planar_spherical: planar spherical joint between two frames */
+/* joint_planar_spherical.c */
 /* equations, their derivatives, and those of the force J' f: gap 2[m]; A1 2x2[1]; A2 2x2[1]; c 3[m or rad, 1, 1]; f
  * 2[N, N m] -> phi 2[m, 1]; J 2x4[1, m]; K 4x4[N/m, N, N m] */
 void joint_planar_spherical_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1328,7 +1328,7 @@ void joint_planar_spherical_force(const fu_real *gap, const fu_real *A1, const f
  * 1[rad/s]; omega2 1[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 2[m/s, 1/s]; Q_d 2[m/s^2, 1/s^2] */
 void joint_planar_spherical_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_planar_revolute_angle: planar revolute angle joint between two frames */
+/* joint_planar_revolute_angle.c */
 /* equations, their derivatives, and those of the force J' f: gap 2[m]; A1 2x2[1]; A2 2x2[1]; c 3[m or rad, 1, 1]; f
  * 3[N, N m] -> phi 3[m, 1]; J 3x4[1, m]; K 4x4[N/m, N, N m] */
 void joint_planar_revolute_angle_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1336,7 +1336,7 @@ void joint_planar_revolute_angle_force(const fu_real *gap, const fu_real *A1, co
  * 1[rad/s]; omega2 1[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 3[m/s, 1/s]; Q_d 3[m/s^2, 1/s^2] */
 void joint_planar_revolute_angle_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_planar_prismatic: planar prismatic joint between two frames */
+/* joint_planar_prismatic.c */
 /* equations, their derivatives, and those of the force J' f: gap 2[m]; A1 2x2[1]; A2 2x2[1]; c 3[m or rad, 1, 1]; f
  * 2[N, N m] -> phi 2[m, 1]; J 2x4[1, m]; K 4x4[N/m, N, N m] */
 void joint_planar_prismatic_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1344,7 +1344,7 @@ void joint_planar_prismatic_force(const fu_real *gap, const fu_real *A1, const f
  * 1[rad/s]; omega2 1[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 2[m/s, 1/s]; Q_d 2[m/s^2, 1/s^2] */
 void joint_planar_prismatic_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_planar_prismatic_distance: planar prismatic distance joint between two frames */
+/* joint_planar_prismatic_distance.c */
 /* equations, their derivatives, and those of the force J' f: gap 2[m]; A1 2x2[1]; A2 2x2[1]; c 3[m or rad, 1, 1]; f
  * 3[N, N m] -> phi 3[m, 1]; J 3x4[1, m]; K 4x4[N/m, N, N m] */
 void joint_planar_prismatic_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1352,7 +1352,7 @@ void joint_planar_prismatic_distance_force(const fu_real *gap, const fu_real *A1
  * 1[rad/s]; omega2 1[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 3[m/s, 1/s]; Q_d 3[m/s^2, 1/s^2] */
 void joint_planar_prismatic_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_planar_weld: planar weld joint between two frames */
+/* joint_planar_weld.c */
 /* equations, their derivatives, and those of the force J' f: gap 2[m]; A1 2x2[1]; A2 2x2[1]; c 3[m or rad, 1, 1]; f
  * 3[N, N m] -> phi 3[m, 1]; J 3x4[1, m]; K 4x4[N/m, N, N m] */
 void joint_planar_weld_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1360,7 +1360,7 @@ void joint_planar_weld_force(const fu_real *gap, const fu_real *A1, const fu_rea
  * 1[rad/s]; omega2 1[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 3[m/s, 1/s]; Q_d 3[m/s^2, 1/s^2] */
 void joint_planar_weld_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_planar_distance: planar distance joint between two frames */
+/* joint_planar_distance.c */
 /* equations, their derivatives, and those of the force J' f: gap 2[m]; A1 2x2[1]; A2 2x2[1]; c 3[m or rad, 1, 1]; f
  * 1[N, N m] -> phi 1[m, 1]; J 1x4[1, m]; K 4x4[N/m, N, N m] */
 void joint_planar_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1368,7 +1368,7 @@ void joint_planar_distance_force(const fu_real *gap, const fu_real *A1, const fu
  * 1[rad/s]; omega2 1[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 1[m/s, 1/s]; Q_d 1[m/s^2, 1/s^2] */
 void joint_planar_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* joint_planar_locked: planar locked joint between two frames */
+/* joint_planar_locked.c */
 /* equations, their derivatives, and those of the force J' f: gap 2[m]; A1 2x2[1]; A2 2x2[1]; c 3[m or rad, 1, 1]; f
  * 1[N, N m] -> phi 1[m, 1]; J 1x4[1, m]; K 4x4[N/m, N, N m] */
 void joint_planar_locked_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
@@ -1376,17 +1376,17 @@ void joint_planar_locked_force(const fu_real *gap, const fu_real *A1, const fu_r
  * 1[rad/s]; omega2 1[rad/s]; c_rate 2[m/s or rad/s, and per s] -> phi_t 1[m/s, 1/s]; Q_d 1[m/s^2, 1/s^2] */
 void joint_planar_locked_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* resistance: friction and buffers of slides in space */
+/* resistance.c */
 /* force along the cable on a slide, and its derivatives: t 3[1]; u 3[m/s]; f 3[N]; friction 5[1, N s/m, m/s, 1, N];
  * buffer 4[N/m, N s/m, m, 1] -> R 1[N]; R_t 3[N]; R_u 3[N s/m]; R_f 3[1]; R_x 1[N/m] */
 void resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 
-/* planar_resistance: friction and buffers of slides in the plane */
+/* planar_resistance.c */
 /* force along the cable on a slide, and its derivatives: t 2[1]; u 2[m/s]; f 2[N]; friction 5[1, N s/m, m/s, 1, N];
  * buffer 4[N/m, N s/m, m, 1] -> R 1[N]; R_t 2[N]; R_u 2[N s/m]; R_f 2[1]; R_x 1[N/m] */
 void planar_resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 
-/* drag: drag of a fluid in space */
+/* drag.c */
 /* drag a length of a cable, and its derivatives: t 3[1]; w 3[m/s]; c 3[N s^2/m^3, N s^2/m^3, m/s] -> f 3[N/m]; f_t
  * 3x3[N/m]; f_w 3x3[N s/m^2] */
 void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
@@ -1432,7 +1432,7 @@ void drag_entry_of_cable(const fu_real *t, const fu_real *m, const fu_real *w, c
  * 3[N]; f_turn 3x3[N]; f_w 3x3[kg/s]; f_v 3x3[kg/s]; f_n 3x3[J m] */
 void drag_entry_of_point(const fu_real *A, const fu_real *C, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_turn, fu_real *f_w, fu_real *f_v, fu_real *f_n);
 
-/* planar_drag: drag of a fluid in the plane */
+/* planar_drag.c */
 /* drag a length of a cable, and its derivatives: t 2[1]; w 2[m/s]; c 3[N s^2/m^3, N s^2/m^3, m/s] -> f 2[N/m]; f_t
  * 2x2[N/m]; f_w 2x2[N s/m^2] */
 void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
@@ -1472,7 +1472,7 @@ void planar_drag_entry_of_cable(const fu_real *t, const fu_real *m, const fu_rea
  * 2[N]; f_turn 2x1[N]; f_w 2x2[kg/s]; f_v 2x2[kg/s]; f_n 2x2[J m] */
 void planar_drag_entry_of_point(const fu_real *A, const fu_real *C, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_turn, fu_real *f_w, fu_real *f_v, fu_real *f_n);
 
-/* crossing: lines that touch at their closest points in space */
+/* crossing.c */
 /* a step of Newton's method to the closest points: d 3[m]; t 2x3[1]; k 2x3[1/m] -> step 2[m] */
 void crossing_closest(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
 /* penetration and contact force at closest points: d 3[m]; t 2x3[1]; u 3[m/s]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1,
@@ -1496,7 +1496,7 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
  * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 3[N]; M 2x3[N m]; lost 1[J] */
 void crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
 
-/* planar_crossing: lines that touch at their closest points in the plane */
+/* planar_crossing.c */
 /* a step of Newton's method to the closest points: d 2[m]; t 1x2[1]; k 1x2[1/m] -> step 1[m] */
 void planar_crossing_closest(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
 /* penetration and contact force at closest points: d 2[m]; t 1x2[1]; u 2[m/s]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1,
@@ -1520,7 +1520,7 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
  * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 2[N]; M 1x2[N m]; lost 1[J] */
 void planar_crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
 
-/* surface: surfaces and contact with them in space */
+/* surface.c */
 /* distance from a plane, and its gradient: y 3[m]; normal 3[1] -> g 1[m]; g_y 3[1] */
 void surface_flat(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
 /* distance from a sphere or a cylinder, with its derivatives: y 3[m]; axis 3[1]; radius [m] -> g 1[m]; g_y 3[1];
@@ -1546,7 +1546,7 @@ void surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_r
  * 3[m]; mu [1] -> f 3[N (a length)]; f_y 3x3[N/m (a length)]; f_w 3x3[N s/m (a length)]; f_x 3x3[N/m (a length)] */
 void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
 
-/* planar_surface: surfaces and contact with them in the plane */
+/* planar_surface.c */
 /* distance from a plane, and its gradient: y 2[m]; normal 2[1] -> g 1[m]; g_y 2[1] */
 void planar_surface_flat(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
 /* distance from a sphere or a cylinder, with its derivatives: y 2[m]; axis 2[1]; radius [m] -> g 1[m]; g_y 2[1];
@@ -1572,7 +1572,7 @@ void planar_surface_sticking(const fu_real *n, const fu_real *H, const fu_real *
  * 2[m]; mu [1] -> f 2[N (a length)]; f_y 2x2[N/m (a length)]; f_w 2x2[N s/m (a length)]; f_x 2x2[N/m (a length)] */
 void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
 
-/* spring: spring and damper between two points in space */
+/* spring.c */
 /* stored energy: parameters 3[N/m, N s/m, m]; gap 3[m] -> U 1[J] */
 void spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
 /* power that the damper takes: parameters 3[N/m, N s/m, m]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
@@ -1586,7 +1586,7 @@ void spring_tangent(const fu_real *parameters, const fu_real *gap, const fu_real
  * 3[m]; gap_next 3[m] -> f 3[N]; P 1[W] */
 void spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
 
-/* planar_spring: spring and damper between two points in the plane */
+/* planar_spring.c */
 /* stored energy: parameters 3[N/m, N s/m, m]; gap 2[m] -> U 1[J] */
 void planar_spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
 /* power that the damper takes: parameters 3[N/m, N s/m, m]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */
@@ -1600,7 +1600,7 @@ void planar_spring_tangent(const fu_real *parameters, const fu_real *gap, const 
  * 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
 void planar_spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
 
-/* spring_piece: one piece of a spring of piecewise linear tension, and damper, between two points in space */
+/* spring_piece.c */
 /* stored energy: parameters 5[N/m, N s/m, m, N, J]; gap 3[m] -> U 1[J] */
 void spring_piece_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
 /* power that the damper takes: parameters 5[N/m, N s/m, m, N, J]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
@@ -1614,7 +1614,7 @@ void spring_piece_tangent(const fu_real *parameters, const fu_real *gap, const f
  * gap 3[m]; gap_next 3[m] -> f 3[N]; P 1[W] */
 void spring_piece_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
 
-/* planar_spring_piece: one piece of a spring of piecewise linear tension, and damper, between two points in the plane */
+/* planar_spring_piece.c */
 /* stored energy: parameters 5[N/m, N s/m, m, N, J]; gap 2[m] -> U 1[J] */
 void planar_spring_piece_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
 /* power that the damper takes: parameters 5[N/m, N s/m, m, N, J]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */
@@ -1628,7 +1628,7 @@ void planar_spring_piece_tangent(const fu_real *parameters, const fu_real *gap, 
  * gap 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
 void planar_spring_piece_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
 
-/* zero_length_spring: spring and damper of no length between two points in space */
+/* zero_length_spring.c */
 /* stored energy: parameters 2[N/m, N s/m]; gap 3[m] -> U 1[J] */
 void zero_length_spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
 /* power that the damper takes: parameters 2[N/m, N s/m]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
@@ -1642,7 +1642,7 @@ void zero_length_spring_tangent(const fu_real *parameters, const fu_real *gap, c
  * gap_next 3[m] -> f 3[N]; P 1[W] */
 void zero_length_spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
 
-/* planar_zero_length_spring: spring and damper of no length between two points in the plane */
+/* planar_zero_length_spring.c */
 /* stored energy: parameters 2[N/m, N s/m]; gap 2[m] -> U 1[J] */
 void planar_zero_length_spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
 /* power that the damper takes: parameters 2[N/m, N s/m]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */

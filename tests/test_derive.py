@@ -3,6 +3,8 @@
 import hashlib
 import json
 import os
+import re
+import shutil
 import subprocess
 import sys
 from ast import literal_eval
@@ -18,6 +20,7 @@ from funicular.derive.codegen.family import Family, FamilyError
 from funicular.derive.codegen.program import Program
 from funicular.derive.verify.compiled import compiler
 from funicular.kernels.elements import of_manifest
+from import_contracts import TOP, installed_tree
 from operation_ceilings import CEILINGS, POINT_LAW
 
 FRESH = ["rigid", "cable8p"]
@@ -33,7 +36,7 @@ def hashes(files: dict[str, str]) -> dict[str, str]:
 @pytest.fixture(scope="module")
 def derived() -> dict[str, str]:
     """The generated files as they are checked in."""
-    return {name: drift.current(name) for name in (*drift.record()["files"], drift.MANIFEST)}
+    return {name: drift.current(name) for name in (*drift.record()["files"], *emit.COMMON, drift.MANIFEST)}
 
 
 @pytest.fixture
@@ -91,10 +94,9 @@ def _more_extra(folder: Path) -> None:
 
 
 def _stale(folder: Path) -> None:
-    manifest = json.loads((folder / "manifest.json").read_text())
-    old, new = manifest["families"]["rigid"]["spec_hash"], "0123456789abcdef"
-    for name in ("manifest.json", "rigid.c"):
-        (folder / name).write_text((folder / name).read_text().replace(old, new))
+    _edited(folder)
+    manifest = folder / "manifest.json"
+    manifest.write_text(re.sub(r'("bodies/rigid.py": )"\w+"', r'\1"0123456789abcdef"', manifest.read_text()))
 
 
 def _line_ends(folder: Path) -> None:
@@ -122,7 +124,8 @@ def test_what_a_build_and_an_import_leave_is_no_drift(copy, remembered):
     (_missing, ("missing: generated/registry.c",), True),
     (_extra, ("extra: generated/old_element.c", "delete"), False),
     (_more_extra, tuple(f"extra: generated/{name} (" for name in (*EXTRA, "empty", "linked")), False),
-    (_stale, ("stale (its spec has changed): generated/rigid.c", "- * spec hash 0123456789abcdef"), True),
+    (_stale, ("stale (its spec has changed): generated/rigid.c", "-        arm_X",
+              '-  "bodies/rigid.py": "0123456789abcdef"'), True),
     (_line_ends, ("differs: generated/kernels.h", "line ends"), True),
     (_no_manifest, ("differs: generated/manifest.json",), True),
 ], ids=lambda v: v.__name__.strip("_") if callable(v) else "")
@@ -204,7 +207,7 @@ def test_kernels_of_a_role_that_differ_are_refused_or_declared():
     def family(name, parameters, **more):
         program = Program(f"{name}_area", "area", "")
         program.output("A", [sum(program.input(p, (), "m", "side") for p in parameters)], "m", "area")
-        return emit.Derived(Family(name, "", list, (), role="shape", **more), [program], [], "")
+        return emit.Derived(Family(name, "", list, (), role="shape", **more), [program])
 
     square, box = family("square", "a"), family("box", "ab")
     with pytest.raises(FamilyError, match=r'role "shape": .* kernel area .* square has \(fu_real a, fu_real \*A\), '
@@ -231,20 +234,97 @@ def test_a_scene_knows_of_a_law_what_its_spec_says(derived):
             assert known.straight in {"", *family.element.laws}
 
 
-def test_the_manifest_holds_the_hashes_of_the_files(derived):
-    manifest = json.loads(derived["manifest.json"])
-    assert manifest["files"] == hashes({n: text for n, text in derived.items() if n != drift.MANIFEST})
-    assert set(derived) >= {f"{name}.c" for name in families()}
-    for name, family in manifest["families"].items():
+def test_hashes_stand_in_the_manifest_alone(derived):
+    manifest, every = json.loads(derived["manifest.json"]), families().values()
+    of_families = {name: derived[name] for family in every for name in drift.of(family)}
+    assert manifest["files"] == hashes(of_families)
+    assert manifest["sources"] == provenance.hashes(every)
+    assert not any(re.search(r"\b(?=\d*[a-f])[0-9a-f]{16,}\b", text) for text in of_families.values())
+    for name in manifest["families"]:
         preamble = derived[f"{name}.c"].partition("*/")[0]
         assert f"funicular derive {name}" in preamble
-        assert family["spec_hash"] in preamble
         for kernel, entry in manifest["kernels"].items():
             if entry["family"] == name:
                 assert f" *   {kernel}: " in preamble
 
 
-def test_the_spec_hash_covers_all_that_decides_a_family():
+def edit(monkeypatch, file: str, old: str, new: str) -> None:
+    """Let a source of derive/ read as edited in one place."""
+    read = provenance._read
+    assert read(file).decode().count(old) == 1
+    monkeypatch.setattr(provenance, "_read",
+                        lambda name: read(name).replace(old.encode(), new.encode()) if name == file else read(name))
+
+
+@pytest.mark.parametrize(("file", "old", "new"), [
+    ("codegen/c_printer.py", "Return the C text of an expression.", "Return an expression as C text."),
+    ("codegen/c_printer.py", "# SymPy's printer knows", "# The printer of SymPy knows"),
+    ("codegen/c_printer.py", "SymPy expressions to C text: the same", "SymPy expressions as C text, the same"),
+    ("codegen/sharing.py", "Characters of a stage that are worth a macro", "Length of a stage that is worth a macro"),
+], ids=["docstring", "comment", "module", "constant"])
+def test_docstrings_and_comments_of_a_source_change_nothing(monkeypatch, file, old, new):
+    edit(monkeypatch, file, old, new)
+    assert pipeline.changed() == []
+    assert provenance.hashes(families().values()) == drift.record()["sources"]
+
+
+@pytest.mark.parametrize(("file", "old", "new"), [
+    ("bodies/rigid.py", '= "rigid body"', '= "stiff body"'),
+    ("bodies/rigid.py", "DOC, SOURCE = ", "import itertools\nDOC, SOURCE = "),
+    ("bodies/rigid.py", "= \"rigid\", 3, 7, 6", "= \"rigid\", 3, 7, 6.0"),
+], ids=["text", "statement", "type"])
+def test_any_other_edit_of_a_spec_has_its_families_derived(monkeypatch, file, old, new):
+    edit(monkeypatch, file, old, new)
+    assert {"rigid", "modal", "slide_cable12_rigid"} <= set(pipeline.changed())
+    assert not {"cable12", "planar_spring", "crossing"} & set(pipeline.changed())
+
+
+def test_a_source_that_others_wait_for_keeps_its_old_hash(copy, monkeypatch):
+    """`derive NAME` after an edit that other families depend on, too: the next `derive` still finds these."""
+    recorded = drift.record()
+    edit(monkeypatch, "couplings/resistance.py", "RESISTANCES = ", "import itertools\nRESISTANCES = ")
+    both = ["resistance", "planar_resistance"]
+    assert pipeline.main(both[1:]) == 0
+    assert drift.record() == recorded
+    assert pipeline.changed() == both
+    assert pipeline.main(both) == 0
+    assert pipeline.changed() == []
+
+
+def test_another_version_of_a_tool_has_all_families_derived_whatever_one_of_them_was_since(copy):
+    manifest = copy / "manifest.json"
+    manifest.write_text(manifest.read_text().replace('"sympy": "', '"sympy": "0.'))
+    assert pipeline.changed() == [*families()]
+    assert pipeline.main(["frame"]) == 0
+    assert pipeline.changed() == [*families()]
+
+
+@pytest.mark.slow
+def test_a_word_in_the_doc_of_an_element_changes_its_file_and_the_manifest(tmp_path):
+    """A copy of the package, whose spec and then whose printer are edited: what `funicular derive` writes."""
+    installed_tree(tmp_path)
+    package, templates = tmp_path / "funicular", "derive/codegen/templates"
+    shutil.copytree(TOP / templates, package / templates, dirs_exist_ok=True)
+    shutil.copytree(TOP / "generated", package / "generated", dirs_exist_ok=True)
+
+    def written(file: str, old: str, new: str) -> tuple[set[str], int]:
+        source, before = package / file, contents(package / "generated")
+        assert source.read_text().count(old) == 1
+        source.write_text(source.read_text().replace(old, new))
+        script = "import sys; from funicular.derive.pipeline import main; sys.exit(main([]))"
+        subprocess.run([sys.executable, "-c", script], cwd=tmp_path, check=True, capture_output=True)
+        after = contents(package / "generated")
+        changed = {path.name for path in {*before, *after} if before.get(path) != after.get(path)
+                   and path.parent.name != "__pycache__"}
+        rows = [set(one[package / "generated" / "manifest.json"].splitlines()) for one in (before, after)]
+        return changed, len(rows[1] - rows[0])
+
+    assert written("derive/elements/cable8p.py", "planar ANCF cable", "plane ANCF cable") == (
+        {"cable8p.c", "manifest.json"}, 3)  # the doc, and the hashes of spec and file
+    assert written("derive/codegen/c_printer.py", "Return the C text of an expression.", "Print.") == (set(), 0)
+
+
+def test_the_hashed_sources_are_all_that_decide_a_family():
     beam = set(provenance.deciding(families()["beam24"].modules))
     assert beam >= {"elements/beam24.py", "elements/kernels.py", "algebra/section_integrals.py", "spec.py",
                     "codegen/program.py", "codegen/c_printer.py", "codegen/rendering.py",

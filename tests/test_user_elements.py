@@ -199,8 +199,8 @@ def described(folder: Path, shared: Path, name: str = "") -> None:
     """A manifest of one element, its digests right."""
     here = manifest()
     content = {"interface": here["interface"], "elements": {"cable12": here["elements"]["cable12"]},
-               "arguments": [], "kernels": {},
-               "tools": {}, "families": {}, "files": {},
+               "arguments": {}, "kernels": {},
+               "tools": {}, "families": {}, "sources": {}, "files": {},
                "library": {"spec": "x.py", "file": name or shared.name,
                            "sha256": hashlib.sha256(shared.read_bytes()).hexdigest()}}
     content["library"]["digest"] = manifest_digest(content)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from funicular.written_files import write_text
@@ -15,7 +15,7 @@ from . import sharing
 from .family import Family
 
 MANIFEST = "manifest.json"
-PARTS = ("tools", "families", "files", "kernels")
+PARTS = ("tools", "families", "sources", "files", "arguments", "kernels")
 """Of a manifest: what says which files are up to date."""
 
 BYTECODE = "__pycache__"
@@ -54,21 +54,22 @@ def write(files: dict[str, str]) -> list[str]:
     return changed
 
 
-def differences(files: dict[str, str]) -> list[str]:
-    """Return a paragraph for each generated file that is missing, stale or edited: kind, name, unified diff."""
+def differences(files: dict[str, str], stale: Iterable[Family]) -> list[str]:
+    """Return a paragraph for each generated file that is missing, stale or edited: kind, name, unified diff.
+
+    stale: the families whose specs have changed since their files were made.
+    """
     found = []
-    recorded = record().get("families", {})
+    made_before = {name for family in stale for name in of(family)}
     for name, text in sorted(files.items()):
         here = current(name)
         if here is None:
             found.append(f"missing: generated/{name}")
         elif here != text:
-            family = recorded.get(Path(name).stem)
-            stale = name.endswith(".c") and family and family["spec_hash"] not in text
             diff = difflib.unified_diff(here.splitlines(), text.splitlines(), f"generated/{name}",
                                         f"derived/{name}", lineterm="", n=2)
-            found.append("\n".join([f"{'stale (its spec has changed)' if stale else 'differs'}: generated/{name}",
-                                    *(list(diff) or ["(in line ends only)"])]))
+            kind = "stale (its spec has changed)" if name in made_before else "differs"
+            found.append("\n".join([f"{kind}: generated/{name}", *(list(diff) or ["(in line ends only)"])]))
     return found
 
 

@@ -1,13 +1,19 @@
-"""Which files decide a family's text, and their hash: the specs, all that they import here, and what prints them."""
+"""Which files decide the text of a family, and their hashes: the specs, what they import here, and what prints them.
+
+The hash of a Python file is that of its statements. Comments, docstrings and layout leave it as it is.
+"""
 
 from __future__ import annotations
 
 import ast
 import hashlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from functools import cache
 from importlib import resources
-from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .family import Family
 
 PACKAGE = "funicular.derive"
 PRINTING = ("codegen.c_printer", "codegen.rendering")
@@ -26,14 +32,44 @@ def deciding(roots: Iterable[str]) -> tuple[str, ...]:
     return (*(_file(m) for m in found), *TEMPLATES)
 
 
-def spec_hash(files: Iterable[str], spec: Path | None = None) -> str:
-    """Return the SHA-256 over the text of files here and of the user's file, shortened."""
-    digest = hashlib.sha256()
-    for file in files:
-        digest.update(_read(file))
-    if spec is not None:
-        digest.update(spec.read_bytes())
-    return digest.hexdigest()[:16]
+def hashes(families: Collection[Family]) -> dict[str, str]:
+    """Return the hash of each file that decides one of the families, by name in order; a user's file begins with "./".
+    """
+    files = {file for family in families for file in deciding(family.modules)}
+    own = {f"./{family.spec.name}": _hash_of_python(family.spec.read_bytes()) for family in families if family.spec}
+    return dict(sorted(({file: _hash(file) for file in files} | own).items()))
+
+
+def _hash(file: str) -> str:
+    return _hash_of_python(_read(file)) if file.endswith(".py") else _shortened(_read(file))
+
+
+@cache
+def _hash_of_python(source: bytes) -> str:
+    return _shortened(_spelled(ast.parse(source)).encode())
+
+
+def _shortened(content: bytes) -> str:
+    """Return the SHA-256 of a content, shortened."""
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
+def _spelled(node: object) -> str:
+    """Return the text of a node of a syntax tree without its docstrings, the same for all versions of Python.
+
+    Empty fields are left out: a version adds some for statements that only later code can have.
+    """
+    if isinstance(node, list):
+        return f"[{', '.join(_spelled(each) for each in node if not _is_docstring(each))}]"
+    if isinstance(node, ast.AST) and not isinstance(node, ast.Constant):
+        fields = [f"{name}={_spelled(value)}" for name, value in ast.iter_fields(node) if value not in (None, [])]
+        return f"{type(node).__name__}({', '.join(fields)})"
+    return ascii(node.value if isinstance(node, ast.Constant) else node)
+
+
+def _is_docstring(node: object) -> bool:
+    """Return whether a statement is a string alone, of a module, class, function or constant."""
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
 
 
 @cache

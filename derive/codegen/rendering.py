@@ -8,18 +8,17 @@ from __future__ import annotations
 import hashlib
 import json
 import textwrap
-from collections.abc import Callable, Hashable, Iterable
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from importlib import metadata
 
 import jinja2
 import sympy as sp
 
 from .c_printer import c_expression
-from .family import Family, FamilyError, PointLawFamily
+from .family import Family, FamilyError
 from .loops import sections
 from .program import Argument, Program
-from .provenance import deciding, spec_hash
 from .sharing import Sections, header, share
 
 TOOLS = ("sympy", "mpmath", "jinja2")
@@ -53,12 +52,10 @@ class Recorded:
 
 @dataclass(frozen=True)
 class Derived:
-    """A family with its programs, and the files that it came from with their hash."""
+    """A family with its programs."""
 
     family: Family
     programs: list[Program] | list[Recorded]
-    sources: list[str]
-    spec_hash: str
 
 
 def derive(family: Family) -> Derived:
@@ -67,27 +64,8 @@ def derive(family: Family) -> Derived:
 
 
 def derived(family: Family, programs: list[Program]) -> Derived:
-    """Return a family with its programs, pruned, and where they came from."""
-    return Derived(family, [p.prune() for p in programs], *came_from(family))
-
-
-def came_from(family: Family) -> tuple[list[str], str]:
-    """Return the files that decide a family, and their hash."""
-    files = list(deciding(family.modules))
-    own = [family.spec.name] if family.spec else []
-    return own + files, spec_hash(files, family.spec)
-
-
-def recorded(family: Family, manifest: dict) -> Derived | None:
-    """Return a family as the manifest has it, without a derivation; None where it has not."""
-    if family.name not in manifest.get("families", {}):
-        return None
-    entry = manifest["families"][family.name]
-    every = [Argument(a["name"], tuple(a["shape"]), a["unit"], a["doc"]) for a in manifest["arguments"]]
-    kernels = [Recorded(name, k["doc"], k["source"], [every[a] for a in k["inputs"]], [every[a] for a in k["outputs"]],
-                        k["operations"]) for name, k in manifest["kernels"].items() if k["family"] == family.name]
-    sources = [manifest["sources"][k] for k in entry["sources"]]
-    return Derived(replace(family, doc=entry["doc"]), kernels, sources, entry["spec_hash"])
+    """Return a family with its programs, pruned."""
+    return Derived(family, [p.prune() for p in programs])
 
 
 @dataclass(frozen=True)
@@ -178,84 +156,6 @@ def digest(text: str) -> str:
 def tools() -> dict[str, str]:
     """Return the versions of what decides the generated text."""
     return {name: metadata.version(name) for name in TOOLS}
-
-
-def manifest(every: list[Derived], files: dict[str, str], layout_of: dict | None = None,
-             more: dict | None = None) -> str:
-    """Return the manifest: what was generated, from what, with which tools; `layout_of` as in `render`, `more` is
-    added.
-
-    "arguments" and "sources" are listed once; kernels and families have their numbers in these lists.
-    """
-    arguments = _Numbered()
-    sources = _Numbered()
-    kernels = {p.name: {"doc": p.doc, "source": p.source, "family": d.family.name,
-                        "inputs": [arguments.number(a) for a in p.inputs],
-                        "outputs": [arguments.number(a) for a in p.outputs], "operations": p.operations()}
-               for d in every for p in d.programs}
-    laid_out = layout(tables(every, layout_of))
-    content = {"tools": tools(),
-               "interface": interface(laid_out),
-               "tables": laid_out,
-               "elements": {d.family.name: _element(d.family, every) for d in every if d.family.role == "element"},
-               "point_laws": {d.family.name: _point_law(d.family) for d in every
-                              if isinstance(d.family, PointLawFamily)},
-               "families": {d.family.name: {"doc": d.family.doc, "spec_hash": d.spec_hash,
-                                            "sources": [sources.number(s) for s in d.sources]} for d in every},
-               "sources": list(sources.every),
-               "files": {name: digest(text) for name, text in sorted(files.items())},
-               "arguments": [{"name": a.name, "shape": list(a.shape), "unit": a.unit, "doc": a.doc}
-                             for a in arguments.every],
-               "kernels": kernels} | (more or {})
-    return json_text(content)
-
-
-class _Numbered:
-    """Things in the order in which they came first."""
-
-    def __init__(self) -> None:
-        self.every: dict = {}
-
-    def number(self, thing: Hashable) -> int:
-        """Return the number of a thing among them."""
-        return self.every.setdefault(thing, len(self.every))
-
-
-def json_text(content: dict) -> str:
-    """Return JSON text with a line for each entry of each part."""
-    parts = []
-    for name, part in content.items():
-        rows = part if isinstance(part, list) else [part]
-        lines = ([f"{json.dumps(key)}: {json.dumps(value)}" for key, value in part.items()] if isinstance(part, dict)
-                 else [json.dumps(row) for row in rows])
-        first, last = "{}" if isinstance(part, dict) else "[]" if isinstance(part, list) else ("", "")
-        inner = ",\n  ".join(lines)
-        parts.append(f' {json.dumps(name)}: ' + (f"{first}\n  {inner}\n {last}" if first else inner))
-    return "{\n" + ",\n".join(parts) + "\n}\n"
-
-
-def _element(family: Family, every: list[Derived]) -> dict:
-    """Return what a scene needs to know of an element; `laws`: each with what it is, see `LawTraits`."""
-    element = family.element
-    assert element is not None
-    laws = {d.family.law: _law(d.family) for d in every if d.family.role == "law" and d.family.element is element}
-    return {"nodal_vectors": list(element.nodal_vectors), "dim": element.dim, "director": element.director,
-            "laws": laws}
-
-
-def _law(family: Family) -> dict:
-    """Return what a scene needs to know of a law: its traits, and whose section stiffness and kernels it takes."""
-    assert family.traits is not None
-    traits = {name: value for name, value in asdict(family.traits).items()
-              if name not in ("damped_like", "relaxed_like")}
-    return {"stiffness_of": family.stiffness_of, **traits, "shared": family.shared,
-            "discrete_gradient": "discrete_force" not in family.missing}
-
-
-def _point_law(family: PointLawFamily) -> dict:
-    """Return what a scene needs to know of the law of a force between two points; `parameters`: units by name."""
-    law = family.point_law
-    return {"parameters": {name: unit for name, (unit, _) in law.parameters.items()}, "damping": law.damping}
 
 
 def signature(program: Program | Recorded) -> str:

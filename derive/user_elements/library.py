@@ -11,9 +11,12 @@ from pathlib import Path
 from funicular.kernels.elements import manifest
 from funicular.kernels.libraries import LibraryError, manifest_digest, read_manifest
 
+from ..codegen import provenance
 from ..codegen import rendering as emit
 from ..codegen.drift import MANIFEST
 from ..codegen.family import Family
+from ..codegen.manifest import json_text, origin
+from ..codegen.manifest import text as manifest_text
 from ..codegen.rendering import Derived
 from ..verify.compiled import compiler
 from .load import SpecError
@@ -47,9 +50,8 @@ def is_current(out: Path, families: list[Family]) -> bool:
     if (content is None or content["library"].get("digest") != manifest_digest(content)
             or content["tools"] != emit.tools() or content["interface"] != manifest()["interface"]):
         return False
-    hashes = {family.name: emit.came_from(family)[1] for family in families}
     file = out / content["library"]["file"]
-    return ({name: entry.get("spec_hash") for name, entry in content["families"].items()} == hashes
+    return (content["sources"] == provenance.hashes(families)
             and all(emit.digest(_text(out / name)) == digest for name, digest in content["files"].items())
             and file.is_file() and _digest(file) == content["library"]["sha256"])
 
@@ -73,9 +75,10 @@ def write_manifest(every: list[Derived], files: dict[str, str], spec: Path, shar
     """Write the manifest next to the shared library; returns it."""
     more = {"library": {"spec": str(spec), "file": shared.name, "sha256": _digest(shared),
                         "compiler": " ".join([*compiler(), *FLAGS])}}
-    content = json.loads(emit.manifest(every, files, layout_of=manifest()["tables"], more=more))
+    made_from = origin([d.family for d in every])
+    content = json.loads(manifest_text(every, made_from, files, layout_of=manifest()["tables"], more=more))
     content["library"]["digest"] = manifest_digest(content)
-    (shared.parent / MANIFEST).write_text(emit.json_text(content), encoding="utf-8", newline="\n")
+    (shared.parent / MANIFEST).write_text(json_text(content), encoding="utf-8", newline="\n")
     return content
 
 

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from ..codegen import rendering as emit
 from ..codegen.family import Family
+from ..codegen.manifest import recorded
 from ..codegen.program import Program
 from ..codegen.rendering import Recorded
 from . import numbers as verify_numbers
@@ -58,7 +58,7 @@ def build(families: Iterable[Family], manifest: dict, kernels: Any, units: Itera
     """
     loops, names = [], []
     for family in families:
-        record = emit.recorded(family, manifest)
+        record = recorded(family, manifest)
         assert record is not None  # families are those of the manifest
         values = sample(family, record.programs, kernels)
         loops += [_loop(program, values) for program in record.programs]

@@ -198,7 +198,7 @@ def _open(path: Path, content: dict) -> Library:
         tables = ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all"))
     except OSError as error:
         raise LibraryError(f'"{path}" cannot be loaded here: {error}', again) from None
-    except (AttributeError, IndexError, ValueError) as error:  # a name or argument that is not there
+    except (AttributeError, KeyError, ValueError) as error:  # a name or argument that is not there
         if isinstance(error, LibraryError):
             raise
         raise LibraryError(f'"{path}" is damaged: {file.name} lacks what its {MANIFEST} names: {error}',

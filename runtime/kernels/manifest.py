@@ -28,8 +28,8 @@ class _Argument(_Described):
 class _Kernel(_Described):
     doc: str
     source: str
-    inputs: list[int]
-    outputs: list[int]
+    inputs: list[str]
+    outputs: list[str]
 
 
 class _Element(_Described):
@@ -45,8 +45,9 @@ class Manifest(_Described):
     interface: str
     library: _Shared
     elements: dict[str, _Element]
-    arguments: list[_Argument]
+    arguments: dict[str, _Argument]
     kernels: dict[str, _Kernel]
     tools: dict[str, str]
     families: dict[str, dict]
+    sources: dict[str, str]
     files: dict[str, str]

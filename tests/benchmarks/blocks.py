@@ -21,6 +21,7 @@ import numpy as np
 from funicular.derive.catalogue import families
 from funicular.derive.codegen import drift
 from funicular.derive.codegen import rendering as emit
+from funicular.derive.codegen.manifest import recorded
 from funicular.derive.verify import timing
 from funicular.derive.verify.compiled import compiler
 from funicular.generated import kernels as compiled
@@ -96,7 +97,7 @@ def loops() -> tuple[str, dict[str, int]]:
     manifest = json.loads((drift.folder() / "manifest.json").read_text(encoding="utf-8"))
     text, operations = "", {}
     for family in families().values():
-        record = emit.recorded(family, manifest)
+        record = recorded(family, manifest)
         names = emit.block_kernels(record)
         values = timing.sample(family, record.programs, compiled) if names else {}
         for program in record.programs:

@@ -1,0 +1,120 @@
+"""manifest.json: what the generated files hold, from which sources and with which tools they were made.
+
+Each source and each file of a family has one row with a hash. The files of all families have none: they are rendered
+anew each time. Kernels name their arguments by name and shape, so that a new argument leaves the rows of others as
+they are.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Collection, Iterable
+from dataclasses import asdict, dataclass, replace
+
+from .family import Family, PointLawFamily
+from .program import Argument
+from .provenance import hashes
+from .rendering import Derived, Recorded, digest, interface, layout, tables, tools
+
+
+def recorded(family: Family, manifest: dict) -> Derived | None:
+    """Return a family as the manifest has it, without a derivation; None where it has not."""
+    if family.name not in manifest.get("families", {}):
+        return None
+    every = {key: Argument(a["name"], tuple(a["shape"]), a["unit"], a["doc"])
+             for key, a in manifest["arguments"].items()}
+    kernels = [Recorded(name, k["doc"], k["source"], [every[a] for a in k["inputs"]], [every[a] for a in k["outputs"]],
+                        k["operations"]) for name, k in manifest["kernels"].items() if k["family"] == family.name]
+    return Derived(replace(family, doc=manifest["families"][family.name]["doc"]), kernels)
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What decides the generated text: versions of tools, hashes of sources."""
+
+    tools: dict[str, str]
+    sources: dict[str, str]
+
+
+def origin(families: Collection[Family]) -> Origin:
+    """Return what decides the text of these families now."""
+    return Origin(tools(), hashes(families))
+
+
+def text(every: list[Derived], made_from: Origin, files: dict[str, str], layout_of: dict | None = None,
+         more: dict | None = None) -> str:
+    """Return the text of the manifest of these families.
+
+    files: texts of generated files, whose hashes it keeps; layout_of: as in `rendering.render`; more: further parts.
+    """
+    arguments = _keys(a for d in every for p in d.programs for a in (*p.inputs, *p.outputs))
+    kernels = {p.name: {"doc": p.doc, "source": p.source, "family": d.family.name,
+                        "inputs": [arguments[a] for a in p.inputs], "outputs": [arguments[a] for a in p.outputs],
+                        "operations": p.operations()}
+               for d in every for p in d.programs}
+    laid_out = layout(tables(every, layout_of))
+    content = {"tools": made_from.tools,
+               "interface": interface(laid_out),
+               "tables": laid_out,
+               "elements": {d.family.name: _element(d.family, every) for d in every if d.family.role == "element"},
+               "point_laws": {d.family.name: _point_law(d.family) for d in every
+                              if isinstance(d.family, PointLawFamily)},
+               "families": {d.family.name: {"doc": d.family.doc} for d in every},
+               "sources": made_from.sources,
+               "files": {name: digest(content) for name, content in sorted(files.items())},
+               "arguments": {key: {"name": a.name, "shape": list(a.shape), "unit": a.unit, "doc": a.doc}
+                             for a, key in arguments.items()},
+               "kernels": kernels} | (more or {})
+    return json_text(content)
+
+
+def _keys(arguments: Iterable[Argument]) -> dict[Argument, str]:
+    """Return a key for each argument: name and shape, with a number where units or meanings differ."""
+    keys: dict[Argument, str] = {}
+    alike: Counter[str] = Counter()
+    for argument in arguments:
+        if argument not in keys:
+            key = f"{argument.name}[{'x'.join(map(str, argument.shape))}]" if argument.shape else argument.name
+            alike[key] += 1
+            keys[argument] = key if alike[key] == 1 else f"{key} {alike[key]}"
+    return keys
+
+
+def json_text(content: dict) -> str:
+    """Return JSON text with a line for each entry of each part."""
+    parts = []
+    for name, part in content.items():
+        rows = part if isinstance(part, list) else [part]
+        lines = ([f"{json.dumps(key)}: {json.dumps(value)}" for key, value in part.items()] if isinstance(part, dict)
+                 else [json.dumps(row) for row in rows])
+        first, last = "{}" if isinstance(part, dict) else "[]" if isinstance(part, list) else ("", "")
+        inner = ",\n  ".join(lines)
+        parts.append(f' {json.dumps(name)}: ' + (f"{first}\n  {inner}\n {last}" if first else inner))
+    return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
+def _element(family: Family, every: list[Derived]) -> dict:
+    """Return what a scene needs to know of an element; `laws`: each with what it is, see `LawTraits`."""
+    element = family.element
+    assert element is not None
+    laws = {d.family.law: _law(d.family) for d in every if d.family.role == "law" and d.family.element is element}
+    return {"nodal_vectors": list(element.nodal_vectors), "dim": element.dim, "director": element.director,
+            "laws": laws}
+
+
+def _law(family: Family) -> dict:
+    """Return what a scene needs to know of a law: its traits, and whose section stiffness and kernels it takes."""
+    assert family.traits is not None
+    traits = {name: value for name, value in asdict(family.traits).items()
+              if name not in ("damped_like", "relaxed_like")}
+    return {"stiffness_of": family.stiffness_of, **traits, "shared": family.shared,
+            "discrete_gradient": "discrete_force" not in family.missing}
+
+
+def _point_law(family: PointLawFamily) -> dict:
+    """Return what a scene needs to know of the law of a force between two points; `parameters`: units by name."""
+    law = family.point_law
+    return {"parameters": {name: unit for name, (unit, _) in law.parameters.items()}, "damping": law.damping}
+
+
