@@ -8,8 +8,17 @@ from dataclasses import dataclass
 
 import funicular as fu
 import numpy as np
+from funicular.choice.planar import planar_of
+from funicular.parts.attachment import Attachment
+from funicular.parts.cable import Cable
+from funicular.parts.crossing import Crossing
+from funicular.parts.joint import Joint
+from funicular.parts.load import DistributedForce
 from funicular.parts.part import Part
+from funicular.parts.slide import Slide
+from funicular.parts.support import Tie
 from funicular.rotations import rotate, turned_by
+from rewritten import in_units
 from turned_scenes import turned_scene
 
 Vectors = np.ndarray
@@ -106,10 +115,82 @@ def moving(**frame) -> Callable[[fu.Scene], Route]:
     return moved
 
 
+def in_other_units(length: float, mass: float, time: float) -> Callable[[fu.Scene], Route]:
+    """Return the route of a scene in other units: so many of them are a metre, a kilogram, a second."""
+    def made(scene: fu.Scene) -> Route:
+        return Route(in_units(scene, length, mass, time), Frame(length=1 / length, time=1 / time))
+
+    return made
+
+
+def reversed_cables(scene: fu.Scene) -> Route | None:
+    """Cables that begin where they ended."""
+    if not scene.cables:
+        return None
+    return Route(scene.with_parts(_from_the_end(part.as_made(), scene) for part in scene.parts()),
+                 reversed=tuple(scene.cables))
+
+
+def _from_the_end(part: Part, scene: fu.Scene) -> Part:
+    """Return a part of a scene whose cables begin at their other ends."""
+    if isinstance(part, Cable):
+        assert part.nodes is None and not any(part.angular_velocity)
+        ends = {"points": part.points[::-1]} if part.points else {"start": part.end, "end": part.start}
+        return part.remade(ends)
+    assert not isinstance(part, DistributedForce | Tie) and getattr(part, "drive", None) is None
+    changes: dict[str, object] = {
+        name: value.model_copy(update={"s": scene.cables[value.on].length - value.s})
+        for name, value in part if isinstance(value, Attachment) and value.s is not None}
+    if getattr(part, "s", None) is not None:
+        cable = next(getattr(part, name) for name in ("cable", "along", "on") if hasattr(part, name))
+        changes["s"] = scene.cables[cable].length - part.s
+    if isinstance(part, Slide):
+        changes |= {"at_start": part.at_end, "at_end": part.at_start}
+    return part.model_copy(update=changes)
+
+
+def planes_as_boxes(scene: fu.Scene) -> Route | None:
+    """The upper face of a large box in place of a plane."""
+    planes = [part for part in scene.surfaces.values() if isinstance(part.shape, fu.Plane)]
+    for part in planes:
+        up = np.array(part.shape.normal) / np.linalg.norm(part.shape.normal)
+        along = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
+        box = fu.Box(size=(WIDE, WIDE, WIDE), at=np.array(part.shape.point) - 0.5 * WIDE * up, up=up, along=along)
+        scene = scene.replace(part.name, shape=box)
+    return Route(scene) if planes else None
+
+
+def in_space_or_plane(scene: fu.Scene) -> Route | None:
+    """Spatial elements in place of planar ones, or the other way round where the scene stays in its plane."""
+    if scene.dim == 3:
+        planar = planar_of(scene).scene
+        return None if planar is None else Route(planar)
+    return Route(scene.with_parts(_in_space(part.as_made(), scene) for part in scene.parts()))
+
+
+def _in_space(part: Part, scene: fu.Scene) -> Part:
+    if isinstance(part, Cable):
+        return part.remade({"element": IN_SPACE[part.element], "law": part.law})
+    if isinstance(part, Crossing) and part.b is None:
+        return part.remade({"axis": (0, 0, 1), "length": 0.5})
+    elements = [scene.cables[end.on].element for _, end in part if isinstance(end, Attachment) and end.s is not None]
+    if isinstance(part, Joint) and part.joint_kind == "weld" and "cable8p" in elements:  # whose sections have no axes
+        return part.remade({"up": (0, 0, 1)})
+    return part
+
+
+WIDE = 20.0
+"""m: size of a box in place of a plane."""
+IN_SPACE = {"cable8p": "cable12", "beam12p": "beam24"}
 ROUTES: dict[str, Callable[[fu.Scene], Route | None]] = {
     "reordered": reordered,
     "shifted": moving(shift=(1.0, 2.0, 0.0)),
     "turned": moving(rotation=(0.0, 0.0, 0.7)),
     "moved": moving(rotation=(0.3, -0.7, 1.1), shift=(1.0, 2.0, -3.0)),
+    "mm, t, s": in_other_units(1e3, 1e-3, 1.0),
+    "km, kg, min": in_other_units(1e-3, 1.0, 1 / 60),
+    "reversed": reversed_cables,
+    "on boxes": planes_as_boxes,
+    "in space or plane": in_space_or_plane,
 }
 """Ways to write a scene anew; None of a scene that has no such."""

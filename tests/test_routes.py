@@ -83,7 +83,7 @@ def test_integrators_agree(subject, integrator):
 @pytest.mark.parametrize("name", ROUTES)
 def test_scene_written_anew_has_the_same_motion(subject, name):
     if (route := ROUTES[name](subject.scene)) is not None:
-        other = run(route.scene, subject.duration)
+        other = run(route.scene, subject.duration / route.frame.time)
         check(subject, name, points(other, route), other)
 
 
