@@ -226,3 +226,24 @@ def test_later_jumps_of_a_motions_rate_are_noted():
                               "and at 2 later times; each jump sends a shock along the cable")
     assert jumps(moved(displacement=(0, Ramp(start=0.002, end=0.008, after=0.002), 0))) == []
     assert jumps(moved(displacement=(0, lines, 0)), 0.001) == []
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("late", [0.0, 1e-17, 1e-10])
+def test_an_event_just_after_a_step_adds_no_work(integrator, late):
+    """A body is lifted against gravity and a spring: the work is that of both, to the error of the rule.
+
+    At the start and the end of a ramp nothing moves.
+    """
+    height, reach, time = 0.01, 0.3, 0.02
+    scene = Scene(gravity=(0, -9.81, 0))
+    scene.rigid_body("A", mass=0.1, inertia=(1e-4, 1e-4, 1e-4), position=(0, 0, 0))
+    scene.joint("prismatic", (0, 0, 0), "A", axis=(0, 1, 0), distance=Ramp(start=0, end=time, after=height))
+    scene.spring("A", (reach, 0, 0), stiffness=300.0, length=0.1)
+    at = time / 3 + late  # at the end of the hundredth of 300 steps, but for rounding
+    scene.event(function=lambda now, _: now - at, name="later")
+    run = scene.run(time, output_step=time, step=time / 300, integrator=integrator)
+    extensions = np.array([reach, np.hypot(reach, height)]) - 0.1
+    work = 0.1 * 9.81 * height + 150.0 * (extensions[1]**2 - extensions[0]**2)
+    assert run.report["messages"] == []
+    assert run["energy.external"][-1] == pytest.approx(work, rel=1e-6)

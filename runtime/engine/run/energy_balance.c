@@ -45,11 +45,17 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
 
 /* Returns what drives give in the step just made beyond the trapezoidal rule, J. Their power is by the force of eq 38, as it is
  * reported, since the multipliers that Newton's method finds are off by h^2 of it. The error of the rule is -h^3/12 of the second
- * derivative of the power, which three instants tell. */
+ * derivative of the power, which three instants tell. A very short step, as to an event, joins the interval before it: over so
+ * short a time Newton's remainder would rule the rate of the power. */
 static double beyond_trapezoid(fu_run *run, double h)
 {
     const double power = driving_power(run);
     double beyond = 0.0;
+    if (run->drive_step >= 0.0 && fu_is_short(run, h)) {
+        run->drive_power = power;
+        if (run->drive_step > 0.0) run->drive_step += h;
+        return 0.0;
+    }
     if (run->drive_step > 0.0) {
         const double slope = (power - run->drive_power) / h;
         const double before = (run->drive_power - run->drive_power_before) / run->drive_step;
