@@ -153,13 +153,6 @@ void fu_constant_mass_times(const fu_model *model, const double *q, const double
     fu_bodies_mass_times(model, q, a, f);
 }
 
-/* Makes f = M a. */
-void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)
-{
-    fu_constant_mass_times(model, q, a, f);
-    fu_coupling_inertia(model, q, a, f);
-}
-
 /* Adds elastic, damping and bodies' forces, as they stand on the left of the equations of motion; not those of couplings. */
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
@@ -303,7 +296,7 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
 }
 
 /* Returns the sum of e'.M e'/2 over the elements (eq 3) and the bodies' share, J. */
-static double of_cables_and_bodies(const fu_model *model, const double *q, const double *v)
+double fu_constant_kinetic_energy(const fu_model *model, const double *q, const double *v)
 {
     double total = 0.0, part[FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
@@ -316,22 +309,9 @@ static double of_cables_and_bodies(const fu_model *model, const double *q, const
     return total + fu_bodies_kinetic_energy(model, q, v);
 }
 
-/* Returns the kinetic energy at the velocities v, J, that of a fluid past which they are included. */
-double fu_kinetic_energy(const fu_model *model, double t, const double *q, const double *v)
+/* Returns the energy stored in cables and bodies, J. */
+double fu_constant_elastic_energy(const fu_model *model, const double *q)
 {
-    return of_cables_and_bodies(model, q, v) + fu_coupling_kinetic_energy(model, t, q, v, 1);
-}
-
-/* Returns v' M v/2 of a change v of velocities, J. */
-double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v)
-{
-    return of_cables_and_bodies(model, q, v) + fu_coupling_kinetic_energy(model, 0.0, q, v, 0);
-}
-
-/* Returns the energy stored in cables, bodies and couplings, J. */
-double fu_elastic_energy(const fu_model *model, const fu_state *state)
-{
-    const double *q = state->q;
     double total = 0.0, part;
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
@@ -340,7 +320,7 @@ double fu_elastic_energy(const fu_model *model, const fu_state *state)
             total += part;
         }
     }
-    return total + fu_bodies_elastic_energy(model, q) + fu_coupling_energy(model, state);
+    return total + fu_bodies_elastic_energy(model, q);
 }
 
 /* Returns the energy of gravity, J. */
@@ -386,22 +366,4 @@ double fu_internal_dissipation(const fu_model *model, const double *q, const dou
         }
     }
     return total;
-}
-
-/* Returns the power that damping and friction take out, W; work: see `dissipation` in coupling.h. */
-double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
-{
-    return fu_internal_dissipation(model, state->q, state->v) + fu_coupling_dissipation(model, state, work);
-}
-
-/* Returns the length of the cable of a slide, m. */
-double fu_length(const fu_model *model, int slide)
-{
-    return fu_cable_length(&model->cables[model->slides[slide].cable]);
-}
-
-/* Returns the arc-length at the first node of an element of a slide's cable, m. */
-double fu_element_start(const fu_model *model, int slide, int element)
-{
-    return fu_cable_start(&model->cables[model->slides[slide].cable], element);
 }

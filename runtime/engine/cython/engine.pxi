@@ -124,6 +124,7 @@ cdef extern from "engine.h" nogil:
     int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
     void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
     const fu_coupling_type *fu_coupling_type_of(const char *name)
+    void fu_bind_events(fu_coupling *coupling)
     ctypedef struct fu_joint:
         fu_coupling base
         fu_attachment attachments[2]

@@ -175,6 +175,7 @@ cdef class Translation(Arrays):
         for k, given in enumerate(model.couplings):
             coupling = self.couplings[k] = <fu_coupling *>(self.coupling_memory + at)
             coupling.type = _type_of(given)
+            fu_bind_events(coupling)
             kind = self._kind(coupling)
             coupling.index = counts.setdefault(kind, 0)
             counts[kind] += 1

@@ -3,14 +3,6 @@
 
 #include <string.h>
 
-/* Returns whether n numbers are all finite. */
-int fu_all_finite(const double *numbers, long n)
-{
-    for (long i = 0; i < n; ++i)
-        if (!isfinite(numbers[i])) return 0;
-    return 1;
-}
-
 /* Records `now` as a row. Returns FU_RUNNING; FU_SINGULAR or FU_UNSTABLE; or FU_NO_CONVERGENCE for a row that is not finite,
  * which does not count. */
 int fu_record_row(fu_run *run)

@@ -1,0 +1,80 @@
+/* Cables, and sums over their elements: bodies/assembly.c. */
+#ifndef FUNICULAR_CABLES_H
+#define FUNICULAR_CABLES_H
+
+#include "linear.h"
+
+typedef struct {
+    const fu_element_kernels *kernel;
+    const fu_law_kernels *law;
+    const fu_law_blocks *blocks; /* null where there are none */
+    int n_elements;
+    int first;        /* first dof and first entry in q */
+    int coordinates;  /* of an element */
+    int per_node;     /* coordinates of a node */
+    double length;    /* of an element, m; the mean where they differ */
+    const double *lengths; /* of the elements, m */
+    const double *nodes;   /* arc-lengths of the nodes, m; null where the elements are equal */
+    double tau;       /* Kelvin-Voigt retardation time, s */
+    double mass_damping; /* 1/s */
+    const double *m;  /* mass matrix of the first element over nodal vectors */
+    int l_stride;     /* from one element's length to the next's: zero where they are equal */
+    int m_stride;     /* from one element's mass matrix to the next's: zero where they are equal */
+    const double *A;  /* constants of the law, of the first element */
+    int A_stride;     /* from one element's to the next's: zero where they are equal */
+    const double *share; /* of each vector of a node: what it moves points of its elements by at most; null where that is not known */
+    int gives_way;    /* not zero where its law gives way in compression */
+    int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
+} fu_cable;
+
+void fu_constant_mass_times(const fu_model *model, const double *q, const double *a, double *f);
+void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f);
+void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
+void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
+                       double stiffness, fu_system *system);
+/* Adds to the matrix K (n x n) of an element factor times a' by b, of two rows of n / dim numbers and a matrix (dim x dim). */
+void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by, double *K);
+double fu_kinetic_energy(const fu_model *model, double t, const double *q, const double *v);
+double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v);
+double fu_elastic_energy(const fu_model *model, const fu_state *state);
+double fu_constant_elastic_energy(const fu_model *model, const double *q);
+double fu_constant_kinetic_energy(const fu_model *model, const double *q, const double *v);
+double fu_potential_energy(const fu_model *model, const double *q);
+double fu_internal_dissipation(const struct fu_model *model, const double *q, const double *v);
+double fu_dissipation(const fu_model *model, const fu_state *state, const struct fu_accelerator *work);
+double fu_length(const fu_model *model, int slide);
+double fu_element_start(const fu_model *model, int slide, int element);
+
+/* Returns the length of an element, m. */
+static inline double fu_element_length(const fu_cable *cable, int element)
+{
+    return cable->lengths[(long)element * cable->l_stride];
+}
+
+/* Returns the length of a cable, m. */
+static inline double fu_cable_length(const fu_cable *cable)
+{
+    return cable->nodes ? cable->nodes[cable->n_elements] : cable->n_elements * cable->length;
+}
+
+/* Returns the arc-length at the first node of an element, m. */
+static inline double fu_cable_start(const fu_cable *cable, int element)
+{
+    return cable->nodes ? cable->nodes[element] : element * cable->length;
+}
+
+/* Returns the mass matrix of an element over nodal vectors. */
+static inline const double *fu_element_mass(const fu_cable *cable, int element)
+{
+    return cable->m + (long)element * cable->m_stride;
+}
+
+/* Returns the constants of the law of an element. */
+static inline const double *fu_element_constants(const fu_cable *cable, int element)
+{
+    return cable->A + (long)element * cable->A_stride;
+}
+
+#endif

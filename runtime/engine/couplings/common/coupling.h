@@ -1,0 +1,159 @@
+/* Couplings: what acts between attachments, or on one. couplings/couplings.c loops over them. */
+#ifndef FUNICULAR_COUPLING_H
+#define FUNICULAR_COUPLING_H
+
+#include "common.h"
+#include "fields.h"
+#include "linear.h"
+#include "state.h"
+
+#define FU_MAX_FORCES 6 /* of one coupling */
+
+typedef struct fu_coupling_type fu_coupling_type;
+typedef struct fu_coupling_events fu_coupling_events;
+typedef struct fu_accelerator fu_accelerator;
+
+/* What each coupling begins with: fu_slide, fu_joint, fu_point_force and fu_load have it as their first member, `base`.
+ *
+ * A coupling may have unknowns of its own in a Newton system. They stand together from `unknown` on: first its
+ * coordinates (s of a slide), then its forces (multipliers are forces). fu_list_couplings numbers them. */
+typedef struct {
+    const fu_coupling_type *type;
+    const fu_coupling_events *events; /* that it finds by itself; null: none (include/coupling_events.h) */
+    int index;                     /* among the couplings of its structure */
+    int number;                    /* among all couplings of the model */
+    int unknown;                   /* the first of its unknowns, counted beyond the dofs */
+    int n_coordinates, coordinate; /* its own coordinates, and the first of them in state->s */
+    int n_forces, force;           /* its own forces, and the first of them in state->forces */
+    int n_multipliers, multiplier; /* multipliers of eq 38: the most that it needs, and the first of them */
+    int row;                       /* its entry in fu_accelerator.rows, -1 where it has no constraints */
+    int output;                    /* its first number in a row of output */
+    int numbers, flags;            /* its own part of a state: the first of them in state->numbers, state->flags */
+    int scratch;                   /* its own part of fu_accelerator.scratch: the first of it */
+    int n_numbers;                 /* of its own in a state beyond those that its type has */
+    int reacts;                    /* not zero where it has a force that depends on the multipliers of eq 38 */
+    int is_damped;                 /* not zero where it has a force that depends on velocities */
+    int is_driven;                 /* not zero where a signal does work on it */
+    int has_inertia;               /* not zero where it has a mass of its own */
+    double scale[FU_MAX_FORCES];   /* kg or kg m: rows of constraints times it have the scale of the mass matrix */
+} fu_coupling;
+
+extern const fu_field fu_coupling_fields[]; /* of fu_coupling */
+
+/* Where a Newton method makes its equations: at `next`, or, in a method that conserves energy, over the step from `now` to
+ * `next` with `middle` between them. Rows of equilibrium are multiplied by weights.stiffness, rows of constraints by
+ * fu_row_unit; a coupling's own forces are solved for in units of fu_row_unit/weights.stiffness. */
+typedef struct {
+    const fu_state *now, *next, *middle;
+    const double *psi; /* what has moved the bodies to `next`; null where the unknowns move them from there */
+    double h;          /* s: of the step; 0 at an instant */
+    fu_weights weights;
+} fu_equations;
+
+/* How far what a coupling acts between is from acting, m, at least; what turns of the second of it are to be multiplied by to be ways of
+ * the first, m; how far points of the first are from its origin, if it is a body, m. */
+typedef struct {
+    double gap, lever, radius;
+} fu_clearance;
+
+/* What a coupling can do. A null operation: it does nothing of that.
+ * f: generalised forces on the dofs, as they stand on the left of the equations of motion; own: minus the scaled residual of the
+ * unknowns beyond the dofs.
+ *
+ * There is no operation that lists the columns of a system that a coupling touches, its own unknowns among them: `tangent` and
+ * `rows` name each entry by its dof or unknown, and fu_add (include/unknowns.h) finds its place and notes which rows of the
+ * border count. A list beside it would say the same a second time, and would have to be kept in step with it. */
+struct fu_coupling_type {
+    const char *name;
+    size_t size;             /* bytes of its structure */
+    const fu_field *fields;  /* what of it the model gives */
+    int n_outputs;           /* numbers that it gives to a row of output */
+    int n_numbers, n_flags;  /* real and whole numbers that it keeps in a state */
+    int n_scratch;           /* doubles that it keeps from `rows` to `outputs` */
+
+    /* A mass that depends on the configuration: adds M a to f; adds scale M to a system; returns the kinetic energy, J, at the
+     * velocities v, or of these alone where the coupling is of a fluid that moves and past_fluid is zero. What inertia gives without
+     * accelerations is in `force`, `residual` and `tangent`. */
+    void (*inertia)(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
+    void (*mass)(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
+    double (*kinetic_energy)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
+                             int past_fluid);
+
+    /* Where nothing comes of a coupling while what it acts between is apart: its clearance at a state, and what it is between: the
+     * number of a cable, n_cables and that of a body, -1 for the ground. Ways of these, and turns of the second by the lever, are
+     * the most that the gap can shrink by. While it is not used up, operations may be passed over (couplings/proximity.c). */
+    fu_clearance (*clearance)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    void (*between)(const fu_model *model, const fu_coupling *coupling, int between[2]);
+
+    /* What of a coupling as the model gives it is more than the engine has room for, in words; null where nothing is. */
+    const char *(*excess)(const fu_coupling *coupling);
+
+    /* Newton systems at an instant: residual and its derivative. */
+    void (*residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
+    void (*tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
+    /* The same over a step that conserves energy; and the energy that the coupling dissipates in it, J. */
+    void (*step_residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
+    void (*step_tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
+    double (*step_dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+    /* What comes in from outside in that step by its own forces, J. */
+    double (*step_work)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+
+    /* Makes the constraint rows of accelerations (eq 38), H and W among them, in work->rows[coupling->row]. */
+    void (*rows)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
+    /* Adds the coupling's own force to f; adds a force from outside, whose work the energy balance counts as external. */
+    void (*force)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f);
+    void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
+    /* Returns the power that comes in from outside by the coupling's own force, W. */
+    double (*external_power)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    /* Adds forces that depend on the multipliers lambda (null: those of the state) to work->work; returns the largest change
+     * since the last call over the force. Afterwards `reacted` takes what follows from the final multipliers. */
+    double (*react)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                    fu_accelerator *work);
+    void (*reacted)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                    fu_accelerator *work);
+    /* Returns the error that a kink of the force within a step may make, m: from n states of it, their weights in the mean, and the
+     * multipliers there (n x model->n_multipliers); square: the step times the time that is left, s^2. */
+    double (*kink)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n, const double *weights,
+                   const double *multipliers, double square);
+    /* Make, after eq 38, the state's own forces; the numbers of a row of output. */
+    void (*take_forces)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state);
+    void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
+                    const fu_accelerator *work, double *out);
+
+    /* Makes what is left of the constraints, redundant ones among them: one number an own force. */
+    void (*gaps)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *gaps);
+    /* Makes the rates of the own coordinates, after eq 38. */
+    void (*rates)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rates);
+
+    /* Return the stored energy, J; the power that goes to heat, W, by the state's own forces, or where work is not null by those of eq 38. */
+    double (*energy)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    double (*dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const fu_accelerator *work);
+
+    /* Returns the energy that a step from one state to another dissipates beside that power, J; by_ends: by the forces at its ends alone, as
+     * methods of order 2 have them. */
+    double (*lost_in_step)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends);
+
+    /* Returns how far off what `carry` takes along may be after a step from one state to another, m. */
+    double (*carried_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
+
+    /* Adds to f what the mean force over a step from one state to another is off by, N, where a rule of n weights b at parts c of the step
+     * makes it, as the force has kinks within; returns whether it has. */
+    int (*kinks)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
+                 const double *c, double *f);
+
+    /* Returns whether a start may be off the constraints by a small gap. */
+    int (*may_start_open)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    /* Finds own coordinates that follow from the others; returns not zero where there are none. */
+    int (*follow)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+    /* Sets own coordinates, pieces, numbers and flags of the state as it is drawn; those that it does not set are zero. */
+    void (*reset)(const fu_coupling *coupling, fu_state *state);
+    /* Changes what of the state goes along with an accepted step. */
+    void (*carry)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+    /* Finds contact that follows from the positions, in statics. */
+    void (*touch)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+    /* Returns whether a state that was read from a file is possible. */
+    int (*is_possible)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+};
+
+#endif

@@ -1,0 +1,336 @@
+/* Loops over the couplings of a model, in the order of its list: each calls the one operation that it is about. */
+#include "engine.h"
+
+const fu_field fu_coupling_fields[] = {
+    FU_FIELD(fu_coupling, unknown, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, n_coordinates, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, n_forces, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, n_multipliers, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, multiplier, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, n_numbers, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, reacts, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, is_damped, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, is_driven, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, has_inertia, FU_INTEGER, 0),
+    FU_FIELD_ARRAY(fu_coupling, scale, FU_REAL),
+    {0},
+};
+
+int fu_acts_alone(const fu_coupling *coupling)
+{
+    const fu_coupling_type *type = coupling->type;
+    const fu_coupling_events *events = coupling->events;
+    const int asked = type->inertia || type->rows || type->external_force || type->external_power || type->react || type->kink ||
+                      type->take_forces || type->gaps || type->rates || type->step_work || type->may_start_open || type->follow ||
+                      type->touch || type->is_possible || (events && (events->path || events->pass || events->take_velocities));
+    return type->clearance && !asked;
+}
+
+/* Puts a coupling into the lists that it is in. */
+static void list_coupling(fu_model *model, const fu_coupling *c)
+{
+    const int alone = fu_acts_alone(c);
+    model->n_pairs += c->type->clearance != 0;
+    if (!alone) model->others[model->n_others++] = c;
+    if (c->type->carry && (!alone || c->n_numbers)) model->carrying[model->n_carrying++] = c;
+}
+
+void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model)
+{
+    model->couplings = (const fu_coupling *const *)couplings;
+    model->n_couplings = n;
+    model->others = lists;
+    model->carrying = lists + n;
+    model->n_others = model->n_carrying = model->n_pairs = 0;
+    model->slides = 0;
+    model->n_coordinates = model->n_forces = model->n_rows = model->n_outputs = 0;
+    model->n_numbers = model->n_flags = model->n_scratch = 0;
+    model->n_reacting = model->n_external = model->n_driven = model->n_damped = model->n_passing = model->n_inertial = 0;
+    for (int k = 0; k < n; ++k) {
+        fu_coupling *c = couplings[k];
+        c->number = k;
+        if (c->type == &fu_slide_type && !model->slides) model->slides = (const fu_slide *)c; /* attachments are on them */
+        c->coordinate = model->n_coordinates;
+        c->force = model->n_forces;
+        c->output = model->n_outputs;
+        c->numbers = model->n_numbers;
+        c->flags = model->n_flags;
+        c->scratch = model->n_scratch;
+        c->row = c->type->rows ? model->n_rows++ : -1;
+        model->n_coordinates += c->n_coordinates;
+        model->n_forces += c->n_forces;
+        model->n_outputs += c->type->n_outputs;
+        model->n_numbers += c->type->n_numbers + c->n_numbers;
+        model->n_flags += c->type->n_flags;
+        model->n_scratch += c->type->n_scratch;
+        model->n_reacting += c->reacts;
+        model->n_external += c->type->external_force != 0;
+        model->n_driven += c->is_driven;
+        model->n_damped += c->is_damped;
+        model->n_passing += fu_can_pass(c);
+        model->n_inertial += c->has_inertia;
+        list_coupling(model, c);
+    }
+}
+
+void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *own)
+{
+    const fu_couplings near = fu_acting(model, at->next);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
+        if (c->type->residual) c->type->residual(model, c, at, f, own);
+    }
+}
+
+void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *own)
+{
+    const fu_couplings near = fu_acting_in_step(model, at);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
+        if (c->type->step_residual) c->type->step_residual(model, c, at, f, own);
+    }
+}
+
+void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system)
+{
+    const fu_couplings near = fu_acting(model, at->next);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
+        if (c->type->tangent) c->type->tangent(model, c, at, system);
+    }
+}
+
+void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu_system *system)
+{
+    const fu_couplings near = fu_acting_in_step(model, at);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
+        if (c->type->step_tangent) c->type->step_tangent(model, c, at, system);
+    }
+}
+
+void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f)
+{
+    for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->has_inertia) c->type->inertia(model, c, q, a, f);
+    }
+}
+
+void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system)
+{
+    for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->has_inertia) c->type->mass(model, c, q, scale, system);
+    }
+}
+
+double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->has_inertia) total += c->type->kinetic_energy(model, c, t, q, v, past_fluid);
+    }
+    return total;
+}
+
+void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f)
+{
+    const fu_couplings near = fu_acting(model, state);
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
+        if (c->type->force) c->type->force(model, c, state, f);
+    }
+}
+
+void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->type->external_force) c->type->external_force(model, c, t, q, f);
+    }
+}
+
+double fu_coupling_external_power(const fu_model *model, const fu_state *state)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->type->external_power) total += c->type->external_power(model, c, state);
+    }
+    return total;
+}
+
+double fu_coupling_energy(const fu_model *model, const fu_state *state)
+{
+    const fu_couplings near = fu_acting(model, state);
+    double total = 0.0;
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
+        if (c->type->energy) total += c->type->energy(model, c, state);
+    }
+    return total;
+}
+
+double fu_coupling_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
+{
+    const fu_couplings near = fu_acting(model, state);
+    double total = 0.0;
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
+        if (c->type->dissipation) total += c->type->dissipation(model, c, state, work);
+    }
+    return total;
+}
+
+double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to, int by_ends)
+{
+    const fu_equations step = {.now = from, .next = to};
+    const fu_couplings near = fu_acting_in_step(model, &step);
+    double total = 0.0;
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *c = near.list[k];
+        if (c->type->lost_in_step) total += c->type->lost_in_step(model, c, from, to, by_ends);
+    }
+    return total;
+}
+
+int fu_coupling_kinks(const fu_model *model, const fu_state *from, const fu_state *to, int n, const double *b, const double *c, double *f)
+{
+    const fu_equations step = {.now = from, .next = to};
+    const fu_couplings near = fu_acting_in_step(model, &step);
+    int found = 0;
+    for (int k = 0; k < near.n; ++k) {
+        const fu_coupling *coupling = near.list[k];
+        if (coupling->type->kinks) found |= coupling->type->kinks(model, coupling, from, to, n, b, c, f);
+    }
+    return found;
+}
+
+void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state *state)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->type->take_forces) c->type->take_forces(model, c, work, state);
+    }
+}
+
+void fu_coupling_outputs(const fu_model *model, const fu_state *state, const double *acceleration,
+                         const fu_accelerator *work, double *out)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->outputs) c->type->outputs(model, c, state, acceleration, work, out + c->output);
+    }
+}
+
+/* Makes the row of output of a coupling that needs no accelerations for it. */
+void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+{
+    coupling->type->outputs(model, coupling, state, 0, 0, out);
+}
+
+void fu_gaps(const fu_model *model, const fu_state *state, double *gaps)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->type->gaps) c->type->gaps(model, c, state, gaps + c->force);
+    }
+}
+
+void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, double *rates)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->type->rates) c->type->rates(model, c, work, rates + c->coordinate);
+    }
+}
+
+void fu_reset(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->reset) c->type->reset(c, state);
+    }
+}
+
+double fu_carried_error(const fu_model *model, const fu_state *from, const fu_state *to)
+{
+    double largest = 0.0;
+    for (int k = 0; k < model->n_carrying; ++k) {
+        const fu_coupling *c = model->carrying[k];
+        if (c->type->carried_error) largest = fmax(largest, c->type->carried_error(model, c, from, to));
+    }
+    return largest;
+}
+
+void fu_carry(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_carrying; ++k) {
+        const fu_coupling *c = model->carrying[k];
+        c->type->carry(model, c, state);
+    }
+}
+
+void fu_touch(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->type->touch) c->type->touch(model, c, state);
+    }
+}
+
+/* Finds own coordinates that follow from the others; returns null, or the first coupling of which none were found. */
+const fu_coupling *fu_follow(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->type->follow && c->type->follow(model, c, state)) return c;
+    }
+    return 0;
+}
+
+int fu_may_start_open(const fu_model *model, const fu_state *state)
+{
+    int open = 0;
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->type->may_start_open) open |= c->type->may_start_open(model, c, state);
+    }
+    return open;
+}
+
+int fu_is_possible(const fu_model *model, const fu_state *state)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->type->is_possible && !c->type->is_possible(model, c, state)) return 0;
+    }
+    return 1;
+}
+
+double fu_row_unit(double inertia, double mass)
+{
+    return inertia != 0.0 ? mass : 1.0;
+}
+
+void fu_add_own(const fu_model *model, fu_state *state, const double *own, double inertia, double scale)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        const double *of = own + c->unknown;
+        for (int i = 0; i < c->n_coordinates; ++i) state->s[c->coordinate + i] += of[i];
+        for (int i = 0; i < c->n_forces; ++i)
+            state->forces[c->force + i] += of[c->n_coordinates + i] * fu_row_unit(inertia, c->scale[i]) / scale;
+    }
+}
+
+const fu_coupling *fu_owner(const fu_model *model, int unknown)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->unknown <= unknown && unknown < c->unknown + c->n_coordinates + c->n_forces) return c;
+    }
+    return 0;
+}

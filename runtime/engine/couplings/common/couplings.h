@@ -1,0 +1,64 @@
+/* Loops over the couplings of a model: couplings/couplings.c. */
+#ifndef FUNICULAR_COUPLINGS_H
+#define FUNICULAR_COUPLINGS_H
+
+#include "acceleration.h"
+#include "coupling.h"
+#include "model.h"
+
+/* Number the couplings of model->couplings: `index` and `unknown` and the like are given, offsets follow; sums go to model; `lists` has
+ * room for 2 n. */
+void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model);
+/* Whether couplings of a type do nothing but act, by themselves, while what they are between is near: nothing else asks for them. */
+int fu_acts_alone(const fu_coupling *coupling);
+
+/* Couplings over which to loop. */
+typedef struct {
+    const fu_coupling *const *list;
+    int n;
+} fu_couplings;
+/* Those that may act at a state, or over a step (couplings/proximity.c). */
+fu_couplings fu_acting(const fu_model *model, const fu_state *state);
+fu_couplings fu_acting_in_step(const fu_model *model, const fu_equations *at);
+
+/* The type of this name, null where there is none. */
+const fu_coupling_type *fu_coupling_type_of(const char *name);
+void fu_bind_events(fu_coupling *coupling);
+
+void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *own);
+void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system);
+void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *own);
+void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu_system *system);
+void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f);
+void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system);
+double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid);
+void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f);
+void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f);
+double fu_coupling_external_power(const fu_model *model, const fu_state *state);
+double fu_coupling_energy(const fu_model *model, const fu_state *state);
+double fu_coupling_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work);
+int fu_coupling_kinks(const fu_model *model, const fu_state *from, const fu_state *to, int n, const double *b, const double *c, double *f);
+double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to, int by_ends);
+void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state *state);
+void fu_coupling_outputs(const fu_model *model, const fu_state *state, const double *acceleration,
+                         const fu_accelerator *work, double *out);
+void fu_gaps(const fu_model *model, const fu_state *state, double *gaps);
+void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, double *rates);
+int fu_may_start_open(const fu_model *model, const fu_state *state);
+const fu_coupling *fu_follow(const fu_model *model, fu_state *state);
+void fu_reset(const fu_model *model, fu_state *state);
+void fu_carry(const fu_model *model, fu_state *state);
+/* How far off what is carried along may be after a step, m. */
+double fu_carried_error(const fu_model *model, const fu_state *from, const fu_state *to);
+void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
+void fu_touch(const fu_model *model, fu_state *state);
+int fu_is_possible(const fu_model *model, const fu_state *state);
+
+/* Scale of constraint rows, and of own forces, by the inertia of a system: statics has none. */
+double fu_row_unit(double inertia, double mass);
+/* Own coordinates and forces += a solution `own` of a Newton system whose equilibrium is multiplied by `scale`. */
+void fu_add_own(const fu_model *model, fu_state *state, const double *own, double inertia, double scale);
+/* The coupling that has this unknown beyond the dofs. */
+const fu_coupling *fu_owner(const fu_model *model, int unknown);
+
+#endif

@@ -1,0 +1,336 @@
+/* Two lines that touch at their closest points (derive/couplings/crossing.py). The force is a function of the state. In a Newton
+ * matrix its change and the ways of the closest points along both lines are unknowns of their own, so that two cables that cross do
+ * not widen the band: with them the matrix is that of the equations without them.
+ */
+#include "engine.h"
+
+#include <math.h>
+#include <string.h>
+
+static const fu_crossing *crossing_of(const fu_coupling *coupling)
+{
+    return (const fu_crossing *)coupling;
+}
+
+void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out)
+{
+    memset(out, 0, sizeof *out);
+    crossing->kernel->contact(points->d, points->t, points->u, crossing->law, out->normal, out->depth, &out->size, out->force,
+                              &out->energy, &out->dissipated);
+}
+
+int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const fu_crossing_contact *contact)
+{
+    return fu_dot(3, state->numbers + crossing->base.numbers + FU_CROSSING_NORMAL, contact->normal) < 0.0;
+}
+
+/* Makes the part of the force that is friction; adds that which sticks. */
+static void add_friction(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, fu_crossing_contact *contact)
+{
+    fu_crossing_grip grip;
+    for (int d = 0; d < 3 && crossing->law[FU_LAW_FRICTION] > 0.0; ++d)
+        contact->friction[d] = contact->force[d] - contact->size * contact->normal[d];
+    if (!(crossing->friction > 0.0)) return;
+    fu_crossing_grip_at(crossing, state, points, contact, &grip);
+    contact->sticks = grip.sticks;
+    contact->energy += grip.energy;
+    for (int d = 0; d < 3; ++d) {
+        contact->friction[d] = grip.force[d];
+        contact->force[d] += grip.force[d];
+    }
+}
+
+/* Makes the force on the first line; the closest points, and what the contact tells. Not a number where there are no such points. */
+static void contact_force(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *points,
+                          fu_crossing_contact *contact, double force[3])
+{
+    const int touches = state->flags[crossing->base.flags];
+    fu_find_closest(model, crossing, state, points);
+    fu_crossing_contact_at(crossing, points, contact);
+    if (!points->found || fu_crossing_swung(crossing, state, contact)) contact->size = NAN;
+    add_friction(crossing, state, points, contact);
+    for (int d = 0; d < 3; ++d) force[d] = !touches ? 0.0 : isnan(contact->size) ? NAN : contact->force[d];
+}
+
+/* Adds the contact force to the left of the equations of motion. */
+static void own_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+{
+    const fu_crossing *crossing = crossing_of(coupling);
+    const int dim = model->dim;
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    fu_line_moves moves;
+    double force[3];
+    if (!state->flags[coupling->flags]) return;
+    contact_force(model, crossing, state, &points, &contact, force);
+    for (int line = 0; line < FU_LINES; ++line) {
+        fu_line_moves_at(model, crossing, line, state, &points.line[line], &moves);
+        for (int d = 0; d < dim; ++d)
+            for (int i = 0; i < moves.n; ++i)
+                f[moves.at[i]] += (line ? 1.0 : -1.0) * moves.P[d * moves.n + i] * force[d];
+    }
+}
+
+/* The own unknowns are changes in a matrix alone: nothing is left of their equations. */
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+{
+    own_force(model, coupling, at->next, f);
+    for (int i = 0; i < coupling->n_forces; ++i) own[coupling->unknown + i] = 0.0;
+}
+
+/* The force on the first line and its derivatives, and those of the arc-lengths, as the kernel gives them. */
+typedef struct {
+    double F[3], F_d[9], F_t[18], F_u[9], s_d[6], s_t[12];
+} derivatives;
+
+static void add_friction_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                                     derivatives *by)
+{
+    const int dim = crossing->kernel->dim;
+    fu_crossing_grip_changes of;
+    fu_crossing_contact contact;
+    fu_crossing_contact_at(crossing, points, &contact);
+    fu_crossing_grip_derivatives(crossing, state, points, &contact, &of);
+    for (int d = 0; d < dim; ++d) by->F[d] += of.F[d];
+    for (int i = 0; i < dim * dim; ++i) {
+        by->F_d[i] += of.F_d[i];
+        by->F_u[i] += of.F_u[i];
+    }
+    for (int i = 0; i < dim * dim * (dim - 1); ++i) by->F_t[i] += of.F_t[i];
+}
+
+/* How a line's point moves by the unknowns: its derivatives turned, and what its velocity changes with the place. */
+typedef struct {
+    fu_line_moves moves, turned;
+    double by_place[3 * FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+} line_changes;
+
+static void changes_of(const fu_model *model, const fu_crossing *crossing, int line, const fu_equations *at,
+                       const fu_line_point *point, const double *force, line_changes *out)
+{
+    const int dim = model->dim, body = crossing->cables[line] < 0 ? point->on.body : -1;
+    fu_line_moves_at(model, crossing, line, at->next, point, &out->moves);
+    const int n = out->moves.n;
+    out->turned = out->moves;
+    memset(out->by_place, 0, sizeof(double) * (size_t)(dim * n));
+    memset(out->K, 0, sizeof(double) * (size_t)(n * n));
+    if (body < 0) return;
+    fu_attachment_state end;
+    end.n = n;
+    memcpy(end.at, out->moves.at, sizeof(int) * (size_t)n);
+    fu_turn_point(model, &point->on, at->next, force, at->psi, &end, out->turned.P, out->by_place, out->K);
+    if (at->psi)
+        fu_turn_columns(model->bodies[body].kernel, out->turned.T, dim, n, 0, at->psi + model->bodies[body].dof);
+}
+
+/* Adds to a system what a line's coordinates have in the rows and columns of the own unknowns, the first of them in `row`: dim
+ * of the force, in N, and one of each arc-length, times the stiffness, in N. */
+static void add_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_equations *at, const line_changes *c,
+                     const derivatives *by, int row, double unit, fu_system *system)
+{
+    const int dim = model->dim, n = c->moves.n, lines = dim - 1;
+    const double sign = line ? -1.0 : 1.0, stiffness = at->weights.stiffness, rate = at->weights.rate;
+    const double *P = c->moves.P, *T = c->moves.T, *P_q = c->turned.P, *T_q = c->turned.T;
+    for (int i = 0; i < n; ++i) {
+        double along = 0.0;
+        for (int d = 0; d < dim; ++d) {
+            double change = 0.0;
+            for (int k = 0; k < dim; ++k) {
+                change += sign * by->F_d[d * dim + k] * P_q[k * n + i];
+                change += sign * by->F_u[d * dim + k] * (c->by_place[k * n + i] + rate * P[k * n + i]);
+                if (line < lines) change += by->F_t[(d * lines + line) * dim + k] * T_q[k * n + i];
+            }
+            along += T[d * n + i] * by->F[d];
+            fu_add(model, system, row + d, c->moves.at[i], -stiffness * change);
+            fu_add(model, system, c->moves.at[i], row + d, -sign * unit * P[d * n + i]);
+        }
+        for (int l = 0; l < lines; ++l) {
+            double change = 0.0;
+            for (int k = 0; k < dim; ++k) {
+                change += sign * by->s_d[l * dim + k] * P_q[k * n + i];
+                if (line < lines) change += by->s_t[(l * lines + line) * dim + k] * T_q[k * n + i];
+            }
+            fu_add(model, system, row + dim + l, c->moves.at[i], -stiffness * crossing->stiffness * change);
+        }
+        if (line < lines) fu_add(model, system, c->moves.at[i], row + dim + line, -sign * unit * along / crossing->stiffness);
+        for (int j = 0; j < n && crossing->cables[line] < 0; ++j)
+            fu_add(model, system, c->moves.at[i], c->moves.at[j], -sign * stiffness * c->K[i * n + j]);
+    }
+}
+
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    const fu_crossing *crossing = crossing_of(coupling);
+    const int row = fu_extra(model, coupling->unknown);
+    const double unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
+    fu_closest_points points;
+    derivatives by;
+    line_changes changes;
+    for (int i = 0; i < coupling->n_forces; ++i) fu_add(model, system, row + i, row + i, unit);
+    if (!at->next->flags[coupling->flags]) return;
+    fu_find_closest(model, crossing, at->next, &points);
+    crossing->kernel->force(points.d, points.t, points.k, points.w, points.u, crossing->law, by.F, by.F_d, by.F_t, by.F_u, by.s_d,
+                            by.s_t);
+    if (crossing->friction > 0.0) add_friction_derivatives(crossing, at->next, &points, &by);
+    for (int line = 0; line < FU_LINES; ++line) {
+        changes_of(model, crossing, line, at, &points.line[line], by.F, &changes);
+        add_line(model, crossing, line, at, &changes, &by, row, unit, system);
+    }
+}
+
+/* The middle moves by half of psi, which weights.stiffness has; the law's mean force is taken as that of the middle. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    const fu_state middle = fu_crossing_middle(at);
+    fu_equations halfway = *at;
+    halfway.next = &middle;
+    halfway.psi = 0;
+    tangent(model, coupling, &halfway, system);
+}
+
+static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
+{
+    (void)model, (void)work;
+    for (int i = 0; i < coupling->n_forces; ++i) state->forces[coupling->force + i] = 0.0;
+}
+
+/* Writes the force on the first line, the size of that along the normal, the penetration, the arc-lengths, the place on the first
+ * line's axis, the part of the force that is friction, and whether that sticks. */
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
+                    const fu_accelerator *work, double *out)
+{
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    (void)acceleration, (void)work;
+    contact_force(model, crossing_of(coupling), state, &points, &contact, out);
+    out[3] = state->flags[coupling->flags] ? contact.size : 0.0;
+    out[4] = contact.depth[0];
+    memcpy(out + 5, points.s, sizeof points.s);
+    memcpy(out + 7, points.line[0].r, sizeof points.line[0].r);
+    for (int d = 0; d < 3; ++d) out[10 + d] = state->flags[coupling->flags] ? contact.friction[d] : 0.0;
+    out[13] = state->flags[coupling->flags] ? contact.sticks : 0.0;
+}
+
+static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    double force[3];
+    if (!state->flags[coupling->flags]) return state->numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND];
+    contact_force(model, crossing_of(coupling), state, &points, &contact, force);
+    return contact.energy;
+}
+
+static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const fu_accelerator *work)
+{
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    double force[3];
+    (void)work;
+    if (!coupling->is_damped || !state->flags[coupling->flags]) return 0.0;
+    contact_force(model, crossing_of(coupling), state, &points, &contact, force);
+    return contact.dissipated;
+}
+
+/* Returns what friction that sticks takes as it slides. What contact had stored when it ended goes to heat in the step after. */
+static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                           int by_ends)
+{
+    if (!from->flags[coupling->flags]) return from->numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND];
+    return crossing_of(coupling)->friction > 0.0 ? fu_crossing_slid_on_way(model, crossing_of(coupling), from, to, by_ends) : 0.0;
+}
+
+/* Notes in the state where the closest points are, unless the lines have been parallel. */
+static void note(const fu_coupling *coupling, const fu_closest_points *points, fu_state *state)
+{
+    fu_crossing_contact contact;
+    double *numbers = state->numbers + coupling->numbers;
+    fu_crossing_contact_at(crossing_of(coupling), points, &contact);
+    if (points->found && !fu_crossing_swung(crossing_of(coupling), state, &contact)) {
+        memcpy(numbers + FU_CROSSING_S, points->s, sizeof points->s);
+        memcpy(numbers + FU_CROSSING_NORMAL, contact.normal, sizeof contact.normal);
+    }
+    numbers[FU_CROSSING_LEFT_BEHIND] = 0.0;
+}
+
+static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    fu_closest_points points;
+    fu_find_closest(model, crossing_of(coupling), state, &points);
+    if (crossing_of(coupling)->friction > 0.0 && state->flags[coupling->flags] && points.found) {
+        fu_crossing_contact contact;
+        fu_crossing_contact_at(crossing_of(coupling), &points, &contact);
+        fu_crossing_carry_grip(crossing_of(coupling), &points, &contact, state);
+    }
+    note(coupling, &points, state);
+}
+
+static void reset(const fu_coupling *coupling, fu_state *state)
+{
+    const fu_crossing *crossing = crossing_of(coupling);
+    memcpy(state->numbers + coupling->numbers + FU_CROSSING_S, crossing->start, sizeof crossing->start);
+    if (crossing->friction > 0.0) fu_crossing_reset_grip(crossing, state);
+}
+
+/* In statics lines touch where they penetrate; where that is not known, so is no force. */
+static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    fu_closest_points points;
+    fu_find_closest_anew(model, crossing_of(coupling), state, &points);
+    note(coupling, &points, state);
+    state->flags[coupling->flags] = !(fu_crossing_margin(model, crossing_of(coupling), state) <= 0.0);
+}
+
+static const char *const role[] = {"crossing", 0};
+/* Returns how far the closest points are within the ends of their lines, m. */
+double fu_crossing_way_to_ends(const fu_crossing *crossing, const fu_closest_points *points)
+{
+    double way = INFINITY;
+    for (int line = 0; line < FU_LINES; ++line)
+        way = fmin(way, fmin(points->s[line] - crossing->low[line], crossing->high[line] - points->s[line]));
+    return way;
+}
+
+double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact)
+{
+    const double damping = crossing->law[FU_LAW_DAMPING];
+    double margin = contact->depth[0];
+    /* a length, that of a millisecond's motion */
+    if (damping > 0.0) margin = fmin(margin, (1.0 / damping + contact->depth[1]) * FU_INSTANT);
+    return fmin(margin, fu_crossing_way_to_ends(crossing, points));
+}
+
+double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state)
+{
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    fu_find_closest(model, crossing, state, &points);
+    if (!points.found) return points.apart > 0.0 ? -points.apart : NAN;
+    fu_crossing_contact_at(crossing, &points, &contact);
+    if (fu_crossing_swung(crossing, state, &contact)) return NAN;
+    return fu_crossing_margin_of(crossing, &points, &contact);
+}
+
+static const fu_field fields[] = {
+    FU_FIELD(fu_crossing, kernel, FU_KERNELS, role),
+    FU_FIELD_ARRAY(fu_crossing, cables, FU_INTEGER),
+    FU_FIELD_ARRAY(fu_crossing, attachments, FU_ATTACHMENT),
+    FU_FIELD_ARRAY(fu_crossing, axis, FU_REAL),
+    FU_FIELD_ARRAY(fu_crossing, low, FU_REAL),
+    FU_FIELD_ARRAY(fu_crossing, high, FU_REAL),
+    FU_FIELD_ARRAY(fu_crossing, law, FU_REAL),
+    FU_FIELD_ARRAY(fu_crossing, start, FU_REAL),
+    FU_FIELD_ARRAY(fu_crossing, way, FU_REAL),
+    FU_FIELD(fu_crossing, friction, FU_REAL, 0),
+    FU_FIELD(fu_crossing, tangential, FU_REAL, 0),
+    FU_FIELD(fu_crossing, stiffness, FU_REAL, 0),
+    {0},
+};
+
+const fu_coupling_type fu_crossing_type = {
+    .name = "crossing", .size = sizeof(fu_crossing), .fields = fields, .n_outputs = 14, .n_numbers = FU_CROSSING_NUMBERS,
+    .n_flags = 1, .clearance = fu_crossing_clearance, .between = fu_crossing_between, .residual = residual, .tangent = tangent,
+    .step_residual = fu_crossing_step_residual, .step_tangent = step_tangent, .step_dissipation = fu_crossing_step_dissipation, .force = own_force,
+    .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step,
+    .carry = carry, .carried_error = fu_crossing_carried_error, .reset = reset, .touch = touch};

@@ -1,0 +1,402 @@
+/* The force of a fluid on cables and bodies: drag by the square of the velocity of the fluid past them
+ * (derive/couplings/drag.py), and buoyancy; with the inertia of the fluid, which fluid_inertia.c adds. Along a cable it is
+ * integrated by Gauss quadrature on each element.
+ *
+ * With the velocity U of the fluid and w = U - v, the power of drag f on what moves at v is f . U - f . w: the fluid gives the first,
+ * work from outside, and the second, which is never negative, goes to heat.
+ */
+#include "engine.h"
+
+#include <string.h>
+
+/* Makes the derivative of drag by the place (dim x dim). */
+static void by_place(int dim, const fu_drag_action *a, double out[9])
+{
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            out[i * dim + j] = a->by_wet[i * dim + j];
+            for (int k = 0; k < dim; ++k) out[i * dim + j] += a->by_w[i * dim + k] * a->flow.gradient[k * dim + j];
+        }
+}
+
+/* Makes the force of drag and buoyancy, N/m or N: so much of it as of all loads acts. */
+static void whole_force(const fu_model *model, const fu_drag_action *a, double force[3])
+{
+    for (int d = 0; d < model->dim; ++d) force[d] = model->load_fraction * (a->f[d] + a->buoyancy[d]);
+}
+
+/* Adds to `sum` the powers at a place of this weight. */
+static void add_powers(const fu_model *model, const fu_drag_place *at, const fu_drag_action *a, double weight,
+                       fu_drag_powers *sum)
+{
+    const double part = weight * model->load_fraction;
+    sum->dissipated += part * fu_dot(model->dim, a->f, a->w);
+    sum->external += part * (fu_dot(model->dim, a->f, a->flow.U) + fu_dot(model->dim, a->buoyancy, at->v));
+}
+
+/* Returns a point of quadrature on an element of n shape functions. */
+fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point)
+{
+    const long k = (long)element * drag->stride + point;
+    return (fu_quadrature_point){drag->weights[k], drag->N + k * n, drag->N_x + k * n,
+                                 fu_drag_on_section(drag) ? drag->N_chord + k * n : 0};
+}
+
+/* Makes the place of a point of quadrature on an element with the coordinates e, rates v and accelerations a; null: without. */
+void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
+                           fu_quadrature_point point, fu_drag_place *at)
+{
+    const fu_cable *cable = &model->cables[drag->cable];
+    const int dim = model->dim, n = cable->coordinates / dim;
+    const double *N = point.N, *N_x = point.N_x;
+    memset(at, 0, sizeof *at);
+    for (int k = 0; k < n; ++k)
+        for (int d = 0; d < dim; ++d) {
+            /* from the first node: slopes do not see where that is, and no digits are lost far from the origin */
+            const int is_place = k % cable->kernel->vectors == 0;
+            const double local = e[k * dim + d] - (is_place ? e[d] : 0.0);
+            at->r[d] += N[k] * e[k * dim + d];
+            at->r_x[d] += N_x[k] * local;
+            at->v[d] += N[k] * v[k * dim + d];
+            at->r_x_rate[d] += N_x[k] * (v[k * dim + d] - (is_place ? v[d] : 0.0));
+            if (a) at->a[d] += N[k] * a[k * dim + d];
+            if (!point.N_chord) continue;
+            at->chord[d] += point.N_chord[k] * local;
+            at->chord_rate[d] += point.N_chord[k] * (v[k * dim + d] - (is_place ? v[d] : 0.0));
+        }
+}
+
+/* Adds what drag and buoyancy do to a cable. */
+static void on_cable(const fu_model *model, const fu_drag *drag, double t, const double *q, const double *v,
+                     const fu_drag_sums *sums)
+{
+    const fu_cable *cable = &model->cables[drag->cable];
+    const int dim = model->dim, n = cable->coordinates / dim;
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        fu_drag_points points;
+        fu_drag_points_on(model, drag, e, q + first, &points);
+        for (int g = 0; g < points.n; ++g) {
+            fu_drag_place at;
+            fu_drag_action a;
+            double force[3];
+            const fu_quadrature_point point = points.at[g];
+            fu_drag_place_on_axis(model, drag, q + first, v + first, 0, point, &at);
+            fu_drag_act(model, drag, t, &at, 0, &a);
+            whole_force(model, &a, force);
+            const double share = point.weight * model->load_fraction;
+            if (sums->power) add_powers(model, &at, &a, point.weight, sums->power);
+            if (sums->power && point.N_chord) sums->power->external += share * fu_section_power(&at, &a);
+            if (sums->f && point.N_chord) fu_section_forces(&a, point, share, n, sums->f + first);
+            for (int d = 0; d < dim; ++d) {
+                const double part = point.weight * force[d];
+                if (sums->total) sums->total[d] += part;
+                for (int k = 0; sums->f && k < n; ++k) sums->f[first + k * dim + d] -= point.N[k] * part;
+            }
+        }
+    }
+}
+
+int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+{
+    const fu_drag *drag = (const fu_drag *)coupling;
+    const fu_cable *cable = &model->cables[drag->cable];
+    int n = 0;
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        fu_drag_points points;
+        fu_drag_points_on(model, drag, e, state->q + first, &points);
+        for (int g = 0; g < points.n; ++g, ++n, out += FU_DRAG_DENSITIES) {
+            fu_drag_place at;
+            fu_drag_action a;
+            double force[3] = {0.0};
+            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, points.at[g], &at);
+            fu_drag_act(model, drag, state->t, &at, 0, &a);
+            whole_force(model, &a, force);
+            out[0] = e;
+            out[1] = points.part[g];
+            out[2] = points.x[g];
+            out[3] = points.at[g].weight;
+            memcpy(out + 4, force, sizeof force);
+        }
+    }
+    return n;
+}
+
+/* Adds the derivatives of the same to a system. */
+static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, fu_weights weights,
+                            fu_system *system)
+{
+    const fu_cable *cable = &model->cables[drag->cable];
+    const int dim = model->dim, n = cable->coordinates / dim, all = cable->coordinates;
+    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    for (int e = 0; e < cable->n_elements; ++e) {
+        const int first = cable->first + e * cable->per_node;
+        fu_drag_points points;
+        memset(K, 0, sizeof(double) * (size_t)(all * all));
+        fu_drag_points_on(model, drag, e, state->q + first, &points);
+        for (int g = 0; g < points.n; ++g) {
+            const fu_quadrature_point point = points.at[g];
+            const double *N = point.N, *N_x = point.N_x;
+            const double scale = -weights.stiffness * model->load_fraction * point.weight;
+            double gradient[9];
+            fu_drag_place at;
+            fu_drag_action a;
+            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, point, &at);
+            fu_drag_act(model, drag, state->t, &at, 0, &a);
+            by_place(dim, &a, gradient);
+            for (int i = 0; i < dim; ++i)
+                for (int j = 0; j < dim; ++j) {
+                    const double by_r = gradient[i * dim + j] - weights.rate * a.by_w[i * dim + j];
+                    for (int k = 0; k < n; ++k)
+                        for (int l = 0; l < n; ++l)
+                            K[(k * dim + i) * all + l * dim + j] +=
+                                scale * N[k] * (a.by_slope[i * dim + j] * N_x[l] + by_r * N[l]);
+                }
+            if (point.N_chord) fu_section_matrix(&a, point, scale, weights.rate, all, K);
+        }
+        fu_add_element_matrix(model, first, all, K, system);
+    }
+}
+
+/* Makes the place of a body's point, and how the point moves with the coordinates; over a step that conserves energy, the place in
+ * its middle, with the velocity that the step has on average. */
+static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
+                          fu_drag_place *at, fu_attachment_state *end)
+{
+    const fu_attachment *on = &drag->attachments[0];
+    memset(at, 0, sizeof *at);
+    if (drag->is_foil) fu_attachment_at(model, on, state, 0.0, FU_AXES, end); /* in a step those in its middle */
+    fu_attachment_at(model, on, step ? step->now : state, 0.0, FU_POINT, end);
+    memcpy(at->r, end->p, sizeof at->r);
+    memcpy(at->v, end->v, sizeof at->v);
+    if (!step) return;
+    fu_attachment_state after;
+    fu_attachment_at(model, on, step->next, 0.0, FU_POINT, &after);
+    for (int d = 0; d < model->dim; ++d) {
+        at->r[d] = 0.5 * (end->p[d] + after.p[d]);
+        at->v[d] = (after.p[d] - end->p[d]) / step->h;
+    }
+    fu_discrete_point(model, on, step->now, step->next, end->P);
+}
+
+/* Does for a body what on_cable does for a cable. */
+static void on_body(const fu_model *model, const fu_drag *drag, double t, const fu_state *state, const fu_equations *step,
+                    const fu_drag_sums *sums)
+{
+    fu_attachment_state end;
+    fu_drag_place at;
+    fu_drag_action a;
+    double force[3];
+    place_on_body(model, drag, state, step, &at, &end);
+    fu_drag_act(model, drag, t, &at, end.A, &a);
+    whole_force(model, &a, force);
+    if (sums->power) add_powers(model, &at, &a, 1.0, sums->power);
+    for (int d = 0; d < model->dim; ++d) {
+        if (sums->total) sums->total[d] += force[d];
+        for (int i = 0; sums->f && i < end.n; ++i) sums->f[end.at[i]] -= end.P[d * end.n + i] * force[d];
+    }
+}
+
+static void matrix_of_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *psi,
+                           fu_weights weights, fu_system *system)
+{
+    const fu_attachment *on = &drag->attachments[0];
+    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    double turned[3 * FU_ATTACHMENT_COORDINATES], of_rate[3 * FU_ATTACHMENT_COORDINATES];
+    double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], force[3], gradient[9];
+    fu_attachment_state end;
+    fu_drag_place at;
+    fu_drag_action a;
+    place_on_body(model, drag, state, 0, &at, &end);
+    fu_drag_act(model, drag, state->t, &at, end.A, &a);
+    whole_force(model, &a, force);
+    const int n = end.n;
+    memcpy(turned, end.P, sizeof turned);
+    memset(of_rate, 0, sizeof of_rate);
+    fu_turn_point(model, on, state, force, psi, &end, turned, of_rate, K);
+    by_place(dim, &a, gradient);
+    if (drag->is_foil) fu_turn_attachment(model, on, psi, end.T, turns, n, 0);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            double sum = K[i * n + j];
+            for (int d = 0; d < dim && drag->is_foil; ++d)
+                for (int k = 0; k < turns; ++k)
+                    sum += model->load_fraction * end.P[d * n + i] * a.by_turn[d * turns + k] * end.T[k * n + j];
+            for (int d = 0; d < dim; ++d)
+                for (int c = 0; c < dim; ++c) {
+                    const double rate = of_rate[c * n + j] + weights.rate * end.P[c * n + j];
+                    const double change = gradient[d * dim + c] * turned[c * n + j] - a.by_w[d * dim + c] * rate;
+                    sum += model->load_fraction * end.P[d * n + i] * change;
+                }
+            fu_add(model, system, end.at[i], end.at[j], -weights.stiffness * sum);
+        }
+}
+
+/* Adds what drag and buoyancy do at a state, or over a step. */
+static void add(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
+                const fu_drag_sums *sums)
+{
+    if (drag->cable >= 0) on_cable(model, drag, state->t, state->q, state->v, sums);
+    else on_body(model, drag, state->t, state, step, sums);
+}
+
+/* Adds all that the fluid does at a state, with the accelerations a or without, null. */
+static void add_all(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *a,
+                    const fu_drag_sums *sums)
+{
+    const fu_drag *drag = (const fu_drag *)coupling;
+    add(model, drag, state, 0, sums);
+    if (coupling->has_inertia) fu_fluid_inertia_forces(model, drag, state, a, sums);
+}
+
+/* Adds the same over a step. */
+static void add_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_drag_sums *sums)
+{
+    const fu_drag *drag = (const fu_drag *)coupling;
+    add(model, drag, at->middle, at, sums);
+    if (coupling->has_inertia) fu_fluid_inertia_step_forces(model, drag, at, sums);
+}
+
+static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+{
+    const fu_drag_sums sums = {.f = f};
+    add_all(model, coupling, state, 0, &sums);
+}
+
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+{
+    (void)own;
+    force(model, coupling, at->next, f);
+}
+
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+{
+    const fu_drag_sums sums = {.f = f};
+    (void)own;
+    add_step(model, coupling, at, &sums);
+}
+
+static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *a,
+                   const double *psi, fu_weights weights, fu_system *system)
+{
+    const fu_drag *drag = (const fu_drag *)coupling;
+    if (drag->cable >= 0) matrix_of_cable(model, drag, state, weights, system);
+    else matrix_of_body(model, drag, state, psi, weights, system);
+    if (coupling->has_inertia) fu_fluid_inertia_tangent(model, drag, state, weights.inertia != 0.0 ? a : 0, psi, weights, system);
+}
+
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    matrix(model, coupling, at->next, at->next->acceleration, at->psi, at->weights, system);
+}
+
+/* The middle moves by half of psi, which weights.stiffness has. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    matrix(model, coupling, at->middle, at->next->acceleration, 0, at->weights, system);
+}
+
+static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work)
+{
+    fu_drag_powers power = {0.0, 0.0};
+    const fu_drag_sums sums = {.power = &power};
+    (void)work;
+    add(model, (const fu_drag *)coupling, state, 0, &sums);
+    return power.dissipated;
+}
+
+static double external_power(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    fu_drag_powers power = {0.0, 0.0};
+    const fu_drag_sums sums = {.power = &power};
+    add_all(model, coupling, state, state->acceleration, &sums);
+    return power.external;
+}
+
+static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
+{
+    fu_drag_powers power = {0.0, 0.0};
+    const fu_drag_sums sums = {.power = &power};
+    add(model, (const fu_drag *)coupling, at->middle, at, &sums);
+    return at->h * power.dissipated;
+}
+
+static double step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
+{
+    fu_drag_powers power = {0.0, 0.0};
+    const fu_drag_sums sums = {.power = &power};
+    add_step(model, coupling, at, &sums);
+    return at->h * power.external;
+}
+
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
+                    const fu_accelerator *work, double *out)
+{
+    const fu_drag_sums sums = {.total = out};
+    (void)work;
+    memset(out, 0, sizeof(double[3]));
+    add_all(model, coupling, state, acceleration, &sums);
+}
+
+static const char *const role[] = {"drag", 0};
+static const char *const wetted[] = {"all", "section", "sphere", "column", 0};
+static const char *const profiles[] = {"uniform", "power", "table", 0};
+#define FLOW_FIELD(member, kind, words) {#member, kind, offsetof(fu_drag, flow.member), 1, 0, words}
+#define FLOW_VECTOR(member) {#member, FU_REAL, offsetof(fu_drag, flow.member), 3, sizeof(double), NULL}
+
+static const fu_field fields[] = {
+    FU_FIELD(fu_drag, kernel, FU_KERNELS, role),
+    FLOW_VECTOR(velocity),
+    FLOW_VECTOR(up),
+    FLOW_FIELD(base, FU_REAL, 0),
+    FLOW_FIELD(signal, FU_INTEGER, 0),
+    FLOW_FIELD(profile, FU_WORD, profiles),
+    FLOW_FIELD(reference, FU_REAL, 0),
+    FLOW_FIELD(exponent, FU_REAL, 0),
+    FLOW_FIELD(least, FU_REAL, 0),
+    FLOW_FIELD(n_pieces, FU_INTEGER, 0),
+    FLOW_FIELD(breaks, FU_REALS, 0),
+    {"coefficients_of_profile", FU_REALS, offsetof(fu_drag, flow.coefficients), 1, 0, NULL},
+    FLOW_FIELD(degree, FU_INTEGER, 0),
+    {"n_splines", FU_INTEGER, offsetof(fu_drag, flow.n_splines), FU_FLOW_AXES, sizeof(int), NULL},
+    FLOW_FIELD(knots, FU_REALS, 0),
+    FLOW_FIELD(table, FU_REALS, 0),
+    FLOW_VECTOR(origin),
+    {"axes", FU_REAL, offsetof(fu_drag, flow.axes), 9, sizeof(double), NULL},
+    FU_FIELD(fu_drag, cable, FU_INTEGER, 0),
+    FU_FIELD_ARRAY(fu_drag, coefficients, FU_REAL),
+    FU_FIELD_ARRAY(fu_drag, lift, FU_REAL),
+    FU_FIELD(fu_drag, is_foil, FU_INTEGER, 0),
+    FU_FIELD_ARRAY(fu_drag, foil, FU_REAL),
+    FU_FIELD_ARRAY(fu_drag, span, FU_REAL),
+    FU_FIELD_ARRAY(fu_drag, chord, FU_REAL),
+    FU_FIELD(fu_drag, foil_lift, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_drag, section, FU_REAL),
+    FU_FIELD(fu_drag, n_angles, FU_INTEGER, 0),
+    FU_FIELD(fu_drag, angles, FU_REALS, 0),
+    FU_FIELD(fu_drag, polar_drag, FU_REALS, 0),
+    FU_FIELD(fu_drag, polar_lift, FU_REALS, 0),
+    FU_FIELD(fu_drag, polar_moment, FU_REALS, 0),
+    FU_FIELD_ARRAY(fu_drag, buoyancy, FU_REAL),
+    FU_FIELD(fu_drag, wet, FU_WORD, wetted),
+    FU_FIELD(fu_drag, extent, FU_REAL, 0),
+    FU_FIELD(fu_drag, surface, FU_REAL, 0),
+    FU_FIELD(fu_drag, bottom, FU_REAL, 0),
+    FU_FIELD(fu_drag, displaced, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_drag, added, FU_REAL),
+    FU_FIELD(fu_drag, n_points, FU_INTEGER, 0),
+    FU_FIELD(fu_drag, stride, FU_INTEGER, 0),
+    FU_FIELD(fu_drag, weights, FU_REALS, 0),
+    FU_FIELD(fu_drag, N, FU_REALS, 0),
+    FU_FIELD(fu_drag, N_x, FU_REALS, 0),
+    FU_FIELD(fu_drag, N_chord, FU_REALS, 0),
+    FU_FIELD_ARRAY(fu_drag, attachments, FU_ATTACHMENT),
+    {0},
+};
+
+const fu_coupling_type fu_drag_type = {
+    .name = "drag", .size = sizeof(fu_drag), .fields = fields, .n_outputs = 3, .n_flags = FU_DRAG_FLAGS, .residual = residual, .tangent = tangent,
+    .step_residual = step_residual, .step_tangent = step_tangent, .step_dissipation = step_dissipation, .step_work = step_work,
+    .inertia = fu_fluid_inertia, .mass = fu_fluid_mass, .kinetic_energy = fu_fluid_kinetic_energy,
+    .force = force, .external_power = external_power, .dissipation = dissipation, .outputs = outputs};

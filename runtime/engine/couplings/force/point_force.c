@@ -1,0 +1,359 @@
+/* Forces between the points of two attachments by the kernels of a law (derive/couplings/point_law.py). In a Newton system
+ * the force is an unknown of its own, so that two points far apart on cables do not widen the band.
+ */
+#include "engine.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Makes position and velocity of an attachment's point, and how it moves with its coordinates; returns its first dof. */
+static int point(const fu_model *model, const fu_attachment *on, const double *q, const double *v, fu_attachment_state *at)
+{
+    const fu_state state = {.q = (double *)q, .v = (double *)v};
+    fu_attachment_at(model, on, &state, 0.0, FU_POINT, at);
+    return at->n ? at->at[0] : 0;
+}
+
+/* Makes the gap between the points, and its rate. */
+void fu_gap(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
+            double rate[3])
+{
+    fu_attachment_state at[2];
+    for (int e = 0; e < 2; ++e) point(model, &between->attachments[e], q, v, &at[e]);
+    for (int d = 0; d < 3; ++d) {
+        gap[d] = at[1].p[d] - at[0].p[d];
+        rate[d] = at[1].v[d] - at[0].v[d];
+    }
+}
+
+/* Makes the force on the first point by the law of a piece. */
+static void force_of_piece(const fu_point_force *between, int piece, const double gap[3], const double rate[3],
+                           double force[3])
+{
+    if (between->senses[piece] == FU_HAS_NO_FORCE) memset(force, 0, sizeof(double[3]));
+    else between->law->force(fu_piece_parameters(between, piece), gap, rate, force);
+}
+
+/* Makes the force on the first point by the law. */
+static void force_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3])
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    double gap[3], rate[3];
+    fu_gap(model, between, state->q, state->v, gap, rate);
+    force_of_piece(between, fu_force_piece(between, state), gap, rate, force);
+}
+
+static double length(int dim, const double *gap)
+{
+    return sqrt(fu_dot(dim, gap, gap));
+}
+
+/* A way over several pieces of a law without a damper: the distances at its ends, m, and the mean tension, N. */
+typedef struct {
+    double from, to, tension;
+} way;
+
+/* Returns the way from one gap to another. The tension of each piece counts for as much of it as lies on the piece: what the mean does
+ * on the way is the change of the energy. */
+static way way_of(const fu_point_force *between, const double gap[3], const double gap_next[3])
+{
+    const int dim = between->dim;
+    const double from = length(dim, gap), to = length(dim, gap_next), low = fmin(from, to), high = fmax(from, to);
+    double work = 0.0;
+    for (int piece = 0; piece < between->n_pieces; ++piece) {
+        const double a = piece > 0 ? fmax(low, between->bounds[piece - 1]) : low;
+        const double b = piece < between->n_pieces - 1 ? fmin(high, between->bounds[piece]) : high;
+        const double start[3] = {a, 0.0, 0.0}, end[3] = {b, 0.0, 0.0};
+        double tension[3], unused;
+        if (!(b > a) || between->senses[piece] == FU_HAS_NO_FORCE) continue;
+        between->law->discrete_force(fu_piece_parameters(between, piece), 1.0, start, end, tension, &unused);
+        work += tension[0] * (b - a);
+    }
+    return (way){from, to, work / (high - low)};
+}
+
+/* Makes the derivatives of the mean force by the gap in the middle, which moves by half of what its end does: those across the mean
+ * direction are of the mean tension. */
+static void mean_stiffness(const fu_point_force *between, const double gap[3], const double gap_next[3], int piece, double by_gap[9])
+{
+    const way w = way_of(between, gap, gap_next);
+    const int dim = between->dim;
+    const double end[3] = {w.to, 0.0, 0.0}, rate[3] = {0.0, 0.0, 0.0};
+    double tension[3], e[3];
+    force_of_piece(between, piece, end, rate, tension);
+    const double along = 2.0 * (tension[0] - w.tension) / (w.to - w.from), across = 2.0 * w.tension / (w.from + w.to);
+    for (int d = 0; d < dim; ++d) e[d] = (gap[d] + gap_next[d]) / (w.from + w.to);
+    for (int d = 0; d < dim; ++d)
+        for (int k = 0; k < dim; ++k) by_gap[d * dim + k] = (along - across) * e[d] * e[k] + (d == k ? across : 0.0);
+}
+
+/* Returns the piece on which a step ends: without a damper that of the distance, as energy has it. */
+static int step_piece(const fu_model *model, const fu_point_force *between, const fu_equations *at)
+{
+    return between->base.is_damped ? fu_force_piece(between, at->next) : fu_piece_at(model, between, at->next);
+}
+
+/* Returns whether the force over a step is that of several pieces: those of a law without a damper that the distance goes over. */
+static int is_of_several(const fu_model *model, const fu_point_force *between, const fu_equations *at)
+{
+    if (between->base.is_damped || between->n_pieces == 1) return 0;
+    return fu_piece_at(model, between, at->now) != fu_piece_at(model, between, at->next);
+}
+
+/* Makes the force over a step; returns the power that it dissipates, W. */
+static double step_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double force[3])
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int several = is_of_several(model, between, at), piece = step_piece(model, between, at);
+    double gap[3], gap_next[3], unused[3], power;
+    if (!several && between->senses[piece] == FU_HAS_NO_FORCE) {
+        memset(force, 0, sizeof(double[3]));
+        return 0.0;
+    }
+    fu_gap(model, between, at->now->q, model->zero, gap, unused);
+    fu_gap(model, between, at->next->q, model->zero, gap_next, unused);
+    if (several) {
+        const way w = way_of(between, gap, gap_next);
+        for (int d = 0; d < between->dim; ++d) force[d] = w.tension * (gap[d] + gap_next[d]) / (w.from + w.to);
+        return 0.0;
+    }
+    between->law->discrete_force(fu_piece_parameters(between, piece), at->h, gap, gap_next, force, &power);
+    return power;
+}
+
+/* Adds P' force of one attachment to f. */
+static void add_force(int dim, int first, int e, const fu_attachment_state *at, const double *force, double *f)
+{
+    for (int d = 0; d < dim; ++d)
+        for (int i = 0; i < at->n; ++i) f[first + i] += (e ? 1.0 : -1.0) * at->P[d * at->n + i] * force[d];
+}
+
+/* Adds what a force on the first point, and its opposite on the second, puts on the left of the equations of motion. */
+static void add_forces(const fu_model *model, const fu_point_force *between, const double *q, const double *force, double *f)
+{
+    for (int e = 0; e < 2; ++e) {
+        fu_attachment_state at;
+        const int first = point(model, &between->attachments[e], q, model->zero, &at);
+        add_force(between->dim, first, e, &at, force, f);
+    }
+}
+
+/* Does the same over a step: what the force does is its work on the gap's change. */
+static void add_step_forces(const fu_model *model, const fu_point_force *between, const fu_equations *step,
+                            const double *force, double *f)
+{
+    for (int e = 0; e < 2; ++e) {
+        const fu_attachment *on = &between->attachments[e];
+        fu_attachment_state at;
+        const int first = point(model, on, step->now->q, model->zero, &at);
+        if (on->body >= 0) fu_discrete_point(model, on, step->now, step->next, at.P);
+        add_force(between->dim, first, e, &at, force, f);
+    }
+}
+
+void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece, double factor,
+                         double *f)
+{
+    double gap[3], rate[3], force[3], other[3];
+    fu_gap(model, between, state->q, state->v, gap, rate);
+    force_of_piece(between, fu_force_piece(between, state), gap, rate, force);
+    force_of_piece(between, piece, gap, rate, other);
+    for (int d = 0; d < between->dim; ++d) force[d] = factor * (force[d] - other[d]);
+    add_forces(model, between, state->q, force, f);
+}
+
+/* Writes minus the residuals of the own unknowns: the forces less those of the law. */
+static void own_rows(const fu_coupling *coupling, const fu_equations *at, const double *force, double *own)
+{
+    const double *unknown = at->next->forces + coupling->force;
+    for (int d = 0; d < coupling->n_forces; ++d)
+        own[coupling->unknown + d] = -at->weights.stiffness * (unknown[d] - force[d]);
+}
+
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                             double *own)
+{
+    double force[3];
+    add_forces(model, (const fu_point_force *)coupling, at->next->q, at->next->forces + coupling->force, f);
+    force_at(model, coupling, at->next, force);
+    own_rows(coupling, at, force, own);
+}
+
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                                  double *own)
+{
+    double force[3];
+    add_step_forces(model, (const fu_point_force *)coupling, at, at->next->forces + coupling->force, f);
+    step_force(model, coupling, at, force);
+    own_rows(coupling, at, force, own);
+}
+
+void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own, const double *psi,
+                   const fu_attachment_state *at, double *turned, double *by_place, double *K)
+{
+    const fu_body *body = &model->bodies[on->body];
+    const double *turn = psi ? psi + body->dof : 0;
+    const int dim = model->dim, n = at->n, first = at->at[0];
+    for (int d = 0; d < dim; ++d) {
+        const double axis[3] = {d == 0, d == 1, d == 2};
+        memset(K, 0, sizeof(double) * (size_t)(n * n));
+        fu_geometric_stiffness(model, on, state, axis, 0, n, K);
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) by_place[d * n + j] += state->v[first + i] * K[i * n + j];
+    }
+    memset(K, 0, sizeof(double) * (size_t)(n * n));
+    fu_geometric_stiffness(model, on, state, own, 0, n, K);
+    if (!turn) return;
+    fu_turn_columns(body->kernel, turned, dim, n, 0, turn);
+    fu_turn_columns(body->kernel, by_place, dim, n, 0, turn);
+    fu_turn_columns(body->kernel, K, n, n, 0, turn);
+}
+
+/* Adds the derivatives of the equations at a state to a system, by the law of a piece; own: the forces; psi as in fu_equations;
+ * known: the derivatives by the gap of a force that does not follow that law, else null. */
+static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int piece, const double *own,
+                   const double *psi, const double *known, fu_weights weights, fu_system *system)
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int dim = between->dim, row = fu_extra(model, coupling->unknown);
+    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), stiffness = weights.stiffness;
+    double gap[3], rate[3], force[3], by_gap[9], by_rate[9];
+    fu_gap(model, between, state->q, state->v, gap, rate);
+    memset(by_gap, 0, sizeof by_gap), memset(by_rate, 0, sizeof by_rate);
+    if (known) memcpy(by_gap, known, sizeof by_gap);
+    else if (between->senses[piece] != FU_HAS_NO_FORCE)
+        between->law->tangent(fu_piece_parameters(between, piece), gap, rate, force, by_gap, by_rate);
+    for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
+    for (int e = 0; e < 2; ++e) {
+        fu_attachment_state at;
+        double turned[3 * FU_ATTACHMENT_COORDINATES], by_place[3 * FU_ATTACHMENT_COORDINATES];
+        const int first = point(model, &between->attachments[e], state->q, state->v, &at), n = at.n;
+        const double sign = e ? 1.0 : -1.0, *P = at.P;
+        memcpy(turned, P, sizeof turned);
+        for (int i = 0; i < dim * n; ++i) by_place[i] = 0.0;
+        if (between->attachments[e].body >= 0) {
+            double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+            fu_turn_point(model, &between->attachments[e], state, own, psi, &at, turned, by_place, K);
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, sign * stiffness * K[i * n + j]);
+        }
+        for (int i = 0; i < n; ++i)
+            for (int d = 0; d < dim; ++d) {
+                double change = 0.0;
+                for (int k = 0; k < dim; ++k)
+                    change += by_gap[d * dim + k] * turned[k * n + i] +
+                              by_rate[d * dim + k] * (by_place[k * n + i] + weights.rate * P[k * n + i]);
+                fu_add(model, system, row + d, first + i, -sign * stiffness * change);
+                fu_add(model, system, first + i, row + d, sign * unit * P[d * n + i]);
+            }
+    }
+}
+
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    const int piece = fu_force_piece((const fu_point_force *)coupling, at->next);
+    matrix(model, coupling, at->next, piece, at->next->forces + coupling->force, at->psi, 0, at->weights, system);
+}
+
+/* The middle moves by half of psi, which weights.stiffness has. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                                 fu_system *system)
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int several = is_of_several(model, between, at), piece = step_piece(model, between, at);
+    double gap[3], gap_next[3], unused[3], by_gap[9];
+    if (several) {
+        fu_gap(model, between, at->now->q, model->zero, gap, unused);
+        fu_gap(model, between, at->next->q, model->zero, gap_next, unused);
+        mean_stiffness(between, gap, gap_next, piece, by_gap);
+    }
+    matrix(model, coupling, at->middle, piece, at->next->forces + coupling->force, 0, several ? by_gap : 0, at->weights, system);
+}
+
+static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
+{
+    double force[3];
+    return at->h * step_force(model, coupling, at, force);
+}
+
+static void own_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+{
+    double force[3];
+    force_at(model, coupling, state, force);
+    add_forces(model, (const fu_point_force *)coupling, state->q, force, f);
+}
+
+/* work: null in a state of rest, where the force is an unknown. */
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                            const double *acceleration, const fu_accelerator *work, double *out)
+{
+    (void)acceleration;
+    if (work) force_at(model, coupling, state, out);
+    else memcpy(out, state->forces + coupling->force, sizeof(double) * (size_t)coupling->n_forces);
+}
+
+static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
+{
+    outputs(model, coupling, state, 0, work, state->forces + coupling->force);
+}
+
+/* Returns the stored energy, J: that of the piece that the points' distance is on, whether the force follows its law or not. */
+static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int piece = fu_piece_at(model, between, state);
+    double gap[3], rate[3], stored;
+    if (between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
+    fu_gap(model, between, state->q, model->zero, gap, rate);
+    between->law->energy(fu_piece_parameters(between, piece), gap, &stored);
+    return stored;
+}
+
+static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const fu_accelerator *work)
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int piece = fu_force_piece(between, state);
+    double gap[3], rate[3], power;
+    (void)work;
+    if (!coupling->is_damped || between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
+    fu_gap(model, between, state->q, state->v, gap, rate);
+    between->law->dissipation(fu_piece_parameters(between, piece), gap, rate, &power);
+    return power;
+}
+
+/* Returns the stored energy that comes back to nobody, J: of a spring whose damper would push, so that it has no force. */
+static double energy_without_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int has_none = between->senses[fu_force_piece(between, state)] == FU_HAS_NO_FORCE;
+    return has_none ? energy(model, coupling, state) : 0.0;
+}
+
+static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                           int by_ends)
+{
+    (void)by_ends;
+    if (!coupling->is_damped || ((const fu_point_force *)coupling)->n_pieces == 1) return 0.0;
+    return energy_without_force(model, coupling, from) - energy_without_force(model, coupling, to);
+}
+
+static const char *const role[] = {"point_law", 0};
+static const fu_field fields[] = {
+    FU_FIELD(fu_point_force, law, FU_KERNELS, role),
+    FU_FIELD(fu_point_force, parameters, FU_REALS, 0),
+    FU_FIELD_ARRAY(fu_point_force, attachments, FU_ATTACHMENT),
+    FU_FIELD(fu_point_force, dim, FU_INTEGER, 0),
+    FU_FIELD(fu_point_force, n_pieces, FU_INTEGER, 0),
+    FU_FIELD(fu_point_force, n_parameters, FU_INTEGER, 0),
+    FU_FIELD(fu_point_force, bounds, FU_REALS, 0),
+    FU_FIELD(fu_point_force, senses, FU_INTEGERS, 0),
+    FU_FIELD(fu_point_force, compliance, FU_REAL, 0),
+    {0},
+};
+
+const fu_coupling_type fu_point_force_type = {
+    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .n_outputs = 3, .n_flags = 1, .touch = fu_touch_piece, .residual = residual, .tangent = tangent, .step_residual = step_residual,
+    .step_tangent = step_tangent, .step_dissipation = step_dissipation, .force = own_force, .take_forces = take_forces,
+    .outputs = outputs, .energy = energy, .dissipation = dissipation,
+    .lost_in_step = lost_in_step};

@@ -1,0 +1,374 @@
+/* Hard contact of a point with a surface: while it is closed its distance is a constraint like those of a joint, eq 38, whose multiplier
+ * may press alone. couplings/hard_contact_events.c has when it closes and opens, couplings/impacts.c what then happens.
+ */
+#include "engine.h"
+
+#include <string.h>
+
+#define NEAR 1e-9 /* m: what is no farther apart touches in statics */
+
+static const fu_hard_contact *contact_of(const fu_coupling *coupling)
+{
+    return (const fu_hard_contact *)coupling;
+}
+
+fu_hard_flags *fu_hard_flags_of(const fu_coupling *coupling, const fu_state *state)
+{
+    return (fu_hard_flags *)(state->flags + coupling->flags);
+}
+
+fu_hard_numbers *fu_hard_numbers_of(const fu_coupling *coupling, const fu_state *state)
+{
+    return (fu_hard_numbers *)(state->numbers + coupling->numbers);
+}
+
+static int is_closed(const fu_coupling *coupling, const fu_state *state)
+{
+    return fu_hard_flags_of(coupling, state)->mode == FU_CLOSED;
+}
+
+static int has_friction(const fu_coupling *coupling)
+{
+    return contact_of(coupling)->friction > 0.0;
+}
+
+/* Returns what of g'' is of the velocities: of the curvature, and of the surface's turning, as the point goes past it. */
+static double bias_of(int dim, const fu_distance *distance, const double *r, const fu_attachment_state *point,
+                      const fu_attachment_state *on)
+{
+    double omega[3], alpha[3], x[3] = {0.0}, past[3] = {0.0}, turning[3], half[3], twice[3], coriolis[3], sum = 0.0;
+    fu_turn_in_space(dim, on->omega, omega);
+    fu_turn_in_space(dim, on->alpha, alpha);
+    for (int d = 0; d < dim; ++d) x[d] = r[d] - on->p[d];
+    fu_surface_past(dim, on, r, point->v, past);
+    fu_cross(alpha, x, turning);
+    fu_cross(omega, x, half);
+    fu_cross(omega, half, twice);
+    fu_cross(omega, past, coriolis);
+    for (int d = 0; d < dim; ++d) {
+        const double own = on->bias[d] + turning[d] + twice[d] + 2.0 * coriolis[d];
+        sum += distance->n[d] * (point->bias[d] - own);
+        sum += past[d] * fu_dot(dim, distance->H + d * dim, past);
+    }
+    return sum;
+}
+
+void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, fu_hard_row *out)
+{
+    const int dim = model->dim;
+    fu_attachment_state point, on;
+    fu_distance distance;
+    double P[3 * FU_ATTACHMENT_COORDINATES], past[3];
+    fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT, &point);
+    fu_surface_at(model, &contact->contact.surface, state, &on);
+    fu_surface_distance(dim, &contact->contact.surface, &on, point.p, &distance);
+    out->g = distance.g - contact->contact.radius;
+    memcpy(out->normal, distance.n, sizeof(double) * (size_t)dim);
+    memcpy(out->curvature, distance.H, sizeof out->curvature);
+    out->n = point.n + on.n;
+    for (int i = 0; i < point.n; ++i) {
+        out->at[i] = point.at[i];
+        out->H[i] = 0.0;
+        for (int d = 0; d < dim; ++d) out->H[i] += distance.n[d] * point.P[d * point.n + i];
+    }
+    fu_surface_motion(dim, &on, point.p, P);
+    for (int i = 0; i < on.n; ++i) {
+        out->at[point.n + i] = on.at[i];
+        out->H[point.n + i] = 0.0;
+        for (int d = 0; d < dim; ++d) out->H[point.n + i] -= distance.n[d] * P[d * on.n + i];
+    }
+    fu_surface_past(dim, &on, point.p, point.v, past);
+    out->rate = fu_dot(dim, distance.n, past);
+    out->bias = bias_of(dim, &distance, point.p, &point, &on);
+}
+
+/* Adds rows of what friction holds, or what it is against where the point slides. */
+static void friction_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_hard_row *row, fu_rows *rows)
+{
+    const fu_hard_contact *contact = contact_of(coupling);
+    fu_hard_along along;
+    fu_hard_along_at(model, contact, state, row, &along);
+    if (!fu_hard_flags_of(coupling, state)->sticks) {
+        rows->is_pushed = 1;
+        for (int i = 0; i < row->n; ++i) rows->column[i] = row->H[i] - contact->friction * along.slip[i];
+        return;
+    }
+    rows->rows = model->dim;
+    for (int k = 1; k < model->dim; ++k) {
+        memcpy(rows->H + k * row->n, along.H[k - 1], sizeof(double) * (size_t)row->n);
+        rows->W[k] = -along.bias[k - 1];
+        rows->C[k] = rows->rate[k] = 0.0;
+        rows->soft[k] = fu_hard_softness(contact, state->forces[coupling->force]);
+    }
+}
+
+static void rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
+{
+    fu_rows *rows = &work->rows[coupling->row];
+    fu_hard_row row;
+    rows->n = rows->rows = 0;
+    if (!is_closed(coupling, state)) return;
+    fu_hard_row_at(model, contact_of(coupling), state, &row);
+    rows->rows = 1;
+    rows->n = row.n;
+    memcpy(rows->at, row.at, sizeof(int) * (size_t)row.n);
+    memcpy(rows->H, row.H, sizeof(double) * (size_t)row.n);
+    rows->W[0] = -row.bias;
+    rows->C[0] = row.g;
+    rows->rate[0] = 0.0;
+    if (has_friction(coupling)) friction_rows(model, coupling, state, &row, rows);
+}
+
+/* Returns by how much the distance gives way with the multiplier, m/N: in statics, else nil. */
+static double compliance(const fu_coupling *coupling, fu_weights weights)
+{
+    return weights.inertia == 0.0 ? 1.0 / contact_of(coupling)->stiffness : 0.0;
+}
+
+/* Writes the equation of the own unknown: what is left of the distance, or that it is nil. */
+static void own_row(const fu_coupling *coupling, const fu_equations *at, double g, double *own)
+{
+    const double multiplier = at->next->forces[coupling->force], left = g - compliance(coupling, at->weights) * multiplier;
+    if (is_closed(coupling, at->next)) own[coupling->unknown] = -fu_row_unit(at->weights.inertia, coupling->scale[0]) * left;
+    else own[coupling->unknown] = -at->weights.stiffness * at->next->forces[coupling->force];
+}
+
+/* Adds friction: against sliding, or the forces that keep velocities past the surface nil, as lengths over a step. */
+static void friction_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_hard_row *row,
+                              double *f, double *own)
+{
+    const fu_hard_contact *contact = contact_of(coupling);
+    const double *multipliers = at->next->forces + coupling->force, unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
+    fu_hard_along along;
+    fu_hard_along_at(model, contact, at->next, row, &along);
+    if (!fu_hard_flags_of(coupling, at->next)->sticks) {
+        for (int i = 0; i < row->n; ++i) f[row->at[i]] -= contact->friction * along.slip[i] * multipliers[0];
+        return;
+    }
+    const double step = 1.0 / at->weights.rate, soft = step * step * fu_hard_softness(contact, at->now->forces[coupling->force]);
+    for (int k = 1; k < coupling->n_forces; ++k) {
+        for (int i = 0; i < row->n; ++i) f[row->at[i]] += along.H[k - 1][i] * multipliers[k];
+        own[coupling->unknown + k] = -unit * (step * fu_dot(model->dim, along.t[k - 1], along.past) - soft * multipliers[k]);
+    }
+}
+
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+{
+    fu_hard_row row = {.g = 0.0};
+    for (int k = 1; k < coupling->n_forces; ++k)
+        own[coupling->unknown + k] = -at->weights.stiffness * at->next->forces[coupling->force + k];
+    if (is_closed(coupling, at->next)) {
+        fu_hard_row_at(model, contact_of(coupling), at->next, &row);
+        for (int i = 0; i < row.n; ++i) f[row.at[i]] += row.H[i] * at->next->forces[coupling->force];
+        if (has_friction(coupling)) friction_residual(model, coupling, at, &row, f, own);
+    }
+    own_row(coupling, at, row.g, own);
+}
+
+/* Adds what friction's forces are by its own unknowns, and its rows by velocities; how both turn with the unknowns is left out. */
+static void friction_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_hard_row *row,
+                             fu_system *system)
+{
+    const fu_hard_contact *contact = contact_of(coupling);
+    const fu_weights weights = at->weights;
+    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), step = weights.rate > 0.0 ? 1.0 / weights.rate : 0.0;
+    const int first = fu_extra(model, coupling->unknown), sticks = fu_hard_flags_of(coupling, at->next)->sticks;
+    fu_hard_along along;
+    fu_hard_along_at(model, contact, at->next, row, &along);
+    for (int k = 1; k < coupling->n_forces; ++k) {
+        const double soft = step * step * fu_hard_softness(contact, at->now->forces[coupling->force]);
+        fu_add(model, system, first + k, first + k, sticks ? -unit * soft * unit / weights.stiffness : unit);
+        if (sticks) fu_add_row_and_column(model, system, first + k, row->n, row->at, along.H[k - 1], unit);
+    }
+    for (int i = 0; i < row->n && !sticks; ++i)
+        fu_add(model, system, row->at[i], first, -unit * contact->friction * along.slip[i]);
+}
+
+/* Adds, of a contact that is closed, how its distance and the force of its multiplier change with the unknowns. */
+static void tangent_of_closed(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_hard_row *row,
+                              fu_system *system)
+{
+    const fu_hard_contact *contact = contact_of(coupling);
+    const int dim = model->dim, own = fu_extra(model, coupling->unknown);
+    const double *psi = at->psi, multiplier = at->next->forces[coupling->force];
+    const double unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
+    fu_attachment_state on;
+    fu_touch_point point = {.depth = 0.0};
+    double turned[2 * FU_ATTACHMENT_COORDINATES];
+    memcpy(turned, row->H, sizeof turned);
+    fu_surface_at(model, &contact->contact.surface, at->next, &on);
+    fu_turn_attachment(model, contact->contact.attachments, psi, turned, 1, row->n - on.n, 0);
+    fu_turn_attachment(model, contact->contact.surface.on, psi, turned + row->n - on.n, 1, on.n, 0);
+    for (int i = 0; i < row->n; ++i) {
+        fu_add(model, system, row->at[i], own, unit * row->H[i]);
+        fu_add(model, system, own, row->at[i], unit * turned[i]);
+    }
+    if (has_friction(coupling)) friction_tangent(model, coupling, at, row, system);
+    fu_add(model, system, own, own, -unit * compliance(coupling, at->weights) / at->weights.stiffness);
+    fu_contact_place(model, &contact->contact, &on, at->next, 0, 0, &point);
+    for (int d = 0; d < dim; ++d) point.f[d] = -multiplier * row->normal[d];
+    for (int i = 0; i < dim * dim; ++i) point.by_place[i] = -multiplier * row->curvature[i];
+    fu_contact_add_derivatives(model, &contact->contact, &on, at->next, 0, 0, &point, psi, at->weights, system);
+}
+
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    const int own = fu_extra(model, coupling->unknown);
+    fu_hard_row row;
+    if (!is_closed(coupling, at->next)) {
+        for (int k = 0; k < coupling->n_forces; ++k)
+            fu_add(model, system, own + k, own + k, fu_row_unit(at->weights.inertia, coupling->scale[0]));
+        return;
+    }
+    fu_hard_row_at(model, contact_of(coupling), at->next, &row);
+    tangent_of_closed(model, coupling, at, &row, system);
+}
+
+/* Makes the row over a step: H psi is what the distance changes by. */
+static void step_row(const fu_model *model, const fu_hard_contact *contact, const fu_equations *at, fu_hard_row *out)
+{
+    const int dim = model->dim;
+    const fu_surface *surface = &contact->contact.surface;
+    const fu_attachment *to = contact->contact.attachments;
+    fu_attachment_state point[2], on;
+    fu_distance distance, middle;
+    double P[3 * FU_ATTACHMENT_COORDINATES], g[2];
+    const fu_state *states[2] = {at->now, at->next};
+    fu_surface_at(model, surface, at->next, &on); /* it does not move */
+    for (int e = 0; e < 2; ++e) {
+        fu_attachment_at(model, to, states[e], 0.0, FU_POINT, &point[e]);
+        fu_surface_distance(dim, surface, &on, point[e].p, &distance);
+        g[e] = distance.g - contact->contact.radius;
+    }
+    fu_surface_step_normal(dim, surface, &on, point[0].p, point[1].p, g[1] - g[0], &middle, out->normal);
+    fu_discrete_point(model, to, at->now, at->next, P);
+    out->n = point[0].n;
+    for (int i = 0; i < out->n; ++i) {
+        out->at[i] = point[0].at[i];
+        out->H[i] = 0.0;
+        for (int d = 0; d < dim; ++d) out->H[i] += out->normal[d] * P[d * out->n + i];
+    }
+    out->g = g[1];
+}
+
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+{
+    fu_hard_row row = {.g = 0.0};
+    if (is_closed(coupling, at->next)) {
+        step_row(model, contact_of(coupling), at, &row);
+        for (int i = 0; i < row.n; ++i) f[row.at[i]] += row.H[i] * at->next->forces[coupling->force];
+    }
+    own_row(coupling, at, row.g, own);
+}
+
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    const int own = fu_extra(model, coupling->unknown);
+    const double unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
+    fu_hard_row row;
+    if (!is_closed(coupling, at->next)) {
+        fu_add(model, system, own, own, unit);
+        return;
+    }
+    step_row(model, contact_of(coupling), at, &row);
+    fu_add_row_and_column(model, system, own, row.n, row.at, row.H, unit);
+}
+
+static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
+{
+    (void)model;
+    const int closed = is_closed(coupling, state);
+    for (int k = 0; k < coupling->n_forces; ++k)
+        state->forces[coupling->force + k] = closed ? work->multipliers[coupling->multiplier + k] : 0.0;
+}
+
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
+                    const fu_accelerator *work, double *out)
+{
+    fu_hard_contact_output *numbers = (fu_hard_contact_output *)out;
+    const double *multiplier = work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* or statics' */
+    const double press = is_closed(coupling, state) ? -*multiplier : 0.0;
+    fu_hard_along along;
+    fu_hard_row row;
+    (void)acceleration;
+    *numbers = (fu_hard_contact_output){.gap = 0.0};
+    fu_hard_row_at(model, contact_of(coupling), state, &row);
+    for (int d = 0; d < model->dim; ++d) numbers->force[d] = press * row.normal[d];
+    if (has_friction(coupling) && press != 0.0) {
+        fu_hard_along_at(model, contact_of(coupling), state, &row, &along);
+        for (int d = 0; d < model->dim; ++d) {
+            if (fu_hard_flags_of(coupling, state)->sticks)
+                for (int k = 1; k < model->dim; ++k) numbers->friction[d] -= multiplier[k] * along.t[k - 1][d];
+            else numbers->friction[d] = -contact_of(coupling)->friction * press * along.direction[d];
+            numbers->force[d] += numbers->friction[d];
+        }
+    }
+    numbers->gap = row.g;
+}
+
+static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+{
+    fu_hard_row row;
+    fu_hard_row_at(model, contact_of(coupling), state, &row);
+    for (int k = 0; k < coupling->n_forces; ++k) out[k] = 0.0;
+    if (is_closed(coupling, state)) out[0] = row.g;
+}
+
+static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work)
+{
+    const double press = -(work ? work->multipliers + coupling->multiplier : state->forces + coupling->force)[0];
+    fu_hard_row row;
+    fu_hard_along along;
+    if (!has_friction(coupling) || !is_closed(coupling, state) || fu_hard_flags_of(coupling, state)->sticks) return 0.0;
+    fu_hard_row_at(model, contact_of(coupling), state, &row);
+    fu_hard_along_at(model, contact_of(coupling), state, &row, &along);
+    return contact_of(coupling)->friction * press * fu_dot(model->dim, along.direction, along.past);
+}
+
+/* The direction of sliding goes along. */
+static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    fu_hard_row row;
+    fu_hard_along along;
+    if (!has_friction(coupling) || !is_closed(coupling, state) || fu_hard_flags_of(coupling, state)->sticks) return;
+    fu_hard_row_at(model, contact_of(coupling), state, &row);
+    fu_hard_along_at(model, contact_of(coupling), state, &row, &along);
+    memcpy(fu_hard_numbers_of(coupling, state)->direction, along.direction, sizeof(double) * (size_t)model->dim);
+}
+
+/* In statics a point touches where it presses, or is nearer than that: the active set follows from both (Hintermueller). */
+static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    const fu_hard_contact *contact = contact_of(coupling);
+    fu_hard_row row;
+    fu_hard_row_at(model, contact, state, &row);
+    const double press = -state->forces[coupling->force];
+    fu_hard_flags_of(coupling, state)->mode = press > contact->stiffness * (row.g - NEAR) ? FU_CLOSED : FU_APART;
+}
+
+static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    (void)model;
+    const int mode = fu_hard_flags_of(coupling, state)->mode;
+    return mode == FU_APART || mode == FU_CLOSED || mode == FU_IMPLIED;
+}
+
+static const fu_field fields[] = {
+    FU_SURFACE_FIELDS(fu_contact),
+    FU_FIELD(fu_contact, cable, FU_INTEGER, 0),
+    FU_FIELD(fu_contact, radius, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_contact, attachments, FU_ATTACHMENT),
+    FU_FIELD(fu_hard_contact, restitution, FU_REAL, 0),
+    FU_FIELD(fu_hard_contact, rest_velocity, FU_REAL, 0),
+    FU_FIELD_AS("sliding", fu_hard_contact, friction, FU_REAL),
+    FU_FIELD(fu_hard_contact, weight, FU_REAL, 0),
+    FU_FIELD_AS("static_stiffness", fu_hard_contact, stiffness, FU_REAL),
+    {0},
+};
+
+const fu_coupling_type fu_hard_contact_type = {
+    .name = "hard_contact", .size = sizeof(fu_hard_contact), .fields = fields,
+    .n_outputs = (int)(sizeof(fu_hard_contact_output) / sizeof(double)), 
+    .n_flags = (int)(sizeof(fu_hard_flags) / sizeof(int)), .n_numbers = (int)(sizeof(fu_hard_numbers) / sizeof(double)),
+    .residual = residual, .tangent = tangent, .step_residual = step_residual, .step_tangent = step_tangent, .rows = rows,
+    .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .dissipation = dissipation, .carry = carry, .touch = touch, .is_possible = is_possible};

@@ -1,0 +1,221 @@
+/* A slide's kernels over its own coordinates, whatever rides: the element's, the rider's, s.
+ *
+ * A rigid body has kernels of its own; any other rider is a point of something, and the kernels' derivatives by that
+ * point become those by its coordinates: dp = P dq, p'' = P q'' + bias.
+ */
+#include "engine.h"
+
+#include <string.h>
+
+/* A slide at a state, as the kernels take it. */
+typedef struct {
+    double length, x;
+    const double *e, *v, *b, *u, *w;
+    fu_attachment_state rider; /* where it is a point */
+} slide_view;
+
+static const double no_arm[3];
+
+static void look(const fu_model *model, const fu_state *state, int j, slide_view *view)
+{
+    const fu_slide *slide = &model->slides[j];
+    const fu_cable *cable = &model->cables[slide->cable];
+    const int at = cable->first + state->piece[j] * cable->per_node;
+    view->length = fu_element_length(cable, state->piece[j]);
+    view->x = state->s[j] - fu_element_start(model, j, state->piece[j]);
+    view->e = state->q + at;
+    view->v = state->v + at;
+    if (slide->rider_is_rigid) {
+        const fu_body *body = &model->bodies[slide->rider.body];
+        view->b = state->q + body->configuration;
+        view->w = state->v + body->dof;
+        view->u = slide->rider.u;
+        return;
+    }
+    fu_attachment_at(model, &slide->rider, state, 0.0, FU_POINT, &view->rider);
+    view->b = view->rider.p;
+    view->w = view->rider.v;
+    view->u = no_arm;
+}
+
+fu_slide_flags *fu_slide_flags_of(const fu_model *model, const fu_state *state, int j)
+{
+    return (fu_slide_flags *)(state->flags + model->slides[j].base.flags);
+}
+
+fu_slide_numbers *fu_slide_numbers_of(const fu_model *model, const fu_state *state, int j)
+{
+    return (fu_slide_numbers *)(state->numbers + model->slides[j].base.numbers);
+}
+
+fu_slide_state *fu_slide_state_of(const fu_model *model, const fu_accelerator *work, int j)
+{
+    return (fu_slide_state *)(work->scratch + model->slides[j].base.scratch);
+}
+
+/* Makes rows over (element, point, `more`) rows over (element, rider, `more`). */
+static void expand(const fu_slide *slide, const slide_view *view, int n_rows, int n_element, int more, const double *given,
+                   double *rows)
+{
+    const int dim = slide->kernel->dim, n = view->rider.n;
+    const int from = n_element + dim + more, to = n_element + n + more;
+    for (int r = 0; r < n_rows; ++r) {
+        const double *row = given + r * from;
+        double *out = rows + r * to;
+        memcpy(out, row, sizeof(double) * (size_t)n_element);
+        for (int k = 0; k < n; ++k) {
+            double sum = 0.0;
+            for (int d = 0; d < dim; ++d) sum += row[n_element + d] * view->rider.P[d * n + k];
+            out[n_element + k] = sum;
+        }
+        for (int k = 0; k < more; ++k) out[n_element + n + k] = row[n_element + dim + k];
+    }
+}
+
+/* Finds the numbers for fu_add of a slide's coordinates, and after them of s; the force follows s. Returns how many stand before
+ * s. */
+int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at)
+{
+    const fu_slide *slide = &model->slides[j];
+    const fu_cable *cable = &model->cables[slide->cable];
+    const int n = cable->coordinates;
+    for (int i = 0; i < n; ++i) at[i] = cable->first + state->piece[j] * cable->per_node + i;
+    const int all = n + fu_attachment_coordinates(model, &slide->rider, state, at + n);
+    at[all] = fu_extra(model, slide->base.unknown);
+    return all;
+}
+
+/* Makes phi and the gradient of f . phi over the slide's coordinates and s. */
+void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g)
+{
+    const fu_slide *slide = &model->slides[j];
+    double of_point[FU_MAX_COORDINATES];
+    slide_view v;
+    look(model, state, j, &v);
+    slide->kernel->residual(v.length, v.x, v.e, v.b, v.u, state->forces + slide->base.force, phi, slide->rider_is_rigid ? g : of_point);
+    if (!slide->rider_is_rigid) expand(slide, &v, 1, model->cables[slide->cable].coordinates, 1, of_point, g);
+}
+
+/* Makes the derivatives of both over the same, at a force f. */
+void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K)
+{
+    const fu_slide *slide = &model->slides[j];
+    const int n_element = model->cables[slide->cable].coordinates, dim = slide->kernel->dim, from = n_element + dim + 1;
+    double of_point[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    slide_view v;
+    look(model, state, j, &v);
+    if (slide->rider_is_rigid) {
+        slide->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J, K);
+        return;
+    }
+    double J_point[3 * FU_MAX_COORDINATES], pull[3], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    const int n_rider = v.rider.n, n = n_element + n_rider + 1;
+    slide->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J_point, of_point);
+    expand(slide, &v, dim, n_element, 1, J_point, J);
+    /* the rider's point stands in phi = r - p alone: of second derivatives there are those of the point itself */
+    memset(K, 0, sizeof(double) * (size_t)(n * n));
+    for (int i = 0; i <= n_element; ++i)
+        for (int k = 0; k <= n_element; ++k) {
+            const int a = i < n_element ? i : from - 1, b = k < n_element ? k : from - 1;
+            K[(i < n_element ? i : n - 1) * n + (k < n_element ? k : n - 1)] = of_point[a * from + b];
+        }
+    memset(part, 0, sizeof(double) * (size_t)(n_rider * n_rider));
+    for (int d = 0; d < dim; ++d) pull[d] = -f[d];
+    fu_geometric_stiffness(model, &slide->rider, state, pull, 0, n_rider, part);
+    for (int i = 0; i < n_rider; ++i)
+        for (int k = 0; k < n_rider; ++k) K[(n_element + i) * n + n_element + k] = part[i * n_rider + k];
+}
+
+/* Makes eq 20-37 over the slide's coordinates: H and W of the constraints that stay, and how s follows. */
+void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state)
+{
+    const fu_slide *slide = &model->slides[j];
+    const int n_element = model->cables[slide->cable].coordinates, dim = slide->kernel->dim;
+    double C_q[3 * FU_SLIDE_COORDINATES], C_s[3], Q_d[3], H[2 * FU_SLIDE_COORDINATES], G[FU_SLIDE_COORDINATES];
+    slide_view v;
+    const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
+    if (flags->mode == FU_LEFT) { /* far from the cable, nothing of it means anything */
+        memset(slide_state, 0, sizeof *slide_state);
+        rows->n = rows->rows = 0;
+        return;
+    }
+    look(model, state, j, &v);
+    const int n = fu_slide_coordinates(model, state, j, rows->at), across = dim - 1;
+    slide->kernel->terms(v.length, v.x, v.e, v.b, v.u, v.v, v.w, fu_slide_numbers_of(model, state, j)->director,
+                         slide_state->C, C_q, C_s, G, &slide_state->s_rate, Q_d, H, rows->W, &slide_state->s_bias);
+    const int stride = slide->rider_is_rigid ? n : n_element + dim;
+    for (int d = 0; d < dim; ++d) {
+        for (int c = 0; c < across; ++c) slide_state->by_point[c * dim + d] = H[c * stride + n_element + d];
+        slide_state->by_point[across * dim + d] = G[n_element + d];
+    }
+    if (slide->rider_is_rigid) {
+        memcpy(rows->H, H, sizeof(double) * (size_t)(across * n));
+        memcpy(slide_state->G, G, sizeof(double) * (size_t)n);
+    } else {
+        expand(slide, &v, across, n_element, 0, H, rows->H);
+        expand(slide, &v, 1, n_element, 0, G, slide_state->G);
+        for (int d = 0; d < dim; ++d) {
+            for (int c = 0; c < across; ++c) rows->W[c] -= slide_state->by_point[c * dim + d] * v.rider.bias[d];
+            slide_state->s_bias += slide_state->by_point[across * dim + d] * v.rider.bias[d];
+        }
+    }
+    rows->n = n;
+    rows->rows = flags->mode == FU_LOCKED ? dim : across;
+    for (int c = 0; c < across; ++c) {
+        rows->C[c] = slide_state->C[1 + c];
+        rows->rate[c] = 0.0;
+    }
+    if (flags->mode != FU_LOCKED) return;
+    double rate, second;
+    memcpy(rows->H + across * n, slide_state->G, sizeof(double) * (size_t)n);
+    rows->C[across] = state->s[j] - fu_slide_locked_s(model, state, j, &rate, &second);
+    rows->rate[across] = -rate;
+    rows->W[across] = second - slide_state->s_bias;
+}
+
+/* Returns s of a slide that is locked, m, with its rate and its second rate. */
+double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second)
+{
+    *rate = *second = 0.0;
+    if (model->slides[j].drive < 0) return fu_slide_numbers_of(model, state, j)->locked_s;
+    return fu_signal_at(&model->signals[model->slides[j].drive], state->t, rate, second);
+}
+
+/* Makes the derivatives of the constraints by s at this s, m, and the tangent frame there; returns the Newton step for s. */
+static double constraints_at(const fu_model *model, const fu_state *state, int j, double s, double C_s[3], double A_t[9])
+{
+    const fu_slide *slide = &model->slides[j];
+    double C[3], step;
+    slide_view v;
+    look(model, state, j, &v);
+    slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->piece[j]), v.e, v.b, v.u,
+                              fu_slide_numbers_of(model, state, j)->director, C, C_s, &step, A_t);
+    return step;
+}
+
+/* Returns the Newton step for s from this s, m, and makes the tangent frame there. */
+double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9])
+{
+    double C_s[3];
+    return constraints_at(model, state, j, s, C_s, A_t);
+}
+
+/* Makes the tangent frame where a slide is, and returns the length of the centreline there over that without stress. */
+double fu_slide_frame(const fu_model *model, const fu_state *state, int j, double A_t[9])
+{
+    double C_s[3];
+    constraints_at(model, state, j, state->s[j], C_s, A_t);
+    return C_s[0];
+}
+
+/* Returns the length of the cable of a slide, m. */
+double fu_length(const fu_model *model, int slide)
+{
+    return fu_cable_length(&model->cables[model->slides[slide].cable]);
+}
+
+/* Returns the arc-length at the first node of an element of a slide's cable, m. */
+double fu_element_start(const fu_model *model, int slide, int element)
+{
+    return fu_cable_start(&model->cables[model->slides[slide].cable], element);
+}

@@ -1,0 +1,342 @@
+/* What a slide does as a coupling. Own unknowns: s and the force f on the rider. Their equations are f . r_x = R, equilibrium
+ * along the cable, eq 30, and phi = r - p = 0.
+ */
+#include "engine.h"
+
+#include "workspace.h"
+
+#include <string.h>
+
+/* Makes t = r_x and u, as resistances.c has them, from the derivatives J of phi by the coordinates and s, and R by the own
+ * force. */
+static void resistance_of(const fu_model *model, const fu_state *state, int j, const double *J, fu_resistance *resistance)
+{
+    double t[3], u[3];
+    fu_slide_motion(model, state, j, J, t, u);
+    fu_resistance_at(model, state, j, t, u, state->forces + model->slides[j].base.force, resistance);
+}
+
+/* Returns R of a slide in a Newton system. */
+static double resisted(const fu_model *model, const fu_state *state, int j)
+{
+    double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
+    fu_resistance resistance;
+    fu_slide_tangent(model, state, j, state->forces + model->slides[j].base.force, J, K);
+    resistance_of(model, state, j, J, &resistance);
+    return resistance.R;
+}
+
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
+                     double *own)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const fu_state *next = equations->next;
+    const int j = coupling->index, mode = fu_slide_flags_of(model, next, j)->mode;
+    const double scale = equations->weights.stiffness, unit = fu_row_unit(equations->weights.inertia, slide->base.scale[0]);
+    double phi[3], g[FU_SLIDE_COORDINATES + 1], rate, second;
+    int at[FU_SLIDE_COORDINATES + 1];
+    const int s = fu_slide_coordinates(model, next, j, at);
+    own += coupling->unknown;
+    fu_slide_residual(model, next, j, phi, g);
+    for (int i = 0; i < s; ++i) f[at[i]] += g[i];
+    own[0] = mode == FU_SLIDES ? -scale * g[s]
+        : -unit * (next->s[j] - (mode == FU_LOCKED ? fu_slide_locked_s(model, next, j, &rate, &second) : equations->now->s[j]));
+    if (slide->resistance && mode == FU_SLIDES) own[0] += scale * resisted(model, next, j);
+    for (int d = 0; d < slide->kernel->dim; ++d)
+        own[1 + d] = mode == FU_LEFT ? -scale * next->forces[coupling->force + d] : -unit * phi[d];
+}
+
+/* Adds what R adds to the row of s; J: derivatives of phi by the coordinates themselves. */
+static void resistance_matrix(const fu_model *model, int j, const fu_equations *equations, const double *J, fu_system *system)
+{
+    const fu_slide *slide = &model->slides[j];
+    const fu_weights w = equations->weights;
+    double by_place[FU_SLIDE_COORDINATES + 1], by_rate[FU_SLIDE_COORDINATES + 1];
+    int at[FU_SLIDE_COORDINATES + 1];
+    const int s = fu_slide_coordinates(model, equations->next, j, at), n = s + 1;
+    fu_resistance resistance;
+    resistance_of(model, equations->next, j, J, &resistance);
+    fu_resistance_rows(model, equations->next, j, J, &resistance, by_place, by_rate);
+    fu_turn_attachment(model, &slide->rider, equations->psi, by_place, 1, n, model->cables[slide->cable].coordinates);
+    for (int k = 0; k < n; ++k)
+        fu_add(model, system, at[s], at[k], -w.stiffness * (by_place[k] + w.rate * by_rate[k]));
+    for (int d = 0; d < model->dim; ++d)
+        fu_add(model, system, at[s], at[s] + 1 + d, -fu_row_unit(w.inertia, slide->base.scale[0]) * resistance.by_f[d]);
+}
+
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, fu_system *system)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const fu_state *next = equations->next;
+    const fu_weights w = equations->weights;
+    const int j = coupling->index, element = model->cables[slide->cable].coordinates;
+    const fu_slide_flags *flags = fu_slide_flags_of(model, next, j);
+    const int slides = flags->mode == FU_SLIDES;
+    const double mass = fu_row_unit(w.inertia, slide->base.scale[0]);
+    double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
+    int at[FU_SLIDE_COORDINATES + 1];
+    const int s = fu_slide_coordinates(model, next, j, at), n = s + 1, dim = slide->kernel->dim;
+    const int row = at[s], force = row + 1;
+    fu_slide_tangent(model, next, j, next->forces + coupling->force, J, K);
+    if (slide->resistance && slides) resistance_matrix(model, j, equations, J, system);
+    for (int i = 0; i < n; ++i)
+        for (int d = 0; d < dim; ++d)
+            if (i < s || slides) fu_add(model, system, at[i], force + d, mass * J[d * n + i]);
+    fu_turn_attachment(model, &slide->rider, equations->psi, J, dim, n, element);
+    fu_turn_attachment(model, &slide->rider, equations->psi, K, n, n, element);
+    if (!slides) fu_add(model, system, row, row, mass);
+    for (int i = 0; i < n; ++i) {
+        for (int d = 0; d < dim; ++d) {
+            if (flags->mode != FU_LEFT) fu_add(model, system, force + d, at[i], mass * J[d * n + i]);
+            else if (i == 0) fu_add(model, system, force + d, force + d, mass);
+        }
+        if (i == s && !slides) continue;
+        for (int k = 0; k < n; ++k)
+            if (K[i * n + k] != 0.0) fu_add(model, system, at[i], at[k], w.stiffness * K[i * n + k]);
+    }
+}
+
+static void rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
+{
+    const int j = coupling->index;
+    fu_slide_terms(model, state, j, &work->rows[coupling->row], fu_slide_state_of(model, work, j));
+}
+
+void fu_slide_now(const fu_model *model, const fu_state *state, int j, fu_slide_state *slide_state)
+{
+    fu_rows unused;
+    fu_slide_terms(model, state, j, &unused, slide_state);
+}
+
+/* Returns ds/dt, m/s, zero where s is locked where it stands. */
+double fu_slide_rate(const fu_model *model, const fu_state *state, int j)
+{
+    fu_slide_state slide_state;
+    if (fu_slide_flags_of(model, state, j)->mode == FU_LOCKED && model->slides[j].drive < 0) return 0.0;
+    fu_slide_now(model, state, j, &slide_state);
+    return slide_state.s_rate;
+}
+
+static void rates(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rate)
+{
+    *rate = fu_slide_state_of(model, work, coupling->index)->s_rate;
+}
+
+void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
+{
+    const fu_slide_state *slide_state = fu_slide_state_of(model, work, j);
+    const fu_rows *rows = &work->rows[model->slides[j].base.row];
+    const int dim = model->dim;
+    for (int d = 0; d < dim; ++d) {
+        f[d] = 0.0;
+        for (int c = 0; c < rows->rows; ++c) f[d] -= slide_state->by_point[c * dim + d] * lambda[rows->first + c];
+        if (model->slides[j].resistance) f[d] += slide_state->by_point[(dim - 1) * dim + d] * slide_state->R;
+    }
+}
+
+/* Adds the force along the cable on a slide's rider that comes of joints whose frame goes with the slide: what their moments put
+ * on s, which stands in their rows as G. */
+static void add_force_of_frame(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
+{
+    const int dim = model->dim;
+    const double *G = fu_slide_state_of(model, work, j)->by_point + (dim - 1) * dim;
+    for (const fu_rows *rows = work->rows; rows < work->rows + model->n_rows; ++rows)
+        for (int c = 0; c < rows->rows && rows->slide == j; ++c)
+            for (int d = 0; d < dim; ++d) f[d] -= G[d] * rows->by_s[c] * lambda[rows->first + c];
+}
+
+static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
+{
+    double *f = state->forces + coupling->force;
+    fu_slide_force(model, work, coupling->index, work->multipliers, f);
+    add_force_of_frame(model, work, coupling->index, work->multipliers, f);
+}
+
+void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const double *acceleration,
+                      const fu_accelerator *work, fu_slide_output *out)
+{
+    const fu_slide *slide = &model->slides[j];
+    const fu_rows *rows = &work->rows[slide->base.row];
+    const fu_slide_state *slide_state = fu_slide_state_of(model, work, j);
+    const double *lambda = work->multipliers;
+    const int dim = model->dim;
+    double pull = 0.0, square = 0.0;
+    *out = (fu_slide_output){0};
+    out->s_rate = slide_state->s_rate;
+    out->s_acceleration = slide_state->s_bias;
+    for (int k = 0; k < rows->n; ++k) out->s_acceleration += slide_state->G[k] * acceleration[rows->at[k]];
+    for (int c = 0; c < dim - 1 && c < rows->rows; ++c) out->multiplier[c] = lambda[rows->first + c];
+    fu_slide_force(model, work, j, lambda, out->force);
+    for (int d = 0; d < dim; ++d) {
+        const double G = slide_state->by_point[(dim - 1) * dim + d]; /* along the tangent */
+        out->residual[d] = slide_state->C[d];
+        pull += G * out->force[d];
+        square += G * G;
+    }
+    if (square > 0.0) out->traction = pull / sqrt(square);
+    if (slide->drive >= 0 && fu_slide_flags_of(model, state, j)->mode == FU_LOCKED)
+        out->traction = -lambda[rows->first + dim - 1] - slide_state->driven_R;
+    add_force_of_frame(model, work, j, lambda, out->force);
+}
+
+/* Returns what joints put on s whose frame goes with a slide, in the balance along its cable. */
+static double of_frame(const fu_model *model, const fu_state *state, int j)
+{
+    double sum = 0.0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        if (model->couplings[k]->type != &fu_joint_type) continue;
+        const fu_joint *joint = (const fu_joint *)model->couplings[k];
+        if (joint->attachments[0].slide != j && joint->attachments[1].slide != j) continue;
+        fu_joint_rows_at at;
+        fu_joint_equations(model, joint, state, &at);
+        for (int e = 0; e < 2; ++e)
+            for (int r = 0; r < joint->kernel->rows && joint->attachments[e].slide == j; ++r)
+                if (!(joint->redundant_rows >> r & 1)) sum += at.J[e][(r + 1) * at.n[e] - 1] * state->forces[joint->base.force + r];
+    }
+    return sum;
+}
+
+/* Makes the numbers of a slide in a state of rest, where its force is along all axes of the ground. */
+static void outputs_at_rest(const fu_model *model, const fu_state *state, int j, fu_slide_output *out)
+{
+    const fu_slide *slide = &model->slides[j];
+    const double *force = state->forces + slide->base.force;
+    const int dim = model->dim, mode = fu_slide_flags_of(model, state, j)->mode;
+    double phi[3], g[FU_SLIDE_COORDINATES + 1], A_t[9];
+    int at[FU_SLIDE_COORDINATES + 1];
+    *out = (fu_slide_output){0};
+    if (mode == FU_LEFT) return;
+    fu_slide_residual(model, state, j, phi, g);
+    const double stretch = fu_slide_frame(model, state, j, A_t);
+    for (int d = 0; d < dim; ++d) {
+        out->force[d] = force[d];
+        out->residual[d] = phi[d];
+        for (int c = 0; c < dim - 1; ++c) out->multiplier[c] += A_t[d * dim + 1 + c] * force[d];
+    }
+    out->traction = g[fu_slide_coordinates(model, state, j, at)] + of_frame(model, state, j);
+    if (slide->drive < 0) out->traction /= stretch; /* of a drive it is the power over the rate of s */
+}
+
+/* work: null in a state of rest. */
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
+                    const fu_accelerator *work, double *out)
+{
+    if (work == 0) outputs_at_rest(model, state, coupling->index, (fu_slide_output *)out);
+    else fu_slide_outputs(model, state, coupling->index, acceleration, work, (fu_slide_output *)out);
+}
+
+/* A rigid body is put on its cable when it is drawn; s of one that is not locked follows. */
+static int may_start_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const int locked = fu_slide_flags_of(model, state, coupling->index)->mode == FU_LOCKED;
+    return locked || !((const fu_slide *)coupling)->rider_is_rigid;
+}
+
+/* Finds s where C_l = 0, eq 21. */
+static int follow(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    const int j = coupling->index;
+    return fu_slide_flags_of(model, state, j)->mode != FU_LEFT && fu_find_arc_length(model, state, j, &state->s[j]);
+}
+
+static void reset(const fu_coupling *coupling, fu_state *state)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    fu_slide_numbers *numbers = (fu_slide_numbers *)(state->numbers + coupling->numbers);
+    fu_slide_flags *flags = (fu_slide_flags *)(state->flags + coupling->flags);
+    *flags = (fu_slide_flags){.mode = slide->drive >= 0 ? FU_LOCKED : FU_SLIDES};
+    *numbers = (fu_slide_numbers){0};
+    memcpy(numbers->director, slide->director, sizeof numbers->director);
+    state->s[coupling->coordinate] = slide->start_s;
+    state->piece[coupling->coordinate] = slide->start_piece;
+}
+
+static int in_range(int value, int least, int most)
+{
+    return value >= least && value <= most;
+}
+
+/* Returns whether a slide can be in its mode: only then is there a multiplier that locks it. */
+static int is_possible_mode(const fu_slide *slide, int mode)
+{
+    const int kinds[2] = {slide->stops[0].kind, slide->stops[1].kind};
+    if (mode == FU_LEFT) return kinds[0] == FU_END_IS_OPEN || kinds[1] == FU_END_IS_OPEN;
+    if (slide->drive >= 0) return mode == FU_LOCKED;
+    if (mode == FU_LOCKED) return slide->sticks || kinds[0] == FU_END_IS_HARD || kinds[1] == FU_END_IS_HARD;
+    return mode == FU_SLIDES;
+}
+
+static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const int j = coupling->index;
+    const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
+    return in_range(state->piece[j], 0, model->cables[slide->cable].n_elements - 1) &&
+           is_possible_mode(slide, flags->mode) && in_range(flags->slip_direction, -1, 1) &&
+           in_range(flags->contact, -1, 1);
+}
+
+static const char *excess(const fu_coupling *coupling)
+{
+    return ((const fu_slide *)coupling)->kernel->coordinates >= FU_MAX_COORDINATES ? "coordinates of its kernels" : 0;
+}
+
+static const char *const role[] = {"slide", 0}, *const resistance_role[] = {"resistance", 0};
+
+#define OF_STOPS(name, member, kind, words) \
+    {name, kind, offsetof(fu_slide, stops[0].member), 2, sizeof(fu_end_stop), words}
+
+static const fu_field fields[] = {
+    FU_FIELD(fu_slide, kernel, FU_KERNELS, role),
+    FU_FIELD(fu_slide, cable, FU_INTEGER, 0),
+    FU_FIELD(fu_slide, rider, FU_ATTACHMENT, 0),
+    FU_FIELD(fu_slide, rider_is_rigid, FU_INTEGER, 0),
+    FU_FIELD(fu_slide, drive, FU_INTEGER, 0),
+    FU_FIELD(fu_slide, carries_director, FU_INTEGER, 0),
+    FU_FIELD(fu_slide, resistance, FU_KERNELS, resistance_role),
+    FU_FIELD(fu_slide, sticks, FU_INTEGER, 0),
+    FU_FIELD(fu_slide, friction, FU_REAL, 0),
+    FU_FIELD(fu_slide, static_friction, FU_REAL, 0),
+    FU_FIELD(fu_slide, viscous, FU_REAL, 0),
+    FU_FIELD(fu_slide, velocity, FU_REAL, 0),
+    OF_STOPS("stop_kinds", kind, FU_WORD, fu_end_stop_kinds),
+    OF_STOPS("restitutions", restitution, FU_REAL, 0),
+    OF_STOPS("buffer_lengths", length, FU_REAL, 0),
+    OF_STOPS("buffer_stiffnesses", stiffness, FU_REAL, 0),
+    OF_STOPS("buffer_dampings", damping, FU_REAL, 0),
+    FU_FIELD_AS("s", fu_slide, start_s, FU_REAL),
+    FU_FIELD_ARRAY(fu_slide, director, FU_REAL),
+    FU_FIELD_AS("element", fu_slide, start_piece, FU_INTEGER),
+    {0},
+};
+
+const fu_coupling_type fu_slide_type = {
+    .name = "slide",
+    .size = sizeof(fu_slide),
+    .fields = fields,
+    .excess = excess,
+    .n_outputs = (int)(sizeof(fu_slide_output) / sizeof(double)),
+    .n_numbers = (int)(sizeof(fu_slide_numbers) / sizeof(double)),
+    .n_flags = (int)(sizeof(fu_slide_flags) / sizeof(int)),
+    .n_scratch = (int)FU_DOUBLES(1, fu_slide_state),
+    .reset = reset,
+    .residual = residual,
+    .tangent = tangent,
+    .step_residual = fu_slide_over_step,
+    .step_tangent = fu_slide_over_step_tangent,
+    .rows = rows,
+    .react = fu_resistance_react,
+    .kink = fu_resistance_kink,
+    .reacted = fu_resistance_reacted,
+    .take_forces = take_forces,
+    .outputs = outputs,
+    .rates = rates,
+    .energy = fu_buffer_energy,
+    .dissipation = fu_resistance_dissipation,
+    .lost_in_step = fu_lost_in_buffers,
+    .may_start_open = may_start_open,
+    .follow = follow,
+    .carry = fu_carry_director,
+    .touch = fu_touch_buffers,
+    .is_possible = is_possible,
+};

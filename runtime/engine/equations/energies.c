@@ -1,0 +1,33 @@
+/* Inertia and energies of all of a scene: of cables and bodies, and of couplings. */
+#include "engine.h"
+
+/* Makes f = M a. */
+void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)
+{
+    fu_constant_mass_times(model, q, a, f);
+    fu_coupling_inertia(model, q, a, f);
+}
+
+/* Returns the kinetic energy at the velocities v, J, that of a fluid past which they are included. */
+double fu_kinetic_energy(const fu_model *model, double t, const double *q, const double *v)
+{
+    return fu_constant_kinetic_energy(model, q, v) + fu_coupling_kinetic_energy(model, t, q, v, 1);
+}
+
+/* Returns v' M v/2 of a change v of velocities, J. */
+double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v)
+{
+    return fu_constant_kinetic_energy(model, q, v) + fu_coupling_kinetic_energy(model, 0.0, q, v, 0);
+}
+
+/* Returns the power that damping and friction take out, W; work: see `dissipation` in coupling.h. */
+double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
+{
+    return fu_internal_dissipation(model, state->q, state->v) + fu_coupling_dissipation(model, state, work);
+}
+
+/* Returns the energy stored in cables, bodies and couplings, J. */
+double fu_elastic_energy(const fu_model *model, const fu_state *state)
+{
+    return fu_constant_elastic_energy(model, state->q) + fu_coupling_energy(model, state);
+}

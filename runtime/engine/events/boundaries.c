@@ -1,0 +1,171 @@
+/* Boundaries between the pieces of couplings' paths: where couplings are off their pieces, and when they will be. */
+#include "engine.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define TOLERANCE 1e-11 /* of a piece: a coordinate is not beyond a boundary that it has passed by less, which is rounding */
+
+/* Returns how far a coordinate may be beyond its piece without being outside, m. */
+double fu_boundary_tolerance(fu_path path)
+{
+    return TOLERANCE * path.length;
+}
+
+/* Returns where the k-th piece of a path begins and the one before it ends, m. */
+double fu_boundary(fu_path path, int k)
+{
+    return path.boundaries ? path.boundaries[k] : k * path.length;
+}
+
+/* Returns the length of the k-th piece of a path, m. */
+double fu_piece_length(fu_path path, int k)
+{
+    return path.boundaries ? path.boundaries[k + 1] - path.boundaries[k] : path.length;
+}
+
+static double coordinate_of(const fu_coupling *coupling, const fu_state *state)
+{
+    return state->s[coupling->coordinate];
+}
+
+static int piece_of(const fu_coupling *coupling, const fu_state *state)
+{
+    return state->piece[coupling->coordinate];
+}
+
+/* Returns how far the coordinate of a coupling lies outside its piece, m, negative inside, and the side that is nearer. */
+double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side)
+{
+    const fu_path path = fu_path_of(model, coupling, state);
+    const double length = fu_piece_length(path, piece_of(coupling, state));
+    const double x = coordinate_of(coupling, state) - fu_boundary(path, piece_of(coupling, state));
+    *side = x > 0.5 * length ? 1 : -1;
+    return *side > 0 ? x - length : -x;
+}
+
+/* Returns whether steps must end where a coupling passes a boundary, whatever the integrator. */
+int fu_stop_at_boundaries(const fu_model *model)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        const fu_coupling_events *events = c->events;
+        if (events && events->stops_at_boundaries && events->stops_at_boundaries(model, c)) return 1;
+    }
+    return 0;
+}
+
+/* Puts the couplings of `next` on the pieces that hold their coordinates, unless they are to keep those of `now`. The matrix
+ * is of the pieces that it was made with. */
+void fu_choose_pieces(fu_run *run)
+{
+    const fu_model *model = run->model;
+    if (run->keep_pieces) return;
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        const fu_path path = fu_path_of(model, c, &run->next);
+        int side, *piece = &run->next.piece[c->coordinate];
+        if (!path.n || !(fu_outside(model, c, &run->next, &side) > fu_boundary_tolerance(path))) continue;
+        const double s = coordinate_of(c, &run->next);
+        const double holds = path.boundaries ? fu_last_reached(path.boundaries, 0, path.n, s) : fmin(fmax(s / path.length, 0.0), path.n - 1.0);
+        if ((int)holds != *piece) run->factored = 0;
+        *piece = (int)holds;
+    }
+}
+
+/* Puts the couplings of a state on the pieces that hold their coordinates, but those that are on one of these, at its ends
+ * too. */
+void fu_find_pieces(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        const fu_path path = fu_path_of(model, c, state);
+        const double s = path.n ? coordinate_of(c, state) : 0.0;
+        int *piece = &state->piece[c->coordinate];
+        if (!path.n || (fu_boundary(path, *piece) <= s && s <= fu_boundary(path, *piece + 1))) continue;
+        const double holds = path.boundaries ? fu_last_reached(path.boundaries, 0, path.n, s)
+                                             : round((s - fmod(s, path.length)) / path.length); /* a quotient may be rounded up */
+        *piece = (int)fmin(fmax(holds, 0.0), path.n - 1.0);
+    }
+}
+
+/* Returns across how many boundaries the couplings are at `next`. */
+int fu_count_changes(const fu_run *run)
+{
+    int count = 0;
+    for (int i = 0; i < run->model->n_coordinates; ++i) count += abs(run->next.piece[i] - run->now.piece[i]);
+    return count;
+}
+
+/* Puts the couplings of `next` on the pieces of `now`, which they have left. */
+void fu_keep_pieces(fu_run *run)
+{
+    memcpy(run->next.piece, run->now.piece, sizeof(int) * (size_t)run->model->n_coordinates);
+}
+
+/* Returns the time until the first of the couplings reaches a boundary of its piece at the rate that it has, s. */
+double fu_time_to_boundary(const fu_run *run)
+{
+    double least = INFINITY;
+    for (int k = 0; k < run->model->n_others; ++k) {
+        const fu_coupling *c = run->model->others[k];
+        const fu_path path = fu_path_of(run->model, c, &run->now);
+        if (!path.n) continue;
+        const double rate = c->events->rate(run->model, c, &run->now);
+        const double end = fu_boundary(path, piece_of(c, &run->now) + (rate > 0.0));
+        const double way = fabs(end - coordinate_of(c, &run->now));
+        if (way > fu_boundary_tolerance(path)) least = fmin(least, way / fabs(rate));
+    }
+    return least;
+}
+
+/* Returns after which part of a step a coupling turns, by the parabola through both ends of the step, that is back at `next`
+ * from beyond a boundary, or beyond one that it stood on and has left inwards; 0 where it does neither. */
+static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path, double h)
+{
+    const double rise = h * c->events->rate(run->model, c, &run->now), tolerance = fu_boundary_tolerance(path);
+    const double moved = coordinate_of(c, &run->next) - coordinate_of(c, &run->now);
+    const double part = 0.5 * rise / (rise - moved), s = coordinate_of(c, &run->now);
+    const int up = rise > 0.0, piece = piece_of(c, &run->now);
+    const double ahead = fabs(fu_boundary(path, piece + up) - s), behind = fabs(fu_boundary(path, piece + !up) - s);
+    const double forward = (up ? 1.0 : -1.0) * moved;
+    const int returns = 0.5 * fabs(rise) * part > ahead + tolerance && forward < ahead;
+    const int leaves = behind <= tolerance && forward < -behind - tolerance;
+    return part > 0.0 && part < 1.0 && (returns || leaves) ? part : 0.0;
+}
+
+/* Returns how long after `now` the first coupling that turns so does, s; 0 where none does. */
+double fu_time_of_turn(const fu_run *run, double h)
+{
+    for (int k = 0; k < run->model->n_others; ++k) {
+        const fu_coupling *c = run->model->others[k];
+        const fu_path path = fu_path_of(run->model, c, &run->now);
+        const double part = path.n ? part_to_turn(run, c, path, h) : 0.0;
+        if (part > 0.0) return part * h;
+    }
+    return 0.0;
+}
+
+/* Returns whether a coupling stands on the boundary already: then its piece changes and not the time. */
+int fu_stands_on_boundary(const fu_run *run, fu_event event)
+{
+    if (event.kind != FU_CROSSING) return 0;
+    const fu_coupling *c = run->model->couplings[event.which];
+    const double tolerance = fu_boundary_tolerance(fu_path_of(run->model, c, &run->now));
+    int side;
+    return fu_outside(run->model, c, &run->now, &side) >= -tolerance && side == event.side;
+}
+
+/* Returns whether no coupling is farther from its piece than this part of a piece. */
+int fu_are_on_pieces(const fu_model *model, const fu_state *state, double aside)
+{
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        const fu_path path = fu_path_of(model, c, state);
+        if (!path.n) continue;
+        const double x = coordinate_of(c, state) - fu_boundary(path, piece_of(c, state));
+        const double length = fu_piece_length(path, piece_of(c, state));
+        if (!(x >= -aside * length && x <= (1.0 + aside) * length)) return 0;
+    }
+    return 1;
+}

@@ -1,0 +1,48 @@
+/* Loops over what couplings do by themselves (include/coupling_events.h). */
+#include "engine.h"
+
+/* Writes the watches of all couplings to `out`, unless it is null; returns how many they are. */
+int fu_coupling_watches(const fu_model *model, fu_watch *out)
+{
+    int n = 0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (!c->events) continue;
+        const int first = n;
+        n += c->events->watches(c, out ? out + first : 0);
+        for (int i = first; i < n && out; ++i) {
+            out[i].kind = FU_WATCH_COUPLING;
+            out[i].index = k;
+        }
+    }
+    return n;
+}
+
+/* Returns whether any coupling can change by itself. */
+int fu_couplings_can_act(const fu_model *model)
+{
+    for (int k = 0; k < model->n_couplings; ++k)
+        if (fu_can_act(model->couplings[k])) return 1;
+    return 0;
+}
+
+/* Gives `now` what follows from velocities that have jumped. */
+void fu_couplings_take_velocities(fu_run *run)
+{
+    for (int k = 0; k < run->model->n_couplings; ++k) {
+        const fu_coupling *c = run->model->couplings[k];
+        if (c->events && c->events->take_velocities) c->events->take_velocities(run, c);
+    }
+}
+
+/* Finds how couplings are at the start; returns a status. */
+int fu_begin_couplings(fu_run *run)
+{
+    fu_couplings_take_velocities(run);
+    for (int k = 0; k < run->model->n_couplings; ++k) {
+        const fu_coupling *c = run->model->couplings[k];
+        const int status = c->events ? c->events->begin(run, c) : FU_RUNNING;
+        if (status) return status;
+    }
+    return FU_RUNNING;
+}

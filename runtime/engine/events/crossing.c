@@ -1,0 +1,114 @@
+/* Lines of a crossing come into contact, and lose it: where the penetration passes zero, where damping would turn the force
+ * round, and where a closest point passes the end of its line.
+ */
+#include "engine.h"
+
+#include <math.h>
+
+#define PARTED 1e-6 /* of the energy that contact has: lines that had less when it ended had come apart */
+
+static const fu_crossing *crossing_of(const fu_coupling *coupling)
+{
+    return (const fu_crossing *)coupling;
+}
+
+/* Makes the gap of lines that touch less or more than nil, m, and its rate; returns whether they are closest within their ends. */
+static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_course *gap)
+{
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    fu_find_closest(model, crossing, state, &points);
+    fu_crossing_contact_at(crossing, &points, &contact);
+    *gap = (fu_course){-contact.depth[0], -contact.depth[1]};
+    return points.found && fu_crossing_way_to_ends(crossing, &points) >= 0.0;
+}
+
+/* Lines that touch may part within a step and be together again, lines that do not may touch. */
+static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+{
+    const fu_crossing *crossing = crossing_of(coupling);
+    fu_course from, to;
+    (void)which;
+    if (!run->now.flags[coupling->flags]) return fu_crossing_pass(run->model, crossing, &run->now, &run->next, h, run->round_off);
+    const int within = gap_of(run->model, crossing, &run->now, &from) && gap_of(run->model, crossing, &run->next, &to);
+    return within ? fu_dip(from, to, -1, h, run->round_off) : 0.0;
+}
+
+static int watches(const fu_coupling *coupling, fu_watch *out)
+{
+    (void)coupling;
+    if (out) *out = (fu_watch){.which = 0, .direction = 1};
+    return 1;
+}
+
+/* The value is negative while contact stays as it is. In motion lines that are apart from end to end do not touch: they may become
+ * parallel, or pass round each other's ends. */
+static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    const double margin = fu_crossing_margin(run->model, crossing_of(coupling), state);
+    (void)which;
+    if (run->now.flags[coupling->flags]) return -margin;
+    if (margin < 0.0) return margin;
+    const double gap = fu_crossing_clearance(run->model, coupling, state).gap;
+    return gap > 0.0 ? -gap : margin;
+}
+
+static double depth(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double watched_value)
+{
+    fu_course gap;
+    (void)watched_value;
+    if (!state->flags[coupling->flags]) return 0.0;
+    gap_of(model, crossing_of(coupling), state, &gap);
+    return -gap.value;
+}
+
+/* Returns whether lines that are about to touch, as the closest points come within an end, are past each other's axes: they have come
+ * round that end, and are on the other side than contact keeps them on. Lines that have gone past an end while they touched have not. */
+static int has_come_round(const fu_run *run, const fu_crossing *crossing)
+{
+    const double left_behind = run->now.numbers[crossing->base.numbers + FU_CROSSING_LEFT_BEHIND];
+    fu_closest_points points;
+    fu_crossing_contact contact;
+    fu_find_closest(run->model, crossing, &run->now, &points);
+    fu_crossing_contact_at(crossing, &points, &contact);
+    const int at_end = fu_crossing_margin_of(crossing, &points, &contact) == fu_crossing_way_to_ends(crossing, &points);
+    return at_end && contact.depth[0] > crossing->law[0] && left_behind < PARTED * contact.energy;
+}
+
+static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    int *touches = &run->now.flags[coupling->flags];
+    (void)which, (void)side;
+    if (!*touches && has_come_round(run, crossing_of(coupling))) {
+        fu_fail(run, FU_NOT_KNOWN, run->now.v, coupling->number);
+        return FU_NO_CONVERGENCE;
+    }
+    const double stored = coupling->type->energy(run->model, coupling, &run->now);
+    run->now.numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND] = *touches ? stored : 0.0;
+    *touches = !*touches;
+    if (*touches && crossing_of(coupling)->friction > 0.0) {
+        fu_closest_points points;
+        fu_find_closest(run->model, crossing_of(coupling), &run->now, &points);
+        fu_crossing_begin_grip(crossing_of(coupling), &points, &run->now);
+    }
+    /* a bar that comes in from beyond an end may overlap already: what that stores comes from outside */
+    if (*touches) run->external += coupling->type->energy(run->model, coupling, &run->now);
+    *what = *touches ? "came into contact" : "lost contact";
+    return FU_RUNNING;
+}
+
+static int begin(fu_run *run, const fu_coupling *coupling)
+{
+    coupling->type->touch(run->model, coupling, &run->now);
+    coupling->type->carry(run->model, coupling, &run->now);
+    return FU_RUNNING;
+}
+
+const fu_coupling_events fu_crossing_events = {
+    .watches = watches,
+    .watched = watched,
+    .depth = depth,
+    .act = act,
+    .dip = dip,
+    .begin = begin,
+};

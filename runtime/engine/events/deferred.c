@@ -1,0 +1,162 @@
+/* Passages: changes of couplings that a step goes over, as the jump that they make in its forces is within what is allowed. The
+ * forces at the step's end, and at all stages within it, are of what couplings are there.
+ *
+ * A passage at a part x of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. What a rule of weights b
+ * at c makes of that is wrong by a part of F h, which is a change of momentum:
+ * |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. That is the error of velocities, and times h it counts as a local error of
+ * positions, as errors of velocities go on for the rest of the run and what is allowed is h/t of the whole. Estimates of
+ * integrators do not replace it: they rest on smooth forces, and by chance are nil.
+ *
+ * A discrete gradient of the energy is the mean force over the way, that over passages too: it keeps the energy, errs by
+ * hardly more than where there is no passage, and goes over all of them, at steps of any kind. */
+#include "engine.h"
+
+#include <math.h>
+#include <string.h>
+
+#define DOUBLE 2.0 /* the error that is counted over the bound, lest energy come of many */
+#define AROUND 0.1 /* of a step: how far from where it seems to be a passage may be, for the bound of its error */
+#define PARTS 8    /* so many instants are looked at on either side */
+
+static int has_passed(const fu_run *run, const fu_coupling *c)
+{
+    const size_t size = sizeof(int) * (size_t)c->type->n_flags;
+    return fu_can_pass(c) && memcmp(run->now.flags + c->flags, run->next.flags + c->flags, size) != 0;
+}
+
+/* Gives the couplings of `next` the flags that follow from where it is, unless they are to keep those of `now`; returns
+ * whether that changes them. First: it is the first stage of the step, or the only one. */
+int fu_choose_passages(fu_run *run, int first)
+{
+    const fu_model *model = run->model;
+    int changed = 0;
+    if (run->keep_forces) return 0;
+    for (int k = 0; k < model->n_others && model->n_passing; ++k) {
+        const fu_coupling *c = model->others[k];
+        changed |= fu_can_pass(c) && c->events->pass(model, c, &run->now, &run->next);
+    }
+    const int count = model->n_passing ? fu_count_passages(run) : 0;
+    if (first || count > run->most_passages) run->most_passages = count;
+    return changed;
+}
+
+/* Returns whether a stage of the step just made passed what its end did not: then nothing bounds its error. */
+int fu_strayed(const fu_run *run)
+{
+    return !run->keep_forces && run->model->n_passing && run->most_passages > fu_count_passages(run);
+}
+
+/* Returns how many couplings have passed something in the step. */
+int fu_count_passages(const fu_run *run)
+{
+    int count = 0;
+    for (int k = 0; k < run->model->n_others && run->model->n_passing; ++k) count += has_passed(run, run->model->others[k]);
+    return count;
+}
+
+/* Lets the couplings of `next` be as in `now`, for the rest of the step to be made so. */
+void fu_undo_passages(fu_run *run)
+{
+    run->keep_forces = 1;
+    for (int k = 0; k < run->model->n_others && run->model->n_passing; ++k) {
+        const fu_coupling *c = run->model->others[k];
+        if (!has_passed(run, c)) continue;
+        memcpy(run->next.flags + c->flags, run->now.flags + c->flags, sizeof(int) * (size_t)c->type->n_flags);
+        run->factored = 0;
+    }
+}
+
+/* Notes what couplings pass in the step that is about to be accepted, for the caller to learn of it. */
+void fu_note_passages(fu_run *run, double h)
+{
+    for (int k = 0; k < run->n_watches && run->model->n_passing; ++k) {
+        const fu_coupling *c = fu_own_coupling(run, k);
+        if (!c || !has_passed(run, c)) continue;
+        const double part = c->events->passed(run->model, c, &run->now, &run->next, h, !run->integrator->keeps_energy,
+                                                    &run->passed[k]);
+        run->passed_at[k] = run->now.t + part * h;
+    }
+}
+
+/* Returns by what part of F h the rule errs in the momentum of a force that grows to F from a part x of the step on. */
+static double defect(fu_quadrature rule, double x)
+{
+    double sum = 0.5 * (1.0 - x);
+    for (int k = 0; k < rule.n; ++k)
+        if (rule.c[k] > x) sum -= rule.b[k] * (rule.c[k] - x) / (1.0 - x);
+    return fabs(sum);
+}
+
+/* Returns the largest for instants near x, which is not known better. */
+static double largest_defect(fu_quadrature rule, double x)
+{
+    double worst = 0.0;
+    for (int i = -PARTS; i <= PARTS; ++i) {
+        const double at = x + AROUND * i / PARTS;
+        if (at >= 0.0 && at < 1.0) worst = fmax(worst, defect(rule, at));
+    }
+    return worst;
+}
+
+/* Returns the size of what a force makes in a time of which this is the square, s^2; by the matrix of the step, where there is
+ * one, for vibrations that it does not resolve to count by their amplitude and not by their acceleration. */
+static double size_of_response(fu_run *run, const double *force, double square)
+{
+    const fu_model *model = run->model;
+    if (run->integrator->has_matrix) {
+        fu_gather(model, force, run->rhs);
+        for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+        fu_system_solve(&run->newton, model->lapack, run->rhs);
+        fu_spread(model, run->rhs, run->work);
+    } else {
+        if (fu_prepare_response(model, &run->next, &run->accelerator)) return INFINITY;
+        fu_response(model, &run->accelerator, force, run->work);
+    }
+    for (int i = 0; i < model->n_dof; ++i) run->work[i] *= square;
+    return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
+}
+
+/* Returns the local error of positions by the passages of the step just made, m. */
+double fu_passage_error(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    if (!run->integrator->quadrature || !fu_count_passages(run)) return 0.0;
+    memset(run->before, 0, sizeof(double) * (size_t)model->n_dof);
+    for (int k = 0; k < model->n_others; ++k) {
+        const fu_coupling *c = model->others[k];
+        const char *unused;
+        if (!has_passed(run, c)) continue;
+        const double x = c->events->passed(model, c, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
+        const double part = largest_defect(run->integrator->quadrature(run), x);
+        c->events->passed_force(model, c, &run->now, &run->next, part, run->before);
+    }
+    return size_of_response(run, run->before, DOUBLE * h * h);
+}
+
+/* Returns the local error of positions by kinks of forces within the step just made that its estimate may not see, m: one of momentum, which
+ * goes on for the rest of the run. */
+double fu_kink_error(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const fu_integrator *integrator = run->integrator;
+    if (!integrator->quadrature || !integrator->has_matrix || run->order <= 2 || run->fixed_step > 0.0) return 0.0;
+    const fu_quadrature rule = integrator->quadrature(run);
+    memset(run->before, 0, sizeof(double) * (size_t)model->n_dof);
+    if (!fu_coupling_kinks(model, &run->now, &run->next, rule.n, rule.b, rule.c, run->before)) return 0.0;
+    return size_of_response(run, run->before, h * h);
+}
+
+/* Makes the earliest of passages and slack cables that the caller does not know of the run's event; returns 0 where there is
+ * none. */
+int fu_take_passage(fu_run *run)
+{
+    int first = -1;
+    for (int k = 0; k < run->n_watches && run->model->n_passing; ++k)
+        if (run->passed[k] && (first < 0 || run->passed_at[k] < run->passed_at[first])) first = k;
+    if (fu_take_slackness(run, first < 0 ? INFINITY : run->passed_at[first])) return 1;
+    if (first < 0) return 0;
+    run->event = (fu_event){FU_PASSED, run->watches[first].index, 0, run->passed[first]};
+    run->event_time = run->passed_at[first];
+    run->passed[first] = 0;
+    return 1;
+}

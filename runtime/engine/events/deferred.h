@@ -1,0 +1,16 @@
+/* Passages: changes of couplings that a step goes over: run/passages.c. */
+#ifndef FUNICULAR_PASSAGES_H
+#define FUNICULAR_PASSAGES_H
+
+#include "coupling_events.h"
+
+int fu_choose_passages(fu_run *run, int first);
+int fu_strayed(const fu_run *run);
+int fu_count_passages(const fu_run *run);
+void fu_undo_passages(fu_run *run);
+void fu_note_passages(fu_run *run, double h);
+double fu_passage_error(fu_run *run, double h);
+double fu_kink_error(fu_run *run, double h);
+int fu_take_passage(fu_run *run);
+
+#endif

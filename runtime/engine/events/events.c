@@ -1,0 +1,325 @@
+/* Events: a coupling passes a boundary of its path or changes by itself, a quantity passes a threshold, a function of the user's
+ * changes sign. */
+#include "engine.h"
+
+#include "underflow.h"
+
+#define MOST_TRIALS 80    /* steps that are tried to end on an event */
+#define FEW_TRIALS 10     /* after so many trials every second one halves the interval: rounding may rule the value */
+#define LEAST_STEP 1e-13  /* of the duration: shorter intervals are not divided */
+#define FINER 1e-2        /* of Newton's tolerance, which is used near an event, lest its noise rule where the event is */
+#define PRECISE 1e-13     /* of a piece, or of what a watched quantity changes by in the step: how close to an event it ends */
+#define LITTLE 1e-2       /* of the allowed error: what a passage beside a boundary may make */
+#define NEAR 1e-6         /* of what a distance changes by in the step: how close to a passage an adaptive step ends */
+#define LARGEST_MISS 1e-6 /* of a piece: how close to a boundary a step ends at least */
+#define SMALLEST 1e-300   /* a value that has a sign and is nearly zero */
+
+const fu_event fu_no_event = {FU_NO_EVENT, 0, 0, 0};
+
+const double *fu_watch_accelerations(const fu_run *run, const fu_state *state)
+{
+    fu_run *scratch = (fu_run *)run; /* a run is never a constant */
+    int known = run->watch_solution;
+    if (known == FU_SOLVE_ANEW || known == FU_SOLVE_ONCE) {
+        const int failed = fu_accelerations(run->model, state, &scratch->accelerator, run->watch_work, 0);
+        if (known == FU_SOLVE_ONCE) scratch->watch_solution = failed ? FU_HAS_NO_SOLUTION : FU_IS_SOLVED;
+        known = failed ? FU_HAS_NO_SOLUTION : FU_IS_SOLVED;
+    }
+    return known == FU_IS_SOLVED ? run->watch_work : 0;
+}
+
+/* Returns a number of a coupling's row of output; not a number where eq 38 has no solution. */
+static double output_of(const fu_run *run, const fu_state *state, const fu_coupling *c, int which)
+{
+    const double *acceleration = fu_watch_accelerations(run, state);
+    double *out = run->watch_work + run->model->n_dof;
+    if (!acceleration) return NAN;
+    c->type->outputs(run->model, c, state, acceleration, &run->accelerator, out);
+    return out[which];
+}
+
+/* Returns what the caller's function makes of a state: in it numbers are as they are outside of the time loop. */
+static double called(const fu_run *run, const fu_state *state, int k)
+{
+    const unsigned before = fu_underflow();
+    fu_set_underflow(before & ~FU_TINY_IS_ZERO);
+    const double value = run->call(run->context, k, state);
+    fu_set_underflow(before);
+    return value;
+}
+
+/* Returns what is watched, for an event of the user's or of a coupling's. */
+static double watched(const fu_run *run, const fu_state *state, int k)
+{
+    const fu_watch *watch = &run->watches[k];
+    if (watch->kind == FU_WATCH_Q) return state->q[watch->index] - watch->value;
+    if (watch->kind == FU_WATCH_V) return state->v[watch->index] - watch->value;
+    if (watch->kind == FU_WATCH_S) return state->s[watch->index] - watch->value;
+    if (watch->kind == FU_WATCH_CALL) return called(run, state, k);
+    const fu_coupling *c = run->model->couplings[watch->index];
+    if (watch->kind == FU_WATCH_RATE) return c->events->rate(run->model, c, state) - watch->value;
+    if (watch->kind == FU_WATCH_OUTPUT) return output_of(run, state, c, watch->which) - watch->value;
+    return c->events->watched(run, c, state, watch->which);
+}
+
+/* Returns an event's value at a state: the event happens where this reaches zero from below. */
+static double value(const fu_run *run, const fu_state *state, fu_event event)
+{
+    if (event.kind == FU_WATCHED) return event.side * watched(run, state, event.which);
+    const fu_coupling *c = run->model->couplings[event.which];
+    const int boundary = run->now.piece[c->coordinate] + (event.side > 0);
+    return event.side * (state->s[c->coordinate] - fu_boundary(fu_path_of(run->model, c, &run->now), boundary));
+}
+
+/* Returns the event of a watch that passes zero between the value kept and this one, else none. */
+static fu_event passes(const fu_run *run, int k, double after)
+{
+    const double before = run->watched[k];
+    const int side = before < 0.0 && after >= 0.0 ? 1 : before > 0.0 && after < 0.0 ? -1 : 0;
+    return side && run->watches[k].direction * side >= 0 ? (fu_event){FU_WATCHED, k, side, 0} : fu_no_event;
+}
+
+/* Returns the crossing of the coupling of `next` that is farthest outside its piece, else the first of the watches that pass
+ * zero between `now` and `next`; but for one event. */
+fu_event fu_find_event(fu_run *run, fu_event but)
+{
+    fu_event found = fu_no_event;
+    const fu_watch_list near = fu_near_watches(run, &run->next);
+    double worst = 0.0;
+    for (int k = 0; k < run->model->n_others; ++k) {
+        const fu_coupling *c = run->model->others[k];
+        const fu_path path = fu_path_of(run->model, c, &run->next);
+        int side;
+        if (!path.n) continue;
+        const double d = fu_outside(run->model, c, &run->next, &side) - fu_boundary_tolerance(path);
+        if (d > worst && (but.kind != FU_CROSSING || but.which != c->number)) {
+            worst = d;
+            found = (fu_event){FU_CROSSING, c->number, side, 0};
+        }
+    }
+    run->watch_solution = FU_SOLVE_ONCE;
+    for (int i = 0; i < near.n && !found.kind; ++i) {
+        const int k = fu_watch_of(near, i);
+        if (but.kind == FU_WATCHED && but.which == k) continue;
+        found = passes(run, k, watched(run, &run->next, k));
+        if (found.kind && fu_is_far_watch(run, k)) run->watched[k] = watched(run, &run->now, k); /* which was passed over */
+    }
+    run->watch_solution = FU_SOLVE_ANEW;
+    return found;
+}
+
+/* Returns the part of a step at which g = g_low + rate x + ... reaches zero on its way to g_high: that of the parabola. */
+static double root_of_parabola(double g_low, double g_high, double rate)
+{
+    const double bend = g_high - g_low - rate, square = rate * rate - 4.0 * bend * g_low;
+    return square > 0.0 ? -2.0 * g_low / (rate + sqrt(square)) : -g_low / (g_high - g_low);
+}
+
+/* Returns the coupling whose own an event is, and which tells when it happens; null where there is none. */
+static const fu_coupling *passing(const fu_run *run, fu_event event)
+{
+    const fu_coupling *c = event.kind == FU_WATCHED ? fu_own_coupling(run, event.which) : 0;
+    return c && c->events->passed ? c : 0;
+}
+
+/* Returns whether a step may end a little off an event: the slope of a force jumps there, which over so short a way makes
+ * nothing, and the instant follows from the rate (run/happenings.c). */
+static int may_miss(const fu_run *run, fu_event event)
+{
+    const fu_coupling *c = passing(run, event);
+    return c && fu_can_pass(c) && run->fixed_step <= 0.0;
+}
+
+/* Where a step that ends on an event ends: the event's value is `aim` there, within `close`. */
+typedef struct {
+    double aim, close;
+} landing_place;
+
+/* Returns how close to an event a step must end: beyond a passage, lest it happen again. A coupling that goes on in the next
+ * piece, a way d from the boundary, has gone that way on the wrong curve, whose direction is wrong by d times the jump of
+ * r_xx: its velocity by less than rate d/length for pieces that bend by less than a radian. Over the step that shall be little
+ * of what is allowed. */
+static landing_place landing(const fu_run *run, fu_event event, double range)
+{
+    if (event.kind == FU_WATCHED)
+        return may_miss(run, event) ? (landing_place){0.5 * NEAR * range, 0.5 * NEAR * range} : (landing_place){0.0, PRECISE * range};
+    const fu_coupling *c = run->model->couplings[event.which];
+    const fu_path path = fu_path_of(run->model, c, &run->now);
+    const int next = run->now.piece[c->coordinate] + event.side;
+    if (run->fixed_step > 0.0 || next < 0 || next >= path.n) return (landing_place){0.0, PRECISE * path.length};
+    const double shorter = fmin(fu_piece_length(path, next), fu_piece_length(path, next - event.side));
+    return (landing_place){0.0, fmax(PRECISE * path.length, fmin(LARGEST_MISS, LITTLE * run->allowed / range) * shorter)};
+}
+
+/* Returns whether an event is of a watch of a coupling's own, whose value leaves its zero anew after each event. */
+static int is_of_a_coupling(const fu_run *run, fu_event event)
+{
+    return event.kind == FU_WATCHED && fu_own_coupling(run, event.which);
+}
+
+/* An interval of steps in which g, the event's value, passes zero: g_low < 0 <= g_high. */
+typedef struct {
+    double low, high, g_low, g_high;
+    int last; /* the side that has moved last: 1 high, -1 low */
+} bracket;
+
+static double secant(const bracket *b)
+{
+    return b->low + (b->high - b->low) * b->g_low / (b->g_low - b->g_high);
+}
+
+/* Narrows the bracket by g at `middle`; the value of an end that stays twice is halved (Illinois). */
+static void narrow(bracket *b, double middle, double g)
+{
+    const int side = g >= 0.0 ? 1 : -1;
+    if (side > 0) {
+        b->high = middle;
+        b->g_high = g;
+        if (b->last > 0) b->g_low *= 0.5;
+    } else {
+        b->low = middle;
+        b->g_low = g;
+        if (b->last < 0) b->g_high *= 0.5;
+    }
+    b->last = side;
+}
+
+/* Moves, for an event that has just happened, and whose value leaves its zero anew, the low end to where it is off that zero
+ * again. Returns 1 where it is found, 0 where there is none, -1 where a step fails. */
+static int leave_zero(fu_run *run, fu_event event, bracket *b, double least, double close)
+{
+    for (b->low = 0.5 * b->high; b->low > least; b->low *= 0.5) {
+        if (run->integrator->step(run, b->low)) return -1;
+        b->g_low = value(run, &run->next, event);
+        if (b->g_low < -close) return 1;
+        b->high = b->low;
+        b->g_high = b->g_low;
+    }
+    return 0;
+}
+
+/* Shortens the step until it ends where the event happens; returns the step, 0 on failure. `next` is there then. */
+static double search(fu_run *run, fu_event event, bracket b, double middle, double least, landing_place at)
+{
+    b.g_low -= at.aim;
+    b.g_high -= at.aim;
+    for (int i = 0; i < MOST_TRIALS; ++i) {
+        /* rounding may rule g */
+        if (!(middle > b.low && middle < b.high) || (i > FEW_TRIALS && i % 2)) middle = 0.5 * (b.low + b.high);
+        if (run->integrator->step(run, middle)) return 0.0;
+        const double g = value(run, &run->next, event) - at.aim;
+        if (fabs(g) <= at.close || (g >= 0.0 && middle - b.low <= least)) return middle;
+        narrow(&b, middle, g);
+        if (g < 0.0 && b.high - b.low <= least) return run->integrator->step(run, b.high) ? 0.0 : b.high;
+        middle = secant(&b);
+    }
+    return 0.0;
+}
+
+/* Does the same from the step h, which leads beyond the event. */
+static double locate(fu_run *run, fu_event event, double h)
+{
+    bracket b = {0.0, h, 0.0, value(run, &run->next, event), 0};
+    b.g_low = event.kind == FU_WATCHED ? event.side * run->watched[event.which] : value(run, &run->now, event);
+    const double least = LEAST_STEP * run->duration;
+    const landing_place at = landing(run, event, b.g_high - b.g_low);
+    double middle = h * b.g_low / (b.g_low - b.g_high);
+    if (event.kind == FU_CROSSING) {
+        const fu_coupling *c = run->model->couplings[event.which];
+        const double rate = event.side * c->events->rate(run->model, c, &run->now);
+        middle = h * root_of_parabola(b.g_low, b.g_high, h * rate);
+    }
+    const fu_coupling *passes = passing(run, event);
+    const char *unused;
+    if (passes)
+        middle = h * passes->events->passed(run->model, passes, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
+    if (b.g_high <= at.aim + at.close) return h;
+    if (is_of_a_coupling(run, event) && fabs(b.g_low) <= (at.aim > 0.0 ? PRECISE * (b.g_high - b.g_low) : at.close)) {
+        const int found = leave_zero(run, event, &b, least, at.close);
+        if (found < 0) return 0.0;
+        if (!found) return b.high < h || !run->integrator->step(run, b.high) ? b.high : 0.0;
+        middle = secant(&b);
+    }
+    return search(run, event, b, middle, least, at);
+}
+
+/* Shortens the step h, which leads beyond an event, until it ends there, with couplings that keep their pieces until one of
+ * them leaves its piece. Returns the step, 0 on failure; `next` is there then. */
+double fu_locate(fu_run *run, fu_event event, double h)
+{
+    const int kept = run->keep_pieces;
+    run->keep_pieces |= event.kind == FU_CROSSING;
+    run->newton_tolerance *= FINER;
+    const double found = locate(run, event, h);
+    run->keep_pieces = kept;
+    return found;
+}
+
+/* Takes the values of what is watched at `now`, after a step of h, but not of those that have just passed, or rounding would let
+ * them pass again. `late` tells which did together with the one that the step was for. */
+void fu_watch_now(fu_run *run, fu_event event, double h)
+{
+    const int moved = h > FU_AT_ONCE * run->duration;
+    const fu_watch_list near = fu_near_watches(run, &run->now);
+    run->watch_solution = FU_SOLVE_ONCE;
+    for (int i = 0; i < near.n; ++i) {
+        const int k = fu_watch_of(near, i);
+        const int expected = event.kind == FU_WATCHED && event.which == k;
+        const double value = expected ? 0.0 : watched(run, &run->now, k);
+        const fu_event late = passes(run, k, value);
+        if (expected || late.kind) run->watched[k] = 0.0;
+        else if (value != 0.0 && (moved || run->watched[k] != 0.0)) run->watched[k] = value;
+        if (!expected && late.kind) run->late[k] = late.side;
+    }
+    run->watch_solution = FU_SOLVE_ANEW;
+}
+
+/* Takes the values at `now` of what is far (couplings/proximity.c), which are not kept up. */
+void fu_watch_far(fu_run *run)
+{
+    for (int k = 0; k < run->n_watches; ++k)
+        if (fu_is_far_watch(run, k)) run->watched[k] = watched(run, &run->now, k);
+}
+
+/* Returns whether a coupling's watch is not a number: then it can go on no more, and the cause is noted. */
+int fu_has_lost_a_watch(fu_run *run)
+{
+    const fu_watch_list near = fu_near_watches(run, &run->now);
+    for (int i = 0; i < near.n; ++i) {
+        const int k = fu_watch_of(near, i);
+        const fu_coupling *c = fu_own_coupling(run, k);
+        if (c && isnan(run->watched[k])) return fu_fail(run, FU_NOT_KNOWN, run->now.v, c->number);
+    }
+    return 0;
+}
+
+/* Gives couplings' watches the sign that they have now that a coupling (its number, or -1) has changed, and has just had the
+ * value of one of them zero. */
+void fu_watch_anew(fu_run *run, int coupling)
+{
+    const fu_watch_list near = fu_near_watches(run, &run->now);
+    run->watch_solution = FU_SOLVE_ONCE;
+    for (int i = 0; i < near.n; ++i) {
+        const int k = fu_watch_of(near, i);
+        const fu_coupling *c = fu_own_coupling(run, k);
+        if (!c) continue;
+        if (c->number == coupling) run->late[k] = 0;
+        if (run->late[k]) continue;
+        const fu_coupling_events *events = c->events;
+        const int sign = events->sign ? events->sign(run->model, c, &run->now, run->watches[k].which) : -1;
+        run->watched[k] = sign * fmax(sign * watched(run, &run->now, k), SMALLEST);
+    }
+    run->watch_solution = FU_SOLVE_ANEW;
+}
+
+/* Returns an event that passed together with another one, and is still to happen; none where there is none. */
+fu_event fu_late_event(fu_run *run)
+{
+    for (int k = 0; k < run->n_watches; ++k)
+        if (run->late[k]) {
+            const fu_event event = {FU_WATCHED, k, run->late[k], 0};
+            run->late[k] = 0;
+            return event;
+        }
+    return fu_no_event;
+}

@@ -1,0 +1,74 @@
+/* Dips: what is watched passes zero within a step and is back at its end, as by a grazing contact. The step then ends where it
+ * is predicted to be farthest beyond zero, by the cubic through its values and rates at both ends (Hermite's). */
+#include "engine.h"
+
+#define NOISE 1e-14  /* of what a watch is of, and of its values: dips less deep are rounding */
+
+
+
+
+/* Returns the rate of an entry of the configuration, 1/s or m/s. */
+static double rate_of_q(const fu_model *model, const fu_state *state, int index)
+{
+    if (!model->n_bodies || index < model->bodies[0].configuration) return state->v[index];
+    for (int b = model->n_bodies - 1; b >= 0; --b) {
+        const fu_body *body = &model->bodies[b];
+        const int k = index - body->configuration;
+        double rate[FU_FRAME_ENTRIES];
+        if (k < 0) continue;
+        if (k >= body->kernel->configuration) return state->v[body->dof + body->kernel->velocity + k - body->kernel->configuration];
+        fu_body_rate(body->kernel, state->q + body->configuration, state->v + body->dof, rate);
+        return rate[k];
+    }
+    return NAN;
+}
+
+/* Makes value and rate of a watch that is of the state itself; the rate of others is not a number. */
+static fu_course course_of(const fu_model *model, const fu_watch *watch, const fu_state *state)
+{
+    if (watch->kind == FU_WATCH_Q)
+        return (fu_course){state->q[watch->index] - watch->value, rate_of_q(model, state, watch->index)};
+    if (watch->kind == FU_WATCH_V) return (fu_course){state->v[watch->index] - watch->value, state->acceleration[watch->index]};
+    for (int k = 0; k < model->n_others && watch->kind == FU_WATCH_S; ++k) {
+        const fu_coupling *c = model->others[k];
+        if (c->n_coordinates && c->coordinate == watch->index)
+            return (fu_course){state->s[watch->index] - watch->value, c->events->rate(model, c, state)};
+    }
+    return (fu_course){0.0, NAN};
+}
+
+/* Returns after what part of a step a watch that has just passed to this side is farthest there, and is back at the end; 0 where
+ * it is not. Without a value of its own it would not be seen to pass back. */
+static double return_of(fu_course from, fu_course to, double h, double least)
+{
+    const int side = from.rate > 0.0 ? 1 : -1;
+    const double y[2] = {0.0, -side * to.value}, m[2] = {-fabs(h * from.rate), -side * h * to.rate};
+    const double x = fu_part_of_minimum(y, m);
+    return y[1] > least && x > 0.0 && x < 1.0 && -m[0] > least ? x * h : 0.0;
+}
+
+/* Returns when a watch is farthest beyond zero in the step, s after `now`. */
+static double dip_of(const fu_run *run, int k, double h)
+{
+    const fu_watch *watch = &run->watches[k];
+    const fu_coupling *c = fu_own_coupling(run, k);
+    if (c) return c->events->dip ? c->events->dip(run, c, watch->which, h) : 0.0;
+    const fu_course from = course_of(run->model, watch, &run->now), to = course_of(run->model, watch, &run->next);
+    if (isnan(from.rate)) return 0.0;
+    const double least = NOISE * fmax(fabs(watch->value), fmax(fabs(from.value + watch->value), fabs(to.value + watch->value)));
+    if (run->watched[k] == 0.0) return return_of(from, to, h, least);
+    return fu_dip(from, to, run->watched[k] > 0.0 ? 1 : -1, h, least);
+}
+
+/* Returns when the first of the watches that pass zero and are back within the step is farthest beyond, s after `now`; 0 where
+ * none is predicted to. */
+double fu_time_of_dip(const fu_run *run, double h)
+{
+    double first = 0.0;
+    const fu_watch_list near = fu_near_watches_within(run, h);
+    for (int i = 0; i < near.n; ++i) {
+        const double dip = dip_of(run, fu_watch_of(near, i), h);
+        if (dip > 0.0 && (first == 0.0 || dip < first)) first = dip;
+    }
+    return first;
+}

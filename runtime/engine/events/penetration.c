@@ -1,0 +1,28 @@
+/* How deep couplings have let parts sink below what they touch, and how far beyond its ends these touch, at the ends of steps: rows of
+ * output may miss it. */
+#include "engine.h"
+
+void fu_keep_largest(double *largest, double value)
+{
+    if (value > *largest) *largest = value;
+}
+
+double fu_beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_coupling_events *events = coupling->events;
+    return events && events->beyond ? events->beyond(model, coupling, state) : -INFINITY;
+}
+
+/* Takes the depths at `now`, whose watched values are known. What is too far to be watched touches nothing. */
+void fu_note_depths(fu_run *run)
+{
+    const fu_watch_list near = fu_near_watches(run, &run->now);
+    for (int i = 0; i < near.n; ++i) {
+        const int k = fu_watch_of(near, i);
+        const fu_coupling *c = fu_own_coupling(run, k);
+        if (!c) continue;
+        const fu_coupling_events *events = c->events;
+        if (events->depth) fu_keep_largest(&run->deepest[c->number], events->depth(run->model, c, &run->now, run->watched[k]));
+        fu_keep_largest(&run->farthest[c->number], fu_beyond(run->model, c, &run->now));
+    }
+}
