@@ -30,7 +30,7 @@ SAMPLES = 8
 OVERLAP_HARD = 1e-9
 """Of the lengths that a distance is computed from: rounding, by which a start of hard contact may be below."""
 MOST_HARD = 48
-"""Points in hard contact of a scene: FU_MOST_HARD_CONTACTS of engine/include/hard_contacts.h."""
+"""Points in hard contact of a scene: FU_MOST_HARD_CONTACTS of engine/couplings/hard_contact/hard_contact.h."""
 
 
 def placed_surface(scene: SceneData, surface: Surface) -> Surface:

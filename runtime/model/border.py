@@ -167,7 +167,7 @@ def _ties_turns(joint: JointModel, dim: int) -> bool:
     if any(end.slide >= 0 for end in joint.attachments):
         return True
     if all(end.cable >= 0 for end in joint.attachments):
-        return False  # engine/couplings/joint_operations.c leaves that out
+        return False  # engine/couplings/joint/joint.c leaves that out
     return _has_cross_stiffness(joint.kernel, dim)
 
 

@@ -23,14 +23,14 @@ GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 KERNELS = {2: "planar_surface", 3: "surface"}
 NONE = np.zeros(0)
 MARK_NUMBERS, AXES_NUMBERS, MARK_PLACE = 17, 9, slice(3, 6)
-"""That a state keeps of friction: of a point, of a body's axes; places among them (engine/include/contacts.h)."""
+"""That a state keeps of friction: of a point, of a body's axes; places among them (engine/couplings/contact/contact.h)."""
 NO_TIME = 1e300
-"""In s: FU_NO_TIME of engine/include/penalty_friction.h."""
+"""In s: FU_NO_TIME of engine/couplings/common/stick_friction.h."""
 
 
 @dataclass(kw_only=True)
 class SurfaceModel:
-    """fu_surface of engine/include/surfaces.h, with a list of its one attachment."""
+    """fu_surface of engine/couplings/common/surfaces.h, with a list of its one attachment."""
 
     kernel: str
     shape: str
@@ -53,7 +53,7 @@ class SurfaceModel:
 
 @dataclass(kw_only=True)
 class ContactModel(CouplingModel, SurfaceModel):
-    """fu_contact of engine/include/contacts.h; cable -1: of a body, by its points, the attachments."""
+    """fu_contact of engine/couplings/contact/contact.h; cable -1: of a body, by its points, the attachments."""
 
     stiffness: float
     damping: float

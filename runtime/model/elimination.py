@@ -3,7 +3,7 @@
 The graph's nodes are groups of unknowns: of a body, of a coupling's own, of nodes of cables that are border.
 Eliminating a group connects its neighbours with each other. Minimum degree keeps them few: chains and trees of bodies
 take a number of operations that is linear in the bodies. Groups that are eliminated together are a front
-(engine/include/fronts.h).
+(engine/linear/fronts.h).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SOLVES = 5
 
 @dataclass
 class Elimination:
-    """Fronts as engine/include/fronts.h has them; strips (n, 2): an unknown and a chain that it touches, increasing."""
+    """Fronts as engine/linear/fronts.h has them; strips (n, 2): an unknown and a chain that it touches, increasing."""
 
     m: int
     start: np.ndarray

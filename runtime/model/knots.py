@@ -18,14 +18,14 @@ from .model import Model
 
 HIGHER, ACCELERATION, RATE = range(3)
 """What jumps: nothing that the motion follows at once, the acceleration of what a signal drives, its rate; the order of
-engine.h."""
+engine/bodies/motions.h."""
 
 ROUNDING = 1e-14
 """Of a signal's largest value: a smaller difference of two pieces is rounding."""
 TINY = 1e-300
 """Of no signal: what a constant is compared with."""
 ONE_INSTANT = 1e-12
-"""Of the duration: knots that are no farther apart are one (engine/include/run.h)."""
+"""Of the duration: knots that are no farther apart are one (engine/equations/run.h)."""
 
 
 def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tuple[np.ndarray, np.ndarray]:

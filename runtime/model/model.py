@@ -1,6 +1,6 @@
 """What the engine integrates, as data: cables, bodies, slides, joints, springs, loads, and arrays over all of them.
 
-Coordinates, unknowns and their order are those of engine/include/engine.h.
+Coordinates, unknowns and their order are those of engine/bodies/model.h.
 """
 
 from __future__ import annotations

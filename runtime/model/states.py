@@ -134,7 +134,7 @@ def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
 
 
 def contact_state(contact: ContactModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what results tell of a contact from its numbers (time, 10); see engine/couplings/contact_results.c."""
+    """Return what results tell of a contact from its numbers (time, 10); see engine/couplings/contact/results.c."""
     touches = numbers[:, 7] > 0 if contact.cable >= 0 else np.zeros(len(numbers), dtype=bool)
     first, last = (np.where(touches, numbers[:, k], np.nan) for k in (8, 9))
     return {"force": numbers[:, :3], "friction_force": numbers[:, 3:6], "penetration": numbers[:, 6],

@@ -17,7 +17,7 @@ from .schemas import checked, list_schema
 from .validation import Name, Vector, not_negative, positive, shown, vector3, within
 
 MOST_POINTS = 16
-"""Of a body: engine/include/contacts.h."""
+"""Of a body: engine/couplings/contact/contact.h."""
 GAUSS_POINTS = 6
 """Of an element of a cable: enough for one that touches in part; see tests/benchmarks/contact.py."""
 

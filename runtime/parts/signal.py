@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
 DEGREE = 6
-"""Of the integral of a smooth rise; FU_SIGNAL_TERMS in engine.h is one more."""
+"""Of the integral of a smooth rise; FU_SIGNAL_TERMS in engine/base/common.h is one more."""
 Time = Annotated[float, finite("s")]
 Value = Annotated[float, finite()]
 

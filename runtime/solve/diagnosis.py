@@ -19,7 +19,7 @@ STRETCHED = 3.0
 """Times their undeformed length: elements that are longer are named."""
 
 ROUNDED = 4e-16
-"""Of the farthest coordinate: below this the error control does not go (engine/run/step_control.c)."""
+"""Of the farthest coordinate: below this the error control does not go (engine/equations/step_control.c)."""
 
 LEAST_MOTION = 1e-9
 """Of the farthest coordinate: what moves less may be at rest (engine/run/start.c)."""

@@ -18,7 +18,7 @@ from ..parts.event import Event
 from ..parts.scene_data import SceneData
 
 LEAVES_TABLE = "leaves the table of its fluid"
-"""What the engine says of it (engine/couplings/table_events.c)."""
+"""What the engine says of it (engine/events/fluid_table.c)."""
 
 
 class Watch:

@@ -1,6 +1,6 @@
 /* What all headers of the engine share: kernels, limits, and names of structures that are described elsewhere. */
-#ifndef FUNICULAR_COMMON_H
-#define FUNICULAR_COMMON_H
+#ifndef FUNICULAR_BASE_COMMON_H
+#define FUNICULAR_BASE_COMMON_H
 
 #include "blocks.h"
 #include "kernels.h"
@@ -33,6 +33,10 @@ typedef struct fu_model fu_model;
 typedef struct fu_state fu_state;
 typedef struct fu_run fu_run;
 typedef struct fu_proximity fu_proximity;
+typedef struct fu_coupling fu_coupling;
+typedef struct fu_slide fu_slide;
+typedef struct fu_slackness fu_slackness;
+typedef struct fu_accelerator fu_accelerator;
 
 /* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
 typedef struct {

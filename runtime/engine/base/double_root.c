@@ -1,5 +1,7 @@
 /* The bottom of a cubic between two places of a step. */
-#include "engine.h"
+#include "base/double_root.h"
+
+#include <math.h>
 
 #define NEAR 1e-2    /* of a dip: how far from zero its end may be predicted and yet be looked at */
 #define NOISE 1e-14  /* of what a watch is of, and of its values: dips less deep are rounding */

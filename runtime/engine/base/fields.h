@@ -1,8 +1,8 @@
 /* What a coupling's structure takes from the model, described: cython/translation.pxi fills in each field from the attribute of
  * its name of the coupling's class in the package funicular.model, and knows no kind of coupling.
  */
-#ifndef FUNICULAR_FIELDS_H
-#define FUNICULAR_FIELDS_H
+#ifndef FUNICULAR_BASE_FIELDS_H
+#define FUNICULAR_BASE_FIELDS_H
 
 #include <stddef.h>
 

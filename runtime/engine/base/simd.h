@@ -1,7 +1,7 @@
 /* Several numbers at a time, with AVX2 where compiler and machine have it: the same operations on each as one by one, so
  * that without contraction the bits are the same. */
-#ifndef FUNICULAR_LANES_H
-#define FUNICULAR_LANES_H
+#ifndef FUNICULAR_BASE_SIMD_H
+#define FUNICULAR_BASE_SIMD_H
 
 #define FU_LANES 4
 typedef double fu_lanes __attribute__((vector_size(FU_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));

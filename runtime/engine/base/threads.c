@@ -9,7 +9,8 @@
 #if !defined(_WIN32)
 #define _POSIX_C_SOURCE 200809L
 #endif
-#include "engine.h"
+#include "base/threads.h"
+#include "base/underflow.h"
 
 #define WORTH_WHILE 1500 /* dofs: work on fewer takes as long to share as to do */
 
@@ -54,7 +55,6 @@ int fu_share_among(fu_threads *threads, int dofs, fu_work work, const void *what
 
 #else
 
-#include "underflow.h"
 
 #include <pthread.h>
 #include <sched.h>

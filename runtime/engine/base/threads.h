@@ -1,6 +1,6 @@
-/* Threads that share the work of a run: run/threads.c. */
-#ifndef FUNICULAR_THREADS_H
-#define FUNICULAR_THREADS_H
+/* Threads that share the work of a run: base/threads.c. */
+#ifndef FUNICULAR_BASE_THREADS_H
+#define FUNICULAR_BASE_THREADS_H
 
 #define FU_DOFS_APART 64 /* dofs, or unknowns, that one thread takes at least: not those of one line of the cache */
 

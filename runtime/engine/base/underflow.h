@@ -1,7 +1,7 @@
 /* Numbers below the least normal one, 2e-308. Motion that decays along many bodies or elements ends in them, and some processors
  * take a hundred times as long with each: in the time loop they are zero. Elsewhere, in what callers compute, they stay. */
-#ifndef FUNICULAR_UNDERFLOW_H
-#define FUNICULAR_UNDERFLOW_H
+#ifndef FUNICULAR_BASE_UNDERFLOW_H
+#define FUNICULAR_BASE_UNDERFLOW_H
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>

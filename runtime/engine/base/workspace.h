@@ -1,6 +1,6 @@
 /* Arrays placed one behind the other in a work space that is allocated as a whole. */
-#ifndef FUNICULAR_WORKSPACE_H
-#define FUNICULAR_WORKSPACE_H
+#ifndef FUNICULAR_BASE_WORKSPACE_H
+#define FUNICULAR_BASE_WORKSPACE_H
 
 #include <stddef.h>
 

@@ -1,5 +1,6 @@
 /* Sums over elements, and over bodies by way of bodies.c: forces, energies, and the band of a Newton matrix. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
 
 #include <string.h>
 

@@ -1,5 +1,8 @@
 /* Bodies with a frame, whatever they are made of: sums over them, and what a rigid one is. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/rotation.h"
+#include "bodies/state.h"
+#include "bodies/unknowns.h"
 
 static void of_rigid_mass_times(const fu_body *body, const double *b, const double *a, double *f)
 {

@@ -1,8 +1,8 @@
 /* Rigid and modal bodies: bodies/bodies.c, bodies/modal.c. */
-#ifndef FUNICULAR_BODIES_H
-#define FUNICULAR_BODIES_H
+#ifndef FUNICULAR_BODIES_BODIES_H
+#define FUNICULAR_BODIES_BODIES_H
 
-#include "linear.h"
+#include "linear/linear.h"
 
 /* A body as seen at an instant: its part of q, of v, of the accelerations. */
 typedef struct {

@@ -1,8 +1,8 @@
 /* Cables, and sums over their elements: bodies/assembly.c. */
-#ifndef FUNICULAR_CABLES_H
-#define FUNICULAR_CABLES_H
+#ifndef FUNICULAR_BODIES_CABLES_H
+#define FUNICULAR_BODIES_CABLES_H
 
-#include "linear.h"
+#include "linear/linear.h"
 
 typedef struct {
     const fu_element_kernels *kernel;
@@ -28,7 +28,6 @@ typedef struct {
 } fu_cable;
 
 void fu_constant_mass_times(const fu_model *model, const double *q, const double *a, double *f);
-void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f);
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
@@ -36,16 +35,10 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
                        double stiffness, fu_system *system);
 /* Adds to the matrix K (n x n) of an element factor times a' by b, of two rows of n / dim numbers and a matrix (dim x dim). */
 void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by, double *K);
-double fu_kinetic_energy(const fu_model *model, double t, const double *q, const double *v);
-double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v);
-double fu_elastic_energy(const fu_model *model, const fu_state *state);
 double fu_constant_elastic_energy(const fu_model *model, const double *q);
 double fu_constant_kinetic_energy(const fu_model *model, const double *q, const double *v);
 double fu_potential_energy(const fu_model *model, const double *q);
 double fu_internal_dissipation(const struct fu_model *model, const double *q, const double *v);
-double fu_dissipation(const fu_model *model, const fu_state *state, const struct fu_accelerator *work);
-double fu_length(const fu_model *model, int slide);
-double fu_element_start(const fu_model *model, int slide, int element);
 
 /* Returns the length of an element, m. */
 static inline double fu_element_length(const fu_cable *cable, int element)

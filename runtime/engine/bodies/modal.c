@@ -1,5 +1,5 @@
 /* Modal bodies: loops over modes around the generated kernels (derive/bodies/modal.py has the mathematics). */
-#include "engine.h"
+#include "bodies/bodies.h"
 
 #include <string.h>
 

@@ -1,14 +1,24 @@
-/* The model: what is integrated. */
-#ifndef FUNICULAR_MODEL_H
-#define FUNICULAR_MODEL_H
+/* The model: what is integrated.
+ *
+ * Coordinates. q is the configuration: for each cable its nodal vectors node by node, then for each body position and
+ * attitude (unit quaternion; in the plane unit complex number) and, of a modal one, the coordinates of its modes. v, accelerations and increments have one entry a degree
+ * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes; modes).
+ *
+ * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of nodes where cables
+ * meet, if that is cheaper (model/numbering.py), those of the bodies, then what each joint and spring adds. Supports make
+ * dofs linear in the unknowns, dofs = T unknowns + what motions prescribe; unknown_of_dof[dof] is the number of the unknown
+ * that the dof is, -1 where it is fixed or prescribed, -2 - k where it is the k-th combination of unknowns
+ * (bodies/unknowns.c).
+ *
+ * Every array belongs to the caller; nothing here allocates.
+ */
+#ifndef FUNICULAR_BODIES_MODEL_H
+#define FUNICULAR_BODIES_MODEL_H
 
-#include "bodies.h"
-#include "cables.h"
-#include "coupling.h"
-#include "linear.h"
-#include "loads.h"
-#include "motions.h"
-#include "slides.h"
+#include "bodies/bodies.h"
+#include "bodies/cables.h"
+#include "linear/linear.h"
+#include "bodies/motions.h"
 
 struct fu_model {
     int dim, n_cables, n_bodies, n_couplings, n_motions;

@@ -1,5 +1,8 @@
 /* Signals, and the dofs that follow them. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/state.h"
+
+#include <math.h>
 
 /* Returns f(t), and its two derivatives where they are asked for. */
 double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second)

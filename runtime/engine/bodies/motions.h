@@ -1,8 +1,8 @@
 /* Signals, and the degrees of freedom that follow them: bodies/motions.c. */
-#ifndef FUNICULAR_MOTIONS_H
-#define FUNICULAR_MOTIONS_H
+#ifndef FUNICULAR_BODIES_MOTIONS_H
+#define FUNICULAR_BODIES_MOTIONS_H
 
-#include "common.h"
+#include "base/common.h"
 
 /* f(t) = a polynomial of t - breaks[i] in each interval (the first and the last go on beyond the breaks)
  *        + amplitude sin(angular_frequency t + phase) */

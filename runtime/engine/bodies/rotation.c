@@ -1,9 +1,9 @@
 /* Finite rotations of bodies: configurations moved by steps, and derivatives made derivatives by steps. What a body's frame
  * does is in the kernels of derive/bodies/moves.py. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/rotation.h"
 
 #include <string.h>
-
 
 /* A configuration that threads move. */
 typedef struct {

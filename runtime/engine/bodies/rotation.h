@@ -1,8 +1,8 @@
 /* Finite rotations of bodies: bodies/rotation.c. */
-#ifndef FUNICULAR_ROTATION_H
-#define FUNICULAR_ROTATION_H
+#ifndef FUNICULAR_BODIES_ROTATION_H
+#define FUNICULAR_BODIES_ROTATION_H
 
-#include "common.h"
+#include "base/common.h"
 
 void fu_move(const fu_model *model, double *q, const double *dofs);
 void fu_body_rate(const fu_body_kernels *kernel, const double *b, const double *w, double *rate);

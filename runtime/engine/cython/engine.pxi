@@ -1,4 +1,4 @@
-# What kernels.h, blocks.h and engine.h declare, as far as engine.pyx uses it.
+# What kernels.h, blocks.h and the headers of the engine declare, as far as engine.pyx uses it.
 
 cdef extern from "kernels.h" nogil:
     ctypedef struct fu_element_kernels:
@@ -32,7 +32,48 @@ cdef extern from "blocks.h" nogil:
         pass
     const fu_law_blocks *fu_blocks_of(const char *law)
 
-cdef extern from "engine.h" nogil:
+cdef extern from "bodies/unknowns.h":
+    pass
+cdef extern from "couplings/common/couplings.h":
+    pass
+cdef extern from "couplings/common/proximity.h":
+    pass
+cdef extern from "couplings/contact/contact.h":
+    pass
+cdef extern from "couplings/fluid/drag.h":
+    pass
+cdef extern from "couplings/joint/joint.h":
+    pass
+cdef extern from "equations/acceleration.h":
+    pass
+cdef extern from "equations/energies.h":
+    pass
+cdef extern from "equations/equations.h":
+    pass
+cdef extern from "equations/projection.h":
+    pass
+cdef extern from "events/boundaries.h":
+    pass
+cdef extern from "events/deferred.h":
+    pass
+cdef extern from "events/events.h":
+    pass
+cdef extern from "events/list.h":
+    pass
+cdef extern from "events/penetration.h":
+    pass
+cdef extern from "events/slack_cables.h":
+    pass
+cdef extern from "integrators/list.h":
+    pass
+cdef extern from "run/checkpoint.h":
+    pass
+cdef extern from "run/part_timing.h":
+    pass
+cdef extern from "run/run.h":
+    pass
+
+cdef extern from * nogil:
     double FU_SLACK_STRAIN
     int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE

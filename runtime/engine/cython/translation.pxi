@@ -211,7 +211,7 @@ cdef class Translation(Arrays):
         return 0
 
     cdef int _field(self, char *to, const fu_field *field, value, str type, list tables) except -1:
-        """Fill in one item of a field (include/fields.h)."""
+        """Fill in one item of a field (base/fields.h)."""
         cdef int k
         if field.kind == FU_INTEGER:
             (<int *>to)[0] = value

@@ -1,6 +1,11 @@
 /* Eq 38: accelerations and multipliers of a state, from M, H, W; and what else needs M and H. */
-#include "engine.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "couplings/force/loads.h"
+#include "equations/acceleration.h"
+#include "equations/energies.h"
 
+#include <math.h>
 #include <string.h>
 
 #define MOST_SWEEPS 100 /* over the couplings whose forces depend on multipliers, before there is no solution */

@@ -1,5 +1,6 @@
 /* Inertia and energies of all of a scene: of cables and bodies, and of couplings. */
-#include "engine.h"
+#include "couplings/common/couplings.h"
+#include "equations/energies.h"
 
 /* Makes f = M a. */
 void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)

@@ -1,5 +1,10 @@
 /* What goes in and out of a scene's energy from outside and to heat. */
-#include "engine.h"
+#include "couplings/common/couplings.h"
+#include "equations/acceleration.h"
+#include "equations/energies.h"
+#include "equations/run.h"
+
+#include <math.h>
 
 #define MOST_GROWTH 0.5    /* of the energy exchanged, or of motion: beyond it the result is none */
 #define BEGUN 1e-4         /* of the size of the scene: with less motion it has not begun */

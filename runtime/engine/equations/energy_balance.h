@@ -1,8 +1,8 @@
-/* The energy balance of a run: run/energy_balance.c. */
-#ifndef FUNICULAR_ENERGY_BALANCE_H
-#define FUNICULAR_ENERGY_BALANCE_H
+/* The energy balance of a run: equations/energy_balance.c. */
+#ifndef FUNICULAR_EQUATIONS_ENERGY_BALANCE_H
+#define FUNICULAR_EQUATIONS_ENERGY_BALANCE_H
 
-#include "common.h"
+#include "base/common.h"
 
 /* The energy balance since the start, J: energies then, the most exchanged between them and in motion, the most that came
  * from nowhere and that went there, and what rounding may make of it. */

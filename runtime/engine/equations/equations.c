@@ -1,10 +1,12 @@
 /* Equations of motion with their constraints at an instant, for implicit integrators and for statics; and statics. */
-#include "engine.h"
-
-double *fu_own(fu_run *run)
-{
-    return run->rhs + run->model->n_band + run->model->n_border_dof;
-}
+#include "base/clock.h"
+#include "bodies/rotation.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "couplings/force/loads.h"
+#include "equations/energies.h"
+#include "equations/equations.h"
+#include "equations/run.h"
 
 /* Makes run->rhs of the dofs: minus the scaled sum in run->force. */
 void fu_scale_residual(fu_run *run, double scale)

@@ -1,8 +1,8 @@
-/* Equations of motion at an instant: integrators/equations.c. */
-#ifndef FUNICULAR_EQUATIONS_H
-#define FUNICULAR_EQUATIONS_H
+/* Equations of motion at an instant: equations/equations.c. */
+#ifndef FUNICULAR_EQUATIONS_EQUATIONS_H
+#define FUNICULAR_EQUATIONS_EQUATIONS_H
 
-#include "coupling.h"
+#include "couplings/common/coupling.h"
 
 /* The unknowns beyond the dofs in run->rhs. */
 double *fu_own(fu_run *run);

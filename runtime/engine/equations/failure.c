@@ -1,5 +1,8 @@
 /* Why a step failed, and where: what a message can name. */
-#include "engine.h"
+#include "couplings/common/couplings.h"
+#include "equations/run.h"
+
+#include <math.h>
 
 /* Notes why a step failed: the cause, the dof that moves farthest (or is not a number), and the number of the coupling or -1.
  * Returns 1. */

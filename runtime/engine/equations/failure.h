@@ -1,8 +1,8 @@
-/* Why a step failed: run/failure.c. */
-#ifndef FUNICULAR_FAILURE_H
-#define FUNICULAR_FAILURE_H
+/* Why a step failed: equations/failure.c. */
+#ifndef FUNICULAR_EQUATIONS_FAILURE_H
+#define FUNICULAR_EQUATIONS_FAILURE_H
 
-#include "common.h"
+#include "base/common.h"
 
 /* Why a step failed, and where that shows most: a dof, and the number of a coupling or -1. */
 enum { FU_NO_FAILURE = 0, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING, FU_NOT_KNOWN };

@@ -1,8 +1,8 @@
 /* Integrators: what the time loop knows of one, and how it gets its work space. Their list is integrators/list.c. */
-#ifndef FUNICULAR_INTEGRATOR_H
-#define FUNICULAR_INTEGRATOR_H
+#ifndef FUNICULAR_EQUATIONS_INTEGRATOR_H
+#define FUNICULAR_EQUATIONS_INTEGRATOR_H
 
-#include "newton.h"
+#include "equations/newton.h"
 
 /* The rule by which a step's velocities follow from forces: weights b at parts c of the step, n of them. */
 typedef struct {
@@ -39,8 +39,5 @@ typedef struct {
     int crosses_boundaries; /* it finds the slides' elements within a step, which may go over boundaries of elements */
     const fu_newton *newton; /* of implicit steps with constraints on positions; null where eq 38 gives accelerations */
 } fu_integrator;
-
-/* Returns the integrator of this name, null where there is none. */
-const fu_integrator *fu_integrator_of(const char *name);
 
 #endif

@@ -1,10 +1,12 @@
 /* Newton's method of an implicit step: residual and matrix are the integrator's, what they have in common is here. */
-#define _POSIX_C_SOURCE 199309L
-#include "engine.h"
+#include "base/clock.h"
+#include "bodies/unknowns.h"
+#include "equations/energies.h"
+#include "equations/equations.h"
+#include "equations/run.h"
+#include "equations/step_control.h"
 
 #include <math.h>
-#include <string.h>
-#include <time.h>
 
 #define STAGNANT 0.3          /* increments that shrink less than to this, at the size of rounding, are rounding */
 #define FIRST_CONTRACTION 0.5 /* assumed before there are two increments: too large to stop after one iteration */
@@ -13,19 +15,7 @@
 #define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is not rounding */
 #define MATRIX_COST 2.0       /* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
 #define UNDERESTIMATE 10.0    /* how many times less an increment may shrink than its residual, which counts stiffness more */
-#define COARSE 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
 #define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
-
-double fu_clock(void)
-{
-    struct timespec now;
-#ifdef CLOCK_MONOTONIC
-    clock_gettime(CLOCK_MONOTONIC, &now);
-#else
-    timespec_get(&now, TIME_UTC);
-#endif
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static int factor(fu_run *run, const fu_newton *method, double h)
 {
@@ -57,12 +47,6 @@ double fu_spread_size(fu_run *run)
     for (int i = 0; i < model->n_extra; ++i)
         if (!(fabs(extra[i]) <= largest)) largest = fabs(extra[i]);
     return largest;
-}
-
-/* Adds the solution in run->rhs to the couplings' own coordinates and forces. */
-void fu_add_solution(fu_run *run, double inertia, double scale)
-{
-    fu_add_own(run->model, &run->next, fu_own(run), inertia, scale);
 }
 
 /* Predicts what an integrator does not predict otherwise: time, and the couplings' part of `next`. */
@@ -240,23 +224,6 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
     method->note_rest(run, h); /* rounding: long chains of joints make more of it than one position has */
     run->factored = 0;
     return 0;
-}
-
-/* Returns whether steps go on as they have: those of a fixed size that had to be divided, or are too coarse, do not. */
-int fu_goes_on(const fu_run *run)
-{
-    if (run->fixed_step <= 0.0) return 1;
-    return run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
-}
-
-/* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to
- * rounding instead: a gap of 1e-14 m after a step of 1 ms takes a force of 1e-8 N for each kg in the next one, which
- * vibrations of the scheme keep for long. So are fixed steps that had to be divided, or are too coarse. */
-int fu_carries_rest(const fu_run *run)
-{
-    const fu_newton *method = run->integrator->newton;
-    if (!method || !method->note_rest || !fu_goes_on(run)) return 0;
-    return run->fixed_step <= 0.0 || !run->model->n_extra;
 }
 
 /* Makes one step of size h from `now` to `next`; returns 0 where the Newton iteration converged. */

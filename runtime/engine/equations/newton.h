@@ -1,8 +1,8 @@
-/* Newton's method of implicit steps: integrators/newton.c. */
-#ifndef FUNICULAR_NEWTON_H
-#define FUNICULAR_NEWTON_H
+/* Newton's method of implicit steps: equations/newton.c. */
+#ifndef FUNICULAR_EQUATIONS_NEWTON_H
+#define FUNICULAR_EQUATIONS_NEWTON_H
 
-#include "common.h"
+#include "base/common.h"
 
 #define FU_RUNS_AWAY 1e30 /* an increment in m, or a velocity, of a solution that is lost */
 #define FU_SAME_STEP 1e-6 /* of a step: one that differs by less has the same matrix */
@@ -26,7 +26,6 @@ typedef struct {
 } fu_newton;
 
 void fu_linearise(fu_run *run, double h, const double *change);
-double fu_clock(void);
 
 int fu_goes_on(const fu_run *run);
 int fu_carries_rest(const fu_run *run);

@@ -1,7 +1,13 @@
 /* What the integrators on eq 38 share: slides where C_l = 0, projection of what the constraints lost in a step, and what
  * follows from positions and velocities. */
-#include "engine.h"
+#include "bodies/rotation.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "equations/acceleration.h"
+#include "equations/projection.h"
+#include "equations/run.h"
 
+#include <math.h>
 #include <string.h>
 
 #define MOST_PROJECTIONS 10 /* of positions, each of second order, before a state has no way back onto its joints */

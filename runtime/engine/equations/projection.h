@@ -1,8 +1,8 @@
-/* States brought back to their constraints: integrators/projection.c. */
-#ifndef FUNICULAR_PROJECTION_H
-#define FUNICULAR_PROJECTION_H
+/* States brought back to their constraints: equations/projection.c. */
+#ifndef FUNICULAR_EQUATIONS_PROJECTION_H
+#define FUNICULAR_EQUATIONS_PROJECTION_H
 
-#include "common.h"
+#include "base/common.h"
 
 int fu_find_own(fu_run *run);
 int fu_close(fu_run *run);

@@ -1,17 +1,17 @@
 /* A run, and its time loop: run/. */
-#ifndef FUNICULAR_RUN_H
-#define FUNICULAR_RUN_H
+#ifndef FUNICULAR_EQUATIONS_RUN_H
+#define FUNICULAR_EQUATIONS_RUN_H
 
-#include "acceleration.h"
-#include "energy_balance.h"
-#include "events.h"
-#include "failure.h"
-#include "integrator.h"
-#include "linear.h"
-#include "model.h"
-#include "record.h"
-#include "slack_cables.h"
-#include "state.h"
+#include "base/event.h"
+#include "couplings/common/accelerator.h"
+#include "couplings/common/coupling.h"
+#include "equations/energy_balance.h"
+#include "equations/failure.h"
+#include "equations/integrator.h"
+#include "linear/linear.h"
+#include "bodies/model.h"
+#include "bodies/record.h"
+#include "bodies/state.h"
 
 typedef struct {
     long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations;
@@ -23,6 +23,8 @@ typedef struct {
 
 enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, FU_SINGULAR = 4, FU_EVENT = 5,
        FU_UNSTABLE = 6 };
+
+#define FU_AT_ONCE 1e-12 /* of the duration: instants that are no farther apart are one (model/knots.py) */
 
 struct fu_run {
     const fu_model *model;
@@ -105,53 +107,5 @@ static inline const fu_coupling *fu_own_coupling(const fu_run *run, int watch)
 {
     return run->watches[watch].kind == FU_WATCH_COUPLING ? run->model->couplings[run->watches[watch].index] : 0;
 }
-
-/* run/scene_size.c */
-double fu_largest_motion(const fu_model *model, const double *from, const double *to);
-double fu_controlled_motion(const fu_run *run);
-double fu_extent(const fu_model *model, const double *origin, const double *q);
-double fu_scene_size(const fu_model *model, const double *origin, const double *q);
-double fu_longest_lever(const fu_model *model);
-
-/* run/step_control.c */
-double fu_fit_step(double remaining, double want);
-double fu_allowed_error(const fu_run *run);
-double fu_allow(fu_run *run, double h);
-double fu_allowed_elsewhere(const fu_run *run);
-double fu_error_size(const fu_run *run, const double *error, double others);
-void fu_adapt_step(fu_run *run, double h, double ratio);
-double fu_shrink_step(fu_run *run, double h, double ratio);
-double fu_retry_step(fu_run *run, double h);
-
-/* run/record.c */
-int fu_all_finite(const double *numbers, long n);
-int fu_record_row(fu_run *run);
-int fu_stop(fu_run *run);
-
-/* run/start.c */
-int fu_prepare(fu_run *run);
-int fu_start(fu_run *run);
-int fu_start_scheme(fu_run *run, int project);
-
-/* run/depths.c */
-void fu_note_depths(fu_run *run);
-void fu_keep_largest(double *largest, double value);
-/* How far beyond the ends of its surface anything touches, m; not positive where nothing does. */
-double fu_beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-
-/* run/happenings.c */
-int fu_let_happen(fu_run *run, fu_event event);
-
-/* run/knots.c */
-#define FU_AT_ONCE 1e-12 /* of the duration: instants that are no farther apart are one (model/knots.py) */
-const fu_knot *fu_next_knot(const fu_run *run, double latest);
-int fu_pass_knot(fu_run *run, const fu_knot *knot, int event);
-
-/* run/steps.c */
-int fu_step_towards(fu_run *run, double target);
-
-/* run/run.c: the time loop */
-int fu_has_worked(const fu_run *run);
-int fu_advance(fu_run *run, double seconds);
 
 #endif

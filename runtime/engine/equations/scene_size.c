@@ -1,5 +1,7 @@
 /* Lengths of a scene that errors and rounding are measured by. */
-#include "engine.h"
+#include "couplings/common/attachments.h"
+#include "equations/run.h"
+#include "equations/scene_size.h"
 
 #include <math.h>
 

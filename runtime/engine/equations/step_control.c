@@ -1,5 +1,7 @@
 /* Sizes of steps: from the error of the last one, from what is left to the next instant of output. */
-#include "engine.h"
+#include "bodies/unknowns.h"
+#include "equations/run.h"
+#include "equations/step_control.h"
 
 #include <math.h>
 

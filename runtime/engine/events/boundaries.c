@@ -1,6 +1,8 @@
 /* Boundaries between the pieces of couplings' paths: where couplings are off their pieces, and when they will be. */
-#include "engine.h"
+#include "equations/run.h"
+#include "events/boundaries.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,8 +1,8 @@
-/* Boundaries between the pieces of couplings' paths, as between the elements of a cable: run/boundaries.c. */
-#ifndef FUNICULAR_BOUNDARIES_H
-#define FUNICULAR_BOUNDARIES_H
+/* Boundaries between the pieces of couplings' paths, as between the elements of a cable: events/boundaries.c. */
+#ifndef FUNICULAR_EVENTS_BOUNDARIES_H
+#define FUNICULAR_EVENTS_BOUNDARIES_H
 
-#include "coupling_events.h"
+#include "couplings/common/coupling_events.h"
 
 double fu_boundary_tolerance(fu_path path);
 double fu_boundary(fu_path path, int k);

@@ -1,5 +1,7 @@
-/* Loops over what couplings do by themselves (include/coupling_events.h). */
-#include "engine.h"
+/* Loops over what couplings do by themselves (couplings/common/coupling_events.h). */
+#include "couplings/common/coupling_events.h"
+#include "equations/run.h"
+#include "events/events.h"
 
 /* Writes the watches of all couplings to `out`, unless it is null; returns how many they are. */
 int fu_coupling_watches(const fu_model *model, fu_watch *out)

@@ -1,9 +1,10 @@
 /* Lines of a crossing come into contact, and lose it: where the penetration passes zero, where damping would turn the force
  * round, and where a closest point passes the end of its line.
  */
-#include "engine.h"
-
-#include <math.h>
+#include "base/double_root.h"
+#include "couplings/crossing/crossing.h"
+#include "equations/run.h"
+#include "events/list.h"
 
 #define PARTED 1e-6 /* of the energy that contact has: lines that had less when it ended had come apart */
 

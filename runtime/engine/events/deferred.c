@@ -9,7 +9,13 @@
  *
  * A discrete gradient of the energy is the mean force over the way, that over passages too: it keeps the energy, errs by
  * hardly more than where there is no passage, and goes over all of them, at steps of any kind. */
-#include "engine.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "equations/acceleration.h"
+#include "equations/run.h"
+#include "equations/step_control.h"
+#include "events/deferred.h"
+#include "events/slack_cables.h"
 
 #include <math.h>
 #include <string.h>

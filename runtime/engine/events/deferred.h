@@ -1,8 +1,8 @@
-/* Passages: changes of couplings that a step goes over: run/passages.c. */
-#ifndef FUNICULAR_PASSAGES_H
-#define FUNICULAR_PASSAGES_H
+/* Passages: changes of couplings that a step goes over: events/deferred.c. */
+#ifndef FUNICULAR_EVENTS_DEFERRED_H
+#define FUNICULAR_EVENTS_DEFERRED_H
 
-#include "coupling_events.h"
+#include "couplings/common/coupling_events.h"
 
 int fu_choose_passages(fu_run *run, int first);
 int fu_strayed(const fu_run *run);

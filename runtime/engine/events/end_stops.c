@@ -3,14 +3,19 @@
  * mode is FU_SLIDES, FU_LOCKED (where it is: by friction that sticks, or against a hard stop, contact then tells which) or
  * FU_LEFT. slip_direction is that of sliding where friction sticks at rest: known then, as a change of it is an event.
  */
-#include "engine.h"
+#include "couplings/joint/joint.h"
+#include "couplings/slide/resistance.h"
+#include "equations/acceleration.h"
+#include "equations/projection.h"
+#include "equations/run.h"
+#include "events/end_stops.h"
+#include "events/events.h"
 
+#include <math.h>
 #include <string.h>
 
 #define AT_REST 1e-12 /* of the cable over the duration: speeds below are none */
 #define BOUNCE 1e-6   /* of the cable: what would come no farther back stays at the stop */
-
-const char *const fu_end_stop_kinds[] = {"error", "leave", "hard", "buffer", 0};
 
 static int is_hard(const fu_model *model, int j, int side)
 {

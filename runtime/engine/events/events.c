@@ -1,8 +1,13 @@
 /* Events: a coupling passes a boundary of its path or changes by itself, a quantity passes a threshold, a function of the user's
  * changes sign. */
-#include "engine.h"
+#include "base/underflow.h"
+#include "equations/acceleration.h"
+#include "equations/run.h"
+#include "events/boundaries.h"
+#include "events/events.h"
+#include "events/proximity.h"
 
-#include "underflow.h"
+#include <math.h>
 
 #define MOST_TRIALS 80    /* steps that are tried to end on an event */
 #define FEW_TRIALS 10     /* after so many trials every second one halves the interval: rounding may rule the value */
@@ -123,7 +128,7 @@ static const fu_coupling *passing(const fu_run *run, fu_event event)
 }
 
 /* Returns whether a step may end a little off an event: the slope of a force jumps there, which over so short a way makes
- * nothing, and the instant follows from the rate (run/happenings.c). */
+ * nothing, and the instant follows from the rate (run/event_handling.c). */
 static int may_miss(const fu_run *run, fu_event event)
 {
     const fu_coupling *c = passing(run, event);
@@ -274,7 +279,7 @@ void fu_watch_now(fu_run *run, fu_event event, double h)
     run->watch_solution = FU_SOLVE_ANEW;
 }
 
-/* Takes the values at `now` of what is far (couplings/proximity.c), which are not kept up. */
+/* Takes the values at `now` of what is far (couplings/common/proximity.c), which are not kept up. */
 void fu_watch_far(fu_run *run)
 {
     for (int k = 0; k < run->n_watches; ++k)

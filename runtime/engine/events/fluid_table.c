@@ -1,6 +1,8 @@
 /* Events of drag in a fluid with a table: what it acts on leaves the table, or all of it is back; with those of surfaces
- * (surface_events.c). */
-#include "engine.h"
+ * (events/fluid_surface.c). */
+#include "equations/run.h"
+#include "events/fluid_surface.h"
+#include "events/list.h"
 
 #include <math.h>
 

@@ -1,11 +1,15 @@
 /* Dips: what is watched passes zero within a step and is back at its end, as by a grazing contact. The step then ends where it
  * is predicted to be farthest beyond zero, by the cubic through its values and rates at both ends (Hermite's). */
-#include "engine.h"
+#include "base/double_root.h"
+#include "bodies/rotation.h"
+#include "equations/run.h"
+#include "events/events.h"
+#include "couplings/common/coupling_events.h"
+#include "events/proximity.h"
+
+#include <math.h>
 
 #define NOISE 1e-14  /* of what a watch is of, and of its values: dips less deep are rounding */
-
-
-
 
 /* Returns the rate of an entry of the configuration, 1/s or m/s. */
 static double rate_of_q(const fu_model *model, const fu_state *state, int index)

@@ -1,5 +1,12 @@
-/* What a hard contact does by itself (include/coupling_events.h): it comes together, and opens where it would pull. */
-#include "engine.h"
+/* What a hard contact does by itself (couplings/common/coupling_events.h): it comes together, and opens where it would pull. */
+#include "base/double_root.h"
+#include "equations/run.h"
+#include "events/contact.h"
+#include "events/events.h"
+#include "events/hard_contact.h"
+#include "events/list.h"
+
+#include <math.h>
 
 #define LEAST_PULL 3e-10 /* of the weight: what is pulled by less stays closed, as three of four points that bear have none to spare */
 
@@ -95,16 +102,6 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     if (!coupling->index && fu_resolve_hard_contacts(run, 0, 0)) return FU_SINGULAR;
     flags->news = FU_NO_NEWS;
     return FU_RUNNING;
-}
-
-double fu_hard_beyond(const fu_model *model, const fu_hard_contact *hard, const fu_state *state)
-{
-    const fu_contact *contact = &hard->contact;
-    fu_attachment_state on;
-    fu_touch_point point;
-    fu_surface_at(model, &contact->surface, state, &on);
-    fu_contact_place(model, contact, &on, state, 0, 0, &point);
-    return fu_surface_beyond(model->dim, &contact->surface, &on, point.r);
 }
 
 static double beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)

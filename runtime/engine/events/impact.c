@@ -2,8 +2,15 @@
  * once; then which of them press, by the accelerations that follow. Both are problems of complementarity over the compliance
  * H M^-1 H' of the points that touch, with all other constraints as they are.
  */
-#include "engine.h"
+#include "bodies/unknowns.h"
+#include "equations/acceleration.h"
+#include "equations/energies.h"
+#include "equations/run.h"
+#include "events/events.h"
+#include "events/hard_contact.h"
+#include "events/penetration.h"
 
+#include <math.h>
 #include <string.h>
 
 #define TOUCHING 1e-12 /* of the largest length: distances at which points touch */
@@ -17,25 +24,6 @@ enum { MOST = FU_MOST_HARD_CONTACTS };
 static const fu_hard_contact *contact_of(const fu_coupling *coupling)
 {
     return (const fu_hard_contact *)coupling;
-}
-
-void fu_hard_push(fu_run *run, const fu_hard_row *row, const double *H, double impulse)
-{
-    for (int i = 0; i < row->n; ++i) run->before[row->at[i]] += impulse * H[i];
-}
-
-void fu_hard_respond(fu_run *run, const fu_hard_row *row, const double *H)
-{
-    memset(run->before, 0, sizeof(double) * (size_t)run->model->n_dof);
-    fu_hard_push(run, row, H, 1.0);
-    fu_response(run->model, &run->accelerator, run->before, run->work);
-}
-
-double fu_hard_rate(const fu_hard_row *row, const double *H, const double *dofs)
-{
-    double sum = 0.0;
-    for (int i = 0; i < row->n; ++i) sum += H[i] * dofs[row->at[i]];
-    return sum;
 }
 
 /* Finds what touches, and parts all of it, so that its rows are none of eq 38's. */

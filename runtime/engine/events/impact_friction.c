@@ -2,8 +2,13 @@
  * friction times the normal impulse, and as large where the point still slides afterwards (Coulomb's law for impulses, with Newton's
  * restitution). After it, or where sliding stops: which points press, stick and slide, by the accelerations that follow.
  */
-#include "engine.h"
+#include "equations/acceleration.h"
+#include "equations/energies.h"
+#include "equations/projection.h"
+#include "equations/run.h"
+#include "events/hard_contact.h"
 
+#include <math.h>
 #include <string.h>
 
 #define MOST_SWEEPS 20000 /* over the points of an impact, before there is no solution */

@@ -1,5 +1,12 @@
 /* The types of couplings: a new one has its line here. */
-#include "engine.h"
+#include "couplings/crossing/crossing.h"
+#include "couplings/fluid/drag.h"
+#include "couplings/force/loads.h"
+#include "couplings/force/point_force.h"
+#include "couplings/hard_contact/hard_contact.h"
+#include "couplings/joint/joint.h"
+#include "couplings/slide/slide.h"
+#include "events/list.h"
 
 #include <string.h>
 

@@ -1,6 +1,11 @@
 /* How deep couplings have let parts sink below what they touch, and how far beyond its ends these touch, at the ends of steps: rows of
  * output may miss it. */
-#include "engine.h"
+#include "couplings/common/coupling_events.h"
+#include "equations/run.h"
+#include "events/penetration.h"
+#include "events/proximity.h"
+
+#include <math.h>
 
 void fu_keep_largest(double *largest, double value)
 {

@@ -1,7 +1,8 @@
 /* Cables that give way in compression: when the first of a cable's elements becomes slack, and when all are taut again, by the
  * axial strain in the middle of each. Nothing jumps there, as the law is smooth: steps go over it, and the instant is that of
  * the line through the least strains at both ends of a step. */
-#include "engine.h"
+#include "equations/run.h"
+#include "events/slack_cables.h"
 
 #include <math.h>
 

@@ -1,7 +1,14 @@
-/* What a slide does by itself (include/coupling_events.h): it passes from element to element of its cable, sticks, breaks loose,
- * and reaches what waits at the ends. couplings/end_stops.c has what then happens.
+/* What a slide does by itself (couplings/common/coupling_events.h): it passes from element to element of its cable, sticks, breaks loose,
+ * and reaches what waits at the ends. events/end_stops.c has what then happens.
  */
-#include "engine.h"
+#include "base/double_root.h"
+#include "couplings/joint/joint.h"
+#include "couplings/slide/resistance.h"
+#include "equations/acceleration.h"
+#include "equations/projection.h"
+#include "equations/run.h"
+#include "events/end_stops.h"
+#include "events/list.h"
 
 /* Watches of a slide: whether it stays locked, or slides on in its direction; or, as the side of that end, its buffer. */
 enum { BUFFER_AT_START = -1, STICKING = 0, BUFFER_AT_END = 1 };

@@ -21,10 +21,10 @@
  *
  * g of a bent cable has directions in space, and stays there while the cable turns: that changes S by the order of h^2.
  */
-#include "engine.h"
+#include "equations/run.h"
+#include "integrators/algorithmic_dissipation.h"
 
-#include "algorithmic_dissipation.h"
-
+#include <math.h>
 #include <string.h>
 
 #define LEAST_PIVOT 1e-14 /* of the largest pivot: a smaller one is of a turn that bends nothing */

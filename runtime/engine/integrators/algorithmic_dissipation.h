@@ -1,8 +1,8 @@
 /* Algorithmic dissipation of the energy-momentum method: integrators/algorithmic_dissipation.c. */
-#ifndef FUNICULAR_ALGORITHMIC_DISSIPATION_H
-#define FUNICULAR_ALGORITHMIC_DISSIPATION_H
+#ifndef FUNICULAR_INTEGRATORS_ALGORITHMIC_DISSIPATION_H
+#define FUNICULAR_INTEGRATORS_ALGORITHMIC_DISSIPATION_H
 
-#include "common.h"
+#include "base/common.h"
 
 /* The parameters of the energy-momentum method. weight: of a change of strain in the stress; zero: there is no
  * algorithmic dissipation. */

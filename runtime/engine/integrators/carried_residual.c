@@ -15,10 +15,9 @@
  * steps, for any T. Steps that are solved to rounding make up for those before as well: without the force c, the impulse would go
  * on moving positions.
  */
-#include "engine.h"
-
-#include "carried_residual.h"
-#include "workspace.h"
+#include "base/workspace.h"
+#include "equations/run.h"
+#include "integrators/carried_residual.h"
 
 #include <math.h>
 #include <string.h>

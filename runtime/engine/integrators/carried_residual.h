@@ -1,8 +1,8 @@
 /* What Newton's method leaves of the equations of motion, carried into the next steps: integrators/carried_residual.c. */
-#ifndef FUNICULAR_CARRIED_RESIDUAL_H
-#define FUNICULAR_CARRIED_RESIDUAL_H
+#ifndef FUNICULAR_INTEGRATORS_CARRIED_RESIDUAL_H
+#define FUNICULAR_INTEGRATORS_CARRIED_RESIDUAL_H
 
-#include "common.h"
+#include "base/common.h"
 
 /* Arrays over the unknowns, in the work space of an integrator. */
 typedef struct {

@@ -14,10 +14,16 @@
  * Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but for turns
  * and tension.
  */
-#include "engine.h"
-
-#include "algorithmic_dissipation.h"
-#include "workspace.h"
+#include "base/clock.h"
+#include "base/workspace.h"
+#include "bodies/rotation.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "couplings/force/loads.h"
+#include "equations/equations.h"
+#include "equations/run.h"
+#include "events/deferred.h"
+#include "integrators/algorithmic_dissipation.h"
 
 #include <string.h>
 

@@ -5,8 +5,15 @@
  * projected away, in the norm of the mass: C_m = 0 by Newton, then H v = 0. The accelerations at the end are the first
  * stage of the next step and the last of the error estimate (Hairer, Norsett & Wanner 1993, II.5 and II.10).
  */
-#include "engine.h"
+#include "base/clock.h"
+#include "bodies/rotation.h"
+#include "equations/acceleration.h"
+#include "equations/projection.h"
+#include "equations/run.h"
+#include "equations/step_control.h"
+#include "events/deferred.h"
 
+#include <math.h>
 #include <string.h>
 
 #define COARSE_SHARE 0.01 /* of the coarse estimate's square, as in DOP853 (Hairer, Norsett & Wanner 1993, II.10) */

@@ -7,11 +7,10 @@
  * last. Newton's method does not mend what a prediction has besides, and rounding in that, continued by polynomials, would
  * grow without bounds.
  */
-#include "engine.h"
-
-#include "extrapolation.h"
-#include "unknowns.h"
-#include "workspace.h"
+#include "base/workspace.h"
+#include "bodies/unknowns.h"
+#include "equations/run.h"
+#include "integrators/extrapolation.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* Prediction of a step from the steps before: integrators/extrapolation.c. */
-#ifndef FUNICULAR_EXTRAPOLATION_H
-#define FUNICULAR_EXTRAPOLATION_H
+#ifndef FUNICULAR_INTEGRATORS_EXTRAPOLATION_H
+#define FUNICULAR_INTEGRATORS_EXTRAPOLATION_H
 
-#include "common.h"
+#include "base/common.h"
 
 /* Of the last steps: sizes of the last one and of the one before, s; how many are known; the degree of the polynomial that would
  * have predicted the last one best, -1: none. Whole numbers are real ones here, as work spaces have. */

@@ -15,17 +15,23 @@
  * of both, and vibrations would grow from event to event, the more so the stiffer a cable is. After such a step the a_n that it began
  * with goes on, nor is the scheme started anew with a_n = q''_n, which holds their acceleration in full.
  */
-#include "engine.h"
+#include "base/workspace.h"
+#include "bodies/rotation.h"
+#include "couplings/common/couplings.h"
+#include "equations/equations.h"
+#include "equations/projection.h"
+#include "equations/run.h"
+#include "equations/step_control.h"
+#include "events/boundaries.h"
+#include "events/deferred.h"
+#include "integrators/carried_residual.h"
+#include "integrators/extrapolation.h"
 
-#include "carried_residual.h"
-#include "extrapolation.h"
-#include "workspace.h"
-
+#include <math.h>
 #include <string.h>
 
 #define BRIEF 0.1 /* of the usual step: a shorter one leaves a_n as it was, which is off by less than the usual step's error */
 #define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
-
 
 typedef struct {
     double alpha_m, alpha_f, beta, gamma;

@@ -1,5 +1,5 @@
 /* The list of integrators. */
-#include "engine.h"
+#include "integrators/list.h"
 
 #include <string.h>
 

@@ -10,8 +10,10 @@
  * depends on the state in M^-1 H' but K is left out. The end of the step is its last stage, projected on the joints.
  * (Hairer & Wanner 1996, IV.8.)
  */
-#include "radau.h"
+#include "equations/projection.h"
+#include "integrators/radau.h"
 
+#include <math.h>
 #include <string.h>
 
 #define MOST_ITERATIONS 10    /* of Newton's in a step, before it fails */
@@ -23,22 +25,10 @@
 #define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is not rounding */
 #define SAFE 1.5e-2           /* of the allowed error: what Newton may leave */
 
-/* Returns the parameters of the run's method. */
-const fu_radau_parameters *fu_radau_method(const fu_run *run)
-{
-    return (const fu_radau_parameters *)run->parameters;
-}
-
 static long n_parameters(const double *given)
 {
     (void)given;
     return FU_DOUBLES(1, fu_radau_parameters);
-}
-
-/* Returns the work space of a run. */
-fu_radau_workspace *fu_radau_space(const fu_run *run)
-{
-    return (fu_radau_workspace *)run->scratch;
 }
 
 /* Places the arrays in the scratch; returns how many doubles it takes, which is all that is done where it is null. */

@@ -1,11 +1,11 @@
 /* What the files of the integrator Radau IIA share: integrators/radau.c, radau_stages.c, radau_newton.c, radau_error.c.
  * None but they includes this. */
-#ifndef FUNICULAR_RADAU_H
-#define FUNICULAR_RADAU_H
+#ifndef FUNICULAR_INTEGRATORS_RADAU_H
+#define FUNICULAR_INTEGRATORS_RADAU_H
 
-#include "complex_system.h"
-#include "engine.h"
-#include "workspace.h"
+#include "linear/complex_system.h"
+#include "equations/run.h"
+#include "base/workspace.h"
 
 enum { STAGES = 3 };
 

@@ -1,5 +1,10 @@
 /* The local error of Radau IIA. */
-#include "radau.h"
+#include "bodies/unknowns.h"
+#include "equations/acceleration.h"
+#include "equations/step_control.h"
+#include "integrators/radau.h"
+
+#include <math.h>
 
 #define VIBRATION 0.5     /* times the estimate for vibrations is what counts: errors of one are not of one sign */
 #define EMBEDDED 0.08     /* times the embedded estimate is what counts, as its order is too low */

@@ -1,5 +1,11 @@
 /* Stages of Radau IIA: their configurations by the quadrature of velocities, their accelerations by eq 38. */
-#include "radau.h"
+#include "base/clock.h"
+#include "bodies/rotation.h"
+#include "couplings/common/couplings.h"
+#include "equations/acceleration.h"
+#include "equations/projection.h"
+#include "events/deferred.h"
+#include "integrators/radau.h"
 
 #include <string.h>
 

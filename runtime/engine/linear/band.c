@@ -4,7 +4,7 @@
  *
  * Storage: columns of the lower triangle from the diagonal down, width + 1 each, and columns of a unit matrix to a whole
  * number of groups: the columns of a group are eliminated at once. */
-#include "engine.h"
+#include "linear/linear.h"
 
 /* Makes Cholesky's columns those of L D L': L below the diagonal, 1/D on it. */
 void fu_band_scale(int n, int width, double *A)

@@ -1,10 +1,10 @@
 /* Bordered band systems: the chain of a cable's nodes is banded; riders, joints, and nodes where more than two cables
  * meet, are the border. A column of it has a solution in the chains that it touches and nowhere else. */
-#include "engine.h"
+#include "base/simd.h"
+#include "linear/linear.h"
 
-#include "lanes.h"
+#include <math.h>
 
-#define SYMMETRIC 1e-10 /* of the diagonals: more than rounding leaves between the two halves of a symmetric matrix */
 #define FADED 1e-32     /* of a column's largest entry: smaller ones add nothing to a solution */
 
 void fu_system_clear(fu_system *s)
@@ -38,40 +38,6 @@ static int size_of(const fu_system *s, int chain)
     return s->chains[chain + 1] - s->chains[chain];
 }
 
-/* Returns where a chain's columns of L and U begin. */
-static long factor_at(const fu_system *s, int chain)
-{
-    return (s->width + 1) * ((long)s->chains[chain] + FU_BAND_MORE(s->width) * (long)chain);
-}
-
-/* Returns a chain's columns of L. */
-double *fu_factor_of(const fu_system *s, int chain)
-{
-    return s->L + factor_at(s, chain);
-}
-
-/* Makes, of K between these rows, the lower half in L as band.c wants it, backwards with the last row first; returns zero where
- * K is not symmetric or its diagonal not positive. */
-int fu_pack(const fu_system *s, fu_span of, int backwards, double *L)
-{
-    const int n = of.end - of.first, width = s->width, rows = FU_BAND_ROWS(width), stride = width + 1;
-    for (int j = 0; j < n; ++j) {
-        const int row = backwards ? of.end - 1 - j : of.first + j;
-        const double *at = s->K + (long)row * rows + FU_BAND_DIAGONAL(width), diagonal = at[0];
-        const int most = n - 1 - j < width ? n - 1 - j : width, next = backwards ? -1 : 1;
-        double *column = L + (long)j * stride;
-        column[0] = diagonal;
-        for (int i = 1; i <= most; ++i) {
-            const double *other = at + (long)next * i * rows; /* the diagonal of the column i further on */
-            const double below = backwards ? other[i] : at[i], above = backwards ? at[-i] : other[-i], gap = below - above;
-            if (!(gap * gap <= SYMMETRIC * SYMMETRIC * diagonal * other[0])) return 0;
-            column[i] = below;
-        }
-        for (int i = most + 1; i < stride; ++i) column[i] = 0.0;
-    }
-    return 1;
-}
-
 /* Returns whether a chain is symmetric and positive definite; then it is factored in L. */
 static int factor_symmetric(fu_system *s, const fu_lapack *lapack, int chain)
 {
@@ -84,7 +50,7 @@ static int factor_symmetric(fu_system *s, const fu_lapack *lapack, int chain)
 /* Returns whether a chain is nearly so; then it is factored in L and U. */
 static int factor_unpivoted(fu_system *s, int chain)
 {
-    double *L = s->L + factor_at(s, chain), *U = s->U + factor_at(s, chain);
+    double *L = s->L + fu_factor_at(s, chain), *U = s->U + fu_factor_at(s, chain);
     return fu_unsymmetric_pack(s, chain, L, U) && !fu_unsymmetric_factor(size_of(s, chain), s->width, L, U);
 }
 
@@ -136,8 +102,8 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
     else if (s->way[chain] == FU_SYMMETRIC && fu_is_twisted(s, chain)) fu_twisted_solve(s, chain, of, x);
     else if (s->way[chain] == FU_SYMMETRIC) fu_band_solve(n, width, fu_factor_of(s, chain), of.first - start, x + start);
     else if (s->way[chain] == FU_UNPIVOTED) {
-        fu_band_forward(n, width, s->L + factor_at(s, chain), of.first - start, x + start);
-        if (n) fu_band_backward(n, width, s->U + factor_at(s, chain), x + start);
+        fu_band_forward(n, width, s->L + fu_factor_at(s, chain), of.first - start, x + start);
+        if (n) fu_band_backward(n, width, s->U + fu_factor_at(s, chain), x + start);
     } else
         lapack->dgbtrs("N", &n, &width, &width, &one, s->K + (long)start * rows, &rows, s->pivot_band + start,
                        x + start, &n, &info);

@@ -1,13 +1,13 @@
 /* Linear complementarity problems of contacts: small, with a symmetric matrix that may be singular. */
-#include "engine.h"
+#include "base/common.h"
+#include "linear/complementarity.h"
 
 #include <math.h>
-#include <string.h>
 
 #define DEPENDENT 1e-10 /* of its diagonal: what is left of a row that the basic ones imply */
 #define MOST_PIVOTS 1000
 
-enum { MOST = FU_MOST_HARD_CONTACTS };
+enum { MOST = FU_MOST_COMPLEMENTARY };
 
 /* Solves the basic part of G y = column i by Cholesky's method; returns what of G's diagonal i the basic rows leave. */
 static double complement_of(int n, const double *G, int n_basic, const int *basic, int i, double *y)

@@ -8,9 +8,8 @@
  *
  * Storage: columns of the lower triangle from the diagonal down, FU_COMPLEX_STRIDE numbers each with zeros beyond the band, real
  * and imaginary parts apart; those of the upper one, transposed, likewise. */
-#include "complex_system.h"
-
-#include "lanes.h"
+#include "base/simd.h"
+#include "linear/complex_system.h"
 
 #define LEAST_PIVOT 1e-8 /* of the diagonal: what elimination must leave of it where the matrix is not symmetric */
 

@@ -1,7 +1,6 @@
 /* The border of a complex system, front by front. */
-#include "complex_system.h"
-#include "engine.h"
-#include "lanes.h"
+#include "base/simd.h"
+#include "linear/complex_system.h"
 
 #define NUMBER fu_complex
 #define ZERO ((fu_complex){0.0, 0.0})
@@ -33,7 +32,7 @@ static void substituted(const fu_complex *F, int n, int done, fu_complex *x)
     }
 }
 
-#include "fronts_template.h"
+#include "linear/fronts_template.h"
 
 int fu_complex_fronts_factor(const fu_fronts *t, const fu_complex *matrix, fu_factors *factors, const fu_lapack *lapack)
 {

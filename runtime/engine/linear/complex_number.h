@@ -1,8 +1,8 @@
 /* Complex numbers, laid out as LAPACK's. Not every compiler has C's own (MSVC does not), and their products look after
  * infinities, which no solution has.
  */
-#ifndef FUNICULAR_COMPLEX_NUMBER_H
-#define FUNICULAR_COMPLEX_NUMBER_H
+#ifndef FUNICULAR_LINEAR_COMPLEX_NUMBER_H
+#define FUNICULAR_LINEAR_COMPLEX_NUMBER_H
 
 #include <math.h>
 

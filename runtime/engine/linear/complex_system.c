@@ -1,8 +1,8 @@
 /* Bordered band systems of complex numbers, solved as linear/bordered.c solves real ones. */
-#include "complex_system.h"
+#include "base/workspace.h"
+#include "linear/complex_system.h"
 
-#include "workspace.h"
-
+#include <math.h>
 #include <string.h>
 
 /* Returns the rows of the band's storage. */

@@ -1,9 +1,9 @@
 /* Complex matrices laid out as an fu_system: linear/complex_system.c, linear/complex_band.c. */
-#ifndef FUNICULAR_COMPLEX_SYSTEM_H
-#define FUNICULAR_COMPLEX_SYSTEM_H
+#ifndef FUNICULAR_LINEAR_COMPLEX_SYSTEM_H
+#define FUNICULAR_LINEAR_COMPLEX_SYSTEM_H
 
-#include "complex_number.h"
-#include "linear.h"
+#include "linear/complex_number.h"
+#include "linear/linear.h"
 
 /* complex_band.c: numbers of a column of the factor's storage, and those that are touched behind a column of unknowns. */
 #define FU_COMPLEX_STRIDE(width) ((width) + 4)

@@ -1,7 +1,6 @@
 /* The border of a real system, front by front. */
-#include "engine.h"
-
-#include "lanes.h"
+#include "base/simd.h"
+#include "linear/linear.h"
 
 #define NUMBER double
 #define ZERO 0.0
@@ -124,7 +123,7 @@ FU_INLINE void backward(const double *F, int n, int done, double *restrict x)
     substitute_one(F, LINK, 1, x);
 }
 
-#include "fronts_template.h"
+#include "linear/fronts_template.h"
 
 FU_INLINE void factor(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack, int *info)
 {

@@ -1,6 +1,6 @@
 /* Elimination of a border front by front: linear/fronts.c, linear/complex_fronts.c. */
-#ifndef FUNICULAR_FRONTS_H
-#define FUNICULAR_FRONTS_H
+#ifndef FUNICULAR_LINEAR_FRONTS_H
+#define FUNICULAR_LINEAR_FRONTS_H
 
 /* The order in which the unknowns of a border are eliminated, found once for a scene (model/elimination.py).
  *

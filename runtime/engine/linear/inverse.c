@@ -1,8 +1,7 @@
 /* The inverse of a short band matrix that is factored once and solved with at every evaluation, as the mass is. A product with it
  * has more terms than a substitution, but none of them waits for another: it takes a fifth of the time for 42 unknowns. */
-#include "engine.h"
-
-#include "lanes.h"
+#include "base/simd.h"
+#include "linear/linear.h"
 
 /* Makes the inverse, FU_INVERSE_ROWS a column, of a matrix that is factored in L (band.c). */
 void fu_inverse_make(int n, int width, const double *L, double *inverse)

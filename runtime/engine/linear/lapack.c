@@ -1,5 +1,5 @@
 /* The functions of LAPACK by number, so that their one list, in linear.h, is what fills the structure. */
-#include "engine.h"
+#include "linear/linear.h"
 
 #include <string.h>
 

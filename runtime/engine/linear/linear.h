@@ -1,11 +1,11 @@
 /* Banded matrices with a border, and LAPACK for their parts: linear/band.c, linear/bordered.c,
  * linear/unsymmetric_band.c, linear/inverse.c, linear/small.c. */
-#ifndef FUNICULAR_LINEAR_H
-#define FUNICULAR_LINEAR_H
+#ifndef FUNICULAR_LINEAR_LINEAR_H
+#define FUNICULAR_LINEAR_LINEAR_H
 
-#include "common.h"
-#include "fronts.h"
-#include "threads.h"
+#include "base/common.h"
+#include "linear/fronts.h"
+#include "base/threads.h"
 
 /* The functions of LAPACK that the engine calls, with their arguments; linear/lapack.c. */
 #define FU_LAPACK_FUNCTIONS(LAPACK)                                                                                    \
@@ -137,6 +137,7 @@ void fu_add_times(fu_threads *threads, int n, double factor, const double *y, do
 void fu_set_difference(fu_threads *threads, int n, double factor, const double *y, const double *z, double *x);
 
 void fu_system_clear(fu_system *system);
+long fu_factor_at(const fu_system *system, int chain);
 double *fu_factor_of(const fu_system *system, int chain);
 int fu_pack(const fu_system *system, fu_span rows, int backwards, double *L);
 void fu_system_clear_border(fu_system *system);

@@ -1,6 +1,8 @@
 /* Small full matrices, column by column: the border of a scene of few bodies, where LAPACK's calls take longer than their
  * arithmetic. */
-#include "engine.h"
+#include "linear/linear.h"
+
+#include <math.h>
 
 /* Returns the row of the largest entry of a column, from the diagonal down. */
 static int pivot_of(int n, const double *column, int diagonal)

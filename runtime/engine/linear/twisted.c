@@ -7,7 +7,7 @@
  * one backwards, from the chain's end on. Cholesky's factors of both, L1 and L2, have in their last columns what is left of
  * the middle block A once one half is eliminated: A - U1 = L1 L1' and A - U2 = L2 L2'. Without both halves that is
  * A - U1 - U2 = L1 L1' + L2 L2' - A. */
-#include "engine.h"
+#include "linear/linear.h"
 
 /* A chain in halves. L: columns of either half, those of the first one with the middle's. */
 typedef struct {

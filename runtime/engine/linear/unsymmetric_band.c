@@ -4,7 +4,7 @@
  * takes several times as long, in each solution, too.
  *
  * Storage: L and U each as band.c has L, with 1/D on both diagonals, so that its substitutions serve. */
-#include "engine.h"
+#include "linear/linear.h"
 
 #define NEARLY 1e-2      /* of the diagonals: the most by which both halves may differ */
 #define LEAST_PIVOT 1e-8 /* of the diagonal: what elimination must leave of it */

@@ -1,5 +1,10 @@
 /* Knots: instants at which signals are not smooth, and steps end. */
-#include "engine.h"
+#include "equations/acceleration.h"
+#include "equations/energies.h"
+#include "events/events.h"
+#include "run/run.h"
+
+#include <math.h>
 
 /* Returns the first knot after `now` at which steps end, until `latest`; null where there is none. */
 const fu_knot *fu_next_knot(const fu_run *run, double latest)

@@ -1,5 +1,11 @@
 /* Checkpoints: what the steps to come depend on, so that a run that is taken up again goes on bit for bit. */
-#include "engine.h"
+#include "couplings/common/couplings.h"
+#include "couplings/common/proximity.h"
+#include "equations/run.h"
+#include "events/boundaries.h"
+#include "events/events.h"
+#include "events/slack_cables.h"
+#include "run/checkpoint.h"
 
 #include <math.h>
 #include <stddef.h>

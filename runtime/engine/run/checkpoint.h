@@ -1,8 +1,8 @@
 /* All that later steps depend on: run/checkpoint.c. */
-#ifndef FUNICULAR_CHECKPOINT_H
-#define FUNICULAR_CHECKPOINT_H
+#ifndef FUNICULAR_RUN_CHECKPOINT_H
+#define FUNICULAR_RUN_CHECKPOINT_H
 
-#include "common.h"
+#include "base/common.h"
 
 void fu_pause(fu_run *run);
 long fu_save(const fu_run *run, char *bytes);

@@ -1,5 +1,9 @@
 /* What follows from events that a run stands on. */
-#include "engine.h"
+#include "couplings/common/coupling_events.h"
+#include "events/events.h"
+#include "run/run.h"
+
+#include <math.h>
 
 #define MOST_SINCE 1e-6      /* of the duration: how far from its end a step may have passed what it ends on */
 #define MOST_ACTS 100        /* changes of couplings at one instant: more is no motion */

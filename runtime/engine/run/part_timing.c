@@ -2,7 +2,12 @@
  * which changes nothing but scratch, and multiplied by how often the run made them. Solving for its unknowns is not
  * in it.
  */
-#include "engine.h"
+#include "base/clock.h"
+#include "equations/equations.h"
+#include "equations/run.h"
+#include "run/part_timing.h"
+
+#include <math.h>
 
 #define BUDGET 1e-4 /* s, for all that is timed */
 #define BATCHES 4   /* of calls, of which the fastest counts: the machine may be busy */

@@ -1,8 +1,8 @@
 /* Time that each coupling takes: run/part_timing.c. */
-#ifndef FUNICULAR_PART_TIMING_H
-#define FUNICULAR_PART_TIMING_H
+#ifndef FUNICULAR_RUN_PART_TIMING_H
+#define FUNICULAR_RUN_PART_TIMING_H
 
-#include "common.h"
+#include "base/common.h"
 
 void fu_part_timing(fu_run *run, double *seconds);
 

@@ -1,5 +1,9 @@
 /* Rows of output. */
-#include "engine.h"
+#include "base/clock.h"
+#include "couplings/common/couplings.h"
+#include "equations/acceleration.h"
+#include "equations/energies.h"
+#include "run/run.h"
 
 #include <string.h>
 

@@ -1,7 +1,8 @@
 /* The time loop: from knot to knot, from output time to output time. */
-#include "engine.h"
-
-#include "underflow.h"
+#include "base/clock.h"
+#include "base/underflow.h"
+#include "events/deferred.h"
+#include "run/run.h"
 
 #define BEFORE 1e-15 /* of a knot: a step ends so much before it, where the signal is still that of the step */
 

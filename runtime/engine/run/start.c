@@ -1,6 +1,15 @@
 /* The start of a run, and of its scheme wherever something has jumped. */
-#include "engine.h"
+#include "couplings/common/couplings.h"
+#include "equations/acceleration.h"
+#include "equations/projection.h"
+#include "equations/scene_size.h"
+#include "events/events.h"
+#include "events/penetration.h"
+#include "events/proximity.h"
+#include "events/slack_cables.h"
+#include "run/run.h"
 
+#include <math.h>
 #include <string.h>
 
 #define AT_REST 1e-9      /* of the extent: a scene that moves less may be at rest */

@@ -1,7 +1,10 @@
 /* Attachments: a point and axes of the ground, of a cable, of a body; how they move with the coordinates of what carries
  * them, and what a force and a moment on them change with these.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/rotation.h"
+#include "bodies/unknowns.h"
+#include "couplings/slide/slide.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
-/* Attachments of couplings: couplings/attachments.c. */
-#ifndef FUNICULAR_ATTACHMENTS_H
-#define FUNICULAR_ATTACHMENTS_H
+/* Attachments of couplings: couplings/common/attachments.c. */
+#ifndef FUNICULAR_COUPLINGS_COMMON_ATTACHMENTS_H
+#define FUNICULAR_COUPLINGS_COMMON_ATTACHMENTS_H
 
-#include "bodies.h"
+#include "bodies/bodies.h"
 
 /* An attachment: a point with axes of the ground (cable and body -1), of a cable's element, of a body; or axes alone, of the
  * cable where a slide is. */

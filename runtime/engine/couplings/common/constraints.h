@@ -1,8 +1,8 @@
 /* Rows of constraints on the level of accelerations. */
-#ifndef FUNICULAR_CONSTRAINTS_H
-#define FUNICULAR_CONSTRAINTS_H
+#ifndef FUNICULAR_COUPLINGS_COMMON_CONSTRAINTS_H
+#define FUNICULAR_COUPLINGS_COMMON_CONSTRAINTS_H
 
-#include "common.h"
+#include "base/common.h"
 
 /* Constraints H q'' = W over the dofs `at`, with what is left of them C, and their rate at rest: `rows` of them now, from
  * the multiplier `first` on. They have max_multipliers at most; those of the bits redundant_rows are nil. */

@@ -1,25 +1,24 @@
-/* Couplings: what acts between attachments, or on one. couplings/couplings.c loops over them. */
-#ifndef FUNICULAR_COUPLING_H
-#define FUNICULAR_COUPLING_H
+/* Couplings: what acts between attachments, or on one. couplings/common/couplings.c loops over them. */
+#ifndef FUNICULAR_COUPLINGS_COMMON_COUPLING_H
+#define FUNICULAR_COUPLINGS_COMMON_COUPLING_H
 
-#include "common.h"
-#include "fields.h"
-#include "linear.h"
-#include "state.h"
+#include "base/common.h"
+#include "base/fields.h"
+#include "linear/linear.h"
+#include "bodies/state.h"
 
 #define FU_MAX_FORCES 6 /* of one coupling */
 
 typedef struct fu_coupling_type fu_coupling_type;
 typedef struct fu_coupling_events fu_coupling_events;
-typedef struct fu_accelerator fu_accelerator;
 
 /* What each coupling begins with: fu_slide, fu_joint, fu_point_force and fu_load have it as their first member, `base`.
  *
  * A coupling may have unknowns of its own in a Newton system. They stand together from `unknown` on: first its
  * coordinates (s of a slide), then its forces (multipliers are forces). fu_list_couplings numbers them. */
-typedef struct {
+struct fu_coupling {
     const fu_coupling_type *type;
-    const fu_coupling_events *events; /* that it finds by itself; null: none (include/coupling_events.h) */
+    const fu_coupling_events *events; /* that it finds by itself; null: none (couplings/common/coupling_events.h) */
     int index;                     /* among the couplings of its structure */
     int number;                    /* among all couplings of the model */
     int unknown;                   /* the first of its unknowns, counted beyond the dofs */
@@ -36,7 +35,7 @@ typedef struct {
     int is_driven;                 /* not zero where a signal does work on it */
     int has_inertia;               /* not zero where it has a mass of its own */
     double scale[FU_MAX_FORCES];   /* kg or kg m: rows of constraints times it have the scale of the mass matrix */
-} fu_coupling;
+};
 
 extern const fu_field fu_coupling_fields[]; /* of fu_coupling */
 
@@ -61,7 +60,7 @@ typedef struct {
  * unknowns beyond the dofs.
  *
  * There is no operation that lists the columns of a system that a coupling touches, its own unknowns among them: `tangent` and
- * `rows` name each entry by its dof or unknown, and fu_add (include/unknowns.h) finds its place and notes which rows of the
+ * `rows` name each entry by its dof or unknown, and fu_add (bodies/unknowns.h) finds its place and notes which rows of the
  * border count. A list beside it would say the same a second time, and would have to be kept in step with it. */
 struct fu_coupling_type {
     const char *name;
@@ -81,7 +80,7 @@ struct fu_coupling_type {
 
     /* Where nothing comes of a coupling while what it acts between is apart: its clearance at a state, and what it is between: the
      * number of a cable, n_cables and that of a body, -1 for the ground. Ways of these, and turns of the second by the lever, are
-     * the most that the gap can shrink by. While it is not used up, operations may be passed over (couplings/proximity.c). */
+     * the most that the gap can shrink by. While it is not used up, operations may be passed over (couplings/common/proximity.c). */
     fu_clearance (*clearance)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     void (*between)(const fu_model *model, const fu_coupling *coupling, int between[2]);
 

@@ -1,11 +1,11 @@
-/* Events that a coupling finds by itself: a part of its table of operations (include/coupling.h). run/boundaries.c and
- * run/events.c find the instants at which they happen, run/happenings.c lets them happen; none of them knows a kind of coupling.
+/* Events that a coupling finds by itself: a part of its table of operations (couplings/common/coupling.h). events/boundaries.c and
+ * events/events.c find the instants at which they happen, run/event_handling.c lets them happen; none of them knows a kind of coupling.
  */
-#ifndef FUNICULAR_COUPLING_EVENTS_H
-#define FUNICULAR_COUPLING_EVENTS_H
+#ifndef FUNICULAR_COUPLINGS_COMMON_COUPLING_EVENTS_H
+#define FUNICULAR_COUPLINGS_COMMON_COUPLING_EVENTS_H
 
-#include "coupling.h"
-#include "events.h"
+#include "couplings/common/coupling.h"
+#include "base/event.h"
 
 /* The path of a coupling's coordinate: n pieces, of one length, m, or between given boundaries, m, where the length is their
  * mean and boundaries is not null. At the boundaries the equations are not smooth. state->piece tells on which piece a
@@ -34,7 +34,7 @@ struct fu_coupling_events {
     int (*watches)(const fu_coupling *coupling, fu_watch *out);
     double (*watched)(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which);
     /* When a watched number is farthest beyond zero in the step just made, of h, at both ends of which it is on one side, as fu_dip
-     * (include/events.h) predicts it; or where the step should end as an impact needs shorter ones; else 0. Null: it is not known. */
+     * (events/events.h) predicts it; or where the step should end as an impact needs shorter ones; else 0. Null: it is not known. */
     double (*dip)(const fu_run *run, const fu_coupling *coupling, int which, double h);
     /* How deep what touches has sunk, m, at a state where the coupling's watched number has this value. Null: it cannot sink. */
     double (*depth)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double watched);

@@ -1,5 +1,9 @@
 /* Loops over the couplings of a model, in the order of its list: each calls the one operation that it is about. */
-#include "engine.h"
+#include "couplings/common/couplings.h"
+#include "couplings/common/proximity.h"
+#include "couplings/slide/slide.h"
+
+#include <math.h>
 
 const fu_field fu_coupling_fields[] = {
     FU_FIELD(fu_coupling, unknown, FU_INTEGER, 0),
@@ -15,16 +19,6 @@ const fu_field fu_coupling_fields[] = {
     FU_FIELD_ARRAY(fu_coupling, scale, FU_REAL),
     {0},
 };
-
-int fu_acts_alone(const fu_coupling *coupling)
-{
-    const fu_coupling_type *type = coupling->type;
-    const fu_coupling_events *events = coupling->events;
-    const int asked = type->inertia || type->rows || type->external_force || type->external_power || type->react || type->kink ||
-                      type->take_forces || type->gaps || type->rates || type->step_work || type->may_start_open || type->follow ||
-                      type->touch || type->is_possible || (events && (events->path || events->pass || events->take_velocities));
-    return type->clearance && !asked;
-}
 
 /* Puts a coupling into the lists that it is in. */
 static void list_coupling(fu_model *model, const fu_coupling *c)
@@ -308,11 +302,6 @@ int fu_is_possible(const fu_model *model, const fu_state *state)
         if (c->type->is_possible && !c->type->is_possible(model, c, state)) return 0;
     }
     return 1;
-}
-
-double fu_row_unit(double inertia, double mass)
-{
-    return inertia != 0.0 ? mass : 1.0;
 }
 
 void fu_add_own(const fu_model *model, fu_state *state, const double *own, double inertia, double scale)

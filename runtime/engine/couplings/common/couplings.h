@@ -1,29 +1,24 @@
-/* Loops over the couplings of a model: couplings/couplings.c. */
-#ifndef FUNICULAR_COUPLINGS_H
-#define FUNICULAR_COUPLINGS_H
+/* Loops over the couplings of a model: couplings/common/couplings.c. */
+#ifndef FUNICULAR_COUPLINGS_COMMON_COUPLINGS_H
+#define FUNICULAR_COUPLINGS_COMMON_COUPLINGS_H
 
-#include "acceleration.h"
-#include "coupling.h"
-#include "model.h"
+#include "couplings/common/accelerator.h"
+#include "couplings/common/coupling.h"
+#include "bodies/model.h"
 
 /* Number the couplings of model->couplings: `index` and `unknown` and the like are given, offsets follow; sums go to model; `lists` has
  * room for 2 n. */
 void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model);
-/* Whether couplings of a type do nothing but act, by themselves, while what they are between is near: nothing else asks for them. */
-int fu_acts_alone(const fu_coupling *coupling);
 
 /* Couplings over which to loop. */
 typedef struct {
     const fu_coupling *const *list;
     int n;
 } fu_couplings;
-/* Those that may act at a state, or over a step (couplings/proximity.c). */
+/* Those that may act at a state, or over a step (couplings/common/proximity.c). */
 fu_couplings fu_acting(const fu_model *model, const fu_state *state);
 fu_couplings fu_acting_in_step(const fu_model *model, const fu_equations *at);
 
-/* The type of this name, null where there is none. */
-const fu_coupling_type *fu_coupling_type_of(const char *name);
-void fu_bind_events(fu_coupling *coupling);
 
 void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *own);
 void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system);

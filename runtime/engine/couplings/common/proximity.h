@@ -1,9 +1,9 @@
-/* Which couplings may act where: couplings/proximity.c. */
-#ifndef FUNICULAR_PROXIMITY_H
-#define FUNICULAR_PROXIMITY_H
+/* Which couplings may act where: couplings/common/proximity.c. */
+#ifndef FUNICULAR_COUPLINGS_COMMON_PROXIMITY_H
+#define FUNICULAR_COUPLINGS_COMMON_PROXIMITY_H
 
-#include "coupling.h"
-#include "model.h"
+#include "couplings/common/coupling.h"
+#include "bodies/model.h"
 
 /* A cable or a body: how far it may have gone, m, and turned, from where it was at the last look, before pairs that were far may
  * be near; how far it went and turned at all until then; the largest radius of its points. */
@@ -35,21 +35,14 @@ struct fu_proximity {
 size_t fu_proximity_size(const fu_model *model, int n_watches);
 void fu_proximity_place(fu_model *model, int n_watches, void *memory);
 
-/* The watches that may pass zero up to a state (null: in no way), or within a step of h that leads to `next`. */
-typedef struct {
-    const int *list; /* null: all, in their order */
-    int n;
-} fu_watch_list;
-fu_watch_list fu_near_watches(const fu_run *run, const fu_state *state);
-fu_watch_list fu_near_watches_within(const fu_run *run, double h);
-static inline int fu_watch_of(fu_watch_list list, int i)
-{
-    return list.list ? list.list[i] : i;
-}
-/* Whether a watch was passed over when values at `now` were taken. */
-int fu_is_far_watch(const fu_run *run, int watch);
-
-/* Looks anew at what may be near, after a step of h, where that may be needed, or in any case. */
-void fu_look_around(fu_run *run, double h, int anew);
+/* Whether couplings of a type do nothing but act, by themselves, while what they are between is near: nothing else asks for them. */
+int fu_acts_alone(const fu_coupling *coupling);
+/* A mover's body, null for a cable; how far points of a cable may be moved at most by numbers that its nodal vectors differ by, or by
+ * their rates; how far a mover is from where it was at the last look, m, and the norm of the change of its axes; whether none is
+ * farther than it may be. */
+const fu_body *fu_body_of_mover(const fu_model *model, int mover);
+double fu_most_of_cable(const fu_cable *cable, const double *to, const double *from);
+void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double *way, double *turn);
+int fu_movers_are_near(const fu_model *model, const double *q);
 
 #endif

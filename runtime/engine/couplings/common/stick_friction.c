@@ -9,7 +9,8 @@
  * friction allows. Where it slid within the step and then sticks, the smallest is where that changes. With the cubics through places and
  * velocities at both ends of the step that error is of the fourth order in the step; by the ends alone it was of the second.
  */
-#include "engine.h"
+#include "base/common.h"
+#include "couplings/common/stick_friction.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
-/* Friction that sticks beside a force by penalty: couplings/penalty_friction.c. */
-#ifndef FUNICULAR_PENALTY_FRICTION_H
-#define FUNICULAR_PENALTY_FRICTION_H
+/* Friction that sticks beside a force by penalty: couplings/common/stick_friction.c. */
+#ifndef FUNICULAR_COUPLINGS_COMMON_STICK_FRICTION_H
+#define FUNICULAR_COUPLINGS_COMMON_STICK_FRICTION_H
 
 /* Limits the stretch of friction's spring, of this stiffness in N/m, to what friction allows, in N; returns whether that slides. */
 int fu_limit_stretch(int dim, double stiffness, double most, double *stretch);

@@ -7,7 +7,7 @@
  * the largest second derivative at most, and nowhere more than the largest; with that one, s, the point stays off the surface while
  * G - w (1 + s^2)^(1/2) > radius (1 + s^2)^(1/2).
  */
-#include "engine.h"
+#include "couplings/common/surfaces.h"
 
 #include <math.h>
 #include <string.h>

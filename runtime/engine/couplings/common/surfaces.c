@@ -1,5 +1,7 @@
 /* Surfaces that cables and bodies touch: distances by the kernels of derive/couplings/surface.py, in the axes of the ground. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/state.h"
+#include "couplings/common/surfaces.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
-/* Surfaces that cables and bodies touch: couplings/surfaces.c. */
-#ifndef FUNICULAR_SURFACES_H
-#define FUNICULAR_SURFACES_H
+/* Surfaces that cables and bodies touch: couplings/common/surfaces.c. */
+#ifndef FUNICULAR_COUPLINGS_COMMON_SURFACES_H
+#define FUNICULAR_COUPLINGS_COMMON_SURFACES_H
 
-#include "attachments.h"
-#include "fields.h"
+#include "couplings/common/attachments.h"
+#include "base/fields.h"
 
 /* Shapes: a plane; a sphere, or a cylinder without ends; a cylinder with half spheres at its ends; a height over a line or over
  * two horizontal axes; a box. */
@@ -59,10 +59,10 @@ typedef struct {
     double y[3], rate[3], n[3], gap;
 } fu_surface_end;
 /* Returns when a point that is off the surface at the first end of a step of h is below it by more than `least` and comes off it again,
- * as its way is predicted to be, s after that end; 0 where it does not: couplings/surface_passes.c. */
+ * as its way is predicted to be, s after that end; 0 where it does not: couplings/common/surface_continuous_detection.c. */
 double fu_surface_pass(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, double least);
 
-/* Fields of a structure's member `surface` (include/fields.h), which has the words of its shapes in fu_surface_shapes. */
+/* Fields of a structure's member `surface` (base/fields.h), which has the words of its shapes in fu_surface_shapes. */
 extern const char *const fu_surface_shapes[], *const fu_surface_role[];
 #define FU_SURFACE_FIELD(structure, member, kind, words) \
     {#member, kind, offsetof(structure, surface.member), 1, 0, words}

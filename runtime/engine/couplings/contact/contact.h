@@ -1,10 +1,10 @@
-/* Contact of a cable, or of points of a body, with a surface, by penalty: couplings/contacts.c. */
-#ifndef FUNICULAR_CONTACTS_H
-#define FUNICULAR_CONTACTS_H
+/* Contact of a cable, or of points of a body, with a surface, by penalty: couplings/contact/contact.c. */
+#ifndef FUNICULAR_COUPLINGS_CONTACT_CONTACT_H
+#define FUNICULAR_COUPLINGS_CONTACT_CONTACT_H
 
-#include "coupling.h"
-#include "penalty_friction.h"
-#include "surfaces.h"
+#include "couplings/common/coupling.h"
+#include "couplings/common/stick_friction.h"
+#include "couplings/common/surfaces.h"
 
 #define FU_CONTACT_POINTS 16 /* of a body */
 #define FU_CONTACT_OUTPUTS 10
@@ -48,7 +48,6 @@ typedef struct {
     fu_attachment attachments[FU_CONTACT_POINTS];
 } fu_contact;
 extern const fu_coupling_type fu_contact_type;
-extern const fu_coupling_events fu_contact_events;
 
 /* A point that may touch: where it is, how it moves; its mark, null without friction; the time since, s, the turn of its body past the
  * surface since then, and the rate of that, along the shape's axes; and how it touches: how deep it is and how fast it sinks, the normal,
@@ -71,7 +70,7 @@ typedef struct {
     double p, by_depth, by_rate, elastic, energy, mean;
 } fu_pressing;
 
-/* couplings/contact_friction.c: friction where a point touches, and its derivatives, added to those of the normal force. */
+/* couplings/contact/friction.c: friction where a point touches, and its derivatives, added to those of the normal force. */
 void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
 /* Makes the way of a point through a step as fu_contact_stretch does, and the direction of its spring, along the shape's axes. */
 void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point,
@@ -82,7 +81,7 @@ fu_friction_way fu_contact_way(const fu_contact *contact, const fu_touch_point *
 void fu_contact_change(int dim, const fu_contact *contact, const fu_touch_point *point, const double *normal, double change[3]);
 void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
 
-/* couplings/contact_points.c; fu_contact_slip: makes distance, depth and velocities of a point, whether it touches or not. */
+/* couplings/contact/point.c; fu_contact_slip: makes distance, depth and velocities of a point, whether it touches or not. */
 fu_pressing fu_press_at(const fu_contact *contact, double depth, double rate, double depth_next);
 void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
 int fu_contact_touches(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
@@ -91,7 +90,7 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
                        const fu_touch_point *now, const fu_touch_point *next, double f[3], double friction[3], double by_next[9],
                        double by_stretch[9]);
 
-/* couplings/contacts.c */
+/* couplings/contact/places.c */
 int fu_contact_elements(const fu_model *model, const fu_contact *contact);
 int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
                          double below);
@@ -105,7 +104,7 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
                           int number, const fu_touch_point *point, double *f);
 void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum);
 
-/* couplings/contact_rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the shape's, and how
+/* couplings/contact/rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the shape's, and how
  * fast they turn, along the shape's axes; the turn since the mark, and its rate. */
 int fu_contact_rolls(const fu_contact *contact);
 void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double axes[9],
@@ -116,11 +115,7 @@ fu_friction_begin *fu_contact_begin_of(const fu_contact *contact, const fu_state
 /* Makes what the point where a sphere touches has moved by its turning alone, along the shape's axes. */
 void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal, const fu_friction_mark *mark, double out[3]);
 
-/* couplings/contact_results.c: makes the gap of a point, and its rate; where it is and how it moves along the shape's axes, unless that
- * is null. */
-double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
-                      int number, double *rate, fu_surface_end *end);
-/* couplings/friction_paths.c */
+/* couplings/contact/friction_work.c */
 int fu_contact_kinks(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
                      const double *c, double *f);
 double fu_contact_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
@@ -130,18 +125,18 @@ typedef void fu_contact_visitor(const fu_model *model, const fu_contact *contact
                                 const fu_touch_point *point, void *context);
 void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state, fu_contact_visitor *visit, void *context);
 
-/* couplings/contact_derivatives.c: adds to a system the derivatives of what a point that touches, and its reaction, put on the left
+/* couplings/contact/derivatives.c: adds to a system the derivatives of what a point that touches, and its reaction, put on the left
  * of the equations of motion; psi as in fu_equations. */
 void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
                                 int element, int number, const fu_touch_point *point, const double *psi, fu_weights weights,
                                 fu_system *system);
 
-/* couplings/contact_steps.c */
+/* couplings/contact/energy_step.c */
 void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
 void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
 double fu_contact_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
-/* couplings/contact_results.c */
+/* couplings/contact/results.c */
 void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
                         const fu_accelerator *work, double *out);
 double fu_contact_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
@@ -151,10 +146,7 @@ void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, co
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state);
 void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
-/* Returns when the first point is below the surface in a step of h at both ends of which it is off it, s, else 0. */
-double fu_contact_pass(const fu_run *run, const fu_contact *contact, double h);
-
-/* couplings/clearances.c */
+/* couplings/contact/clearance.c */
 fu_clearance fu_contact_clearance(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 void fu_contact_between(const fu_model *model, const fu_coupling *coupling, int between[2]);
 

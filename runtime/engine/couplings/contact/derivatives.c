@@ -2,7 +2,10 @@
  *
  * How the velocity of a surface's point changes at fixed rates of its body is left out, as Newton's method does without it.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
+#include "couplings/contact/contact.h"
+#include "couplings/force/point_force.h"
 
 #include <string.h>
 

@@ -5,7 +5,9 @@
  * mean(A)'(change of r - p) + (change of A)' mean(r - p): so mean(A) times the force acts on the point, and its opposite on the body
  * at the lever mean(r - p). Both have the same line, and keep momentum and angular momentum as they keep energy.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
+#include "couplings/contact/contact.h"
 
 #include <string.h>
 

@@ -1,7 +1,8 @@
-/* Friction of contact at a point: the stretch of its spring at the end of its way since the mark (couplings/penalty_friction.c), and how
+/* Friction of contact at a point: the stretch of its spring at the end of its way since the mark (couplings/common/stick_friction.c), and how
  * that changes with where the point is and how it moves.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/contact/contact.h"
 
 #include <math.h>
 #include <string.h>

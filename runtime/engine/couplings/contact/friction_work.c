@@ -1,7 +1,8 @@
 /* What friction by springs takes within a step, by the cubics through places and velocities at its ends; and how far off the stretch is
  * that the spring has at its end.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/contact/contact.h"
 
 #include <math.h>
 #include <string.h>

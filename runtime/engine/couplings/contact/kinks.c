@@ -1,7 +1,8 @@
 /* Kinks of contact within a step: where a point touches or comes off, begins to slide or sticks. The force is continuous there, its rate
  * jumps, and a rule of quadrature that an integrator has is off by a part of that. Estimates of its error rest on smooth forces.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/contact/contact.h"
 
 #include <math.h>
 #include <string.h>

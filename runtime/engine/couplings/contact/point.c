@@ -1,19 +1,9 @@
 /* The force of contact at a point, by the kernels of derive/couplings/surface.py: an instant's, its derivatives, a step's. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/contact/contact.h"
 
 #include <math.h>
 #include <string.h>
-
-fu_pressing fu_press_at(const fu_contact *contact, double depth, double rate, double depth_next)
-{
-    fu_pressing of;
-    const double law[2] = {contact->law.stiffness, contact->law.damping};
-    const fu_surface_kernels *kernel = contact->surface.kernel;
-    (contact->law.hertz ? kernel->push_hertz : kernel->push)(depth, rate, law, depth_next, &of.p, &of.by_depth, &of.by_rate,
-                                                             &of.elastic, &of.energy, &of.mean);
-    if (of.p < 0.0) of.p = of.by_depth = of.by_rate = 0.0; /* damping never pulls */
-    return of;
-}
 
 void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point)
 {

@@ -4,7 +4,8 @@
  * the surface is that of the centre plus w x a, with the angular velocity w past the surface: over a step, with the turn p of it, the
  * place changes by p x a on top of the way of the centre, with the mean of the normals at both ends of the step.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/contact/contact.h"
 
 #include <math.h>
 #include <string.h>

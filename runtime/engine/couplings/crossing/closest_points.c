@@ -2,7 +2,8 @@
  *
  * Beyond its ends a cable goes on straight, so that points have arc-lengths there, too, from which the way to the end is known.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/crossing/crossing.h"
 
 #include <math.h>
 #include <string.h>

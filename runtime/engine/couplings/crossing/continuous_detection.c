@@ -6,7 +6,8 @@
  * (conservative advancement; Mirtich 1996). Where they are led on by more, since so little is left, the cubic of the gap through both
  * places tells whether it dips below zero between them.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/crossing/crossing.h"
 
 #include <math.h>
 #include <string.h>

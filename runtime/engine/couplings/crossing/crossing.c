@@ -2,7 +2,11 @@
  * matrix its change and the ways of the closest points along both lines are unknowns of their own, so that two cables that cross do
  * not widen the band: with them the matrix is that of the equations without them.
  */
-#include "engine.h"
+#include "bodies/rotation.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "couplings/crossing/crossing.h"
+#include "couplings/force/point_force.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,18 +14,6 @@
 static const fu_crossing *crossing_of(const fu_coupling *coupling)
 {
     return (const fu_crossing *)coupling;
-}
-
-void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out)
-{
-    memset(out, 0, sizeof *out);
-    crossing->kernel->contact(points->d, points->t, points->u, crossing->law, out->normal, out->depth, &out->size, out->force,
-                              &out->energy, &out->dissipated);
-}
-
-int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const fu_crossing_contact *contact)
-{
-    return fu_dot(3, state->numbers + crossing->base.numbers + FU_CROSSING_NORMAL, contact->normal) < 0.0;
 }
 
 /* Makes the part of the force that is friction; adds that which sticks. */
@@ -283,35 +275,6 @@ static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *
 }
 
 static const char *const role[] = {"crossing", 0};
-/* Returns how far the closest points are within the ends of their lines, m. */
-double fu_crossing_way_to_ends(const fu_crossing *crossing, const fu_closest_points *points)
-{
-    double way = INFINITY;
-    for (int line = 0; line < FU_LINES; ++line)
-        way = fmin(way, fmin(points->s[line] - crossing->low[line], crossing->high[line] - points->s[line]));
-    return way;
-}
-
-double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact)
-{
-    const double damping = crossing->law[FU_LAW_DAMPING];
-    double margin = contact->depth[0];
-    /* a length, that of a millisecond's motion */
-    if (damping > 0.0) margin = fmin(margin, (1.0 / damping + contact->depth[1]) * FU_INSTANT);
-    return fmin(margin, fu_crossing_way_to_ends(crossing, points));
-}
-
-double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state)
-{
-    fu_closest_points points;
-    fu_crossing_contact contact;
-    fu_find_closest(model, crossing, state, &points);
-    if (!points.found) return points.apart > 0.0 ? -points.apart : NAN;
-    fu_crossing_contact_at(crossing, &points, &contact);
-    if (fu_crossing_swung(crossing, state, &contact)) return NAN;
-    return fu_crossing_margin_of(crossing, &points, &contact);
-}
-
 static const fu_field fields[] = {
     FU_FIELD(fu_crossing, kernel, FU_KERNELS, role),
     FU_FIELD_ARRAY(fu_crossing, cables, FU_INTEGER),

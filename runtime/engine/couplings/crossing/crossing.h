@@ -1,11 +1,11 @@
-/* Two lines that touch at their closest points, a cable and another one or a bar: couplings/crossings.c, crossing_points.c,
- * crossing_passes.c, crossing_friction.c, crossing_events.c. */
-#ifndef FUNICULAR_CROSSINGS_H
-#define FUNICULAR_CROSSINGS_H
+/* Two lines that touch at their closest points, a cable and another one or a bar: couplings/crossing/crossing.c, couplings/crossing/closest_points.c,
+ * couplings/crossing/continuous_detection.c, couplings/crossing/friction.c, events/crossing.c. */
+#ifndef FUNICULAR_COUPLINGS_CROSSING_CROSSING_H
+#define FUNICULAR_COUPLINGS_CROSSING_CROSSING_H
 
-#include "attachments.h"
-#include "coupling.h"
-#include "penalty_friction.h"
+#include "couplings/common/attachments.h"
+#include "couplings/common/coupling.h"
+#include "couplings/common/stick_friction.h"
 
 enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4, FU_LAW_FRICTION = 6 };
 #define FU_INSTANT 1e-3 /* s: makes lengths of velocities, to compare them */
@@ -28,7 +28,6 @@ typedef struct {
     double stiffness;            /* N/m: makes forces of lengths, to scale equations */
 } fu_crossing;
 extern const fu_coupling_type fu_crossing_type;
-extern const fu_coupling_events fu_crossing_events;
 
 /* Of the numbers of a state. */
 enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3, FU_CROSSING_GRIP = 13 };
@@ -85,7 +84,7 @@ typedef struct {
     double h, x;
 } fu_moment;
 
-/* crossing_points.c; the first: from arc-lengths s. */
+/* couplings/crossing/closest_points.c; the first: from arc-lengths s. */
 void fu_find_closest_within(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, const double s[FU_LINES],
                             fu_closest_points *out);
 void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
@@ -98,18 +97,18 @@ double fu_line_size(const fu_model *model, const fu_crossing *crossing, int line
 void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state,
                       const fu_line_point *point, fu_line_moves *out);
 
-/* crossing_events.c: how far the lines are in contact, m, negative where they are not; not a number where no points are
+/* couplings/crossing/contact_force.c: how far the lines are in contact, m, negative where they are not; not a number where no points are
  * the closest, though the lines may touch. */
 double fu_crossing_way_to_ends(const fu_crossing *crossing, const fu_closest_points *points);
 double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state);
 double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact);
 
-/* crossing_passes.c: when lines that do not touch at the ends of a step of h do within it, by more than `least`, m: half-way from the
+/* couplings/crossing/continuous_detection.c: when lines that do not touch at the ends of a step of h do within it, by more than `least`, m: half-way from the
  * touch to where they part or their axes meet, or at the bottom of a dip, s after the start of the step; 0 where they are not predicted to touch. */
 double fu_crossing_pass(const fu_model *model, const fu_crossing *crossing, const fu_state *now, const fu_state *next, double h,
                         double least);
 
-/* crossing_friction.c */
+/* couplings/crossing/friction.c */
 void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
                          const fu_crossing_contact *contact, fu_crossing_grip *out);
 void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
@@ -123,16 +122,16 @@ void fu_crossing_carry_grip(const fu_crossing *crossing, const fu_closest_points
                             fu_state *state);
 void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state);
 
-/* crossings.c; the second: whether the normal has swung round since the last state, as where the lines have been parallel. */
+/* couplings/crossing/contact_force.c; the second: whether the normal has swung round since the last state, as where the lines have been parallel. */
 void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out);
 int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const fu_crossing_contact *contact);
 
-/* crossing_steps.c; the first: the middle of a step, with the numbers and the flags of its end. */
+/* couplings/crossing/energy_step.c; the first: the middle of a step, with the numbers and the flags of its end. */
 fu_state fu_crossing_middle(const fu_equations *at);
 void fu_crossing_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
 double fu_crossing_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
-/* clearances.c */
+/* couplings/crossing/clearance.c */
 fu_clearance fu_crossing_clearance(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 void fu_crossing_between(const fu_model *model, const fu_coupling *coupling, int between[2]);
 

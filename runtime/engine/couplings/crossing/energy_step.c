@@ -1,10 +1,10 @@
 /* Lines that touch over a step, for the integrator that balances energy (derive/couplings/crossing.py): the force acts at the points
  * that are closest in the middle of the step, along a discrete gradient of the gap.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/crossing/crossing.h"
 
 #include <math.h>
-#include <string.h>
 
 /* A crossing over a step: how the points half-way move with the coordinates, the forces on them and on the slopes, and what goes to
  * heat, J. */

@@ -1,7 +1,8 @@
 /* Friction that sticks where lines touch: a spring, stretched by the way that particles of both lines have gone past each other since
  * the last step, and no longer than friction allows (derive/couplings/stretch.py).
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/crossing/crossing.h"
 
 #include <math.h>
 #include <string.h>

@@ -12,7 +12,9 @@
  * The fluid gives the power -p' . U - (G' p) . v, work from outside, where T counts as kinetic energy. In the matrix second
  * derivatives of U are left out: Newton's method converges without.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
+#include "couplings/fluid/drag.h"
 
 #include <string.h>
 

@@ -7,8 +7,10 @@
  * Of a wet part c both are those of the mean of c, and the impulse changes by that of c times its own mean, too. T changes with c by
  * D of added_mass.py, so D times the change of c over that of the height acts along the vertical.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/fluid/drag.h"
 
+#include <math.h>
 #include <string.h>
 
 #define NO_RISE 1e-7 /* of the extent: below it the change of the wet part over the rise is its derivative in between */

@@ -1,5 +1,7 @@
-/* The mass that fluids add to cables and bodies, and its kinetic energy: M of T = w . M w/2 (fluid_inertia.c). */
-#include "engine.h"
+/* The mass that fluids add to cables and bodies, and its kinetic energy: M of T = w . M w/2 (couplings/fluid/added_mass.c). */
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
+#include "couplings/fluid/drag.h"
 
 #include <string.h>
 

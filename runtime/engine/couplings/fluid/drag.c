@@ -1,11 +1,15 @@
 /* The force of a fluid on cables and bodies: drag by the square of the velocity of the fluid past them
- * (derive/couplings/drag.py), and buoyancy; with the inertia of the fluid, which fluid_inertia.c adds. Along a cable it is
+ * (derive/couplings/drag.py), and buoyancy; with the inertia of the fluid, which couplings/fluid/added_mass.c adds. Along a cable it is
  * integrated by Gauss quadrature on each element.
  *
  * With the velocity U of the fluid and w = U - v, the power of drag f on what moves at v is f . U - f . w: the fluid gives the first,
  * work from outside, and the second, which is never negative, goes to heat.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/accelerator.h"
+#include "couplings/fluid/drag.h"
+#include "couplings/force/point_force.h"
 
 #include <string.h>
 
@@ -32,38 +36,6 @@ static void add_powers(const fu_model *model, const fu_drag_place *at, const fu_
     const double part = weight * model->load_fraction;
     sum->dissipated += part * fu_dot(model->dim, a->f, a->w);
     sum->external += part * (fu_dot(model->dim, a->f, a->flow.U) + fu_dot(model->dim, a->buoyancy, at->v));
-}
-
-/* Returns a point of quadrature on an element of n shape functions. */
-fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point)
-{
-    const long k = (long)element * drag->stride + point;
-    return (fu_quadrature_point){drag->weights[k], drag->N + k * n, drag->N_x + k * n,
-                                 fu_drag_on_section(drag) ? drag->N_chord + k * n : 0};
-}
-
-/* Makes the place of a point of quadrature on an element with the coordinates e, rates v and accelerations a; null: without. */
-void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
-                           fu_quadrature_point point, fu_drag_place *at)
-{
-    const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim, n = cable->coordinates / dim;
-    const double *N = point.N, *N_x = point.N_x;
-    memset(at, 0, sizeof *at);
-    for (int k = 0; k < n; ++k)
-        for (int d = 0; d < dim; ++d) {
-            /* from the first node: slopes do not see where that is, and no digits are lost far from the origin */
-            const int is_place = k % cable->kernel->vectors == 0;
-            const double local = e[k * dim + d] - (is_place ? e[d] : 0.0);
-            at->r[d] += N[k] * e[k * dim + d];
-            at->r_x[d] += N_x[k] * local;
-            at->v[d] += N[k] * v[k * dim + d];
-            at->r_x_rate[d] += N_x[k] * (v[k * dim + d] - (is_place ? v[d] : 0.0));
-            if (a) at->a[d] += N[k] * a[k * dim + d];
-            if (!point.N_chord) continue;
-            at->chord[d] += point.N_chord[k] * local;
-            at->chord_rate[d] += point.N_chord[k] * (v[k * dim + d] - (is_place ? v[d] : 0.0));
-        }
 }
 
 /* Adds what drag and buoyancy do to a cable. */

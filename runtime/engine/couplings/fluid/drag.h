@@ -1,16 +1,16 @@
-/* Forces of a fluid that moves, drag, buoyancy and inertia: couplings/drags.c, couplings/fluid_inertia.c. */
-#ifndef FUNICULAR_DRAGS_H
-#define FUNICULAR_DRAGS_H
+/* Forces of a fluid that moves, drag, buoyancy and inertia: couplings/fluid/drag.c, couplings/fluid/added_mass.c. */
+#ifndef FUNICULAR_COUPLINGS_FLUID_DRAG_H
+#define FUNICULAR_COUPLINGS_FLUID_DRAG_H
 
-#include "attachments.h"
-#include "coupling.h"
-#include "flow.h"
+#include "couplings/common/attachments.h"
+#include "couplings/common/coupling.h"
+#include "couplings/fluid/velocity_field.h"
 
 #define FU_NO_SURFACE 1e300  /* m: beyond all heights (runtime/parts/fluid.py) */
 #define FU_SURFACE_WATCHES 4 /* events of its two surfaces */
 
 /* What of a cable's section or of a body's volume a fluid wets: all of it, or what is below its surface and above its bottom, of a
- * circle, a sphere, or a column (couplings/wetness.c). */
+ * circle, a sphere, or a column (couplings/fluid/wetness.c). */
 enum { FU_ALL_WET, FU_WET_SECTION, FU_WET_SPHERE, FU_WET_COLUMN };
 
 /* The force of a fluid on a whole cable, or on a point of a body. */
@@ -93,11 +93,12 @@ static inline int fu_drag_on_section(const fu_drag *drag)
     return drag->cable >= 0 && drag->is_foil;
 }
 
+/* couplings/fluid/quadrature.c */
 fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point);
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
                            fu_quadrature_point point, fu_drag_place *at);
 
-/* wetness.c: the wet part at a height; the height of a place, m; the points of an element with the coordinates e,
+/* couplings/fluid/wetness.c: the wet part at a height; the height of a place, m; the points of an element with the coordinates e,
  * and of one with these at both ends of a step. */
 fu_wetness fu_wet_at_height(const fu_drag *drag, double height);
 double fu_wet_reach(const fu_drag *drag); /* how far from a surface the wet part changes, m */
@@ -106,27 +107,22 @@ void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, 
 void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int element, const double *e, const double *e_next,
                          fu_drag_points *out);
 
-/* drags.c: makes at the points of all elements of a cable the number of the element, that of the part, the place in the element and
+/* couplings/fluid/drag.c: makes at the points of all elements of a cable the number of the element, that of the part, the place in the element and
  * the weight, m, and drag with buoyancy, N/m (3): out (points x FU_DRAG_DENSITIES). Returns how many they are. */
 #define FU_DRAG_DENSITIES 7
 int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 
-/* drag_action.c: makes what the fluid does at a place; A: axes of a body there. */
+/* couplings/fluid/drag_force.c: makes what the fluid does at a place; A: axes of a body there. */
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
                  fu_drag_action *out);
 
-/* section_flow.c: forces on slope and chord of a beam's foil at a point of quadrature, and what they add to the matrix. */
+/* couplings/fluid/section_moment.c: forces on slope and chord of a beam's foil at a point of quadrature, and what they add to the matrix. */
 double fu_section_power(const fu_drag_place *at, const fu_drag_action *action);
 void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, double part, int n, double *f);
 void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all, double *K);
 
-/* table_events.c: flags are one of the table and one a watch of surfaces */
+/* Flags of a state are one of the table and one a watch of surfaces */
 #define FU_DRAG_FLAGS (1 + FU_SURFACE_WATCHES)
-extern const fu_coupling_events fu_drag_events;
-
-/* surface_events.c: the watches of its surfaces, numbered from `first`; the number that one of them is, m. */
-int fu_surface_watches(const fu_drag *drag, int first, fu_watch *out);
-double fu_surface_watched(const fu_model *model, const fu_drag *drag, const fu_state *state, int which);
 
 /* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is minus the flow's gradient.
  * The wet part, its derivative by the place, and the second one by the height. */
@@ -135,7 +131,7 @@ typedef struct {
     double w[3], w_rate[3], material[3], wet, by_place[3], curvature;
 } fu_fluid_past;
 
-/* fluid_inertia.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or without, null. */
+/* couplings/fluid/added_mass.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or without, null. */
 void fu_fluid_inertia_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                              const fu_drag_sums *sums);
 void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
@@ -157,7 +153,7 @@ void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_
 void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point, const double *left,
                          const double *on_slope, const fu_drag_sums *sums);
 
-/* fluid_inertia_steps.c */
+/* couplings/fluid/added_mass_energy_step.c */
 void fu_fluid_inertia_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums);
 
 #endif

@@ -1,6 +1,7 @@
 /* What a fluid does at a place of a cable or of a body: drag and lift by the velocity past it (derive/couplings/drag.py), with their
  * derivatives. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/fluid/drag.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,8 @@
 /* What a fluid does to slope and chord of a beam by the moment on its section (derive/couplings/section_flow.py), beside the force on
- * its axis that drags.c has as that of any cable.
+ * its axis that couplings/fluid/drag.c has as that of any cable.
  */
-#include "engine.h"
+#include "bodies/cables.h"
+#include "couplings/fluid/drag.h"
 
 #include <string.h>
 

@@ -1,6 +1,7 @@
 /* The velocity of a fluid by place and time, with its derivatives: a velocity times a profile over height, or a table of splines,
  * times a signal. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/fluid/velocity_field.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
-/* The velocity of a fluid by place and time: couplings/flow.c. */
-#ifndef FUNICULAR_FLOW_H
-#define FUNICULAR_FLOW_H
+/* The velocity of a fluid by place and time: couplings/fluid/velocity_field.c. */
+#ifndef FUNICULAR_COUPLINGS_FLUID_VELOCITY_FIELD_H
+#define FUNICULAR_COUPLINGS_FLUID_VELOCITY_FIELD_H
 
-#include "common.h"
+#include "base/common.h"
 
 #define FU_FLOW_AXES 4   /* of a table: time, and three directions of the ground */
 #define FU_FLOW_DEGREE 3 /* of its splines, at most */

@@ -5,10 +5,10 @@
  * ends where that length begins and ends, so that the integral is smooth in the coordinates. Within it points gather at both ends,
  * where the waterline has a root.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/fluid/drag.h"
 
 #include <math.h>
-#include <string.h>
 
 #define COLUMN_ROUNDING 0.05 /* of half the height of a column: its ends are rounded by this to both sides (runtime/parts/drag.py) */
 #define MOST_DEPTH 0.99      /* of the radius of a section: beyond, matrices leave out the second derivative, which has a pole */

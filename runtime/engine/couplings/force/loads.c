@@ -1,5 +1,8 @@
 /* Forces and moments from outside, and their derivatives where they turn with what they act on. */
-#include "engine.h"
+#include "bodies/rotation.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "couplings/force/loads.h"
 
 #include <string.h>
 

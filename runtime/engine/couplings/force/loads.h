@@ -1,9 +1,9 @@
-/* Loads: couplings/loads.c. */
-#ifndef FUNICULAR_LOADS_H
-#define FUNICULAR_LOADS_H
+/* Loads: couplings/force/loads.c. */
+#ifndef FUNICULAR_COUPLINGS_FORCE_LOADS_H
+#define FUNICULAR_COUPLINGS_FORCE_LOADS_H
 
-#include "bodies.h"
-#include "coupling.h"
+#include "bodies/bodies.h"
+#include "couplings/common/coupling.h"
 
 /* A force of constant direction in the dofs: values on n dofs, times a signal (-1: one). */
 typedef struct {

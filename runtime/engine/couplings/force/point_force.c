@@ -1,30 +1,13 @@
 /* Forces between the points of two attachments by the kernels of a law (derive/couplings/point_law.py). In a Newton system
  * the force is an unknown of its own, so that two points far apart on cables do not widen the band.
  */
-#include "engine.h"
+#include "bodies/rotation.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "couplings/force/point_force.h"
 
 #include <math.h>
 #include <string.h>
-
-/* Makes position and velocity of an attachment's point, and how it moves with its coordinates; returns its first dof. */
-static int point(const fu_model *model, const fu_attachment *on, const double *q, const double *v, fu_attachment_state *at)
-{
-    const fu_state state = {.q = (double *)q, .v = (double *)v};
-    fu_attachment_at(model, on, &state, 0.0, FU_POINT, at);
-    return at->n ? at->at[0] : 0;
-}
-
-/* Makes the gap between the points, and its rate. */
-void fu_gap(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
-            double rate[3])
-{
-    fu_attachment_state at[2];
-    for (int e = 0; e < 2; ++e) point(model, &between->attachments[e], q, v, &at[e]);
-    for (int d = 0; d < 3; ++d) {
-        gap[d] = at[1].p[d] - at[0].p[d];
-        rate[d] = at[1].v[d] - at[0].v[d];
-    }
-}
 
 /* Makes the force on the first point by the law of a piece. */
 static void force_of_piece(const fu_point_force *between, int piece, const double gap[3], const double rate[3],
@@ -133,7 +116,7 @@ static void add_forces(const fu_model *model, const fu_point_force *between, con
 {
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
-        const int first = point(model, &between->attachments[e], q, model->zero, &at);
+        const int first = fu_force_point(model, &between->attachments[e], q, model->zero, &at);
         add_force(between->dim, first, e, &at, force, f);
     }
 }
@@ -145,7 +128,7 @@ static void add_step_forces(const fu_model *model, const fu_point_force *between
     for (int e = 0; e < 2; ++e) {
         const fu_attachment *on = &between->attachments[e];
         fu_attachment_state at;
-        const int first = point(model, on, step->now->q, model->zero, &at);
+        const int first = fu_force_point(model, on, step->now->q, model->zero, &at);
         if (on->body >= 0) fu_discrete_point(model, on, step->now, step->next, at.P);
         add_force(between->dim, first, e, &at, force, f);
     }
@@ -227,7 +210,7 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
         double turned[3 * FU_ATTACHMENT_COORDINATES], by_place[3 * FU_ATTACHMENT_COORDINATES];
-        const int first = point(model, &between->attachments[e], state->q, state->v, &at), n = at.n;
+        const int first = fu_force_point(model, &between->attachments[e], state->q, state->v, &at), n = at.n;
         const double sign = e ? 1.0 : -1.0, *P = at.P;
         memcpy(turned, P, sizeof turned);
         for (int i = 0; i < dim * n; ++i) by_place[i] = 0.0;

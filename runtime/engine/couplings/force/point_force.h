@@ -1,9 +1,9 @@
-/* Forces between two points: couplings/point_force.c. */
-#ifndef FUNICULAR_POINT_FORCE_H
-#define FUNICULAR_POINT_FORCE_H
+/* Forces between two points: couplings/force/point_force.c. */
+#ifndef FUNICULAR_COUPLINGS_FORCE_POINT_FORCE_H
+#define FUNICULAR_COUPLINGS_FORCE_POINT_FORCE_H
 
-#include "attachments.h"
-#include "coupling.h"
+#include "couplings/common/attachments.h"
+#include "couplings/common/coupling.h"
 
 /* What a piece of a law may do: pull and push, one of them alone, or neither: then it has no force. */
 enum { FU_PUSHES_ALONE = -1, FU_PULLS_AND_PUSHES = 0, FU_PULLS_ALONE = 1, FU_HAS_NO_FORCE = 2 };
@@ -11,7 +11,7 @@ enum { FU_PUSHES_ALONE = -1, FU_PULLS_AND_PUSHES = 0, FU_PULLS_ALONE = 1, FU_HAS
 /* A force between the points of two attachments, by a law and its parameters.
  *
  * The parameters may differ by the distance of the points: n_pieces sets of them, one after the other, and the distances
- * `bounds` at which one piece ends and the next begins (couplings/force_pieces.c). The flag of a state is the piece whose
+ * `bounds` at which one piece ends and the next begins (couplings/force/segments.c). The flag of a state is the piece whose
  * law the force follows. */
 typedef struct {
     fu_coupling base;
@@ -26,11 +26,13 @@ typedef struct {
 } fu_point_force;
 
 extern const fu_coupling_type fu_point_force_type;
-extern const fu_coupling_events fu_point_force_events;
 
-/* couplings/point_force.c */
+/* couplings/force/gap.c; the first makes position and velocity of an attachment's point, and how it moves with its coordinates; returns
+ * its first dof. */
+int fu_force_point(const fu_model *model, const fu_attachment *on, const double *q, const double *v, fu_attachment_state *at);
 void fu_gap(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
             double rate[3]);
+/* couplings/force/point_force.c */
 /* Makes, for an attachment to a body, whose point's derivatives P change with its coordinates: `turned`, P by the unknowns, from P;
  * adds to `by_place` the derivatives of the point's velocity by them at fixed rates; K, those of P' own, of a force `own`. */
 void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own, const double *psi,
@@ -39,9 +41,10 @@ void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_stat
 void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece, double factor,
                          double *f);
 
-/* couplings/force_pieces.c */
+/* couplings/force/segments.c */
 int fu_force_piece(const fu_point_force *between, const fu_state *state);
 int fu_piece_at(const fu_model *model, const fu_point_force *between, const fu_state *state);
+int fu_piece_at_distance(const fu_point_force *between, double distance);
 const double *fu_piece_parameters(const fu_point_force *between, int piece);
 void fu_touch_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 

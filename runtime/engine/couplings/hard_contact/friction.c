@@ -1,6 +1,8 @@
 /* Friction of hard contacts: how the point of a body that touches goes past the surface, and against what friction is. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/hard_contact/hard_contact.h"
 
+#include <math.h>
 #include <string.h>
 
 #define SLOW 1e-6  /* of the velocity below which a point comes to rest: what turns the direction of sliding */

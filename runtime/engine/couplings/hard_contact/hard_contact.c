@@ -1,7 +1,9 @@
 /* Hard contact of a point with a surface: while it is closed its distance is a constraint like those of a joint, eq 38, whose multiplier
- * may press alone. couplings/hard_contact_events.c has when it closes and opens, couplings/impacts.c what then happens.
+ * may press alone. events/hard_contact.c has when it closes and opens, events/impact.c what then happens.
  */
-#include "engine.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "couplings/hard_contact/hard_contact.h"
 
 #include <string.h>
 
@@ -10,16 +12,6 @@
 static const fu_hard_contact *contact_of(const fu_coupling *coupling)
 {
     return (const fu_hard_contact *)coupling;
-}
-
-fu_hard_flags *fu_hard_flags_of(const fu_coupling *coupling, const fu_state *state)
-{
-    return (fu_hard_flags *)(state->flags + coupling->flags);
-}
-
-fu_hard_numbers *fu_hard_numbers_of(const fu_coupling *coupling, const fu_state *state)
-{
-    return (fu_hard_numbers *)(state->numbers + coupling->numbers);
 }
 
 static int is_closed(const fu_coupling *coupling, const fu_state *state)

@@ -1,10 +1,11 @@
 /* Hard contact of a point of a body with a surface: it presses by a multiplier, and never pulls. */
-#ifndef FUNICULAR_HARD_CONTACTS_H
-#define FUNICULAR_HARD_CONTACTS_H
+#ifndef FUNICULAR_COUPLINGS_HARD_CONTACT_HARD_CONTACT_H
+#define FUNICULAR_COUPLINGS_HARD_CONTACT_HARD_CONTACT_H
 
-#include "contacts.h"
+#include "couplings/contact/contact.h"
+#include "linear/complementarity.h"
 
-#define FU_MOST_HARD_CONTACTS 48 /* of a scene: model/hard_contacts.py */
+#define FU_MOST_HARD_CONTACTS FU_MOST_COMPLEMENTARY /* of a scene: model/hard_contacts.py */
 
 /* One point, the contact's only one. A row g = 0 of its distance, less its radius, has a multiplier while it is closed: minus the
  * force that presses. */
@@ -17,7 +18,6 @@ typedef struct {
     double stiffness;        /* N/m: in statics; that of a contact which gives way by little, so that points that hold the same share it */
 } fu_hard_contact;
 extern const fu_coupling_type fu_hard_contact_type;
-extern const fu_coupling_events fu_hard_contact_events;
 
 /* A point's own part of a state: how it is, what has happened to it, whether friction holds it, and when, s; the direction in which it
  * slides, or did last. */
@@ -52,47 +52,18 @@ typedef struct {
     double H[2 * FU_ATTACHMENT_COORDINATES];
 } fu_hard_row;
 
-/* couplings/hard_contacts.c */
+/* couplings/hard_contact/hard_contact.c */
 fu_hard_flags *fu_hard_flags_of(const fu_coupling *coupling, const fu_state *state);
 fu_hard_numbers *fu_hard_numbers_of(const fu_coupling *coupling, const fu_state *state);
 void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, fu_hard_row *out);
 
-/* couplings/hard_contact_events.c: how far beyond the ends of its surface the point is, m. */
+/* couplings/hard_contact/state.c: how far beyond the ends of its surface the point is, m. */
 double fu_hard_beyond(const fu_model *model, const fu_hard_contact *hard, const fu_state *state);
 
-/* couplings/hard_friction.c */
+/* couplings/hard_contact/friction.c */
 void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, const fu_hard_row *row,
                       fu_hard_along *out);
 double fu_hard_grip(const fu_hard_contact *contact, double multiplier);
 double fu_hard_softness(const fu_hard_contact *contact, double multiplier);
-
-/* The points that touch: how they were; their rows, compliance, normal velocities before and after, what these shall be at least,
- * impulses, the energy that these take, J; whether they stay together; whether any has friction. */
-typedef struct {
-    int n, friction, was[FU_MOST_HARD_CONTACTS], stuck[FU_MOST_HARD_CONTACTS], stays[FU_MOST_HARD_CONTACTS];
-    const fu_coupling *of[FU_MOST_HARD_CONTACTS];
-    fu_hard_row row[FU_MOST_HARD_CONTACTS];
-    double G[FU_MOST_HARD_CONTACTS * FU_MOST_HARD_CONTACTS], before[FU_MOST_HARD_CONTACTS], after[FU_MOST_HARD_CONTACTS];
-    double target[FU_MOST_HARD_CONTACTS], impulse[FU_MOST_HARD_CONTACTS], taken;
-} fu_touching;
-
-/* couplings/impacts.c: adds an impulse along H, of a row's dofs, to run->before; makes in run->work what velocities jump by for one of
- * 1 Ns alone; returns how fast dofs that change at these rates go along H. */
-void fu_hard_push(fu_run *run, const fu_hard_row *row, const double *H, double impulse);
-void fu_hard_respond(fu_run *run, const fu_hard_row *row, const double *H);
-double fu_hard_rate(const fu_hard_row *row, const double *H, const double *dofs);
-
-/* couplings/rubbing.c: the jump of velocities by impulses with friction, in run->work; how friction and pressing go on, where one of
- * them, `loose`, may be known to break loose. They return not zero where there is no solution. */
-int fu_rub(fu_run *run, fu_touching *touching);
-int fu_settle_friction(fu_run *run, fu_touching *touching, const fu_coupling *loose);
-
-/* couplings/impacts.c: finds how hard contacts go on at `now`, where one of them, which is `first` to (null: at the start), has come
- * together, would pull, or stops sliding, or breaks loose, if it `yields`; returns a status. What has happened to each it notes in its news. */
-int fu_resolve_hard_contacts(fu_run *run, const fu_coupling *first, int yields);
-
-/* linear/complementarity.c */
-enum { FU_IS_POSITIVE, FU_IS_BASIC, FU_IS_DEPENDENT };
-int fu_complement(int n, const double *G, const double *b, double least, double *x, int *kind);
 
 #endif

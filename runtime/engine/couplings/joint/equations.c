@@ -1,10 +1,14 @@
 /* Joints between two attachments: equations phi of the gap between their points and of their axes (derive/couplings/
  * joint.py), made equations over the coordinates of what carries them. Of an attachment on a slide s is one of them.
  */
-#include "engine.h"
+#include "base/simd.h"
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/accelerator.h"
+#include "couplings/joint/joint.h"
+#include "couplings/slide/slide.h"
 
-#include "lanes.h"
-
+#include <math.h>
 #include <string.h>
 
 enum { MOVES = 9 }; /* gap, turn of the first attachment, turn of the second: as many in space, fewer in the plane */
@@ -96,21 +100,6 @@ void fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_s
         take_coordinates(&view, e, &out->n[e], out->at[e]);
         over_coordinates(model->dim, &view, e, joint->kernel->rows, by_moves, out->J[e]);
     }
-}
-
-/* Returns whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature
- * does. */
-int fu_ties_a_frame(const fu_model *model, int which)
-{
-    for (int k = 0; k < model->n_couplings; ++k) {
-        if (model->couplings[k]->type != &fu_joint_type) continue;
-        const fu_joint *joint = (const fu_joint *)model->couplings[k];
-        for (int e = 0; e < 2; ++e) {
-            const int slide = joint->attachments[e].slide;
-            if (slide >= 0 && (which < 0 || slide == which)) return 1;
-        }
-    }
-    return 0;
 }
 
 /* Returns whether a joint is between two cables. */

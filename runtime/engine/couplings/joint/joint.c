@@ -1,7 +1,8 @@
 /* What a joint does as a coupling. Its own unknowns are its multipliers; their equations are phi = 0. */
-#include "engine.h"
-
-#include "lanes.h"
+#include "base/simd.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "couplings/joint/joint.h"
 
 #include <string.h>
 
@@ -113,6 +114,21 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     (void)acceleration;
     fu_joint_outputs(model, (const fu_joint *)coupling, state, multipliers,
                      (fu_joint_output *)out);
+}
+
+/* Returns whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature
+ * does. */
+int fu_ties_a_frame(const fu_model *model, int which)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        if (model->couplings[k]->type != &fu_joint_type) continue;
+        const fu_joint *joint = (const fu_joint *)model->couplings[k];
+        for (int e = 0; e < 2; ++e) {
+            const int slide = joint->attachments[e].slide;
+            if (slide >= 0 && (which < 0 || slide == which)) return 1;
+        }
+    }
+    return 0;
 }
 
 static const fu_field fields[] = {

@@ -1,9 +1,9 @@
-/* Joints between two attachments: couplings/joints.c has their equations, couplings/joint_operations.c what couplings do. */
-#ifndef FUNICULAR_JOINTS_H
-#define FUNICULAR_JOINTS_H
+/* Joints between two attachments: couplings/joint/equations.c has their equations, couplings/joint/joint.c what couplings do. */
+#ifndef FUNICULAR_COUPLINGS_JOINT_JOINT_H
+#define FUNICULAR_COUPLINGS_JOINT_JOINT_H
 
-#include "attachments.h"
-#include "coupling.h"
+#include "couplings/common/attachments.h"
+#include "couplings/common/coupling.h"
 
 /* A joint between two attachments; c = distance or angle = its base + its signal drives it. */
 typedef struct {

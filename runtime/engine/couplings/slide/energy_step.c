@@ -1,7 +1,10 @@
 /* A slide over a step that conserves energy: the constraint at the end of the step, and its discrete gradient G with
  * G psi = phi_next - phi_now.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/rotation.h"
+#include "bodies/unknowns.h"
+#include "couplings/slide/slide.h"
 
 /* Returns the configuration of the rider, a rigid body. */
 static const double *rider_at(const fu_model *model, const fu_state *state, const fu_slide *slide)

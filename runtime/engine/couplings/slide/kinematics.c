@@ -3,7 +3,10 @@
  * A rigid body has kernels of its own; any other rider is a point of something, and the kernels' derivatives by that
  * point become those by its coordinates: dp = P dq, p'' = P q'' + bias.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/accelerator.h"
+#include "couplings/slide/slide.h"
 
 #include <string.h>
 
@@ -36,21 +39,6 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
     view->b = view->rider.p;
     view->w = view->rider.v;
     view->u = no_arm;
-}
-
-fu_slide_flags *fu_slide_flags_of(const fu_model *model, const fu_state *state, int j)
-{
-    return (fu_slide_flags *)(state->flags + model->slides[j].base.flags);
-}
-
-fu_slide_numbers *fu_slide_numbers_of(const fu_model *model, const fu_state *state, int j)
-{
-    return (fu_slide_numbers *)(state->numbers + model->slides[j].base.numbers);
-}
-
-fu_slide_state *fu_slide_state_of(const fu_model *model, const fu_accelerator *work, int j)
-{
-    return (fu_slide_state *)(work->scratch + model->slides[j].base.scratch);
 }
 
 /* Makes rows over (element, point, `more`) rows over (element, rider, `more`). */
@@ -208,14 +196,14 @@ double fu_slide_frame(const fu_model *model, const fu_state *state, int j, doubl
     return C_s[0];
 }
 
-/* Returns the length of the cable of a slide, m. */
-double fu_length(const fu_model *model, int slide)
+void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
 {
-    return fu_cable_length(&model->cables[model->slides[slide].cable]);
-}
-
-/* Returns the arc-length at the first node of an element of a slide's cable, m. */
-double fu_element_start(const fu_model *model, int slide, int element)
-{
-    return fu_cable_start(&model->cables[model->slides[slide].cable], element);
+    const fu_slide_state *slide_state = fu_slide_state_of(model, work, j);
+    const fu_rows *rows = &work->rows[model->slides[j].base.row];
+    const int dim = model->dim;
+    for (int d = 0; d < dim; ++d) {
+        f[d] = 0.0;
+        for (int c = 0; c < rows->rows; ++c) f[d] -= slide_state->by_point[c * dim + d] * lambda[rows->first + c];
+        if (model->slides[j].resistance) f[d] += slide_state->by_point[(dim - 1) * dim + d] * slide_state->R;
+    }
 }

@@ -1,5 +1,8 @@
 /* Where a slide is on its cable: s by C_l = 0, eq 21, and the director that goes with the tangent there. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/slide/slide.h"
+
+#include <math.h>
 
 #define MOST_ITERATIONS 50 /* of Newton's method: it converges quadratically, or there is no such point of the cable near */
 #define ROUNDING 1e-15     /* of an element and of s: a correction that is rounding ends the iteration */

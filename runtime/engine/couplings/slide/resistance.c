@@ -5,8 +5,12 @@
  * force along the cable is then that of the lock. Of a slide that is driven R is a part of that force: the drive gives the
  * rest, and R counts for the drive's power and for the energy dissipated.
  */
-#include "engine.h"
+#include "bodies/model.h"
+#include "couplings/common/accelerator.h"
+#include "couplings/slide/resistance.h"
+#include "couplings/slide/slide.h"
 
+#include <math.h>
 #include <string.h>
 
 #define TRIAL 0.1          /* of the change that the law asks for: the first step of R, lest it turn the normal force round */

@@ -1,8 +1,8 @@
-/* Resistance of slides, friction and buffers: couplings/resistances.c. */
-#ifndef FUNICULAR_RESISTANCES_H
-#define FUNICULAR_RESISTANCES_H
+/* Resistance of slides, friction and buffers: couplings/slide/resistance.c. */
+#ifndef FUNICULAR_COUPLINGS_SLIDE_RESISTANCE_H
+#define FUNICULAR_COUPLINGS_SLIDE_RESISTANCE_H
 
-#include "coupling.h"
+#include "couplings/common/coupling.h"
 
 /* R of a slide, the force along its cable times r_x, and its derivatives */
 typedef struct {
@@ -16,7 +16,7 @@ void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const 
 void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, const double *J,
                         const fu_resistance *resistance, double *by_place, double *by_rate);
 
-/* Operations of a slide as a coupling (include/coupling.h). */
+/* Operations of a slide as a coupling (couplings/common/coupling.h). */
 double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                            fu_accelerator *work);
 void fu_resistance_reacted(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,

@@ -1,13 +1,17 @@
 /* What a slide does as a coupling. Own unknowns: s and the force f on the rider. Their equations are f . r_x = R, equilibrium
  * along the cable, eq 30, and phi = r - p = 0.
  */
-#include "engine.h"
+#include "base/workspace.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "couplings/joint/joint.h"
+#include "couplings/slide/resistance.h"
+#include "couplings/slide/slide.h"
 
-#include "workspace.h"
-
+#include <math.h>
 #include <string.h>
 
-/* Makes t = r_x and u, as resistances.c has them, from the derivatives J of phi by the coordinates and s, and R by the own
+/* Makes t = r_x and u, as couplings/slide/resistance.c has them, from the derivatives J of phi by the coordinates and s, and R by the own
  * force. */
 static void resistance_of(const fu_model *model, const fu_state *state, int j, const double *J, fu_resistance *resistance)
 {
@@ -120,18 +124,6 @@ double fu_slide_rate(const fu_model *model, const fu_state *state, int j)
 static void rates(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rate)
 {
     *rate = fu_slide_state_of(model, work, coupling->index)->s_rate;
-}
-
-void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
-{
-    const fu_slide_state *slide_state = fu_slide_state_of(model, work, j);
-    const fu_rows *rows = &work->rows[model->slides[j].base.row];
-    const int dim = model->dim;
-    for (int d = 0; d < dim; ++d) {
-        f[d] = 0.0;
-        for (int c = 0; c < rows->rows; ++c) f[d] -= slide_state->by_point[c * dim + d] * lambda[rows->first + c];
-        if (model->slides[j].resistance) f[d] += slide_state->by_point[(dim - 1) * dim + d] * slide_state->R;
-    }
 }
 
 /* Adds the force along the cable on a slide's rider that comes of joints whose frame goes with the slide: what their moments put

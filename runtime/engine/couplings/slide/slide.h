@@ -1,12 +1,12 @@
-/* Slides: couplings/slides.c has their kernels over their coordinates, couplings/slide_operations.c what couplings do. */
-#ifndef FUNICULAR_SLIDES_H
-#define FUNICULAR_SLIDES_H
+/* Slides: couplings/slide/kinematics.c has their kernels over their coordinates, couplings/slide/slide.c what couplings do. */
+#ifndef FUNICULAR_COUPLINGS_SLIDE_SLIDE_H
+#define FUNICULAR_COUPLINGS_SLIDE_SLIDE_H
 
-#include "attachments.h"
-#include "constraints.h"
-#include "coupling.h"
-#include "coupling_events.h"
-#include "end_stops.h"
+#include "couplings/common/attachments.h"
+#include "couplings/common/constraints.h"
+#include "couplings/common/coupling.h"
+#include "couplings/common/coupling_events.h"
+#include "couplings/slide/end_stops.h"
 
 /* A slide's own part of a state: its flags, and its numbers.
  *
@@ -21,7 +21,7 @@ typedef struct {
     double locked_s, director[FU_SPACE];
 } fu_slide_numbers;
 
-typedef struct {
+struct fu_slide {
     fu_coupling base;        /* one coordinate, s; as many forces as dimensions, on the rider */
     const fu_slide_kernels *kernel;
     int cable;
@@ -35,9 +35,8 @@ typedef struct {
     fu_end_stop stops[2];    /* at the start and at the end */
     double start_s, director[FU_SPACE]; /* of the state as it is drawn, as is the next */
     int start_piece;
-} fu_slide;
+};
 extern const fu_coupling_type fu_slide_type;
-extern const fu_coupling_events fu_slide_events;
 
 /* How a slide moves at a state (eq 20-37), and its resistance R there. */
 typedef struct {
@@ -68,12 +67,12 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
 double fu_slide_frame(const fu_model *model, const fu_state *state, int j, double A_t[9]);
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9]);
 
-/* couplings/slide_steps.c: residual and tangent over a step that conserves energy. */
+/* couplings/slide/energy_step.c: residual and tangent over a step that conserves energy. */
 void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f, double *own);
 void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *step,
                                 fu_system *system);
 
-/* couplings/arc_length.c: s where C_l = 0, eq 21, not zero where there is none; and the director that goes with it. */
+/* couplings/slide/position.c: s where C_l = 0, eq 21, not zero where there is none; and the director that goes with it. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int slide, double *s);
 void fu_carry_director(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
@@ -84,5 +83,9 @@ double fu_slide_rate(const fu_model *model, const fu_state *state, int slide);
 void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f);
 void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const double *acceleration,
                       const fu_accelerator *work, fu_slide_output *out);
+
+/* couplings/slide/state.c */
+double fu_length(const fu_model *model, int slide);
+double fu_element_start(const fu_model *model, int slide, int element);
 
 #endif

@@ -1,8 +1,8 @@
-/* Degrees of freedom and unknowns: linear/unknowns.c. */
-#ifndef FUNICULAR_UNKNOWNS_H
-#define FUNICULAR_UNKNOWNS_H
+/* Degrees of freedom and unknowns: bodies/unknowns.c. */
+#ifndef FUNICULAR_BODIES_UNKNOWNS_H
+#define FUNICULAR_BODIES_UNKNOWNS_H
 
-#include "linear.h"
+#include "linear/linear.h"
 
 /* Entries of model->unknown_of_dof: the place of the unknown that a dof is; that it is fixed; from FU_COMBINED on downwards, the number of
  * the combination of unknowns that it is. */

@@ -1,8 +1,8 @@
 /* Rows of output, one an output time: their arrays, described once. */
-#ifndef FUNICULAR_RECORD_H
-#define FUNICULAR_RECORD_H
+#ifndef FUNICULAR_BODIES_RECORD_H
+#define FUNICULAR_BODIES_RECORD_H
 
-#include "common.h"
+#include "base/common.h"
 
 /* ARRAY(name, axes: 1 for a number a row, items of a row) */
 #define FU_RECORD_ARRAYS(ARRAY)                                                                                          \
@@ -34,7 +34,7 @@ enum {
 #undef FU_COUNT
 };
 
-/* run/state.c */
+/* bodies/state.c */
 fu_array fu_record_array(const fu_model *model, const fu_record *record, int k);
 void fu_record_attach(fu_record *record, int k, double *data);
 int fu_record_is_finite(const fu_model *model, const fu_record *record, long row);

@@ -1,6 +1,9 @@
 /* The arrays of states and of rows of output as lists, for what treats all of them alike. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/record.h"
+#include "bodies/state.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Returns whether n numbers are all finite. */

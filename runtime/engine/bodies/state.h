@@ -1,8 +1,8 @@
 /* State of the motion at one instant: its arrays, described once. */
-#ifndef FUNICULAR_STATE_H
-#define FUNICULAR_STATE_H
+#ifndef FUNICULAR_BODIES_STATE_H
+#define FUNICULAR_BODIES_STATE_H
 
-#include "common.h"
+#include "base/common.h"
 
 /* The couplings' part of a state, which the first guess of a step takes over: ARRAY(type, name, items of a model). */
 #define FU_STATE_OF_COUPLINGS(ARRAY)                                                                                     \
@@ -37,9 +37,10 @@ enum {
 #undef FU_COUNT
 };
 
-/* run/state.c */
+/* bodies/state.c */
 fu_array fu_state_array(const fu_model *model, const fu_state *state, int k);
 void fu_state_attach(fu_state *state, int k, void *data);
+int fu_all_finite(const double *numbers, long n);
 void fu_state_take_couplings(const fu_model *model, fu_state *to, const fu_state *from);
 
 #endif

@@ -1,5 +1,8 @@
 /* Dofs and unknowns: dofs = T unknowns, where each row of T is empty, a single one, or a combination. */
-#include "engine.h"
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
+
+#include <math.h>
 
 enum { MAXIMA = 4 }; /* of dofs, found side by side: a processor does not wait for one before it begins the next */
 

@@ -1,0 +1,153 @@
+/* Points of a contact: where they are, which may touch, and what a force on one of them does. */
+#include "bodies/model.h"
+#include "couplings/contact/contact.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Returns into how many elements the points are divided; those of a body are one. */
+int fu_contact_elements(const fu_model *model, const fu_contact *contact)
+{
+    return contact->cable >= 0 ? model->cables[contact->cable].n_elements : 1;
+}
+
+double fu_contact_weight(const fu_contact *contact, int element, int point)
+{
+    return contact->cable >= 0 ? contact->weights[(long)element * contact->stride + point] : 1.0;
+}
+
+const double *fu_contact_shapes(const fu_contact *contact, int n, int element, int point)
+{
+    return contact->N + ((long)element * contact->stride + point) * n;
+}
+
+fu_friction_mark *fu_contact_mark(const fu_contact *contact, const fu_state *state, int element, int point)
+{
+    const long number = (long)element * contact->n_points + point;
+    return (fu_friction_mark *)(state->numbers + contact->base.numbers + number * FU_FRICTION_MARK);
+}
+
+/* Returns the first dof of an element. */
+int fu_contact_first(const fu_model *model, const fu_contact *contact, int element)
+{
+    const fu_cable *cable = &model->cables[contact->cable];
+    return cable->first + element * cable->per_node;
+}
+
+/* Returns whether a sphere about an element's first node, larger than need be but cheap, is off the surface by more than `beyond`. */
+static int is_far(int dim, int n, const fu_contact *contact, const fu_attachment_state *on, int element, const double *q, double beyond)
+{
+    const double *spread = contact->spread + (contact->stride ? (long)element * n : 0);
+    const double *end = q + n / 2 * dim;
+    double reach = 0.0;
+    for (int d = 0; d < dim; ++d) reach += spread[n / 2] * fabs(end[d] - q[d]);
+    for (int i = 1; i < n; ++i) {
+        if (i == n / 2) continue;
+        for (int d = 0; d < dim; ++d) reach += spread[i] * fabs(q[i * dim + d]);
+    }
+    return fu_surface_clearance(dim, &contact->surface, on, q, reach) > beyond;
+}
+
+/* Returns whether any point of an element may be nearer to the surface than `below` is beyond the radius. */
+int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+                         double below)
+{
+    const int dim = model->dim;
+    if (contact->cable < 0) {
+        const double *origin = state->q + model->bodies[contact->attachments[0].body].configuration;
+        return fu_surface_clearance(dim, &contact->surface, on, origin, contact->spread[0]) <= contact->radius + below;
+    }
+    const fu_cable *cable = &model->cables[contact->cable];
+    const int n = cable->coordinates / dim;
+    const double *q = state->q + fu_contact_first(model, contact, element);
+    if (is_far(dim, n, contact, on, element, q, contact->radius + below)) return 0;
+    double points[8 * 3], middle[3] = {0.0, 0.0, 0.0}, square = 0.0;
+    for (int k = 0; k < contact->n_hull; ++k)
+        for (int d = 0; d < dim; ++d) {
+            double *x = points + k * 3 + d;
+            *x = 0.0;
+            for (int i = 0; i < n; ++i) *x += contact->hull[((long)(contact->stride ? element : 0) * contact->n_hull + k) * n + i] * q[i * dim + d];
+            middle[d] += *x / contact->n_hull;
+        }
+    for (int k = 0; k < contact->n_hull; ++k) {
+        double sum = 0.0;
+        for (int d = 0; d < dim; ++d) sum += (points[k * 3 + d] - middle[d]) * (points[k * 3 + d] - middle[d]);
+        square = fmax(square, sum);
+    }
+    return fu_surface_clearance(dim, &contact->surface, on, middle, sqrt(square)) <= contact->radius + below;
+}
+
+/* Makes the place and the velocity of a point, its mark, and the turn since then. */
+void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+                      int point, fu_touch_point *out)
+{
+    const int dim = model->dim;
+    out->mark = contact->law.friction > 0.0 ? fu_contact_mark(contact, state, element, point) : 0;
+    memset(out->r, 0, sizeof out->r);
+    memset(out->v, 0, sizeof out->v);
+    memset(out->arm, 0, sizeof out->arm);
+    if (out->mark) out->since = state->t - fu_contact_begin_of(contact, state)->time;
+    if (fu_contact_rolls(contact)) fu_contact_turning(model, contact, on, state, out);
+    if (contact->cable < 0) {
+        fu_attachment_state end;
+        fu_attachment_at(model, &contact->attachments[point], state, 0.0, FU_POINT, &end);
+        memcpy(out->r, end.p, sizeof out->r);
+        memcpy(out->v, end.v, sizeof out->v);
+        return;
+    }
+    const fu_cable *cable = &model->cables[contact->cable];
+    const int n = cable->coordinates / dim;
+    const double *N = fu_contact_shapes(contact, n, element, point), *q = state->q + fu_contact_first(model, contact, element), *v = state->v + fu_contact_first(model, contact, element);
+    for (int k = 0; k < n; ++k)
+        for (int d = 0; d < dim; ++d) {
+            out->r[d] += N[k] * q[k * dim + d];
+            out->v[d] += N[k] * v[k * dim + d];
+        }
+}
+
+/* Adds P' f of a motion, times a factor, to what stands on the left of the equations of motion. */
+void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum)
+{
+    for (int d = 0; d < dim; ++d)
+        for (int i = 0; i < n; ++i) sum[at[i]] += factor * P[d * n + i] * f[d];
+}
+
+/* Adds the force where a point touches, and its reaction on the body that the surface is on, to what stands on the left of the
+ * equations. */
+void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
+                          int number, const fu_touch_point *point, double *f)
+{
+    const int dim = model->dim;
+    const double weight = fu_contact_weight(contact, element, number), *force = point->f;
+    double P[3 * FU_ATTACHMENT_COORDINATES], r[3] = {0.0};
+    for (int d = 0; d < dim; ++d) r[d] = point->r[d] + point->arm[d];
+    if (on->n) {
+        fu_surface_motion(dim, on, r, P);
+        fu_contact_add_along(dim, on->n, on->at, P, force, weight, f);
+    }
+    if (contact->cable >= 0) {
+        const int n = model->cables[contact->cable].coordinates / dim, first = fu_contact_first(model, contact, element);
+        const double *N = fu_contact_shapes(contact, n, element, number);
+        for (int k = 0; k < n; ++k)
+            for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
+        return;
+    }
+    fu_attachment_state end;
+    fu_attachment_at(model, &contact->attachments[number], state, 0.0, FU_POINT | FU_AXES, &end);
+    fu_surface_motion(dim, &end, r, P);
+    fu_contact_add_along(dim, end.n, end.at, P, force, -weight, f);
+}
+
+void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state, fu_contact_visitor *visit, void *context)
+{
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point point;
+            fu_contact_place(model, contact, &on, state, e, k, &point);
+            if (fu_contact_touches(model, contact, &on, &point)) visit(model, contact, &on, e, k, &point, context);
+        }
+    }
+}

@@ -1,0 +1,36 @@
+/* What Newton's method of an implicit step keeps: its unknowns beyond the dofs, and whether it goes on. */
+#include "couplings/common/couplings.h"
+#include "equations/equations.h"
+#include "equations/run.h"
+
+#include <math.h>
+
+#define COARSE 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
+
+double *fu_own(fu_run *run)
+{
+    return run->rhs + run->model->n_band + run->model->n_border_dof;
+}
+
+/* Adds the solution in run->rhs to the couplings' own coordinates and forces. */
+void fu_add_solution(fu_run *run, double inertia, double scale)
+{
+    fu_add_own(run->model, &run->next, fu_own(run), inertia, scale);
+}
+
+/* Returns whether steps go on as they have: those of a fixed size that had to be divided, or are too coarse, do not. */
+int fu_goes_on(const fu_run *run)
+{
+    if (run->fixed_step <= 0.0) return 1;
+    return run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
+}
+
+/* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to
+ * rounding instead: a gap of 1e-14 m after a step of 1 ms takes a force of 1e-8 N for each kg in the next one, which
+ * vibrations of the scheme keep for long. So are fixed steps that had to be divided, or are too coarse. */
+int fu_carries_rest(const fu_run *run)
+{
+    const fu_newton *method = run->integrator->newton;
+    if (!method || !method->note_rest || !fu_goes_on(run)) return 0;
+    return run->fixed_step <= 0.0 || !run->model->n_extra;
+}

@@ -1,0 +1,193 @@
+/* Contact with a surface comes and goes: where the deepest point passes zero, at the ends of a step or within it. */
+#include "base/double_root.h"
+#include "equations/run.h"
+#include "events/contact.h"
+#include "events/list.h"
+
+#include <math.h>
+#include <string.h>
+
+static const fu_contact *of(const fu_coupling *coupling)
+{
+    return (const fu_contact *)coupling;
+}
+
+/* Returns how deep the deepest point is, m; negative off the surface, where elements that are farther than others do not count. */
+static double deepest(const fu_model *model, const fu_contact *contact, const fu_state *state)
+{
+    double depth = -INFINITY;
+    fu_attachment_state on;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on, state, e, -depth)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point point;
+            fu_distance at;
+            fu_contact_place(model, contact, &on, state, e, k, &point);
+            fu_surface_distance(model->dim, &contact->surface, &on, point.r, &at);
+            depth = fmax(depth, contact->radius - at.g);
+        }
+    }
+    return depth;
+}
+
+static int watches(const fu_coupling *coupling, fu_watch *out)
+{
+    (void)coupling;
+    if (out) *out = (fu_watch){.which = 0, .direction = 0};
+    return 1;
+}
+
+static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)which;
+    return deepest(run->model, of(coupling), state);
+}
+
+static double depth(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double watched_value)
+{
+    (void)model, (void)coupling, (void)state;
+    return watched_value;
+}
+
+/* Returns how far beyond the ends of its surface a point touches, m. */
+static double beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_contact *contact = of(coupling);
+    double farthest = -INFINITY;
+    fu_attachment_state on;
+    if (!fu_surface_has_ends(&contact->surface)) return farthest;
+    fu_surface_at(model, &contact->surface, state, &on);
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            fu_touch_point point;
+            fu_contact_place(model, contact, &on, state, e, k, &point);
+            const double far = fu_surface_beyond(model->dim, &contact->surface, &on, point.r);
+            if (far > fmax(farthest, 0.0) && fu_contact_touches(model, contact, &on, &point)) farthest = far;
+        }
+    }
+    return farthest;
+}
+
+static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)model, (void)which;
+    return state->flags[coupling->flags] ? 1 : -1;
+}
+
+static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    (void)which;
+    run->now.flags[coupling->flags] = side > 0;
+    *what = side > 0 ? "came into contact" : "lost contact";
+    return FU_RUNNING;
+}
+
+static int begin(fu_run *run, const fu_coupling *coupling)
+{
+    run->now.flags[coupling->flags] = deepest(run->model, of(coupling), &run->now) > 0.0;
+    return FU_RUNNING;
+}
+
+double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+                      int number, double *rate, fu_surface_end *end)
+{
+    fu_touch_point point;
+    double w[3] = {0.0};
+    fu_contact_place(model, contact, on, state, element, number, &point);
+    fu_surface_distance(model->dim, &contact->surface, on, point.r, &point.distance);
+    fu_surface_past(model->dim, on, point.r, point.v, w);
+    *rate = fu_dot(model->dim, point.distance.n, w);
+    if (end) {
+        memcpy(end->y, point.distance.y, sizeof end->y);
+        fu_surface_into(model->dim, on, w, end->rate);
+        fu_surface_into(model->dim, on, point.distance.n, end->n);
+        end->gap = point.distance.g - contact->radius;
+    }
+    return point.distance.g - contact->radius;
+}
+
+/* Returns how far a point that is near may have moved over a step past the surface, m, by the velocities at one end of it. */
+static double reach_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double h)
+{
+    double fastest = 0.0, farthest = 0.0;
+    if (contact->cable < 0) return INFINITY;
+    const fu_cable *cable = &model->cables[contact->cable];
+    const int n = cable->coordinates + (cable->n_elements - 1) * cable->per_node;
+    for (int i = cable->first; i < cable->first + n; i += cable->per_node)
+        fastest = fmax(fastest, sqrt(fu_dot(model->dim, state->v + i, state->v + i)));
+    if (!on->n) return h * fastest;
+    for (int i = cable->first; i < cable->first + n; i += cable->per_node)
+        for (int d = 0; d < model->dim; ++d) farthest = fmax(farthest, fabs(state->q[i + d] - on->p[d]));
+    return h * (fastest + sqrt(fu_dot(model->dim, on->v, on->v)) + 2.0 * farthest * sqrt(fu_dot(model->dim == 3 ? 3 : 1, on->omega, on->omega)));
+}
+
+double fu_contact_pass(const fu_run *run, const fu_contact *contact, double h)
+{
+    const fu_model *model = run->model;
+    fu_attachment_state on, on_next;
+    fu_surface_end ends[2];
+    double rate;
+    fu_surface_at(model, &contact->surface, &run->now, &on);
+    fu_surface_at(model, &contact->surface, &run->next, &on_next);
+    fu_contact_gap(model, contact, &on, &run->now, 0, 0, &rate, &ends[0]);
+    fu_contact_gap(model, contact, &on_next, &run->next, 0, 0, &rate, &ends[1]);
+    return fu_surface_pass(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
+}
+
+#define RESOLVED 0.25 /* of an impact's time over pi: what steps in it stay below */
+
+/* Returns the step that resolves the impact of a body that begins at `now`, s, 0 where that is not needed: where its speed, which the
+ * impact turns round, would not move it by more than tol allows in the time that is left. */
+static double step_of_impact(const fu_run *run, const fu_contact *contact, double h)
+{
+    const fu_model *model = run->model;
+    double fastest = 0.0, deepest_now = 0.0;
+    fu_attachment_state on;
+    if (contact->cable >= 0 || run->fixed_step > 0.0) return 0.0;
+    fu_surface_at(model, &contact->surface, &run->now, &on);
+    for (int k = 0; k < contact->n_points; ++k) {
+        double rate;
+        const double depth = -fu_contact_gap(model, contact, &on, &run->now, 0, k, &rate, 0);
+        if (depth < -h * fabs(rate)) continue;
+        fastest = fmax(fastest, fabs(rate));
+        deepest_now = fmax(deepest_now, depth);
+    }
+    if (!(fastest * (run->duration - run->now.t) > fmax(run->absolute_tol, run->tol * run->controlled_motion))) return 0.0;
+    const double mass = model->bodies[contact->attachments[0].body].mass;
+    double stiffness = contact->n_points * contact->law.stiffness;
+    if (contact->law.hertz) /* at the depth that the speed leads to: 2/5 k d^(5/2) = m v^2/2 */
+        stiffness *= 1.5 * sqrt(fmax(deepest_now, pow(1.25 * mass * fastest * fastest / stiffness, 0.4)));
+    const double longest = RESOLVED * sqrt(mass / stiffness);
+    return h > 1.5 * longest ? longest : 0.0;
+}
+
+static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+{
+    const fu_model *model = run->model;
+    const fu_contact *contact = of(coupling);
+    double first = 0.0;
+    fu_attachment_state on, on_next;
+    (void)which;
+    if (run->now.flags[coupling->flags]) return step_of_impact(run, contact, h);
+    fu_surface_at(model, &contact->surface, &run->now, &on);
+    fu_surface_at(model, &contact->surface, &run->next, &on_next);
+    const double reach = fmax(reach_of(model, contact, &on, &run->now, h), reach_of(model, contact, &on_next, &run->next, h));
+    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        if (!fu_contact_may_touch(model, contact, &on_next, &run->next, e, reach)) continue;
+        for (int k = 0; k < contact->n_points; ++k) {
+            double rate, rate_next;
+            fu_surface_end ends[2];
+            const double gap = fu_contact_gap(model, contact, &on, &run->now, e, k, &rate, &ends[0]);
+            const double gap_next = fu_contact_gap(model, contact, &on_next, &run->next, e, k, &rate_next, &ends[1]);
+            double found = fu_dip((fu_course){gap, rate}, (fu_course){gap_next, rate_next}, 1, h, run->round_off);
+            if (found == 0.0) found = fu_surface_pass(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
+            if (found > 0.0 && (first == 0.0 || found < first)) first = found;
+        }
+    }
+    return first;
+}
+
+const fu_coupling_events fu_contact_events = {
+    .watches = watches, .watched = watched, .depth = depth, .beyond = beyond, .sign = sign, .act = act, .begin = begin, .dip = dip};

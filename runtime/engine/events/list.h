@@ -1,0 +1,18 @@
+/* The types of couplings with the events that they find: events/list.c. */
+#ifndef FUNICULAR_EVENTS_LIST_H
+#define FUNICULAR_EVENTS_LIST_H
+
+#include "couplings/common/coupling_events.h"
+
+extern const fu_coupling_events fu_contact_events;
+extern const fu_coupling_events fu_crossing_events;
+extern const fu_coupling_events fu_drag_events;
+extern const fu_coupling_events fu_hard_contact_events;
+extern const fu_coupling_events fu_point_force_events;
+extern const fu_coupling_events fu_slide_events;
+
+/* The type of this name, null where there is none; gives a coupling the events of its type. */
+const fu_coupling_type *fu_coupling_type_of(const char *name);
+void fu_bind_events(fu_coupling *coupling);
+
+#endif

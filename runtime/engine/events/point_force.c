@@ -1,0 +1,298 @@
+/* Forces between two points pass from piece to piece of their law (couplings/force/segments.c): the distance passes a bound, or the force
+ * turns round.
+ */
+#include "base/double_root.h"
+#include "couplings/force/point_force.h"
+#include "equations/run.h"
+#include "events/list.h"
+
+#include <math.h>
+
+#define BISECTIONS 40 /* of a step: where the distance passes a bound, to rounding */
+
+static const fu_point_force *force_of(const fu_coupling *coupling)
+{
+    return (const fu_point_force *)coupling;
+}
+
+static double norm(int dim, const double *gap)
+{
+    return sqrt(fu_dot(dim, gap, gap));
+}
+
+/* Returns how far the force of a piece is on the right side of nil, m; infinity where it may pull and push. */
+static double margin_of_sense(const fu_point_force *between, int piece, const double *gap, const double *rate, double distance)
+{
+    const int sense = between->senses[piece];
+    double force[3];
+    if (sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE) return INFINITY;
+    between->law->force(fu_piece_parameters(between, piece), gap, rate, force);
+    return sense * between->compliance * fu_dot(between->dim, force, gap) / distance;
+}
+
+/* How the force may pass from its piece to another: `margin` is negative while it stays, m. */
+typedef struct {
+    double margin;
+    int piece;
+} passage;
+
+static passage farther(passage a, passage b)
+{
+    return b.margin > a.margin ? b : a;
+}
+
+/* Returns the nearest piece without force towards the distances at which a piece's own force is nil. */
+static int free_beside(const fu_point_force *between, int piece)
+{
+    const int step = -between->senses[piece];
+    while (between->senses[piece] != FU_HAS_NO_FORCE) piece += step;
+    return piece;
+}
+
+/* Returns the passage of the force to a piece with a force on one side of a piece without: where the points are on it, and its
+ * force has its sense. */
+static passage entering(const fu_point_force *between, int piece, int side, const double *gap, const double *rate,
+                        double distance)
+{
+    const double beyond = side * (distance - between->bounds[piece - (side < 0)]);
+    int entered = fu_piece_at_distance(between, distance);
+    if (side * (entered - piece) < 1) entered = piece + side;
+    return (passage){fmin(beyond, margin_of_sense(between, entered, gap, rate, distance)), entered};
+}
+
+/* Returns the passage from a piece that is nearest, or has happened. */
+static passage passage_from(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece)
+{
+    passage found = {-INFINITY, piece};
+    double gap[3], rate[3];
+    fu_gap(model, between, state->q, state->v, gap, rate);
+    const double distance = norm(between->dim, gap);
+    const double sense = margin_of_sense(between, piece, gap, rate, distance);
+    if (sense < INFINITY) found = (passage){-sense, free_beside(between, piece)};
+    for (int side = -1; side <= 1; side += 2) {
+        const int beside = piece + side;
+        if (beside < 0 || beside >= between->n_pieces) continue;
+        if (between->senses[piece] == FU_HAS_NO_FORCE)
+            found = farther(found, entering(between, piece, side, gap, rate, distance));
+        else
+            found = farther(found, (passage){side * (distance - between->bounds[piece - (side < 0)]), beside});
+    }
+    return found;
+}
+
+static passage next_passage(const fu_model *model, const fu_point_force *between, const fu_state *state)
+{
+    return passage_from(model, between, state, fu_force_piece(between, state));
+}
+
+/* Passages follow from where the points are; each leads from piece to piece. */
+static int pass(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to)
+{
+    const fu_point_force *between = force_of(coupling);
+    int *piece = &to->flags[coupling->flags];
+    const int before = *piece;
+    *piece = from->flags[coupling->flags];
+    for (int i = 0; i < between->n_pieces; ++i) {
+        const passage next = next_passage(model, between, to);
+        if (!(next.margin > 0.0)) break;
+        *piece = next.piece;
+    }
+    return *piece != before;
+}
+
+/* What has happened where the force has passed from piece to piece, in words; nothing at a corner of a table. */
+static const char *words(const fu_point_force *between, int before, int after)
+{
+    const int was_free = between->senses[before] == FU_HAS_NO_FORCE, is_free = between->senses[after] == FU_HAS_NO_FORCE;
+    return is_free ? "became slack" : !was_free ? "" : after > before ? "became taut" : "came into contact";
+}
+
+/* The distance of the points at a state, and what tells of the force: the gap, its rate, its acceleration. */
+typedef struct {
+    double distance, gap[3], rate[3], acceleration[3];
+} look;
+
+static look look_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
+{
+    look l = {.distance = 0.0};
+    for (int e = 0; e < 2; ++e) {
+        fu_attachment_state at;
+        fu_attachment_at(model, &between->attachments[e], state, 0.0, FU_POINT, &at);
+        for (int d = 0; d < between->dim; ++d) {
+            double acceleration = at.bias[d];
+            for (int i = 0; i < at.n; ++i) acceleration += at.P[d * at.n + i] * state->acceleration[at.at[i]];
+            l.gap[d] += e ? at.p[d] : -at.p[d];
+            l.rate[d] += e ? at.v[d] : -at.v[d];
+            l.acceleration[d] += e ? acceleration : -acceleration;
+        }
+    }
+    l.distance = norm(between->dim, l.gap);
+    return l;
+}
+
+/* Returns the distance of the points, less that at which a piece ends, m, and its rate. */
+static fu_course from_bound(const fu_model *model, const fu_point_force *between, const fu_state *state, int bound)
+{
+    double gap[3], gap_rate[3];
+    fu_gap(model, between, state->q, state->v, gap, gap_rate);
+    const double distance = norm(between->dim, gap);
+    return (fu_course){distance - between->bounds[bound], fu_dot(between->dim, gap, gap_rate) / distance};
+}
+
+/* The distance of the points at an end of a step, less that at which a piece ends, and its derivatives by the part of the step, m. */
+typedef struct {
+    double value, rate, bend;
+} end_course;
+
+static end_course end_of(const fu_model *model, const fu_point_force *between, const fu_state *state, int bound, double h)
+{
+    const int dim = between->dim;
+    const look l = look_at(model, between, state);
+    const double rate = fu_dot(dim, l.gap, l.rate) / l.distance;
+    const double bend = (fu_dot(dim, l.rate, l.rate) + fu_dot(dim, l.gap, l.acceleration) - rate * rate) / l.distance;
+    return (end_course){l.distance - between->bounds[bound], h * rate, h * h * bend};
+}
+
+/* Returns where the polynomial is at a part of the step: of degree 3 where the bends at its ends are not known, else of degree 5. */
+static double between_ends(end_course a, end_course b, int bends, double x)
+{
+    const double y = 1.0 - x;
+    if (!bends)
+        return y * y * ((1.0 + 2.0 * x) * a.value + x * a.rate) + x * x * ((1.0 + 2.0 * y) * b.value - y * b.rate);
+    return y * y * y * ((1.0 + 3.0 * x + 6.0 * x * x) * a.value + x * (1.0 + 3.0 * x) * a.rate + 0.5 * x * x * a.bend) +
+           x * x * x * ((1.0 + 3.0 * y + 6.0 * y * y) * b.value - y * (1.0 + 3.0 * y) * b.rate + 0.5 * y * y * b.bend);
+}
+
+/* By the polynomial of the distance through both ends of the step (Hermite's); where a damper turns the force round, by the line of its
+ * margins. */
+static double passed(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,
+                     int bends, const char **what)
+{
+    const fu_point_force *between = force_of(coupling);
+    const int before = fu_force_piece(between, from), there = fu_force_piece(between, to);
+    const int after = there == before ? passage_from(model, between, to, before).piece : there, up = after > before;
+    double low = 0.0, high = 1.0;
+    *what = words(between, before, after);
+    if (coupling->is_damped) {
+        const double a = passage_from(model, between, from, before).margin, b = passage_from(model, between, to, before).margin;
+        return a < 0.0 && b > 0.0 ? a / (a - b) : 1.0;
+    }
+    const int bound = up ? before : before - 1;
+    const end_course a = end_of(model, between, from, bound, h), b = end_of(model, between, to, bound, h);
+    for (int i = 0; i < BISECTIONS; ++i) {
+        const double x = 0.5 * (low + high), way = between_ends(a, b, bends, x);
+        if ((up ? way : -way) < 0.0) low = x;
+        else high = x;
+    }
+    return high;
+}
+
+static double since(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_point_force *between = force_of(coupling);
+    const int before = fu_force_piece(between, state), up = next_passage(model, between, state).piece > before;
+    if (coupling->is_damped) return NAN;
+    const fu_course course = from_bound(model, between, state, up ? before : before - 1);
+    return course.value / course.rate;
+}
+
+static void passed_force(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                         double factor, double *f)
+{
+    fu_add_force_change(model, force_of(coupling), to, fu_force_piece(force_of(coupling), from), factor, f);
+}
+
+static int watches(const fu_coupling *coupling, fu_watch *out)
+{
+    if (force_of(coupling)->n_pieces == 1) return 0;
+    if (out) *out = (fu_watch){.which = 0, .direction = 1};
+    return 1;
+}
+
+static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)which;
+    return next_passage(run->model, force_of(coupling), state).margin;
+}
+
+/* Returns by how much the distance is beyond that of a bound to a side, m, and its rate. */
+static fu_course beyond(const fu_point_force *between, int bound, int side, const look *l)
+{
+    const double rate = fu_dot(between->dim, l->gap, l->rate) / l->distance;
+    return (fu_course){side * (l->distance - between->bounds[bound]), side * rate};
+}
+
+/* Returns how far the force of a piece is on the wrong side of nil, m, and its rate. */
+static fu_course wrong_sense(const fu_point_force *between, int piece, const look *l)
+{
+    const int dim = between->dim;
+    double force[3], by_gap[9], by_rate[9], change = 0.0;
+    between->law->tangent(fu_piece_parameters(between, piece), l->gap, l->rate, force, by_gap, by_rate);
+    for (int i = 0; i < dim; ++i)
+        for (int k = 0; k < dim; ++k)
+            change += l->gap[i] * (by_gap[i * dim + k] * l->rate[k] + by_rate[i * dim + k] * l->acceleration[k]);
+    const double along = fu_dot(dim, force, l->gap) / l->distance, rate = fu_dot(dim, l->gap, l->rate) / l->distance;
+    const double slope = (change + fu_dot(dim, force, l->rate) - along * rate) / l->distance;
+    const double unit = -between->senses[piece] * between->compliance;
+    return (fu_course){unit * along, unit * slope};
+}
+
+/* Each of the passages alone is smooth. A piece with a force is entered at its bound first, as its damper then has its sense. */
+static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+{
+    const fu_point_force *between = force_of(coupling);
+    const int piece = fu_force_piece(between, &run->now), sense = between->senses[piece];
+    const look from = look_at(run->model, between, &run->now), to = look_at(run->model, between, &run->next);
+    double first = 0.0;
+    (void)which;
+    for (int side = -1; side <= 1; ++side) {
+        const int bound = piece - (side < 0), by_sense = side == 0;
+        if (by_sense ? sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE : bound < 0 || bound >= between->n_pieces - 1) continue;
+        const double found = by_sense ? fu_dip(wrong_sense(between, piece, &from), wrong_sense(between, piece, &to), -1, h,
+                                               run->round_off)
+                                      : fu_dip(beyond(between, bound, side, &from), beyond(between, bound, side, &to), -1, h,
+                                               run->round_off);
+        if (found > 0.0 && (first == 0.0 || found < first)) first = found;
+    }
+    return first;
+}
+
+static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    const fu_point_force *between = force_of(coupling);
+    const int before = fu_force_piece(between, &run->now), after = next_passage(run->model, between, &run->now).piece;
+    (void)which, (void)side;
+    run->now.flags[coupling->flags] = after;
+    *what = words(between, before, after);
+    return FU_RUNNING;
+}
+
+static int can_act(const fu_coupling *coupling)
+{
+    return force_of(coupling)->n_pieces > 1;
+}
+
+/* A force that the damper would turn round at the start is none. */
+static int begin(fu_run *run, const fu_coupling *coupling)
+{
+    const fu_point_force *between = force_of(coupling);
+    fu_state *now = &run->now;
+    if (between->n_pieces == 1) return FU_RUNNING;
+    fu_touch_piece(run->model, coupling, now);
+    const passage next = next_passage(run->model, between, now);
+    if (next.margin > 0.0) now->flags[coupling->flags] = next.piece;
+    return FU_RUNNING;
+}
+
+const fu_coupling_events fu_point_force_events = {
+    .watches = watches,
+    .watched = watched,
+    .dip = dip,
+    .act = act,
+    .pass = pass,
+    .passed = passed,
+    .since = since,
+    .passed_force = passed_force,
+    .can_act = can_act,
+    .begin = begin,
+};

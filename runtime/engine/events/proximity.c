@@ -1,0 +1,171 @@
+/* Looks for what may be near: clearances of couplings measured anew, and the watches that may pass zero.
+ *
+ * couplings/common/proximity.c has what a look is for, and what lies between two of them.
+ */
+#include "equations/run.h"
+#include "events/proximity.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STEPS 16      /* for which a look shall do */
+#define MOST_AGE 256  /* steps after which there is another look, as motions may have become slower */
+#define ROUNDING 1e-9 /* of clearances, ways and places */
+
+/* Makes the speeds of a mover, m/s and rad/s. */
+static void speeds_of(const fu_model *model, int mover, const double *v, double *speed, double *spin)
+{
+    const fu_body *body = fu_body_of_mover(model, mover);
+    *spin = 0.0;
+    if (!body) {
+        *speed = fu_most_of_cable(&model->cables[mover], v, 0);
+        return;
+    }
+    const double *w = v + body->dof;
+    *speed = sqrt(fu_dot(model->dim, w, w));
+    for (int i = model->dim; i < body->kernel->velocity; ++i) *spin += w[i] * w[i];
+    *spin = sqrt(*spin);
+}
+
+static fu_watch_list every_watch(const fu_run *run)
+{
+    return (fu_watch_list){0, run->n_watches};
+}
+
+static fu_watch_list near_watches(const fu_run *run)
+{
+    return (fu_watch_list){run->model->proximity->near_watches, run->model->proximity->n_near_watches};
+}
+
+fu_watch_list fu_near_watches(const fu_run *run, const fu_state *state)
+{
+    return run->model->n_pairs && fu_movers_are_near(run->model, state->q) ? near_watches(run) : every_watch(run);
+}
+
+/* A cubic goes no farther from its ends than a third of the step at their rates. */
+fu_watch_list fu_near_watches_within(const fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const fu_proximity *p = model->proximity;
+    const fu_state *ends[2] = {&run->now, &run->next};
+    if (!model->n_pairs || !p->is_known) return every_watch(run);
+    for (int m = 0; m < p->n_movers; ++m)
+        for (int end = 0; end < 2 && p->movers[m].pairs; ++end) {
+            double way, turn, speed, spin;
+            fu_mover_gone_by(model, m, ends[end]->q, &way, &turn);
+            speeds_of(model, m, ends[end]->v, &speed, &spin);
+            way += 0.34 * h * (speed + spin * p->movers[m].radius);
+            turn += 0.34 * h * spin;
+            if (!(way <= p->movers[m].way && turn <= p->movers[m].turn)) return every_watch(run);
+        }
+    return near_watches(run);
+}
+
+int fu_is_far_watch(const fu_run *run, int watch)
+{
+    const fu_coupling *c = fu_own_coupling(run, watch);
+    return c && run->model->n_pairs && run->model->proximity->is_known && run->model->proximity->is_far[c->number];
+}
+
+/* Returns what a pair's movers have gone at all, or may go until the next look. */
+static double used_by(const fu_proximity *p, const fu_pair *pair, int ahead)
+{
+    double sum = 0.0;
+    for (int i = 0; i < 2; ++i) {
+        if (pair->between[i] < 0) continue;
+        const fu_mover *mover = &p->movers[pair->between[i]];
+        sum += ahead ? mover->way : mover->gone;
+        if (i) sum += pair->lever * (ahead ? mover->turn : mover->turned);
+    }
+    return sum;
+}
+
+/* Measures a pair at a state. The lever grows by no more than the gap before that is used up. */
+static void measure(const fu_model *model, fu_pair *pair, const fu_state *state)
+{
+    const fu_coupling *c = model->couplings[pair->coupling];
+    fu_proximity *p = model->proximity;
+    const fu_clearance found = c->type->clearance(model, c, state);
+    pair->lever = found.lever + fmax(found.gap, 0.0);
+    pair->limit = found.gap * (1.0 - ROUNDING) + used_by(p, pair, 0);
+    if (pair->between[0] >= model->n_cables) p->movers[pair->between[0]].radius = fmax(p->movers[pair->between[0]].radius, found.radius);
+}
+
+/* Returns whether a pair stays far while its movers go no farther than they may until the next look. */
+static int stays_far(const fu_run *run, const fu_pair *pair)
+{
+    const fu_proximity *p = run->model->proximity;
+    const double ahead = used_by(p, pair, 1);
+    return pair->limit - used_by(p, pair, 0) > ahead + ROUNDING * (ahead + run->extent);
+}
+
+/* Measures pairs at a state that may be near before the next look, or all of them, and notes which are far. */
+static void sort_pairs(fu_run *run, const fu_state *state, int all)
+{
+    fu_proximity *p = run->model->proximity;
+    for (int k = 0; k < p->n_pairs; ++k) {
+        fu_pair *pair = &p->pairs[k];
+        if (all || !stays_far(run, pair)) measure(run->model, pair, state);
+        p->is_far[pair->coupling] = (char)stays_far(run, pair);
+    }
+}
+
+/* Lists what is not far. */
+static void list_near(fu_run *run)
+{
+    const fu_model *model = run->model;
+    fu_proximity *p = model->proximity;
+    p->n_near = p->n_near_watches = 0;
+    for (int k = 0; k < model->n_couplings; ++k)
+        if (!p->is_far[k] || !p->is_alone[k]) p->near[p->n_near++] = model->couplings[k];
+    p->is_known = 1;
+    for (int k = 0; k < run->n_watches; ++k)
+        if (!fu_is_far_watch(run, k)) p->near_watches[p->n_near_watches++] = k;
+}
+
+/* Counts what movers have gone since the last look; returns whether one of them has gone half of what it may. */
+static int count_ways(const fu_model *model, const fu_state *state, double *ways, double *turns)
+{
+    const fu_proximity *p = model->proximity;
+    int is_late = 0;
+    for (int m = 0; m < p->n_movers; ++m) {
+        ways[m] = turns[m] = 0.0;
+        if (!p->movers[m].pairs) continue;
+        fu_mover_gone_by(model, m, state->q, &ways[m], &turns[m]);
+        is_late |= !(ways[m] <= 0.5 * p->movers[m].way && turns[m] <= 0.5 * p->movers[m].turn);
+    }
+    return is_late;
+}
+
+/* Lets movers go as far until the next look as they have gone of late, or go now, in some steps of h. */
+static void expect(const fu_model *model, const fu_state *state, double h, int steps, const double *ways, const double *turns)
+{
+    fu_proximity *p = model->proximity;
+    for (int m = 0; m < p->n_movers; ++m) {
+        fu_mover *mover = &p->movers[m];
+        double speed, spin;
+        if (!mover->pairs) continue;
+        speeds_of(model, m, state->v, &speed, &spin);
+        mover->gone += ways[m];
+        mover->turned += turns[m];
+        mover->way = STEPS * fmax(ways[m] / steps, h * (speed + spin * mover->radius));
+        mover->turn = STEPS * fmax(turns[m] / steps, h * spin);
+    }
+}
+
+void fu_look_around(fu_run *run, double h, int anew)
+{
+    const fu_model *model = run->model;
+    fu_proximity *p = model->proximity;
+    if (!model->n_pairs) return;
+    double *ways = p->ways, *turns = p->ways + p->n_movers;
+    anew |= !p->is_known;
+    ++p->age;
+    if (anew) memset(ways, 0, sizeof(double) * 2 * (size_t)p->n_movers);
+    else if (!count_ways(model, &run->now, ways, turns) && p->age < MOST_AGE) return;
+    expect(model, &run->now, run->fixed_step > 0.0 ? run->fixed_step : fmax(h, run->h), p->age, ways, turns);
+    memcpy(p->at, run->now.q, sizeof(double) * (size_t)model->n_q);
+    sort_pairs(run, &run->now, anew);
+    list_near(run);
+    p->age = 0;
+}

@@ -1,0 +1,24 @@
+/* Which couplings may act, and which watches may pass zero: events/proximity.c. */
+#ifndef FUNICULAR_EVENTS_PROXIMITY_H
+#define FUNICULAR_EVENTS_PROXIMITY_H
+
+#include "couplings/common/proximity.h"
+
+/* The watches that may pass zero up to a state (null: in no way), or within a step of h that leads to `next`. */
+typedef struct {
+    const int *list; /* null: all, in their order */
+    int n;
+} fu_watch_list;
+fu_watch_list fu_near_watches(const fu_run *run, const fu_state *state);
+fu_watch_list fu_near_watches_within(const fu_run *run, double h);
+static inline int fu_watch_of(fu_watch_list list, int i)
+{
+    return list.list ? list.list[i] : i;
+}
+/* Whether a watch was passed over when values at `now` were taken. */
+int fu_is_far_watch(const fu_run *run, int watch);
+
+/* Looks anew at what may be near, after a step of h, where that may be needed, or in any case. */
+void fu_look_around(fu_run *run, double h, int anew);
+
+#endif

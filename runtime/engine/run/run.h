@@ -1,0 +1,30 @@
+/* The time loop of a run: run/run.c. */
+#ifndef FUNICULAR_RUN_RUN_H
+#define FUNICULAR_RUN_RUN_H
+
+#include "equations/run.h"
+
+/* run/record.c */
+int fu_record_row(fu_run *run);
+int fu_stop(fu_run *run);
+
+/* run/start.c */
+int fu_prepare(fu_run *run);
+int fu_start(fu_run *run);
+int fu_start_scheme(fu_run *run, int project);
+
+/* run/event_handling.c */
+int fu_let_happen(fu_run *run, fu_event event);
+
+/* run/breakpoints.c */
+const fu_knot *fu_next_knot(const fu_run *run, double latest);
+int fu_pass_knot(fu_run *run, const fu_knot *knot, int event);
+
+/* run/steps.c */
+int fu_step_towards(fu_run *run, double target);
+
+/* run/run.c: the time loop */
+int fu_has_worked(const fu_run *run);
+int fu_advance(fu_run *run, double seconds);
+
+#endif
