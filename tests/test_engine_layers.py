@@ -1,4 +1,4 @@
-"""The C files of the engine form layers: calls and includes run down the layers, and no files call each other in a circle."""
+"""Layers of the C files of the engine: calls and includes run down, and no files call each other in a circle."""
 
 import re
 from pathlib import Path
@@ -9,7 +9,8 @@ ENGINE = Path(__file__).parents[1] / "runtime" / "engine"
 LAYERS = ["base", "linear", "bodies", "couplings", "equations", "events", "integrators", "run"]
 """From the lowest to the highest."""
 
-DEFINITIONS = (r"^(?!static)(?:\w+ (?:\*|const )*)+\*?(fu_\w+)\([^;{]*\)\n\{", r"^const \w+ (?:\*const )?(fu_\w+)(?:\[\])? = ")
+DEFINITIONS = (r"^(?!static)(?:\w+ (?:\*|const )*)+\*?(fu_\w+)\([^;{]*\)\n\{",
+               r"^const \w+ (?:\*const )?(fu_\w+)(?:\[\])? = ")
 
 
 def code(path: Path) -> str:
@@ -70,7 +71,8 @@ def test_calls_run_down_the_layers():
 
 
 def test_includes_run_down_the_layers():
-    up = [(file, to) for file, text in {**SOURCES, **HEADERS}.items() for to in re.findall(r'#include "(\w+/.*?)"', text)
+    up = [(file, to) for file, text in {**SOURCES, **HEADERS}.items()
+          for to in re.findall(r'#include "(\w+/.*?)"', text)
           if level(file) < level(to)]
     assert up == []
 

@@ -18,7 +18,8 @@ from ..parts.slide import Slide
 from .hulls import Hull, hull_of
 
 UP, CARRIED = -1, -2
-"""What completes the frame of a tangent, as engine/couplings/common/attachments.h has it: a direction of the ground, or the slide's director."""
+"""What completes the frame of a tangent, as couplings/common/attachments.h has it:
+a direction of the ground, or the slide's director."""
 
 T = TypeVar("T")
 
@@ -30,7 +31,7 @@ SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
 
 @dataclass
 class AttachmentModel:
-    """fu_attachment of engine/couplings/common/attachments.h: -1 for what it is not on; mass and length are scales of it, kg and m.
+    """fu_attachment of the engine: -1 for what it is not on; mass and length are scales of it, kg and m.
 
     modal: of a modal body's node, where it is undeformed, and its displacements and turns by modes.
     """

@@ -23,7 +23,7 @@ GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 KERNELS = {2: "planar_surface", 3: "surface"}
 NONE = np.zeros(0)
 MARK_NUMBERS, AXES_NUMBERS, MARK_PLACE = 17, 9, slice(3, 6)
-"""That a state keeps of friction: of a point, of a body's axes; places among them (engine/couplings/contact/contact.h)."""
+"""That a state keeps of friction: of a point, of a body's axes; places among them (couplings/contact/contact.h)."""
 NO_TIME = 1e300
 """In s: FU_NO_TIME of engine/couplings/common/stick_friction.h."""
 

@@ -29,12 +29,12 @@ KERNELS = {2: "planar_drag", 3: "drag"}
 class DragModel(CouplingModel):
     """The force of a fluid on a cable, or on a point of a body; cable -1: it is on a body, at the one attachment.
 
-    velocity (dim), in m/s, times the signal of that number (-1: one) and the profile, as engine/couplings/fluid/drag.h has it,
+    velocity (dim), in m/s, times the signal of that number (-1: one) and the profile, as couplings/fluid/drag.h has it,
     at the height base + up . r. coefficients: as the kernel takes them. buoyancy (dim): N/m of a cable, N of a body.
     lift, foil, section: likewise, is_foil: a body with a span, or a beam with a chord; n_angles, angles, polar_drag,
     polar_lift, polar_moment: its polar, see `Polar.pieces`.
     wet: what a surface cuts, all: nothing; extent: half the height of that, m; surface, bottom: heights, m.
-    displaced: mass of the fluid displaced, added: that it adds, as engine/couplings/fluid/drag.h has them, where has_inertia.
+    displaced: mass of the fluid displaced, added: that it adds, as couplings/fluid/drag.h has them, where has_inertia.
     weights (1 or elements, n_points), in m, N, N_x and N_chord, of a beam's chord (1 or elements, n_points, vectors):
     of the quadrature on the elements of the cable, once where they are equal; stride: points from one element's to the
     next's. degree, n_splines (4), knots, table: of splines in time and space, degree 0 without; origin (3,), axes (9):

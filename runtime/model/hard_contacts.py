@@ -19,7 +19,7 @@ GIVES_WAY = 1e-10
 
 @dataclass(kw_only=True)
 class HardContactModel(ContactModel):
-    """fu_hard_contact of engine/couplings/hard_contact/hard_contact.h, of one point of a body; without what a penalty has.
+    """fu_hard_contact of hard_contact.h, of one point of a body; without what a penalty has.
 
     restitution: of the normal velocity; rest_velocity: m/s, below which what would part stays; sliding: Coulomb's
     coefficient; weight: N, of the body;

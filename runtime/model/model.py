@@ -175,7 +175,7 @@ class MotionModel:
 
 @dataclass
 class Model:
-    """Arrays that the engine reads; engine/include/ says what they mean. tables: addresses of further kernels.
+    """Arrays that the engine reads; engine/bodies/model.h says what they mean. tables: addresses of further kernels.
 
     newton, accelerations: how the borders of Newton's systems and of those of eq 38 are eliminated; plane_axes: what
     turns results into the ground's axes, None where the model is in these.

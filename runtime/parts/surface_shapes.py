@@ -135,7 +135,7 @@ AnySurfaceShape = Annotated[Part, checked(_shape, tagged("surface_shape"))]
 
 @dataclass
 class Geometry:
-    """A surface as the engine takes it (engine/couplings/common/surfaces.h), from an origin (3,) along axes (3, 3) by columns.
+    """A surface as the engine takes it (couplings/common/surfaces.h), from an origin (3,) along axes (3, 3) by columns.
 
     word: the kind of shape; direction (3,): a normal or an axis; radius, half_length in m; half_size (3,): of a box
     along its axes, in m; first, second: knots of a height field, and cells (first, second, 4, 4) of its coefficients,
