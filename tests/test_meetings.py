@@ -34,9 +34,10 @@ from funicular.results.run import Run
 from meeting_questions import QUESTIONS, Asked
 from meeting_scenes import FACTORS, PROFILES, SECTIONS, SIGNALS, SOLIDS, STOPS, SURFACES, build, laws
 
-SLOW = ("plots", "plots_of_run", "film_of_run", "picture_of_run", "page_of_run", "page_of_scene", "page_of_rest",
-        "modes_as_drawn", "load_path", "relaxed", "from_relaxed", "files_for_paraview")
-"""Questions that take long: pictures, and searches with many steps."""
+SLOW = ("adjusted", "errors", "from_another_run", "loads_in_steps", "plots", "plots_of_run", "film_of_run",
+        "picture_of_run", "page_of_run", "page_of_scene", "page_of_rest", "modes_as_drawn", "load_path", "relaxed",
+        "from_relaxed", "files_for_paraview")
+"""Questions that take long: pictures, searches with many steps, several runs or states of rest of a scene."""
 
 EVERY = FACTORS | {"integrator": [AUTO, *INTEGRATORS]}
 NEUTRAL = {factor: levels if factor == "element" else levels[:1] for factor, levels in EVERY.items()}
@@ -68,7 +69,8 @@ def outcome(row: Row) -> str:
         try:
             scene = build(row, Path(place))
             if "question" in row:
-                QUESTIONS[row["question"]](Asked(scene, row["integrator"], Path(place)))
+                levels = frozenset((factor, level) for factor, level in row.items() if factor in FACTORS)
+                QUESTIONS[row["question"]](Asked(scene, row["integrator"], Path(place), levels))
             else:
                 _begin(scene, row["integrator"]) if is_picky(row) else scene.check()
         except fu.EquilibriumError as error:
@@ -98,6 +100,17 @@ def same(one: str, other: str) -> bool:
     return one.split(":")[:parts] == other.split(":")[:parts]
 
 
+CAUSES: dict[frozenset[Level], str] = {}
+"""Smallest sets of levels that were found so far, of any question, with the errors that they end in."""
+
+
+def _known(row: Row, found: str) -> frozenset[Level] | None:
+    """Return a set of levels in a row that has ended in the very same refusal before."""
+    if not found.startswith(REFUSED):
+        return None
+    return next((levels for levels, error in CAUSES.items() if error == found and levels <= row.items()), None)
+
+
 def answered(array: CoveringArray, neutral: dict[str, list[str]]) -> dict[frozenset[Level], str]:
     """Ask all rows of an array; return by smallest set of levels the errors that they end in.
 
@@ -110,7 +123,8 @@ def answered(array: CoveringArray, neutral: dict[str, list[str]]) -> dict[frozen
         if found == WORKS or found.startswith(TOLD):
             array.worked(row)
         else:
-            levels = smallest(row, neutral, lambda row: same(found, outcome(row)))  # noqa: B023
+            levels = _known(row, found) or smallest(row, neutral, lambda row: same(found, outcome(row)))  # noqa: B023
+            CAUSES[levels] = found
             array.refuse(levels)
             if not found.startswith(REFUSED):
                 errors[levels] = found
