@@ -53,7 +53,7 @@ def _reported_without_traceback() -> Iterator[None]:
 class _Commands(typer.core.TyperGroup):
     """All commands, within one report of errors, warnings and Ctrl-C."""
 
-    def invoke(self, ctx: typer.Context) -> Any:
+    def invoke(self, ctx: Any) -> Any:
         """Run the command that the context names."""
         with _reported_without_traceback():
             return super().invoke(ctx)

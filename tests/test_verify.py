@@ -125,10 +125,10 @@ def test_an_energy_that_is_wrong_in_spec_and_text_alike_is_found(generated, caps
 
 
 def test_signs_changed_inside_the_slide_are_found(generated, capsys):
-    file, kernel = "slide_beam24_rigid.c", "slide_beam24_rigid_terms"
+    file, kernel = "slide_cable12_rigid.c", "slide_cable12_rigid_terms"
     for entry in ("W[1]", "s_bias[0]", "H[7]"):
         break_output(generated, file, kernel, entry)
-    assert verify.main(["slide_beam24_rigid"], generated) == 1
+    assert verify.main(["slide_cable12_rigid"], generated) == 1
     out = capsys.readouterr().out
     for output in ("W", "s_bias", "H"):
         assert f"{kernel}: {output} is not" in out
