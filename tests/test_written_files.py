@@ -69,7 +69,7 @@ WRITERS = {
     "bench.csv": lambda path, run, measured: report.save(measured, path.parent, "bench"),
     "schema.json": lambda path, run, measured: schema(path),
     "figure.png": lambda path, run, measured: figure(path),
-    "cable12.html": lambda path, run, measured: command.build("cable12", path.parent),
+    "rigid.html": lambda path, run, measured: command.build("rigid", path.parent),
 }
 LEFT = {"bench.csv": 200}
 

@@ -23,7 +23,7 @@ def thrown() -> Scene:
     return scene
 
 
-@HERE.case("a cable thrown on the ground", balance=BALANCE, deepest=(5.6e-3, 5.8e-3))
+@HERE.case("a cable thrown on the ground", balance=BALANCE, deepest=(5.6e-3, 5.8e-3), slow=["energy"])
 def on_the_ground(integrator):
     run = simulate(thrown(), 0.5, integrator=integrator, output_step=0.01)
     return {"balance": balance(run), "deepest": float(run["contact_1.penetration"].max())}

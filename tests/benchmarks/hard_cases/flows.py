@@ -72,6 +72,6 @@ def stopped(integrator):
     return figures(run) | {"speed": float(-run["A.velocity"][-1, 1])}
 
 
-@HERE.case("nearly all inertia is the water's", error=1e-3, balance=1e-3, slow=["genalpha", "energy"])
+@HERE.case("nearly all inertia is the water's", error=1e-3, balance=1e-3, slow=["genalpha", "energy", "explicit"])
 def light_in_water(integrator):
     return compared(feather, 0.5, integrator, output_step=0.05)[1]
