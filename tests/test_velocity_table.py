@@ -256,6 +256,14 @@ def test_an_equilibrium_beyond_it_says_so():
         scene.equilibrium()
 
 
+def test_a_table_that_leaves_a_skew_plane_by_rounding_stays_in_it():
+    a, b = np.linalg.qr(np.array([[1, 2], [2, -1], [2, 5.0]]))[0].T
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.cable("wire", start=(0, 0, 0), end=a, up=b, elements=3, element="cable8p", **ROPE)
+    scene.fluid(density=WATER, table=fu.VelocityTable(x=[-1, 0, 1, 2], velocity=[0.7 * a + 0.2 * b] * 4))
+    assert "wire" in scene.cables and scene.plane is not None
+
+
 def test_a_table_across_the_plane_is_refused():
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=3, element="cable8p", **ROPE)

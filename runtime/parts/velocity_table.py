@@ -13,6 +13,7 @@ from pydantic import model_validator
 from ..errors import near
 from .data_files import MOST, FileArrays, arrays_of
 from .part import Part
+from .plane import flattened
 from .schemas import checked
 from .validation import LIMITS, OTHER_LIMITS, list_of, one_of, show
 
@@ -117,7 +118,7 @@ class VelocityTable(Part):
         """Return the table with velocities along other axes, the columns of ``axes`` (3, 3); the grid stays."""
         made = self.model_copy()
         made.__dict__.pop("_splines", None)  # a copy has what its original keeps
-        made.__dict__["grid"] = Grid(self.grid.axes, self.grid.velocity @ axes)
+        made.__dict__["grid"] = Grid(self.grid.axes, flattened(self.grid.velocity @ axes))
         return made
 
     @property
