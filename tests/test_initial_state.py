@@ -142,3 +142,14 @@ def test_closing_a_gap_does_not_stretch_friction(integrator):
         assert run.report["messages"] == ["gaps of joints were closed at the start: things moved by up to 0.005 m"]
         np.testing.assert_allclose(run["rod.force"], there["rod.force"], atol=1e-9)
     assert there["rod.force"][0, 0] == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("friction", "noted"), [(0.3, True), (None, False)])
+def test_friction_springs_of_a_state_begin_unstretched_and_a_message_says_so(friction, noted):
+    scene = fu.Scene()
+    scene.surface("ground", fu.Plane())
+    scene.rigid_body("A", mass=1.0, inertia=(0.01, 0.01, 0.01), position=(0, 0, 0), velocity=(1, 0, 0))
+    scene.contact("A", "ground", stiffness=1e4, friction=friction, name="sole")
+    settings = {"duration": 0.02, "tol": 1e-4, "output_step": 0.01}
+    later = scene.run(**settings, initial=scene.run(**settings).at(0.01))
+    assert any('friction springs of "sole" begin unstretched' in note for note in later.report["messages"]) == noted

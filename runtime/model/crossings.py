@@ -71,7 +71,7 @@ def crossing_model(part: Crossing, scene: SceneData, attachments: AttachmentBuil
     law = (radius, sign_of(part, start.normal, start.d), part.stiffness * linear, part.stiffness * (not linear),
            part.damping, LEAST_PENETRATION, *((0.0, 1.0) if part.friction is None or part.friction.sticks
                                               else (part.friction.coefficient, part.friction.velocity)))
-    sticking = part.friction.coefficient if part.friction is not None and part.friction.sticks else 0.0
+    sticking = part.friction.coefficient if part.friction and part.has_friction_spring else 0.0
     return CrossingModel(
         kernel=KERNELS[dim], cables=numbers, attachments=ends, axis=axis, low=(0.0, low),
         high=(of_lines[0].mesh.total, high), law=law, start=tuple(start.s),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -38,9 +38,11 @@ class InitialState(Mapping[str, np.ndarray]):
     modal_coordinates, modal_velocities; of slides s. Units are those of the results. What is not given is as drawn.
     """
 
-    def __init__(self, arrays: Mapping[str, Any], time: float | None = None):
-        """Keep the arrays; time: of the run that they are from, in s. Raises SceneError for what is no number."""
-        self.time = time
+    def __init__(self, arrays: Mapping[str, Any], time: float | None = None, unstretched: Sequence[str] = ()):
+        """Keep the arrays; time: of the run that they are from, in s; unstretched: names of contacts and crossings
+        whose friction springs were stretched there. Raises SceneError for what is no number.
+        """
+        self.time, self._unstretched = time, unstretched
         self._arrays = {}
         for name, values in arrays.items():
             try:
@@ -71,9 +73,14 @@ class InitialState(Mapping[str, np.ndarray]):
     @property
     def messages(self) -> list[str]:
         """Return what the report of a run says of its start."""
-        if self.time is None:
-            return []
-        return [f"starts from a state of another run, at its t = {self.time:.6g} s: signals begin anew at t = 0"]
+        found = []
+        if self.time is not None:
+            found = [f"starts from a state of another run, at its t = {self.time:.6g} s: signals begin anew at t = 0"]
+        if self._unstretched:
+            names = ", ".join(f'"{name}"' for name in self._unstretched)
+            found.append(f"the friction springs of {names} begin unstretched, which were stretched in that run: errors "
+                         "may be larger than tol. To continue that run, give it save and resume=True")
+        return found
 
     def check_fits(self, scene: SceneData) -> None:
         """Raise SceneError for a name that is of nothing in the scene."""

@@ -85,6 +85,11 @@ class Contact(Part):
         """Return Coulomb's coefficient, 0 without friction."""
         return 0.0 if self.friction is None else self.friction.coefficient
 
+    @property
+    def has_friction_spring(self) -> bool:
+        """Return whether a spring holds what sticks."""
+        return not self.is_hard and self.friction_coefficient > 0
+
     @model_validator(mode="after")
     def _has_friction_that_sticks(self) -> Contact:
         if self.friction is not None:

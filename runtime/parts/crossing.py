@@ -63,6 +63,11 @@ class Crossing(Part):
     tangential_stiffness: Annotated[float, positive("N/m")] | None = None
     side: Annotated[Vector | None, direction()] = None
 
+    @property
+    def has_friction_spring(self) -> bool:
+        """Return whether a spring holds what sticks."""
+        return self.friction is not None and self.friction.sticks
+
     @model_validator(mode="after")
     def _is_of_two_lines(self) -> Crossing:
         if self.a == self.b:
