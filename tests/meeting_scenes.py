@@ -348,6 +348,14 @@ def build(row: dict[str, str], folder: Path) -> fu.Scene:
     return scene
 
 
+def random_row(seed: int) -> dict[str, str]:
+    """Return a row for `build`: of a random element, and of random levels of three other factors."""
+    rng = np.random.default_rng(seed)
+    row = {factor: levels[0] for factor, levels in FACTORS.items()}
+    some = rng.choice([factor for factor in FACTORS if factor not in ("element", "law")], 3, replace=False)
+    return row | {factor: str(rng.choice(FACTORS[factor])) for factor in ("element", *some)}
+
+
 def _tetrahedron(folder: Path) -> Path:
     path = folder / "solid.stl"
     corners = np.array([(0, 0, 0), (0.1, 0, 0), (0, 0.1, 0), (0, 0, 0.1)])

@@ -12,16 +12,16 @@ from funicular.choice.planar import planar_of
 from funicular.parts.attachment import Attachment
 from funicular.parts.cable import Cable
 from funicular.parts.crossing import Crossing
+from funicular.parts.drag import Drag
+from funicular.parts.event import Event
 from funicular.parts.joint import Joint
-from funicular.parts.load import DistributedForce
 from funicular.parts.part import Part
-from funicular.parts.slide import Slide
-from funicular.parts.support import Tie
 from funicular.rotations import rotate, turned_by
 from rewritten import in_units
 from turned_scenes import turned_scene
 
 Vectors = np.ndarray
+Triple = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,8 @@ class Frame:
     given one.
     """
 
-    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rotation: Triple = (0.0, 0.0, 0.0)
+    shift: Triple = (0.0, 0.0, 0.0)
     length: float = 1.0
     time: float = 1.0
 
@@ -61,6 +61,10 @@ class Route:
     reversed: tuple[str, ...] = ()
 
 
+Maker = Callable[[fu.Scene], Route | None]
+"""Makes the route of a scene, None of one that has no such."""
+
+
 def points(run: fu.Run, route: Route) -> dict[str, Vectors]:
     """Return by name of cables and bodies (time, points, 3): nodes, and of bodies the origin and a point on each of
     three lines, which lie along the given ground's axes as drawn, at the radius of gyration.
@@ -70,9 +74,9 @@ def points(run: fu.Run, route: Route) -> dict[str, Vectors]:
         nodes = run[f"{name}.nodal_vectors"][:, :, 0]
         found[name] = nodes[:, ::-1] if name in route.reversed else nodes
     for name, body in route.scene.bodies.items():
-        lever = np.sqrt(np.trace(body.inertia) / body.mass)
+        lever = np.sqrt(np.trace(body.inertia) / body.mass) if isinstance(body, fu.RigidBody) else 1.0
         turned, at = run[f"{name}.orientation"], run[f"{name}.position"]
-        in_body = rotate(np.multiply(body.orientation, (1, -1, -1, -1)), route.frame.axes())
+        in_body = rotate(np.multiply(body.frame[1], (1, -1, -1, -1)), route.frame.axes())
         arms = np.stack([rotate(turned, arm) for arm in in_body], axis=1)
         found[name] = at[:, None] + lever * np.concatenate([0 * arms[:, :1], arms], axis=1)
     return {name: route.frame.back(each) for name, each in found.items()}
@@ -106,16 +110,24 @@ def reordered(scene: fu.Scene) -> Route | None:
     return Route(scene.with_parts(parts)) if any(len(scene.group(part.group)) > 1 for part in parts) else None
 
 
-def moving(**frame) -> Callable[[fu.Scene], Route]:
-    """Return the route of a scene turned and shifted as a whole."""
-    def moved(scene: fu.Scene) -> Route:
-        there = Frame(**frame)
-        return Route(there.moved(scene), there)
+def moving(rotation: Triple = (0.0, 0.0, 0.0), up: float = 0.0, aside: float = 0.0) -> Maker:
+    """Return the route of a scene turned by a vector in rad, and then moved by so many m up and across the plane of
+    x and gravity. A fluid that changes with the height is not moved up.
+    """
+    def moved(scene: fu.Scene) -> Route | None:
+        if any(fluid.profile is not None or fluid.surface is not None for fluid in scene.fluids.values()) and up:
+            return None
+        shift = rotate(turned_by(np.array(rotation)), up * scene.up + aside * np.array([0.0, 0.0, 1.0]) + (1.0, 0, 0))
+        frame = Frame(rotation, tuple(shift))
+        try:
+            return Route(frame.moved(scene), frame)
+        except fu.SceneError:  # of motions that are free along one of the ground's axes
+            return None
 
     return moved
 
 
-def in_other_units(length: float, mass: float, time: float) -> Callable[[fu.Scene], Route]:
+def in_other_units(length: float, mass: float, time: float) -> Maker:
     """Return the route of a scene in other units: so many of them are a metre, a kilogram, a second."""
     def made(scene: fu.Scene) -> Route:
         return Route(in_units(scene, length, mass, time), Frame(length=1 / length, time=1 / time))
@@ -124,8 +136,9 @@ def in_other_units(length: float, mass: float, time: float) -> Callable[[fu.Scen
 
 
 def reversed_cables(scene: fu.Scene) -> Route | None:
-    """Cables that begin where they ended."""
-    if not scene.cables:
+    """Cables that begin where they ended. None of a scene whose parts have a sense along them: motors, polars."""
+    driven = any(slide.drive is not None or slide.velocity is not None for slide in scene.slides.values())
+    if not scene.cables or driven or any(drag.polar is not None for drag in scene.drags.values()):
         return None
     return Route(scene.with_parts(_from_the_end(part.as_made(), scene) for part in scene.parts()),
                  reversed=tuple(scene.cables))
@@ -134,19 +147,34 @@ def reversed_cables(scene: fu.Scene) -> Route | None:
 def _from_the_end(part: Part, scene: fu.Scene) -> Part:
     """Return a part of a scene whose cables begin at their other ends."""
     if isinstance(part, Cable):
-        assert part.nodes is None and not any(part.angular_velocity)
-        ends = {"points": part.points[::-1]} if part.points else {"start": part.end, "end": part.start}
-        return part.remade(ends)
-    assert not isinstance(part, DistributedForce | Tie) and getattr(part, "drive", None) is None
+        return _reversed(part)
     changes: dict[str, object] = {
         name: value.model_copy(update={"s": scene.cables[value.on].length - value.s})
         for name, value in part if isinstance(value, Attachment) and value.s is not None}
-    if getattr(part, "s", None) is not None:
-        cable = next(getattr(part, name) for name in ("cable", "along", "on") if hasattr(part, name))
-        changes["s"] = scene.cables[cable].length - part.s
-    if isinstance(part, Slide):
-        changes |= {"at_start": part.at_end, "at_end": part.at_start}
+    for place, on in ALONG:
+        of = scene.cables.get(getattr(part, on, None) or "")
+        if of is not None and isinstance(s := getattr(part, place, None), float):
+            changes[place] = of.length - s
+    if isinstance(part, Event) and part.s is not None:
+        changes["s"] = scene.cables[part.quantity.partition(".")[0]].length - part.s
+    for one, other in EXCHANGED.items():
+        if hasattr(part, one) and hasattr(part, other):
+            changes |= {one: changes.get(other, getattr(part, other)), other: changes.get(one, getattr(part, one))}
+    if isinstance(part, Drag) and part.on in scene.cables:
+        changes["lift"] = -part.lift
+    if getattr(part, "follower", False) and (getattr(part, "on", None) or getattr(part, "cable", None)) in scene.cables:
+        tangential, across, aside = part.value  # the height stays in space, in the plane it turns
+        changes["value"] = (-tangential, across, -aside) if scene.dim == 3 else (-tangential, -across, aside)
     return part.model_copy(update=changes)
+
+
+def _reversed(cable: Cable) -> Cable:
+    """Return a cable that begins at its other end."""
+    assert not any(cable.angular_velocity), "its velocity is of its first point"
+    changes = {"points": cable.points[::-1]} if cable.points else {"start": cable.end, "end": cable.start}
+    if cable.nodes is not None:
+        changes["nodes"] = (cable.length - np.array(cable.nodes[::-1])).tolist()
+    return cable.remade(changes)
 
 
 def planes_as_boxes(scene: fu.Scene) -> Route | None:
@@ -161,32 +189,42 @@ def planes_as_boxes(scene: fu.Scene) -> Route | None:
 
 
 def in_space_or_plane(scene: fu.Scene) -> Route | None:
-    """Spatial elements in place of planar ones, or the other way round where the scene stays in its plane."""
+    """Spatial elements in place of planar ones, or the other way round where the scene stays in its plane. None of
+    planar cables that are tied rigidly: those without sections cannot be in space.
+    """
     if scene.dim == 3:
         planar = planar_of(scene).scene
         return None if planar is None else Route(planar)
+    if any(tie.rotation == "rigid" for tie in scene.ties.values()):
+        return None
     return Route(scene.with_parts(_in_space(part.as_made(), scene) for part in scene.parts()))
 
 
 def _in_space(part: Part, scene: fu.Scene) -> Part:
     if isinstance(part, Cable):
         return part.remade({"element": IN_SPACE[part.element], "law": part.law})
-    if isinstance(part, Crossing) and part.b is None:
+    if isinstance(part, Crossing) and part.b not in scene.cables:
         return part.remade({"axis": (0, 0, 1), "length": 0.5})
     elements = [scene.cables[end.on].element for _, end in part if isinstance(end, Attachment) and end.s is not None]
-    if isinstance(part, Joint) and part.joint_kind == "weld" and "cable8p" in elements:  # whose sections have no axes
-        return part.remade({"up": (0, 0, 1)})
+    if isinstance(part, Joint) and part.joint_kind not in ("spherical", "distance") and "cable8p" in elements:
+        return part.remade({"up": (0, 0, 1)})  # its sections have no axes
     return part
 
 
+ALONG = {("s", "cable"), ("s", "along"), ("s", "on"), ("at", "to"), ("start", "cable"), ("stop", "cable"),
+         ("body_s", "body")}
+"""Fields that are arc-lengths, and those that name the cable of them."""
+EXCHANGED = {"at_start": "at_end", "start": "stop"}
+"""Fields that are of either end of a cable."""
 WIDE = 20.0
 """m: size of a box in place of a plane."""
 IN_SPACE = {"cable8p": "cable12", "beam12p": "beam24"}
-ROUTES: dict[str, Callable[[fu.Scene], Route | None]] = {
+ROUTES: dict[str, Maker] = {
     "reordered": reordered,
-    "shifted": moving(shift=(1.0, 2.0, 0.0)),
-    "turned": moving(rotation=(0.0, 0.0, 0.7)),
-    "moved": moving(rotation=(0.3, -0.7, 1.1), shift=(1.0, 2.0, -3.0)),
+    "shifted": moving(),
+    "raised": moving(up=2.0),
+    "turned": moving((0.0, 0.0, 0.7)),
+    "moved": moving((0.3, -0.7, 1.1), aside=-3.0),
     "mm, t, s": in_other_units(1e3, 1e-3, 1.0),
     "km, kg, min": in_other_units(1e-3, 1.0, 1 / 60),
     "reversed": reversed_cables,
