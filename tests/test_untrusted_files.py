@@ -1,6 +1,8 @@
 """Files are data: nothing that a scene, its arrays or its results say is run. Libraries: test_user_elements.py."""
 
 import io
+import json
+import os
 import pickle
 import re
 import zipfile
@@ -8,9 +10,9 @@ import zipfile
 import numpy as np
 import pytest
 import xarray
-from funicular import Scene, SceneError, VelocityTable
-from funicular.parts import data_files
+from funicular import FunicularError, Scene, SceneError, VelocityTable, bounded_files, load_scene
 from funicular.scene_file import loads
+from funicular.view.mesh_files import read_mesh
 from shared_scenes import CABLE
 
 MARKER = []
@@ -84,6 +86,87 @@ def test_arrays_are_measured_before_they_are_read(add, tmp_path):
 
 def test_variables_of_netcdf_are_measured_before_they_are_read(tmp_path, monkeypatch):
     xarray.Dataset({"nodes": ("n", np.zeros(50))}).to_netcdf(tmp_path / "large.nc", engine="scipy")
-    monkeypatch.setattr(data_files, "MOST_IN_FILE", 49)
+    monkeypatch.setattr(bounded_files, "MOST_NUMBERS", 49)
     with pytest.raises(SceneError, match="has arrays of 50 numbers, most of them in nodes; at most 49 are read"):
         Scene().modal_body("box", data=tmp_path / "large.nc", position=(0, 0, 0))
+
+
+def sparse(path, size):
+    """Make a file of zeros that takes no room; return its path."""
+    path.touch()
+    os.truncate(path, size)
+    return path
+
+
+@pytest.mark.parametrize("name", ["large.npz", "large.nc"])
+def test_bytes_of_arrays_are_bounded(name, tmp_path):
+    file = sparse(tmp_path / name, 1_000_000_001)
+    with pytest.raises(SceneError, match=r'^modal_body "box": .*"\S+large\.\w+" has 1000000001 bytes; at most '
+                                         "1000000000 are read; take a coarser grid"):
+        Scene().modal_body("box", data=file, position=(0, 0, 0))
+
+
+def test_members_of_one_name_are_all_measured(tmp_path, monkeypatch):
+    """NumPy reads "nodes" and not "nodes.npy", whose size was the one that counted."""
+    monkeypatch.setattr(bounded_files, "MOST_NUMBERS", 49)
+    with zipfile.ZipFile(tmp_path / "two.npz", "w") as archive:
+        for name, size in (("nodes", 50), ("nodes.npy", 1)):
+            with archive.open(name, "w") as member:
+                np.save(member, np.zeros(size))
+    with pytest.raises(SceneError, match="has arrays of 51 numbers, most of them in nodes; at most 49 are read"):
+        Scene().modal_body("box", data=tmp_path / "two.npz", position=(0, 0, 0))
+
+
+def test_the_text_of_a_scene_is_bounded(tmp_path):
+    with pytest.raises(SceneError, match=r"large\.toml: has 50000001 bytes; at most 50000000 are read; keep long tab"):
+        load_scene(sparse(tmp_path / "large.toml", 50_000_001))
+
+
+@pytest.mark.parametrize("name", ["large.stl", "large.glb", "large.gltf"])
+def test_bytes_of_meshes_are_bounded(name, tmp_path):
+    pytest.importorskip("trimesh")
+    with pytest.raises(FunicularError, match=r"large\.\w+: has 200000001 bytes; at most 200000000 are read; take"):
+        read_mesh(sparse(tmp_path / name, 200_000_001))
+
+
+def gltf(path, buffer="corners.bin", count=3, parts=1, nodes=1):
+    """Write a glTF file of a triangle; return its path. parts: surfaces of it; nodes: how often these are shown."""
+    (path.parent / "corners.bin").write_bytes(np.eye(3, dtype="<f4").tobytes())
+    stored = {} if count > 3 else {"bufferView": 0}
+    path.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [*range(nodes)]}],
+        "nodes": [{"mesh": 0}] * nodes, "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}] * parts}],
+        "accessors": [{"componentType": 5126, "count": count, "type": "VEC3"} | stored],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"uri": buffer, "byteLength": 36}]}))
+    return path
+
+
+def test_a_mesh_is_read_with_its_files(tmp_path):
+    pytest.importorskip("trimesh")
+    vertices, triangles = read_mesh(gltf(tmp_path / "t.gltf", parts=2, nodes=3))
+    assert len(triangles) == 6 and sorted(map(tuple, np.unique(vertices, axis=0))) == [(0, 0, 1), (0, 1, 0), (1, 0, 0)]
+
+
+@pytest.mark.parametrize(("given", "message"), [
+    ({"count": 10**12}, "has surfaces of 6000000000000 numbers, most of them in array 0; at most 100000000 are read"),
+    ({"count": -10**12}, "cannot be read as a mesh: an array has a negative length"),
+    ({"buffer": "/dev/zero"}, 'it names "/dev/zero", which is no file in its folder or below'),
+    ({"buffer": "../far.bin"}, 'it names "../far.bin", which is no file in its folder or below'),
+    ({"buffer": "link.bin"}, 'it names "link.bin", which is no file in its folder or below'),
+    ({"buffer": "large.bin"}, "has 200000000 bytes; at most 1999")])
+def test_what_a_mesh_names_is_bounded(given, message, tmp_path):
+    pytest.importorskip("trimesh")
+    (tmp_path / "far.bin").write_bytes(bytes(36))
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "link.bin").symlink_to("/dev/zero")
+    sparse(tmp_path / "folder" / "large.bin", 200_000_000)
+    with pytest.raises(FunicularError, match=re.escape(message)):
+        read_mesh(gltf(tmp_path / "folder" / "t.gltf", **given))
+
+
+@pytest.mark.parametrize(("given", "total"), [({"parts": 100}, 909), ({"nodes": 100}, 900)])
+def test_a_surface_that_is_used_many_times_counts_as_often(given, total, tmp_path, monkeypatch):
+    pytest.importorskip("trimesh")
+    monkeypatch.setattr(bounded_files, "MOST_NUMBERS", 899)
+    with pytest.raises(FunicularError, match=f"has surfaces of {total} numbers, .* at most 899 are read; take a coar"):
+        read_mesh(gltf(tmp_path / "t.gltf", **given))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..bounded_files import MOST_BYTES, TooLargeError, check_bytes, check_numbers
 from ..errors import shown_path
 
 if TYPE_CHECKING:
@@ -19,15 +19,8 @@ if TYPE_CHECKING:
 NETCDF = {b"CDF\1": "scipy", b"CDF\2": "scipy", b"CDF\5": None, b"\x89HDF": None}
 """How files of data begin, and what reads them: None leaves it to xarray."""
 
-
 MOST = 50_000_000
 """Numbers of an array: 400 MB."""
-MOST_IN_FILE = 2 * MOST
-"""Numbers of all arrays in a file together, before any is read: files that compress well may hold any number."""
-
-
-class _TooLargeError(Exception):
-    """A file has more numbers than are read."""
 
 
 @dataclass
@@ -51,8 +44,9 @@ def arrays_of(path: str) -> FileArrays:
     if not os.path.isfile(file):  # False also of what no path can be
         raise ValueError(f'there is no file "{shown_path(path)}"')
     try:
+        check_bytes(file, MOST_BYTES)
         if file.suffix == ".npz":
-            _check_size(_sizes_in_npz(file))
+            check_numbers(_sizes_in_npz(file))
             with np.load(file, allow_pickle=False) as found:  # a pickle would run code
                 return FileArrays({name: found[name] for name in found.files})
         import xarray  # 0.5 s, for files of netCDF alone
@@ -62,12 +56,13 @@ def arrays_of(path: str) -> FileArrays:
         if head not in NETCDF:
             raise ValueError("it begins like no netCDF file")
         with xarray.open_dataset(file, engine=NETCDF[head], decode_times=False) as found:
-            _check_size({str(name): _numbers(each.shape, each.dtype) for name, each in found.variables.items()})
+            check_numbers((str(name), _numbers(each.shape, each.dtype)) for name, each in found.variables.items())
             made = FileArrays.of(found)
             made.units = {str(name): str(each.attrs.get("units", "")) for name, each in found.variables.items()}
             return made
-    except _TooLargeError as error:
-        raise ValueError(f'"{path}" {error}', "take a coarser grid, or leave out what is not needed") from None
+    except TooLargeError as error:
+        cause, remedy = error.args
+        raise ValueError(f'"{path}" {cause}', remedy) from None
     except Exception as error:
         raise ValueError(f'"{path}" could not be read: {error}', "give an .npz or a netCDF file") from error
 
@@ -77,11 +72,14 @@ def _numbers(shape: tuple[int, ...], dtype: np.dtype) -> int:
     return math.prod(shape) * max(1, -(-dtype.itemsize // 8))
 
 
-def _sizes_in_npz(file: Path) -> dict[str, int]:
-    """Return the numbers in each array of an .npz, by the arrays' own headers. Raises what damage leads to."""
+def _sizes_in_npz(file: Path) -> list[tuple[str, int]]:
+    """Return the numbers in each array of an .npz, by the arrays' own headers. Raises what damage leads to.
+
+    An archive may have two members of one name, with and without the ending .npy, of which NumPy reads one.
+    """
     import zipfile  # which few scenes need
 
-    sizes = {}
+    sizes = []
     with zipfile.ZipFile(file) as archive:
         for name in archive.namelist():
             with archive.open(name) as member:
@@ -89,13 +87,5 @@ def _sizes_in_npz(file: Path) -> dict[str, int]:
                 read = (np.lib.format.read_array_header_1_0 if version == (1, 0)
                         else np.lib.format.read_array_header_2_0)
                 shape, _, dtype = read(member)
-                sizes[name.removesuffix(".npy")] = _numbers(shape, dtype)
+                sizes.append((name.removesuffix(".npy"), _numbers(shape, dtype)))
     return sizes
-
-
-def _check_size(numbers: Mapping[str, int]) -> None:
-    """Raise _TooLargeError where arrays have more numbers than are read; numbers: by name."""
-    if (total := sum(numbers.values())) > MOST_IN_FILE:
-        largest = max(numbers, key=lambda name: numbers[name])
-        raise _TooLargeError(f"has arrays of {total} numbers, most of them in {largest}; at most {MOST_IN_FILE} are "
-                             "read")
