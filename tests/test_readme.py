@@ -19,7 +19,7 @@ from funicular.scene_file import loads
 from pages import PAGES, ROOT, page
 from typer.testing import CliRunner
 
-README, DERIVE, RUNTIME, BENCHMARKS, _ = pages = [page(path) for path in PAGES]
+README, DERIVE, RUNTIME, BENCHMARKS, *_ = pages = [page(path) for path in PAGES]
 OUTSIDE = "python3 -m venv", "funicular derive", "funicular verify", "funicular derive --check", "funicular theory"
 """Commands that .ci/run starts; `funicular derive --spec` is in tests/test_user_elements.py."""
 SHORT = {"bench": ["--duration", "0.02", "--repetitions", "1"], "sweep": ["--duration", "0.02", "--serial"]}

@@ -20,8 +20,9 @@ REPOSITORY = GUIDES.parents[1]
 """Where the package is built from; installed, there is none."""
 
 PAGES = {"runtime/README.md": "reference.md", "derive/README.md": "derivation.md",
-         "tests/benchmarks/README.md": "benchmarks.md"}
-"""Pages beside the code, and what they are called in the site."""
+         "tests/benchmarks/README.md": "benchmarks.md",
+         **{page.relative_to(REPOSITORY).as_posix(): page.name for page in sorted(GUIDES.glob("pages/*.md"))}}
+"""Pages beside the code, those of a subject among them, and what they are called in the site."""
 
 
 def build(out: Path, work: Path) -> int:
@@ -53,7 +54,7 @@ def _collect(work: Path) -> int:
         shutil.copy(file, work)
     shutil.copy(SITE / "conf.py", work)
     shutil.copytree(SITE / "static", work / "static")
-    shutil.copytree(GUIDES, work / "guides_source", ignore=shutil.ignore_patterns("site", "__*"))
+    shutil.copytree(GUIDES, work / "guides_source", ignore=shutil.ignore_patterns("site", "pages", "__*"))
     (work / "guides_source" / "GALLERY_HEADER.rst").write_text(GALLERY_HEADER, encoding="utf-8")
     for page, name in PAGES.items():
         (work / name).write_text(_moved((REPOSITORY / page).read_text(encoding="utf-8"), page), encoding="utf-8")
@@ -97,7 +98,7 @@ def _copy_pictures(page: Path, work: Path) -> None:
 
 
 def _moved(text: str, page: str) -> str:
-    """Return a page with links to other pages as they are in the site; links to code lose their target."""
+    """Return a page with links to other pages and to guides as they are in the site; other links lose their target."""
     here = Path(page).parent
 
     def link(found: re.Match[str]) -> str:
@@ -115,6 +116,8 @@ def _moved(text: str, page: str) -> str:
         name = PAGES.get(whole) or PAGES.get(f"{whole}/README.md")
         if name is not None:
             return f"[{words}]({name}{'#' + anchor if anchor else ''})"
+        if whole.endswith(".py") and Path(whole).stem in ORDER:
+            return f"[{words}](guides/{Path(whole).stem})"
         return found[0] if path.endswith(".png") and len(parts) == len(here.parts) + 1 else words
 
     return re.sub(r"(?<!!)\[([^\]]*)\]\(([^)]+)\)", link, text)
