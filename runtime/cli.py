@@ -353,10 +353,26 @@ def derive(
     check: Annotated[bool, typer.Option("--check", help="write nothing; fail if the files differ")] = False,
     spec: Annotated[Path | None, typer.Option(help="a Python file with elements of your own, instead")] = None,
     out: Annotated[Path | None, typer.Option(help="the directory for the library of --spec")] = None,
+    watch: Annotated[bool, typer.Option("--watch", help="on every save of a spec, derive, compile, verify and time the "
+                                        "named family alone; generated/ stays as it is")] = False,
+    explain: Annotated[bool, typer.Option("--explain", help="print how the named families or kernels were derived: "
+                                          "stages, operations, shared subexpressions, reasons")] = False,
 ) -> None:
     """Derive the equations and write generated/, or compare it with them; or make a library of your own elements."""
-    if (spec is None) != (out is None) or (spec is not None and (names or check)):
+    if (spec is None) != (out is None) or (spec is not None and (names or check or watch or explain)):
         raise typer.BadParameter("--spec FILE and --out DIR go together, and with nothing else")
+    if check + watch + explain > 1:
+        raise typer.BadParameter("--check, --watch and --explain exclude each other: give one of them")
+    if (watch or explain) and not names:
+        raise typer.BadParameter(f"{'--watch' if watch else '--explain'} needs a NAME, such as cable12_green_exact")
+    if watch:
+        from funicular.derive.watch import main as watch_families
+
+        raise typer.Exit(watch_families(names or []))
+    if explain:
+        from funicular.derive.explain import main as explain_kernels
+
+        raise typer.Exit(explain_kernels(names or []))
     if spec is None or out is None:
         from funicular.derive.pipeline import main
 

@@ -115,10 +115,7 @@ class Program:
         """
         exprs = [e for s in self.stages for _, e in s.definitions]
         exprs += [e for v in self.values.values() for e in v.ravel()]
-        count = dict.fromkeys(("add", "mul", "div", "sqrt"), 0)
-        for expr in exprs:
-            _count(expr, count)
-        return count
+        return operations_of(exprs)
 
     def unused(self) -> list[str]:
         """Return the names of the inputs that nothing depends on."""
@@ -138,6 +135,14 @@ class Program:
             stage.definitions = kept[::-1]
         self.stages = [s for s in self.stages if s.definitions]
         return self
+
+
+def operations_of(exprs: Iterable[sp.Expr]) -> dict[str, int]:
+    """Return the arithmetic operations of expressions by kind; see `Program.operations`."""
+    count = dict.fromkeys(("add", "mul", "div", "sqrt"), 0)
+    for expr in exprs:
+        _count(expr, count)
+    return count
 
 
 def _count(expr: sp.Expr, count: dict[str, int]) -> None:

@@ -18,7 +18,7 @@ from ..laws import law_name
 from ..laws.kernels import Kernels
 from ..verify import timing
 from ..verify.command import examined
-from ..verify.compiled import CompilerError, compile_units, compiler
+from ..verify.compiled import SHARED_FLAGS, CompilerError, compile_units, compiler, link_shared
 from ..verify.report import WIDE, Report
 from . import basis, energy, library, load
 from .load import SpecError
@@ -83,11 +83,11 @@ def _make(spec: Path, families: dict[str, Family], work: Path, out: Path, consol
         raise SpecError(str(spec), f"{report.failures} checks of verification fail, the first: {report.first_failure}",
                         "the tables above have the figures; nothing was written")
     with console.status("compile and time"):
-        units = compile_units(sorted(made.glob("*.c")), [*library.FLAGS, f"-I{made}"], extra)
-        shared = library.link_shared(units, made)
+        units = compile_units(sorted(made.glob("*.c")), [*SHARED_FLAGS, f"-I{made}"], extra)
+        shared = link_shared(units, made)
         manifest = library.write_manifest(derived, files, spec, shared)
         program = timing.build(families.values(), manifest, load_library(made).kernels, units,
-                               [*library.FLAGS, f"-I{made}"], extra)
+                               [*SHARED_FLAGS, f"-I{made}"], extra)
         times, sizes = timing.times(program, ROUNDS), timing.code_sizes(program)
     console.print(_table(manifest["kernels"], times, sizes, report))
     library.move(made, out)

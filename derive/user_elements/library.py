@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import subprocess
 from pathlib import Path
 
 from funicular.kernels.elements import manifest
@@ -18,11 +17,8 @@ from ..codegen.family import Family
 from ..codegen.manifest import json_text, origin
 from ..codegen.manifest import text as manifest_text
 from ..codegen.rendering import Derived
-from ..verify.compiled import compiler
+from ..verify.compiled import SHARED_FLAGS, compiler
 from .load import SpecError
-
-LEVEL = "-O3"
-FLAGS = ("-std=c11", LEVEL, "-fPIC")
 
 
 def check_destination(out: Path) -> None:
@@ -61,20 +57,10 @@ def render(every: list[Derived]) -> dict[str, str]:
     return emit.render(every, [d.family.name for d in every], lambda _: None, layout_of=manifest()["tables"])
 
 
-def link_shared(units: list[Path], folder: Path) -> Path:
-    """Link object files to a shared library in a folder.
-
-    The name holds a hash of the file, since a process that has one of that name open gets no other.
-    """
-    linked = folder / "kernels.so"
-    subprocess.run([*compiler(), "-shared", *units, "-lm", "-o", linked], check=True)
-    return linked.rename(folder / f"kernels-{_digest(linked)[:12]}.so")
-
-
 def write_manifest(every: list[Derived], files: dict[str, str], spec: Path, shared: Path) -> dict:
     """Write the manifest next to the shared library; returns it."""
     more = {"library": {"spec": str(spec), "file": shared.name, "sha256": _digest(shared),
-                        "compiler": " ".join([*compiler(), *FLAGS])}}
+                        "compiler": " ".join([*compiler(), *SHARED_FLAGS])}}
     made_from = origin([d.family for d in every])
     content = json.loads(manifest_text(every, made_from, files, layout_of=manifest()["tables"], more=more))
     content["library"]["digest"] = manifest_digest(content)

@@ -54,9 +54,10 @@ class Subject:
                 "complex": verify_numbers.complex_(name, self.programs, self.libraries["complex"].load())}
 
 
-def prepare(family: Family, generated: Path, work: Path) -> Subject:
-    """Derive a family and start compiling its generated file."""
-    programs = [program.prune() for program in family.build()]
+def prepare(family: Family, generated: Path, work: Path, programs: list[Program] | None = None) -> Subject:
+    """Derive a family, unless its pruned programs are given, and start compiling its generated file."""
+    if programs is None:
+        programs = [program.prune() for program in family.build()]
     libraries = {kind: Library(family.name, programs, generated, work, dtype)
                  for kind, dtype in (("real", float), ("complex", complex))}
     return Subject(family, programs, libraries)
@@ -152,9 +153,13 @@ def _size(path: Path) -> int:
 
 def _examined(name: str, generated: Path, catalogue: Catalogue) -> tuple[list[str], list[Item]]:
     """Return the outputs of a family that no relation is about, findings and invariances."""
+    with tempfile.TemporaryDirectory(prefix="funicular-verify-") as work:
+        return findings(prepare(catalogue()[name], generated, Path(work)))
+
+
+def findings(subject: Subject) -> tuple[list[str], list[Item]]:
+    """Return the outputs of a family that no relation is about, findings and invariances."""
     # what a broken kernel returns is a finding, not a warning
-    with (tempfile.TemporaryDirectory(prefix="funicular-verify-") as work, mpmath.workdps(DIGITS),
-          np.errstate(all="ignore")):
-        subject = prepare(catalogue()[name], generated, Path(work))
+    with mpmath.workdps(DIGITS), np.errstate(all="ignore"):
         return uncovered(subject.family, subject.programs), [
             item.plain() if isinstance(item, Finding) else item for item in verify(subject)]

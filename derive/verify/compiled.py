@@ -6,6 +6,7 @@ A shim gives every kernel one signature, an array of pointers, because ctypes ca
 from __future__ import annotations
 
 import ctypes
+import hashlib
 import os
 import shlex
 import shutil
@@ -19,6 +20,9 @@ from typing import Any
 import numpy as np
 
 from ..codegen.program import Program
+
+SHARED_FLAGS = ("-std=c11", "-O3", "-fPIC")
+"""Options for the C of a library that is used, not only verified."""
 
 
 class CompilerError(Exception):
@@ -52,6 +56,16 @@ def compile_units(sources: Iterable[Path], flags: Iterable[str], work: Path) -> 
                 raise CompilerError(f"the C compiler refuses {source.name}:\n"
                                     + "\n".join(done.stderr.splitlines()[:12]))
     return [work / f"{source.stem}.o" for source in sources]
+
+
+def link_shared(units: list[Path], folder: Path) -> Path:
+    """Link object files to a shared library in a folder.
+
+    The name holds a hash of the file, since a process that has one of that name open gets no other.
+    """
+    linked = folder / "kernels.so"
+    subprocess.run([*compiler(), "-shared", *units, "-lm", "-o", linked], check=True)
+    return linked.rename(folder / f"kernels-{hashlib.sha256(linked.read_bytes()).hexdigest()[:12]}.so")
 
 
 class Library:
