@@ -128,8 +128,8 @@ static double react(const fu_model *model, const fu_state *state, fu_accelerator
     double largest = 0.0;
     for (int k = 0; k < model->n_others; ++k) {
         const fu_coupling *c = model->others[k];
-        if (!c->type->react) continue;
-        const double size = c->type->react(model, c, state, lambda, work);
+        if (!c->type->reaction) continue;
+        const double size = c->type->reaction->update(model, c, state, lambda, work);
         if (size == 0.0 || size <= largest) continue;
         largest = size;
         work->self_locking = c->number;
@@ -141,7 +141,7 @@ static void reacted(const fu_model *model, const fu_state *state, fu_accelerator
 {
     for (int k = 0; k < model->n_others; ++k) {
         const fu_coupling *c = model->others[k];
-        if (c->type->reacted) c->type->reacted(model, c, state, lambda, work);
+        if (c->type->reaction) c->type->reaction->accept(model, c, state, lambda, work);
     }
 }
 

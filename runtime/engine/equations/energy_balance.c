@@ -2,6 +2,7 @@
 #include "couplings/common/couplings.h"
 #include "equations/acceleration.h"
 #include "equations/energies.h"
+#include "equations/projection.h"
 #include "equations/run.h"
 
 #include <math.h>

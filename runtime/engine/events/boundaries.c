@@ -52,7 +52,7 @@ int fu_stop_at_boundaries(const fu_model *model)
     for (int k = 0; k < model->n_others; ++k) {
         const fu_coupling *c = model->others[k];
         const fu_coupling_events *events = c->events;
-        if (events && events->stops_at_boundaries && events->stops_at_boundaries(model, c)) return 1;
+        if (events && events->path && events->path->stops_at_boundaries(model, c)) return 1;
     }
     return 0;
 }
@@ -113,7 +113,7 @@ double fu_time_to_boundary(const fu_run *run)
         const fu_coupling *c = run->model->others[k];
         const fu_path path = fu_path_of(run->model, c, &run->now);
         if (!path.n) continue;
-        const double rate = c->events->rate(run->model, c, &run->now);
+        const double rate = c->events->path->rate(run->model, c, &run->now);
         const double end = fu_boundary(path, piece_of(c, &run->now) + (rate > 0.0));
         const double way = fabs(end - coordinate_of(c, &run->now));
         if (way > fu_boundary_tolerance(path)) least = fmin(least, way / fabs(rate));
@@ -125,7 +125,7 @@ double fu_time_to_boundary(const fu_run *run)
  * from beyond a boundary, or beyond one that it stood on and has left inwards; 0 where it does neither. */
 static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path, double h)
 {
-    const double rise = h * c->events->rate(run->model, c, &run->now), tolerance = fu_boundary_tolerance(path);
+    const double rise = h * c->events->path->rate(run->model, c, &run->now), tolerance = fu_boundary_tolerance(path);
     const double moved = coordinate_of(c, &run->next) - coordinate_of(c, &run->now);
     const double part = 0.5 * rise / (rise - moved), s = coordinate_of(c, &run->now);
     const int up = rise > 0.0, piece = piece_of(c, &run->now);

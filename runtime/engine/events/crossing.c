@@ -101,7 +101,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
     coupling->type->touch(run->model, coupling, &run->now);
-    coupling->type->carry(run->model, coupling, &run->now);
+    coupling->type->history->update(run->model, coupling, &run->now);
     return FU_RUNNING;
 }
 

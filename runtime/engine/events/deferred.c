@@ -39,7 +39,7 @@ int fu_choose_passages(fu_run *run, int first)
     if (run->keep_forces) return 0;
     for (int k = 0; k < model->n_others && model->n_passing; ++k) {
         const fu_coupling *c = model->others[k];
-        changed |= fu_can_pass(c) && c->events->pass(model, c, &run->now, &run->next);
+        changed |= fu_can_pass(c) && c->events->deferred->follow(model, c, &run->now, &run->next);
     }
     const int count = model->n_passing ? fu_count_passages(run) : 0;
     if (first || count > run->most_passages) run->most_passages = count;
@@ -78,7 +78,7 @@ void fu_note_passages(fu_run *run, double h)
     for (int k = 0; k < run->n_watches && run->model->n_passing; ++k) {
         const fu_coupling *c = fu_own_coupling(run, k);
         if (!c || !has_passed(run, c)) continue;
-        const double part = c->events->passed(run->model, c, &run->now, &run->next, h, !run->integrator->keeps_energy,
+        const double part = c->events->deferred->part(run->model, c, &run->now, &run->next, h, !run->integrator->keeps_energy,
                                                     &run->passed[k]);
         run->passed_at[k] = run->now.t + part * h;
     }
@@ -132,9 +132,9 @@ double fu_passage_error(fu_run *run, double h)
         const fu_coupling *c = model->others[k];
         const char *unused;
         if (!has_passed(run, c)) continue;
-        const double x = c->events->passed(model, c, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
+        const double x = c->events->deferred->part(model, c, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
         const double part = largest_defect(run->integrator->quadrature(run), x);
-        c->events->passed_force(model, c, &run->now, &run->next, part, run->before);
+        c->events->deferred->force_change(model, c, &run->now, &run->next, part, run->before);
     }
     return size_of_response(run, run->before, DOUBLE * h * h);
 }
@@ -148,7 +148,7 @@ double fu_kink_error(fu_run *run, double h)
     if (!integrator->quadrature || !integrator->has_matrix || run->order <= 2 || run->fixed_step > 0.0) return 0.0;
     const fu_quadrature rule = integrator->quadrature(run);
     memset(run->before, 0, sizeof(double) * (size_t)model->n_dof);
-    if (!fu_coupling_kinks(model, &run->now, &run->next, rule.n, rule.b, rule.c, run->before)) return 0.0;
+    if (!fu_coupling_quadrature_error(model, &run->now, &run->next, rule.n, rule.b, rule.c, run->before)) return 0.0;
     return size_of_response(run, run->before, h * h);
 }
 

@@ -62,7 +62,7 @@ static double watched(const fu_run *run, const fu_state *state, int k)
     if (watch->kind == FU_WATCH_S) return state->s[watch->index] - watch->value;
     if (watch->kind == FU_WATCH_CALL) return called(run, state, k);
     const fu_coupling *c = run->model->couplings[watch->index];
-    if (watch->kind == FU_WATCH_RATE) return c->events->rate(run->model, c, state) - watch->value;
+    if (watch->kind == FU_WATCH_RATE) return c->events->path->rate(run->model, c, state) - watch->value;
     if (watch->kind == FU_WATCH_OUTPUT) return output_of(run, state, c, watch->which) - watch->value;
     return c->events->watched(run, c, state, watch->which);
 }
@@ -124,7 +124,7 @@ static double root_of_parabola(double g_low, double g_high, double rate)
 static const fu_coupling *passing(const fu_run *run, fu_event event)
 {
     const fu_coupling *c = event.kind == FU_WATCHED ? fu_own_coupling(run, event.which) : 0;
-    return c && c->events->passed ? c : 0;
+    return c && c->events->deferred ? c : 0;
 }
 
 /* Returns whether a step may end a little off an event: the slope of a force jumps there, which over so short a way makes
@@ -231,13 +231,13 @@ static double locate(fu_run *run, fu_event event, double h)
     double middle = h * b.g_low / (b.g_low - b.g_high);
     if (event.kind == FU_CROSSING) {
         const fu_coupling *c = run->model->couplings[event.which];
-        const double rate = event.side * c->events->rate(run->model, c, &run->now);
+        const double rate = event.side * c->events->path->rate(run->model, c, &run->now);
         middle = h * root_of_parabola(b.g_low, b.g_high, h * rate);
     }
     const fu_coupling *passes = passing(run, event);
     const char *unused;
     if (passes)
-        middle = h * passes->events->passed(run->model, passes, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
+        middle = h * passes->events->deferred->part(run->model, passes, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
     if (b.g_high <= at.aim + at.close) return h;
     if (is_of_a_coupling(run, event) && fabs(b.g_low) <= (at.aim > 0.0 ? PRECISE * (b.g_high - b.g_low) : at.close)) {
         const int found = leave_zero(run, event, &b, least, at.close);

@@ -2,7 +2,6 @@
  * continuous there, with their first derivatives but for that of added mass. Steps end there all the same: a body that falls freely
  * takes long ones, and would go deep into the fluid, or through a thin layer, in one whose error estimate has not seen it.
  */
-#include "base/event.h"
 #include "bodies/model.h"
 #include "events/fluid_surface.h"
 

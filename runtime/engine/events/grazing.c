@@ -36,7 +36,7 @@ static fu_course course_of(const fu_model *model, const fu_watch *watch, const f
     for (int k = 0; k < model->n_others && watch->kind == FU_WATCH_S; ++k) {
         const fu_coupling *c = model->others[k];
         if (c->n_coordinates && c->coordinate == watch->index)
-            return (fu_course){state->s[watch->index] - watch->value, c->events->rate(model, c, state)};
+            return (fu_course){state->s[watch->index] - watch->value, c->events->path->rate(model, c, state)};
     }
     return (fu_course){0.0, NAN};
 }

@@ -86,7 +86,7 @@ static passage next_passage(const fu_model *model, const fu_point_force *between
 }
 
 /* Passages follow from where the points are; each leads from piece to piece. */
-static int pass(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to)
+static int follow(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to)
 {
     const fu_point_force *between = force_of(coupling);
     int *piece = &to->flags[coupling->flags];
@@ -165,7 +165,7 @@ static double between_ends(end_course a, end_course b, int bends, double x)
 
 /* By the polynomial of the distance through both ends of the step (Hermite's); where a damper turns the force round, by the line of its
  * margins. */
-static double passed(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,
+static double part_of_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,
                      int bends, const char **what)
 {
     const fu_point_force *between = force_of(coupling);
@@ -196,7 +196,7 @@ static double since(const fu_model *model, const fu_coupling *coupling, const fu
     return course.value / course.rate;
 }
 
-static void passed_force(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+static void force_change(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                          double factor, double *f)
 {
     fu_add_force_change(model, force_of(coupling), to, fu_force_piece(force_of(coupling), from), factor, f);
@@ -284,15 +284,14 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
+static const fu_deferred_operations deferred = {.follow = follow, .part = part_of_step, .since = since, .force_change = force_change};
+
 const fu_coupling_events fu_point_force_events = {
     .watches = watches,
     .watched = watched,
     .dip = dip,
     .act = act,
-    .pass = pass,
-    .passed = passed,
-    .since = since,
-    .passed_force = passed_force,
     .can_act = can_act,
     .begin = begin,
+    .deferred = &deferred,
 };

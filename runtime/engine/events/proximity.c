@@ -85,7 +85,7 @@ static void measure(const fu_model *model, fu_pair *pair, const fu_state *state)
 {
     const fu_coupling *c = model->couplings[pair->coupling];
     fu_proximity *p = model->proximity;
-    const fu_clearance found = c->type->clearance(model, c, state);
+    const fu_clearance found = c->type->proximity->clearance(model, c, state);
     pair->lever = found.lever + fmax(found.gap, 0.0);
     pair->limit = found.gap * (1.0 - ROUNDING) + used_by(p, pair, 0);
     if (pair->between[0] >= model->n_cables) p->movers[pair->between[0]].radius = fmax(p->movers[pair->between[0]].radius, found.radius);

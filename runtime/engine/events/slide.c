@@ -19,7 +19,7 @@ static const fu_slide *slide_of(const fu_coupling *coupling)
 }
 
 /* The path is the cable; a slide that has left it is on no element. */
-static fu_path path(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+static fu_path path_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_cable *cable = &model->cables[slide_of(coupling)->cable];
     const int left = fu_slide_flags_of(model, state, coupling->index)->mode == FU_LEFT;
@@ -106,12 +106,9 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return FU_RUNNING;
 }
 
+static const fu_path_operations path = {.at = path_at, .rate = rate, .stops_at_boundaries = stops_at_boundaries, .enter = enter, .reach_end = fu_reach_end};
+
 const fu_coupling_events fu_slide_events = {
-    .path = path,
-    .rate = rate,
-    .stops_at_boundaries = stops_at_boundaries,
-    .enter = enter,
-    .reach_end = fu_reach_end,
     .watches = watches,
     .watched = watched,
     .dip = dip,
@@ -120,4 +117,5 @@ const fu_coupling_events fu_slide_events = {
     .can_act = can_act,
     .begin = fu_begin_stops,
     .take_velocities = fu_find_slip_direction,
+    .path = &path,
 };

@@ -207,7 +207,7 @@ static void account(fu_run *run, double h)
     for (int k = 0; k < near.n; ++k) {
         const fu_coupling *c = near.list[k];
         if (c->type->step_dissipation) run->dissipated += c->type->step_dissipation(model, c, &at);
-        if (c->type->step_work) run->external += c->type->step_work(model, c, &at);
+        if (c->type->supply) run->external += c->type->supply->step_work(model, c, &at);
     }
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_coupling_external_forces(model, now->t + 0.5 * h, m.q, m.force);

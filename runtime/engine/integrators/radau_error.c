@@ -31,8 +31,8 @@ static double kink(fu_run *run, fu_radau_workspace *w, double h)
     ++run->statistics.evaluations;
     for (int k = 0; k < model->n_others; ++k) {
         const fu_coupling *coupling = model->others[k];
-        if (!coupling->type->kink) continue;
-        worst = fmax(worst, coupling->type->kink(model, coupling, &run->next, STAGES + 1, weight, w->multipliers, h * left));
+        if (!coupling->type->reaction) continue;
+        worst = fmax(worst, coupling->type->reaction->friction_error(model, coupling, &run->next, STAGES + 1, weight, w->multipliers, h * left));
     }
     return worst * run->allowed / (KINK * fu_allowed_error(run));
 }

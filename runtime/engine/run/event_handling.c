@@ -35,10 +35,10 @@ static int cross(fu_run *run, const fu_coupling *coupling, int side)
     const int piece = now->piece[coupling->coordinate] + side;
     if (piece < 0 || piece >= fu_path_of(run->model, coupling, now).n) {
         const char *what = 0;
-        const int status = events->reach_end(run, coupling, side, &what);
+        const int status = events->path->reach_end(run, coupling, side, &what);
         return status ? status : acted(run, coupling, what, 0.0);
     }
-    const int status = events->enter ? events->enter(run, coupling, piece) : FU_RUNNING;
+    const int status = events->path->enter ? events->path->enter(run, coupling, piece) : FU_RUNNING;
     if (status) return status;
     now->piece[coupling->coordinate] = piece;
     ++run->statistics.crossings;
@@ -53,7 +53,7 @@ int fu_let_happen(fu_run *run, fu_event event)
     const fu_coupling *coupling = fu_own_coupling(run, event.which);
     if (coupling) {
         const char *what = 0;
-        const double since = coupling->events->since ? coupling->events->since(run->model, coupling, &run->now) : 0.0;
+        const double since = coupling->events->deferred ? coupling->events->deferred->since(run->model, coupling, &run->now) : 0.0;
         const int status = coupling->events->act(run, coupling, run->watches[event.which].which, event.side, &what);
         return status || !what ? status : acted(run, coupling, what, fabs(since) < MOST_SINCE * run->duration ? since : 0.0);
     }

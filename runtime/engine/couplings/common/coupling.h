@@ -55,6 +55,66 @@ typedef struct {
     double gap, lever, radius;
 } fu_clearance;
 
+/* A mass that depends on the configuration. What inertia gives without accelerations is in `force`, `residual` and `tangent`. */
+typedef struct {
+    /* Adds M a to f. */
+    void (*force)(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
+    /* Adds scale M to a system. */
+    void (*matrix)(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
+    /* Returns the kinetic energy, J, at the velocities v; or of these alone, where the coupling is of a fluid that moves and past_fluid is
+     * zero. */
+    double (*kinetic_energy)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
+                             int past_fluid);
+} fu_inertia_operations;
+
+/* A lower bound of the distance at which a coupling acts. While motions have not used it up, operations may be skipped
+ * (couplings/common/proximity.c). */
+typedef struct {
+    /* Returns the clearance at a state: motions of both sides, and turns of the second by the lever, shrink its gap at most. */
+    fu_clearance (*clearance)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    /* Makes what the coupling acts between: the number of a cable, n_cables and that of a body, -1 for the ground. */
+    void (*between)(const fu_model *model, const fu_coupling *coupling, int between[2]);
+} fu_proximity_operations;
+
+/* Work from outside by the coupling's own force. */
+typedef struct {
+    /* Returns the power at an instant, W. */
+    double (*power)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    /* Returns the work over a step that conserves energy, J. */
+    double (*step_work)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+} fu_supply_operations;
+
+/* A force that depends on the multipliers of eq 38. */
+typedef struct {
+    /* Adds the force for the multipliers lambda (null: those of the state) to work->work; returns the largest change since the last call
+     * over the force. */
+    double (*update)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                     fu_accelerator *work);
+    /* Takes what follows from the final multipliers. */
+    void (*accept)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                   fu_accelerator *work);
+    /* Returns the error that a kink of the friction within a step may make, m: from n states of it, their weights in the mean, and the
+     * multipliers there (n x model->n_multipliers); square: the step times the time that is left, s^2. */
+    double (*friction_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n, const double *weights,
+                             const double *multipliers, double square);
+} fu_reaction_operations;
+
+/* Own coordinates that follow from the others. */
+typedef struct {
+    /* Makes their rates, after eq 38. */
+    void (*rates)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rates);
+    /* Finds them at a state; returns not zero where there are none. */
+    int (*solve)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+} fu_coordinate_operations;
+
+/* History variables: numbers and flags of a state that change from step to step. */
+typedef struct {
+    /* Updates them after an accepted step. */
+    void (*update)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+    /* Returns their error after a step from one state to another, m. Null: none. */
+    double (*error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
+} fu_history_operations;
+
 /* What a coupling can do. A null operation: it does nothing of that.
  * f: generalised forces on the dofs, as they stand on the left of the equations of motion; own: minus the scaled residual of the
  * unknowns beyond the dofs.
@@ -70,19 +130,12 @@ struct fu_coupling_type {
     int n_numbers, n_flags;  /* real and whole numbers that it keeps in a state */
     int n_scratch;           /* doubles that it keeps from `rows` to `outputs` */
 
-    /* A mass that depends on the configuration: adds M a to f; adds scale M to a system; returns the kinetic energy, J, at the
-     * velocities v, or of these alone where the coupling is of a fluid that moves and past_fluid is zero. What inertia gives without
-     * accelerations is in `force`, `residual` and `tangent`. */
-    void (*inertia)(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
-    void (*mass)(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
-    double (*kinetic_energy)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
-                             int past_fluid);
-
-    /* Where nothing comes of a coupling while what it acts between is apart: its clearance at a state, and what it is between: the
-     * number of a cable, n_cables and that of a body, -1 for the ground. Ways of these, and turns of the second by the lever, are
-     * the most that the gap can shrink by. While it is not used up, operations may be passed over (couplings/common/proximity.c). */
-    fu_clearance (*clearance)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    void (*between)(const fu_model *model, const fu_coupling *coupling, int between[2]);
+    const fu_inertia_operations *inertia; /* these, where a coupling has them; null: it has not */
+    const fu_proximity_operations *proximity;
+    const fu_supply_operations *supply;
+    const fu_reaction_operations *reaction;
+    const fu_coordinate_operations *coordinates;
+    const fu_history_operations *history;
 
     /* What of a coupling as the model gives it is more than the engine has room for, in words; null where nothing is. */
     const char *(*excess)(const fu_coupling *coupling);
@@ -94,26 +147,12 @@ struct fu_coupling_type {
     void (*step_residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
     void (*step_tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
     double (*step_dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
-    /* What comes in from outside in that step by its own forces, J. */
-    double (*step_work)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
     /* Makes the constraint rows of accelerations (eq 38), H and W among them, in work->rows[coupling->row]. */
     void (*rows)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
     /* Adds the coupling's own force to f; adds a force from outside, whose work the energy balance counts as external. */
     void (*force)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f);
     void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
-    /* Returns the power that comes in from outside by the coupling's own force, W. */
-    double (*external_power)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Adds forces that depend on the multipliers lambda (null: those of the state) to work->work; returns the largest change
-     * since the last call over the force. Afterwards `reacted` takes what follows from the final multipliers. */
-    double (*react)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
-                    fu_accelerator *work);
-    void (*reacted)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
-                    fu_accelerator *work);
-    /* Returns the error that a kink of the force within a step may make, m: from n states of it, their weights in the mean, and the
-     * multipliers there (n x model->n_multipliers); square: the step times the time that is left, s^2. */
-    double (*kink)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n, const double *weights,
-                   const double *multipliers, double square);
     /* Make, after eq 38, the state's own forces; the numbers of a row of output. */
     void (*take_forces)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state);
     void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
@@ -121,8 +160,6 @@ struct fu_coupling_type {
 
     /* Makes what is left of the constraints, redundant ones among them: one number an own force. */
     void (*gaps)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *gaps);
-    /* Makes the rates of the own coordinates, after eq 38. */
-    void (*rates)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rates);
 
     /* Return the stored energy, J; the power that goes to heat, W, by the state's own forces, or where work is not null by those of eq 38. */
     double (*energy)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
@@ -133,22 +170,15 @@ struct fu_coupling_type {
      * methods of order 2 have them. */
     double (*lost_in_step)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends);
 
-    /* Returns how far off what `carry` takes along may be after a step from one state to another, m. */
-    double (*carried_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
-
     /* Adds to f what the mean force over a step from one state to another is off by, N, where a rule of n weights b at parts c of the step
      * makes it, as the force has kinks within; returns whether it has. */
-    int (*kinks)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
+    int (*quadrature_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
                  const double *c, double *f);
 
     /* Returns whether a start may be off the constraints by a small gap. */
     int (*may_start_open)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Finds own coordinates that follow from the others; returns not zero where there are none. */
-    int (*follow)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
     /* Sets own coordinates, pieces, numbers and flags of the state as it is drawn; those that it does not set are zero. */
     void (*reset)(const fu_coupling *coupling, fu_state *state);
-    /* Changes what of the state goes along with an accepted step. */
-    void (*carry)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
     /* Finds contact that follows from the positions, in statics. */
     void (*touch)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
     /* Returns whether a state that was read from a file is possible. */

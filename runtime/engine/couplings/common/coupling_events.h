@@ -16,18 +16,40 @@ typedef struct {
     const double *boundaries;
 } fu_path;
 
-struct fu_coupling_events {
-    /* Boundaries of pieces. A null `path`: the coupling has none. */
-    fu_path (*path)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+/* The path of a coupling's own coordinate, and what its boundaries ask for. */
+typedef struct {
+    /* Returns the path at a state. */
+    fu_path (*at)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     /* Rate of the coordinate along the path, m/s. */
     double (*rate)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Whether every step must end where the coupling passes a boundary, whatever the integrator. Null: it need not. */
+    /* Whether every step must end where the coupling passes a boundary, whatever the integrator. */
     int (*stops_at_boundaries)(const fu_model *model, const fu_coupling *coupling);
     /* Changes the velocities of `now` as the passage to another piece asks for; returns a status. Null: it asks for nothing. */
     int (*enter)(fu_run *run, const fu_coupling *coupling, int piece);
     /* Lets happen what follows where the coupling stands at an end of its path and goes on outwards: at the last piece where
      * side is 1, at the first where it is -1. Returns a status; *what says in words what has happened. */
     int (*reach_end)(fu_run *run, const fu_coupling *coupling, int side, const char **what);
+} fu_path_operations;
+
+/* Deferred events: changes that a step may go over, as only a slope of the force jumps there. */
+typedef struct {
+    /* Makes the flags of `to` those that follow from the flags of `from` and from where `to` is; returns whether that changes them. */
+    int (*follow)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to);
+    /* Returns after which part of a step of h from one state to the other the coupling has passed; *what as above. Bends: the states
+     * have the accelerations there, and not means of steps. */
+    double (*part)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,
+                     int bends, const char **what);
+    /* Returns how long before a state close to it the coupling has passed what it is about to, s; not a number where that needs the
+     * state itself. */
+    double (*since)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    /* Adds to f, times a factor, by how much the force at `to` differs from that without the passage. */
+    void (*force_change)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                         double factor, double *f);
+} fu_deferred_operations;
+
+struct fu_coupling_events {
+    const fu_path_operations *path; /* null: the coupling has no path */
+    const fu_deferred_operations *deferred; /* null: steps end on each of its events */
 
     /* Watches: numbers, each an event where it passes zero. Writes their `which` and `direction` to `out`, unless it is null,
      * and returns how many they are. */
@@ -47,21 +69,6 @@ struct fu_coupling_events {
      * what has happened, and is null where nothing has. */
     int (*act)(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what);
 
-    /* Passages: changes that steps may go over, as nothing but a slope of the force jumps there. Null: there are none.
-     *
-     * Makes the flags of `to` those that follow from the flags of `from` and from where `to` is; returns whether that changes them. */
-    int (*pass)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to);
-    /* Returns after which part of a step of h from one state to the other the coupling has passed; *what as above. Bends: the states
-     * have the accelerations there, and not means of steps. */
-    double (*passed)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,
-                     int bends, const char **what);
-    /* Returns how long before a state close to it the coupling has passed what it is about to, s; not a number where that needs the
-     * state itself. */
-    double (*since)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Adds to f, times a factor, by how much the force at `to` differs from that without the passage. */
-    void (*passed_force)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
-                         double factor, double *f);
-
     /* Whether the coupling can change by itself (null: it can): `begin` then finds how it is at the start; returns a status. */
     int (*can_act)(const fu_coupling *coupling);
     int (*begin)(fu_run *run, const fu_coupling *coupling);
@@ -78,14 +85,14 @@ static inline int fu_can_act(const fu_coupling *coupling)
 
 static inline int fu_can_pass(const fu_coupling *coupling)
 {
-    return fu_can_act(coupling) && coupling->events->pass && !coupling->is_damped;
+    return fu_can_act(coupling) && coupling->events->deferred && !coupling->is_damped;
 }
 
 /* The path of a coupling at a state, with no pieces where it has none. */
 static inline fu_path fu_path_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_coupling_events *events = coupling->events;
-    return events && events->path ? events->path(model, coupling, state) : (fu_path){0, 0.0, 0};
+    return events && events->path ? events->path->at(model, coupling, state) : (fu_path){0, 0.0, 0};
 }
 
 #endif

@@ -24,9 +24,9 @@ const fu_field fu_coupling_fields[] = {
 static void list_coupling(fu_model *model, const fu_coupling *c)
 {
     const int alone = fu_acts_alone(c);
-    model->n_pairs += c->type->clearance != 0;
+    model->n_pairs += c->type->proximity != 0;
     if (!alone) model->others[model->n_others++] = c;
-    if (c->type->carry && (!alone || c->n_numbers)) model->carrying[model->n_carrying++] = c;
+    if (c->type->history && (!alone || c->n_numbers)) model->carrying[model->n_carrying++] = c;
 }
 
 void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model)
@@ -107,7 +107,7 @@ void fu_coupling_inertia(const fu_model *model, const double *q, const double *a
 {
     for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
         const fu_coupling *c = model->others[k];
-        if (c->has_inertia) c->type->inertia(model, c, q, a, f);
+        if (c->has_inertia) c->type->inertia->force(model, c, q, a, f);
     }
 }
 
@@ -115,7 +115,7 @@ void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu
 {
     for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
         const fu_coupling *c = model->others[k];
-        if (c->has_inertia) c->type->mass(model, c, q, scale, system);
+        if (c->has_inertia) c->type->inertia->matrix(model, c, q, scale, system);
     }
 }
 
@@ -124,7 +124,7 @@ double fu_coupling_kinetic_energy(const fu_model *model, double t, const double 
     double total = 0.0;
     for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
         const fu_coupling *c = model->others[k];
-        if (c->has_inertia) total += c->type->kinetic_energy(model, c, t, q, v, past_fluid);
+        if (c->has_inertia) total += c->type->inertia->kinetic_energy(model, c, t, q, v, past_fluid);
     }
     return total;
 }
@@ -151,7 +151,7 @@ double fu_coupling_external_power(const fu_model *model, const fu_state *state)
     double total = 0.0;
     for (int k = 0; k < model->n_others; ++k) {
         const fu_coupling *c = model->others[k];
-        if (c->type->external_power) total += c->type->external_power(model, c, state);
+        if (c->type->supply) total += c->type->supply->power(model, c, state);
     }
     return total;
 }
@@ -190,14 +190,14 @@ double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_sta
     return total;
 }
 
-int fu_coupling_kinks(const fu_model *model, const fu_state *from, const fu_state *to, int n, const double *b, const double *c, double *f)
+int fu_coupling_quadrature_error(const fu_model *model, const fu_state *from, const fu_state *to, int n, const double *b, const double *c, double *f)
 {
     const fu_equations step = {.now = from, .next = to};
     const fu_couplings near = fu_acting_in_step(model, &step);
     int found = 0;
     for (int k = 0; k < near.n; ++k) {
         const fu_coupling *coupling = near.list[k];
-        if (coupling->type->kinks) found |= coupling->type->kinks(model, coupling, from, to, n, b, c, f);
+        if (coupling->type->quadrature_error) found |= coupling->type->quadrature_error(model, coupling, from, to, n, b, c, f);
     }
     return found;
 }
@@ -237,7 +237,7 @@ void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, doub
 {
     for (int k = 0; k < model->n_others; ++k) {
         const fu_coupling *c = model->others[k];
-        if (c->type->rates) c->type->rates(model, c, work, rates + c->coordinate);
+        if (c->type->coordinates) c->type->coordinates->rates(model, c, work, rates + c->coordinate);
     }
 }
 
@@ -254,7 +254,7 @@ double fu_carried_error(const fu_model *model, const fu_state *from, const fu_st
     double largest = 0.0;
     for (int k = 0; k < model->n_carrying; ++k) {
         const fu_coupling *c = model->carrying[k];
-        if (c->type->carried_error) largest = fmax(largest, c->type->carried_error(model, c, from, to));
+        if (c->type->history->error) largest = fmax(largest, c->type->history->error(model, c, from, to));
     }
     return largest;
 }
@@ -263,7 +263,7 @@ void fu_carry(const fu_model *model, fu_state *state)
 {
     for (int k = 0; k < model->n_carrying; ++k) {
         const fu_coupling *c = model->carrying[k];
-        c->type->carry(model, c, state);
+        c->type->history->update(model, c, state);
     }
 }
 
@@ -280,7 +280,7 @@ const fu_coupling *fu_follow(const fu_model *model, fu_state *state)
 {
     for (int k = 0; k < model->n_others; ++k) {
         const fu_coupling *c = model->others[k];
-        if (c->type->follow && c->type->follow(model, c, state)) return c;
+        if (c->type->coordinates && c->type->coordinates->solve(model, c, state)) return c;
     }
     return 0;
 }

@@ -32,7 +32,7 @@ void fu_coupling_external_forces(const fu_model *model, double t, const double *
 double fu_coupling_external_power(const fu_model *model, const fu_state *state);
 double fu_coupling_energy(const fu_model *model, const fu_state *state);
 double fu_coupling_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work);
-int fu_coupling_kinks(const fu_model *model, const fu_state *from, const fu_state *to, int n, const double *b, const double *c, double *f);
+int fu_coupling_quadrature_error(const fu_model *model, const fu_state *from, const fu_state *to, int n, const double *b, const double *c, double *f);
 double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to, int by_ends);
 void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state *state);
 void fu_coupling_outputs(const fu_model *model, const fu_state *state, const double *acceleration,

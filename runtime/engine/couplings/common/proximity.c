@@ -21,10 +21,10 @@ int fu_acts_alone(const fu_coupling *coupling)
 {
     const fu_coupling_type *type = coupling->type;
     const fu_coupling_events *events = coupling->events;
-    const int asked = type->inertia || type->rows || type->external_force || type->external_power || type->react || type->kink ||
-                      type->take_forces || type->gaps || type->rates || type->step_work || type->may_start_open || type->follow ||
-                      type->touch || type->is_possible || (events && (events->path || events->pass || events->take_velocities));
-    return type->clearance && !asked;
+    const int asked = type->inertia || type->rows || type->external_force || type->supply || type->reaction || type->take_forces ||
+                      type->gaps || type->coordinates || type->may_start_open || type->touch || type->is_possible ||
+                      (events && (events->path || events->deferred || events->take_velocities));
+    return type->proximity && !asked;
 }
 
 /* Returns how far points of a cable may be moved at most by numbers that its nodal vectors differ by, or by their rates. */
@@ -154,10 +154,10 @@ void fu_proximity_place(fu_model *model, int n_watches, void *memory)
     for (int k = 0; k < model->n_couplings; ++k) {
         const fu_coupling *c = model->couplings[k];
         p->is_alone[k] = (char)fu_acts_alone(c);
-        if (!c->type->clearance) continue;
+        if (!c->type->proximity) continue;
         fu_pair *pair = &p->pairs[p->n_pairs++];
         pair->coupling = k;
-        c->type->between(model, c, pair->between);
+        c->type->proximity->between(model, c, pair->between);
         for (int i = 0; i < 2; ++i) add_mover(model, p, pair->between[i]);
     }
 }

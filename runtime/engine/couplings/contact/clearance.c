@@ -1,8 +1,6 @@
 /* Clearances of contacts with surfaces: by spheres about the elements of cables and about the points of bodies. */
-#include "bodies/model.h"
 #include "couplings/common/spheres.h"
 #include "couplings/contact/contact.h"
-#include "couplings/crossing/crossing.h"
 
 #include <math.h>
 #include <string.h>

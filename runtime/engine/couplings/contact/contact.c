@@ -97,9 +97,13 @@ static const fu_field fields[] = {
     {0},
 };
 
+static const fu_proximity_operations proximity_of_surface = {.clearance = fu_contact_clearance, .between = fu_contact_between};
+static const fu_history_operations history = {.update = fu_contact_carry, .error = fu_contact_carried_error};
+
 const fu_coupling_type fu_contact_type = {
-    .name = "contact", .size = sizeof(fu_contact), .fields = fields, .n_outputs = FU_CONTACT_OUTPUTS, .n_flags = 1,
-    .clearance = fu_contact_clearance, .between = fu_contact_between, .residual = residual, .tangent = tangent, .step_residual = fu_contact_step_residual, .step_tangent = fu_contact_step_tangent,
+    .name = "contact", .size = sizeof(fu_contact), .fields = fields, .n_outputs = FU_CONTACT_OUTPUTS, .n_flags = 1, .residual = residual, .tangent = tangent, .step_residual = fu_contact_step_residual, .step_tangent = fu_contact_step_tangent,
     .step_dissipation = fu_contact_step_dissipation, .force = force, .energy = fu_contact_energy, .dissipation = fu_contact_dissipation,
-    .lost_in_step = fu_contact_lost, .outputs = fu_contact_outputs, .reset = fu_contact_reset, .carry = fu_contact_carry,
-    .carried_error = fu_contact_carried_error, .kinks = fu_contact_kinks};
+    .lost_in_step = fu_contact_lost, .outputs = fu_contact_outputs, .reset = fu_contact_reset, .quadrature_error = fu_contact_quadrature_error,
+    .proximity = &proximity_of_surface,
+    .history = &history,
+};

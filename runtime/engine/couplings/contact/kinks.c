@@ -87,7 +87,7 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
     return 1;
 }
 
-int fu_contact_kinks(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
+int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
                      const double *c, double *f)
 {
     const fu_contact *contact = (const fu_contact *)coupling;

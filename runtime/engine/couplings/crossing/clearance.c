@@ -1,5 +1,4 @@
 /* Clearances of crossings: by spheres about the elements of cables. */
-#include "bodies/model.h"
 #include "couplings/common/spheres.h"
 #include "couplings/crossing/crossing.h"
 

@@ -291,9 +291,14 @@ static const fu_field fields[] = {
     {0},
 };
 
+static const fu_proximity_operations proximity_of_lines = {.clearance = fu_crossing_clearance, .between = fu_crossing_between};
+static const fu_history_operations history = {.update = carry, .error = fu_crossing_carried_error};
+
 const fu_coupling_type fu_crossing_type = {
     .name = "crossing", .size = sizeof(fu_crossing), .fields = fields, .n_outputs = 14, .n_numbers = FU_CROSSING_NUMBERS,
-    .n_flags = 1, .clearance = fu_crossing_clearance, .between = fu_crossing_between, .residual = residual, .tangent = tangent,
+    .n_flags = 1, .residual = residual, .tangent = tangent,
     .step_residual = fu_crossing_step_residual, .step_tangent = step_tangent, .step_dissipation = fu_crossing_step_dissipation, .force = own_force,
-    .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step,
-    .carry = carry, .carried_error = fu_crossing_carried_error, .reset = reset, .touch = touch};
+    .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step, .reset = reset, .touch = touch,
+    .proximity = &proximity_of_lines,
+    .history = &history,
+};

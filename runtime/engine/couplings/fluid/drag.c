@@ -367,8 +367,13 @@ static const fu_field fields[] = {
     {0},
 };
 
+static const fu_inertia_operations inertia = {.force = fu_fluid_inertia, .matrix = fu_fluid_mass, .kinetic_energy = fu_fluid_kinetic_energy};
+static const fu_supply_operations supply = {.power = external_power, .step_work = step_work};
+
 const fu_coupling_type fu_drag_type = {
     .name = "drag", .size = sizeof(fu_drag), .fields = fields, .n_outputs = 3, .n_flags = FU_DRAG_FLAGS, .residual = residual, .tangent = tangent,
-    .step_residual = step_residual, .step_tangent = step_tangent, .step_dissipation = step_dissipation, .step_work = step_work,
-    .inertia = fu_fluid_inertia, .mass = fu_fluid_mass, .kinetic_energy = fu_fluid_kinetic_energy,
-    .force = force, .external_power = external_power, .dissipation = dissipation, .outputs = outputs};
+    .step_residual = step_residual, .step_tangent = step_tangent, .step_dissipation = step_dissipation,
+    .force = force, .dissipation = dissipation, .outputs = outputs,
+    .inertia = &inertia,
+    .supply = &supply,
+};

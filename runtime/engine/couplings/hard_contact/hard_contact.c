@@ -358,9 +358,13 @@ static const fu_field fields[] = {
     {0},
 };
 
+static const fu_history_operations history = {.update = carry};
+
 const fu_coupling_type fu_hard_contact_type = {
     .name = "hard_contact", .size = sizeof(fu_hard_contact), .fields = fields,
     .n_outputs = (int)(sizeof(fu_hard_contact_output) / sizeof(double)), 
     .n_flags = (int)(sizeof(fu_hard_flags) / sizeof(int)), .n_numbers = (int)(sizeof(fu_hard_numbers) / sizeof(double)),
     .residual = residual, .tangent = tangent, .step_residual = step_residual, .step_tangent = step_tangent, .rows = rows,
-    .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .dissipation = dissipation, .carry = carry, .touch = touch, .is_possible = is_possible};
+    .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .dissipation = dissipation, .touch = touch, .is_possible = is_possible,
+    .history = &history,
+};

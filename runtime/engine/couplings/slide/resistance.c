@@ -176,7 +176,7 @@ static double secant_step(fu_slide_state *last, double change)
     return last->step;
 }
 
-double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+double fu_resistance_update(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                            fu_accelerator *work)
 {
     const int j = coupling->index, dim = model->dim;
@@ -203,7 +203,7 @@ double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, c
 }
 
 /* Finds, of a slide that is driven, the part of the force along the cable that its drive does not give, and what it takes. */
-void fu_resistance_reacted(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+void fu_resistance_accept(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                            fu_accelerator *work)
 {
     const int j = coupling->index;
@@ -237,7 +237,7 @@ double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupl
 /* Where the normal force turns round within a step, friction has a kink, and no quadrature over the step is right: the
  * friction of the mean normal force differs from the mean friction, by at least the error made. The rider's speed stays
  * wrong, and its position is off by that times the time that is left. */
-double fu_resistance_kink(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
+double fu_resistance_friction_error(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
                           const double *weights, const double *multipliers, double square)
 {
     const fu_slide *slide = (const fu_slide *)coupling;

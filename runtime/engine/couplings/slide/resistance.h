@@ -17,11 +17,11 @@ void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, con
                         const fu_resistance *resistance, double *by_place, double *by_rate);
 
 /* Operations of a slide as a coupling (couplings/common/coupling.h). */
-double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+double fu_resistance_update(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                            fu_accelerator *work);
-void fu_resistance_reacted(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+void fu_resistance_accept(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                            fu_accelerator *work);
-double fu_resistance_kink(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
+double fu_resistance_friction_error(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
                           const double *weights, const double *multipliers, double square);
 double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                                  const fu_accelerator *work);

@@ -225,7 +225,7 @@ static int may_start_open(const fu_model *model, const fu_coupling *coupling, co
 }
 
 /* Finds s where C_l = 0, eq 21. */
-static int follow(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+static int solve(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;
     return fu_slide_flags_of(model, state, j)->mode != FU_LEFT && fu_find_arc_length(model, state, j, &state->s[j]);
@@ -302,6 +302,10 @@ static const fu_field fields[] = {
     {0},
 };
 
+static const fu_reaction_operations reaction = {.update = fu_resistance_update, .accept = fu_resistance_accept, .friction_error = fu_resistance_friction_error};
+static const fu_coordinate_operations coordinates = {.rates = rates, .solve = solve};
+static const fu_history_operations history = {.update = fu_carry_director};
+
 const fu_coupling_type fu_slide_type = {
     .name = "slide",
     .size = sizeof(fu_slide),
@@ -317,18 +321,15 @@ const fu_coupling_type fu_slide_type = {
     .step_residual = fu_slide_over_step,
     .step_tangent = fu_slide_over_step_tangent,
     .rows = rows,
-    .react = fu_resistance_react,
-    .kink = fu_resistance_kink,
-    .reacted = fu_resistance_reacted,
     .take_forces = take_forces,
     .outputs = outputs,
-    .rates = rates,
     .energy = fu_buffer_energy,
     .dissipation = fu_resistance_dissipation,
     .lost_in_step = fu_lost_in_buffers,
     .may_start_open = may_start_open,
-    .follow = follow,
-    .carry = fu_carry_director,
     .touch = fu_touch_buffers,
     .is_possible = is_possible,
+    .reaction = &reaction,
+    .coordinates = &coordinates,
+    .history = &history,
 };
