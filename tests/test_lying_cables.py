@@ -13,7 +13,7 @@ def weight(scene):
     return 1000 * np.pi * 1e-6 * rope.length * G
 
 
-@pytest.mark.parametrize(("mu", "part"), [(0.1, 0.7), (0.1, 0.95), (0.3, 0.9)])
+@pytest.mark.parametrize(("mu", "part"), [pytest.param(0.1, 0.7, marks=pytest.mark.slow), (0.1, 0.95), (0.3, 0.9)])
 def test_friction_holds_a_rope_on_its_drum_below_the_capstans_limit(mu, part):
     """With 40 elements it fell off, and the state was said to be stable."""
     scene = capstan(part * heaviest(mu), mu)

@@ -36,7 +36,7 @@ from meeting_scenes import FACTORS, PROFILES, SECTIONS, SIGNALS, SOLIDS, STOPS, 
 
 SLOW = ("adjusted", "errors", "from_another_run", "loads_in_steps", "plots", "plots_of_run", "film_of_run",
         "picture_of_run", "page_of_run", "page_of_scene", "page_of_rest", "modes_as_drawn", "load_path", "relaxed",
-        "from_relaxed", "files_for_paraview")
+        "from_relaxed", "files_for_paraview", "swept")
 """Questions that take long: pictures, searches with many steps, several runs or states of rest of a scene."""
 
 EVERY = FACTORS | {"integrator": [AUTO, *INTEGRATORS]}

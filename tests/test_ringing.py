@@ -14,7 +14,7 @@ from ringing_scenes import SCENES
 @pytest.mark.parametrize(("name", "tol", "steps"), [
     ("twisted rod, sideways", 1e-3, 400),  # 61,288 of genalpha and 6,480 of radau before
     ("twisted rod, absolute_tol 1e-5", 1e-3, 600),
-    ("stretched pendulum, 25", 1e-3, 2600),  # 7,210 before
+    pytest.param("stretched pendulum, 25", 1e-3, 2600, marks=pytest.mark.slow),  # 7,210 before
     pytest.param("stretched pendulum, 50", 1e-3, 2000, marks=pytest.mark.slow),  # 3,352 before
 ])
 def test_vibrations_beside_what_counts_cost_no_steps(name, tol, steps):
