@@ -33,7 +33,8 @@ def test_one_licence(project):
 def test_contributing_names_files_that_exist():
     named = set(re.findall(r"`((?:derive|runtime|tests|generated|\.ci)/[\w./]*)`", text("CONTRIBUTING.md")))
     assert len(named) > 5
-    assert [path for path in sorted(named) if path != "derive/elements/NAME.py" and not (ROOT / path).exists()] == []
+    named = {path for path in named if not re.search(r"/[A-Z]+\b", path)}  # which the reader chooses
+    assert [path for path in sorted(named) if not (ROOT / path).exists()] == []
 
 
 @pytest.mark.parametrize("page", PAGES)
