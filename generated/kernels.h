@@ -1482,16 +1482,23 @@ void crossing_contact(const fu_real *d, const fu_real *t, const fu_real *u, cons
  * 3[m/s]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N]; F_u 3x3[N s/m]; s_d 2x3[1];
  * s_t 2x6[m] */
 void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
-/* stretch of the spring that friction is while it sticks: d 3[m]; t 2x3[1]; k 2x3[1/m]; c 8[m, 1, N/m, N/m^1.5, s/m,
- * m, 1, m/s]; e 2[m]; before 3[m]; x 2[m] -> now 3[m]; old 3[m]; along 3[1] */
-void crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *now, fu_real *old, fu_real *along);
-/* friction that sticks, its derivatives with the points moving: d 3[m]; t 2x3[1]; k 2x3[1/m]; c 8[m, 1, N/m,
- * N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e 2[m]; before 3[m]; x 2[m] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N] */
-void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, fu_real k_t, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t);
+/* how the closest points move in time: d 3[m]; t 2x3[1]; k 2x3[1/m]; w 2x3[1/s]; u 3[m/s] -> s_dot 2[m/s]; t_dot
+ * 2x3[1/s]; d_dot 3[m/s] */
+void crossing_motion(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot);
+/* stretch of the spring that friction is while it sticks: d 3[m]; t 2x3[1]; k 2x3[1/m]; w 2x3[1/s]; u 3[m/s]; c 8[m,
+ * 1, N/m, N/m^1.5, s/m, m, 1, m/s]; e 2[m]; h [s]; d_0 3[m]; d_rate 3[m/s]; t_0 2x3[1]; t_rate 2x3[1/s]; s_rate
+ * 2[m/s]; x 2[m]; v 2[m/s] -> now 3[m]; old 3[m]; along 3[1] */
+void crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *now, fu_real *old, fu_real *along);
+/* friction that sticks, its derivatives with the points moving: d 3[m]; t 2x3[1]; k 2x3[1/m]; w 2x3[1/s]; u 3[m/s];
+ * third 2x3[1/m^2]; k_rate 2x3[1/(m s)]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e 2[m]; h [s]; d_0
+ * 3[m]; d_rate 3[m/s]; t_0 2x3[1]; t_rate 2x3[1/s]; s_rate 2[m/s]; x 2[m]; v 2[m/s] -> F 3[N]; F_d 3x3[N/m]; F_t
+ * 3x6[N]; F_u 3x3[N s/m]; F_w 3x6[N s]; F_k 3x6[N m] */
+void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
 /* friction that slides, its derivatives with the points moving: d 3[m]; t 2x3[1]; k 2x3[1/m]; w 2x3[1/s]; u 3[m/s];
- * c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 2[m]; before 3[m]; x 2[m] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N];
- * F_u 3x3[N s/m] */
-void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
+ * third 2x3[1/m^2]; k_rate 2x3[1/(m s)]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 2[m]; h [s]; d_0 3[m];
+ * d_rate 3[m/s]; t_0 2x3[1]; t_rate 2x3[1/s]; s_rate 2[m/s]; x 2[m]; v 2[m/s] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N];
+ * F_u 3x3[N s/m]; F_w 3x6[N s]; F_k 3x6[N m] */
+void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
 /* forces over a step that balance energy: n 3[1]; way 3[m]; turn 2x3[1]; size 2[m]; p [m]; p_next [m]; h [s]; c 8[m,
  * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 3[N]; M 2x3[N m]; lost 1[J] */
 void crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
@@ -1506,16 +1513,23 @@ void planar_crossing_contact(const fu_real *d, const fu_real *t, const fu_real *
  * 2[m/s]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N]; F_u 2x2[N s/m]; s_d 1x2[1];
  * s_t 1x2[m] */
 void planar_crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
-/* stretch of the spring that friction is while it sticks: d 2[m]; t 1x2[1]; k 1x2[1/m]; c 8[m, 1, N/m, N/m^1.5, s/m,
- * m, 1, m/s]; e 1[m]; before 2[m]; x 1[m] -> now 2[m]; old 2[m]; along 2[1] */
-void planar_crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *now, fu_real *old, fu_real *along);
-/* friction that sticks, its derivatives with the points moving: d 2[m]; t 1x2[1]; k 1x2[1/m]; c 8[m, 1, N/m,
- * N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e 1[m]; before 2[m]; x 1[m] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N] */
-void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, fu_real k_t, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t);
+/* how the closest points move in time: d 2[m]; t 1x2[1]; k 1x2[1/m]; w 1x2[1/s]; u 2[m/s] -> s_dot 1[m/s]; t_dot
+ * 1x2[1/s]; d_dot 2[m/s] */
+void planar_crossing_motion(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot);
+/* stretch of the spring that friction is while it sticks: d 2[m]; t 1x2[1]; k 1x2[1/m]; w 1x2[1/s]; u 2[m/s]; c 8[m,
+ * 1, N/m, N/m^1.5, s/m, m, 1, m/s]; e 1[m]; h [s]; d_0 2[m]; d_rate 2[m/s]; t_0 1x2[1]; t_rate 1x2[1/s]; s_rate
+ * 1[m/s]; x 1[m]; v 1[m/s] -> now 2[m]; old 2[m]; along 2[1] */
+void planar_crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *now, fu_real *old, fu_real *along);
+/* friction that sticks, its derivatives with the points moving: d 2[m]; t 1x2[1]; k 1x2[1/m]; w 1x2[1/s]; u 2[m/s];
+ * third 1x2[1/m^2]; k_rate 1x2[1/(m s)]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e 1[m]; h [s]; d_0
+ * 2[m]; d_rate 2[m/s]; t_0 1x2[1]; t_rate 1x2[1/s]; s_rate 1[m/s]; x 1[m]; v 1[m/s] -> F 2[N]; F_d 2x2[N/m]; F_t
+ * 2x2[N]; F_u 2x2[N s/m]; F_w 2x2[N s]; F_k 2x2[N m] */
+void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
 /* friction that slides, its derivatives with the points moving: d 2[m]; t 1x2[1]; k 1x2[1/m]; w 1x2[1/s]; u 2[m/s];
- * c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 1[m]; before 2[m]; x 1[m] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N];
- * F_u 2x2[N s/m] */
-void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
+ * third 1x2[1/m^2]; k_rate 1x2[1/(m s)]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 1[m]; h [s]; d_0 2[m];
+ * d_rate 2[m/s]; t_0 1x2[1]; t_rate 1x2[1/s]; s_rate 1[m/s]; x 1[m]; v 1[m/s] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N];
+ * F_u 2x2[N s/m]; F_w 2x2[N s]; F_k 2x2[N m] */
+void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
 /* forces over a step that balance energy: n 2[1]; way 2[m]; turn 1x2[1]; size 1[m]; p [m]; p_next [m]; h [s]; c 8[m,
  * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 2[N]; M 1x2[N m]; lost 1[J] */
 void planar_crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
@@ -1803,9 +1817,10 @@ typedef struct {
     void (*closest)(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
     void (*contact)(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *f, fu_real *U, fu_real *P);
     void (*force)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
-    void (*stretch)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *now, fu_real *old, fu_real *along);
-    void (*sticking)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, fu_real k_t, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t);
-    void (*sliding)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u);
+    void (*motion)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot);
+    void (*stretch)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *now, fu_real *old, fu_real *along);
+    void (*sticking)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
+    void (*sliding)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
     void (*step)(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
 } fu_crossing_kernels;
 

@@ -4,9 +4,10 @@
  *   planar_crossing_closest: 4 add, 7 mul, 1 div
  *   planar_crossing_contact: 16 add, 37 mul, 2 div, 4 sqrt
  *   planar_crossing_force: 92 add, 202 mul, 11 div, 4 sqrt
- *   planar_crossing_stretch: 13 add, 23 mul, 2 div, 2 sqrt
- *   planar_crossing_sticking: 57 add, 109 mul, 3 div, 2 sqrt
- *   planar_crossing_sliding: 109 add, 288 mul, 12 div, 5 sqrt
+ *   planar_crossing_motion: 10 add, 13 mul, 1 div
+ *   planar_crossing_stretch: 35 add, 57 mul, 3 div, 2 sqrt
+ *   planar_crossing_sticking: 170 add, 347 mul, 4 div, 2 sqrt
+ *   planar_crossing_sliding: 90 add, 225 mul, 14 div, 6 sqrt
  *   planar_crossing_step: 29 add, 50 mul, 6 div, 5 sqrt
  */
 #include "kernels.h"
@@ -27,6 +28,14 @@
         rub = N_law*c[6]*inv_speed, \
         F_x = N_law*n_x - rub*slip_x, \
         F_y = N_law*n_y - rub*slip_y;
+
+/* slip half-way, times the step: of planar_crossing_stretch and 2 more */
+#define PLANAR_CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP \
+    const fu_real \
+        t_half0_x = 0.125*h*(-k[0]*s_rate_0 + t_rate[0] - w[0]) + 0.5*t[0] + 0.5*t_0[0], \
+        t_half0_y = 0.125*h*(-k[1]*s_rate_0 + t_rate[1] - w[1]) + 0.5*t[1] + 0.5*t_0[1], \
+        slip_half_x = 1.5*d[0] - 1.5*d_0[0] - 0.25*h*(d_rate[0] + rate_d_x) - t_half0_x*(1.5*e[0] - 0.25*h*(s_rate[0] + s_rate_0)), \
+        slip_half_y = 1.5*d[1] - 1.5*d_0[1] - 0.25*h*(d_rate[1] + rate_d_y) - t_half0_y*(1.5*e[0] - 0.25*h*(s_rate[0] + s_rate_0));
 
 /* a step of Newton's method to the closest points (Hunt & Crossley 1975; closest points by the implicit function theorem) */
 void planar_crossing_closest(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step)
@@ -179,29 +188,51 @@ void planar_crossing_force(const fu_real *d, const fu_real *t, const fu_real *k,
     s_t[1] = s0_3;
 }
 
-/* stretch of the spring that friction is while it sticks (Hunt & Crossley 1975; closest points by the implicit function theorem) */
-void planar_crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *now, fu_real *old, fu_real *along)
+/* how the closest points move in time (Hunt & Crossley 1975; closest points by the implicit function theorem) */
+void planar_crossing_motion(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot)
 {
-    /* normal */
+    /* conditions of closeness */
     const fu_real
-        len_m = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
-        inv_m = 1.0/len_m,
-        side_m = c[1]*inv_m,
-        n_x = side_m*t[1],
-        n_y = -(side_m*t[0]);
+        J_00 = d[0]*k[0] + d[1]*k[1] + t[0]*t[0] + t[1]*t[1],
+        inv_J = 1.0/J_00,
+        s_rate_0 = inv_J*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]),
+        rate_d_x = s_rate_0*t[0] + u[0],
+        rate_d_y = s_rate_0*t[1] + u[1];
+    /* outputs */
+    s_dot[0] = s_rate_0;
+    t_dot[0] = k[0]*s_rate_0 + w[0];
+    t_dot[1] = k[1]*s_rate_0 + w[1];
+    d_dot[0] = rate_d_x;
+    d_dot[1] = rate_d_y;
+}
+
+/* stretch of the spring that friction is while it sticks (Hunt & Crossley 1975; closest points by the implicit function theorem) */
+void planar_crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *now, fu_real *old, fu_real *along)
+{
+    (void)c;
+    /* rates of the closest points */
+    const fu_real
+        J_00 = d[0]*k[0] + d[1]*k[1] + t[0]*t[0] + t[1]*t[1],
+        inv_J = 1.0/J_00,
+        s_rate_0 = inv_J*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]),
+        rate_d_x = s_rate_0*t[0] + u[0],
+        rate_d_y = s_rate_0*t[1] + u[1];
+    PLANAR_CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP
     /* stretch of the spring */
     const fu_real
         len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
         inv_t = 1.0/len_t,
         tau_x = inv_t*t[0],
         tau_y = inv_t*t[1],
+        len_t_half = FU_SQRT(t_half0_x*t_half0_x + t_half0_y*t_half0_y),
+        inv_t_half = 1.0/len_t_half,
+        tau_half_x = inv_t_half*t_half0_x,
+        tau_half_y = inv_t_half*t_half0_y,
         old_x = tau_x*x[0],
         old_y = tau_y*x[0],
-        way_x = -before[0] + d[0] + 0.5*e[0]*e[0]*k[0] - e[0]*t[0],
-        way_y = -before[1] + d[1] + 0.5*e[0]*e[0]*k[1] - e[0]*t[1],
-        n_way = n_x*way_x + n_y*way_y,
-        x_now_x = -n_way*n_x + old_x + way_x,
-        x_now_y = -n_way*n_y + old_y + way_y;
+        x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + x[0],
+        x_now_x = tau_x*x_0,
+        x_now_y = tau_y*x_0;
     /* outputs */
     now[0] = x_now_x;
     now[1] = x_now_y;
@@ -212,109 +243,206 @@ void planar_crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *
 }
 
 /* friction that sticks, its derivatives with the points moving (Hunt & Crossley 1975; closest points by the implicit function theorem) */
-void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *c, fu_real k_t, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t)
+void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
 {
-    /* normal */
+    (void)c;
+    /* rates of the closest points */
     const fu_real
-        len_m = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
-        inv_m = 1.0/len_m,
-        side_m = c[1]*inv_m,
-        n_x = side_m*t[1],
-        n_y = -(side_m*t[0]);
+        J_00 = d[0]*k[0] + d[1]*k[1] + t[0]*t[0] + t[1]*t[1],
+        inv_J = 1.0/J_00,
+        s_rate_0 = inv_J*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]),
+        rate_d_x = s_rate_0*t[0] + u[0],
+        rate_d_y = s_rate_0*t[1] + u[1];
+    PLANAR_CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP
     /* stretch of the spring */
     const fu_real
         len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
         inv_t = 1.0/len_t,
         tau_x = inv_t*t[0],
         tau_y = inv_t*t[1],
-        old_x = tau_x*x[0],
-        old_y = tau_y*x[0],
-        way_x = -before[0] + d[0] + 0.5*e[0]*e[0]*k[0] - e[0]*t[0],
-        way_y = -before[1] + d[1] + 0.5*e[0]*e[0]*k[1] - e[0]*t[1],
-        n_way = n_x*way_x + n_y*way_y,
-        x_now_x = -n_way*n_x + old_x + way_x,
-        x_now_y = -n_way*n_y + old_y + way_y,
+        len_t_half = FU_SQRT(t_half0_x*t_half0_x + t_half0_y*t_half0_y),
+        inv_t_half = 1.0/len_t_half,
+        tau_half_x = inv_t_half*t_half0_x,
+        tau_half_y = inv_t_half*t_half0_y,
+        x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + x[0],
+        x_now_x = tau_x*x_0,
+        x_now_y = tau_y*x_0,
         F_x = -(k_t*x_now_x),
         F_y = -(k_t*x_now_y);
     /* closest points: derivatives of the arc-lengths by d and by the slopes */
     const fu_real
-        J_00 = d[0]*k[0] + d[1]*k[1] + t[0]*t[0] + t[1]*t[1],
-        inv_J = 1.0/J_00,
-        s0_0 = -(inv_J*t[0]),
-        s0_1 = -(inv_J*t[1]),
-        s0_2 = -(d[0]*inv_J),
-        s0_3 = -(d[1]*inv_J);
+        J_00_2 = d[0]*k[0] + d[1]*k[1] + t[0]*t[0] + t[1]*t[1],
+        inv_J_2 = 1.0/J_00_2,
+        s0_0 = -(inv_J_2*t[0]),
+        s0_1 = -(inv_J_2*t[1]),
+        s0_2 = -(d[0]*inv_J_2),
+        s0_3 = -(d[1]*inv_J_2);
     /* derivatives of the force where the points stay */
+    fu_real F_0[2], F_1[2], F_2[2], F_3[2], F_4[2], F_5[2], F_6[2], F_7[2], F_8[2], F_9[2], F_11[2], d_t_J_00[2],
+        d_t_inv_J[2], d_t_s_rate_0[2], F_0_2[2], F_1_2[2], F_2_2[2], F_3_2[2], F_4_2[2], F_5_2[2], F_6_2[2], F_7_2[2],
+        F_8_2[2], F_9_2[2];
     const fu_real
-        d_d0_x_now_x = -n_x*n_x + 1.0,
-        d_d0_F_x = -(d_d0_x_now_x*k_t),
-        d_d0_x_now_y = -(n_x*n_y),
-        d_d0_F_y = -(d_d0_x_now_y*k_t),
-        d_d1_x_now_x = -(n_x*n_y),
-        d_d1_F_x = -(d_d1_x_now_x*k_t),
-        d_d1_x_now_y = -n_y*n_y + 1.0,
-        d_d1_F_y = -(d_d1_x_now_y*k_t),
-        d_t0_len_m = inv_m*t[0],
-        d_t0_inv_m = -(d_t0_len_m*inv_m*inv_m),
-        d_t0_side_m = c[1]*d_t0_inv_m,
-        d_t0_n_x = d_t0_side_m*t[1],
-        d_t0_n_y = -d_t0_side_m*t[0] - side_m,
-        d_t0_way_x = -e[0],
-        d_t0_n_way = d_t0_n_x*way_x + d_t0_n_y*way_y + d_t0_way_x*n_x,
         d_t0_len_t = inv_t*t[0],
         d_t0_inv_t = -(d_t0_len_t*inv_t*inv_t),
         d_t0_tau_x = d_t0_inv_t*t[0] + inv_t,
-        d_t0_old_x = d_t0_tau_x*x[0],
-        d_t0_x_now_x = -d_t0_n_way*n_x - d_t0_n_x*n_way + d_t0_old_x + d_t0_way_x,
-        d_t0_F_x = -(d_t0_x_now_x*k_t),
         d_t0_tau_y = d_t0_inv_t*t[1],
-        d_t0_old_y = d_t0_tau_y*x[0],
-        d_t0_x_now_y = -d_t0_n_way*n_y - d_t0_n_y*n_way + d_t0_old_y,
+        d_t0_x_0 = (1.0/6.0)*d_t0_tau_x*h*u[0] + (1.0/6.0)*d_t0_tau_y*h*u[1],
+        d_t0_x_now_x = d_t0_tau_x*x_0 + d_t0_x_0*tau_x,
+        d_t0_F_x = -(d_t0_x_now_x*k_t),
+        d_t0_x_now_y = d_t0_tau_y*x_0 + d_t0_x_0*tau_y,
         d_t0_F_y = -(d_t0_x_now_y*k_t),
-        d_t1_len_m = inv_m*t[1],
-        d_t1_inv_m = -(d_t1_len_m*inv_m*inv_m),
-        d_t1_side_m = c[1]*d_t1_inv_m,
-        d_t1_n_x = d_t1_side_m*t[1] + side_m,
-        d_t1_n_y = -(d_t1_side_m*t[0]),
-        d_t1_way_y = -e[0],
-        d_t1_n_way = d_t1_n_x*way_x + d_t1_n_y*way_y + d_t1_way_y*n_y,
         d_t1_len_t = inv_t*t[1],
         d_t1_inv_t = -(d_t1_len_t*inv_t*inv_t),
         d_t1_tau_x = d_t1_inv_t*t[0],
-        d_t1_old_x = d_t1_tau_x*x[0],
-        d_t1_x_now_x = -d_t1_n_way*n_x - d_t1_n_x*n_way + d_t1_old_x,
-        d_t1_F_x = -(d_t1_x_now_x*k_t),
         d_t1_tau_y = d_t1_inv_t*t[1] + inv_t,
-        d_t1_old_y = d_t1_tau_y*x[0],
-        d_t1_x_now_y = -d_t1_n_way*n_y - d_t1_n_y*n_way + d_t1_old_y + d_t1_way_y,
+        d_t1_x_0 = (1.0/6.0)*d_t1_tau_x*h*u[0] + (1.0/6.0)*d_t1_tau_y*h*u[1],
+        d_t1_x_now_x = d_t1_tau_x*x_0 + d_t1_x_0*tau_x,
+        d_t1_F_x = -(d_t1_x_now_x*k_t),
+        d_t1_x_now_y = d_t1_tau_y*x_0 + d_t1_x_0*tau_y,
         d_t1_F_y = -(d_t1_x_now_y*k_t),
-        d_e0_way_x = e[0]*k[0] - t[0],
-        d_e0_way_y = e[0]*k[1] - t[1],
-        d_e0_n_way = d_e0_way_x*n_x + d_e0_way_y*n_y,
-        d_e0_x_now_x = -d_e0_n_way*n_x + d_e0_way_x,
-        d_e0_F_x = -(d_e0_x_now_x*k_t),
-        d_e0_x_now_y = -d_e0_n_way*n_y + d_e0_way_y,
-        d_e0_F_y = -(d_e0_x_now_y*k_t);
+        d_u0_x_0 = (1.0/6.0)*h*tau_x,
+        d_u0_x_now_x = d_u0_x_0*tau_x,
+        d_u0_F_x = -(d_u0_x_now_x*k_t),
+        d_u0_x_now_y = d_u0_x_0*tau_y,
+        d_u0_F_y = -(d_u0_x_now_y*k_t),
+        d_u1_x_0 = (1.0/6.0)*h*tau_y,
+        d_u1_x_now_x = d_u1_x_0*tau_x,
+        d_u1_F_x = -(d_u1_x_now_x*k_t),
+        d_u1_x_now_y = d_u1_x_0*tau_y,
+        d_u1_F_y = -(d_u1_x_now_y*k_t),
+        d_t_half0_x_len_t_half = inv_t_half*t_half0_x,
+        d_t_half0_x_inv_t_half = -(d_t_half0_x_len_t_half*inv_t_half*inv_t_half),
+        d_t_half0_x_tau_half_x = d_t_half0_x_inv_t_half*t_half0_x + inv_t_half,
+        d_t_half0_x_tau_half_y = d_t_half0_x_inv_t_half*t_half0_y,
+        d_t_half0_x_x_0 = (2.0/3.0)*d_t_half0_x_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half0_x_tau_half_y*slip_half_y,
+        d_t_half0_x_x_now_x = d_t_half0_x_x_0*tau_x,
+        d_t_half0_x_F_x = -(d_t_half0_x_x_now_x*k_t),
+        d_t_half0_x_x_now_y = d_t_half0_x_x_0*tau_y,
+        d_t_half0_x_F_y = -(d_t_half0_x_x_now_y*k_t),
+        d_t_half0_y_len_t_half = inv_t_half*t_half0_y,
+        d_t_half0_y_inv_t_half = -(d_t_half0_y_len_t_half*inv_t_half*inv_t_half),
+        d_t_half0_y_tau_half_x = d_t_half0_y_inv_t_half*t_half0_x,
+        d_t_half0_y_tau_half_y = d_t_half0_y_inv_t_half*t_half0_y + inv_t_half,
+        d_t_half0_y_x_0 = (2.0/3.0)*d_t_half0_y_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half0_y_tau_half_y*slip_half_y,
+        d_t_half0_y_x_now_x = d_t_half0_y_x_0*tau_x,
+        d_t_half0_y_F_x = -(d_t_half0_y_x_now_x*k_t),
+        d_t_half0_y_x_now_y = d_t_half0_y_x_0*tau_y,
+        d_t_half0_y_F_y = -(d_t_half0_y_x_now_y*k_t),
+        d_slip_half_x_x_0 = (2.0/3.0)*tau_half_x,
+        d_slip_half_x_x_now_x = d_slip_half_x_x_0*tau_x,
+        d_slip_half_x_F_x = -(d_slip_half_x_x_now_x*k_t),
+        d_slip_half_x_x_now_y = d_slip_half_x_x_0*tau_y,
+        d_slip_half_x_F_y = -(d_slip_half_x_x_now_y*k_t),
+        d_slip_half_y_x_0 = (2.0/3.0)*tau_half_y,
+        d_slip_half_y_x_now_x = d_slip_half_y_x_0*tau_x,
+        d_slip_half_y_F_x = -(d_slip_half_y_x_now_x*k_t),
+        d_slip_half_y_x_now_y = d_slip_half_y_x_0*tau_y,
+        d_slip_half_y_F_y = -(d_slip_half_y_x_now_y*k_t),
+        d_t0_slip_half_x = -0.75*e[0] - 0.25*h*s_rate_0 + 0.125*h*(s_rate[0] + s_rate_0),
+        d_t1_slip_half_y = -0.75*e[0] - 0.25*h*s_rate_0 + 0.125*h*(s_rate[0] + s_rate_0),
+        d_u0_slip_half_x = -(0.25*h),
+        d_u1_slip_half_y = -(0.25*h),
+        d_w0_t_half0_x = -(0.125*h),
+        d_w0_slip_half_x = d_w0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_0)),
+        d_w1_t_half0_y = -(0.125*h),
+        d_w1_slip_half_y = d_w1_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_0)),
+        d_k0_t_half0_x = -(0.125*h*s_rate_0),
+        d_k0_slip_half_x = d_k0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_0)),
+        d_k1_t_half0_y = -(0.125*h*s_rate_0),
+        d_k1_slip_half_y = d_k1_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_0)),
+        d_e0_slip_half_x = -(1.5*t_half0_x),
+        d_e0_slip_half_y = -(1.5*t_half0_y),
+        d_s_rate_0_t_half0_x = -(0.125*h*k[0]),
+        d_s_rate_0_t_half0_y = -(0.125*h*k[1]),
+        d_s_rate_0_slip_half_x = d_s_rate_0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_0)) - 0.25*h*t[0] + 0.25*h*t_half0_x,
+        d_s_rate_0_slip_half_y = d_s_rate_0_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_0)) - 0.25*h*t[1] + 0.25*h*t_half0_y;
+    F_0[0] = 1.5*d_slip_half_x_F_x;
+    F_1[0] = 1.5*d_slip_half_y_F_x;
+    F_2[0] = d_slip_half_x_F_x*d_t0_slip_half_x + d_t0_F_x + 0.5*d_t_half0_x_F_x;
+    F_3[0] = d_slip_half_y_F_x*d_t1_slip_half_y + d_t1_F_x + 0.5*d_t_half0_y_F_x;
+    F_4[0] = d_slip_half_x_F_x*d_u0_slip_half_x + d_u0_F_x;
+    F_5[0] = d_slip_half_y_F_x*d_u1_slip_half_y + d_u1_F_x;
+    F_6[0] = d_slip_half_x_F_x*d_w0_slip_half_x + d_t_half0_x_F_x*d_w0_t_half0_x;
+    F_7[0] = d_slip_half_y_F_x*d_w1_slip_half_y + d_t_half0_y_F_x*d_w1_t_half0_y;
+    F_8[0] = d_k0_slip_half_x*d_slip_half_x_F_x + d_k0_t_half0_x*d_t_half0_x_F_x;
+    F_9[0] = d_k1_slip_half_y*d_slip_half_y_F_x + d_k1_t_half0_y*d_t_half0_y_F_x;
+    const fu_real F0_10 = d_e0_slip_half_x*d_slip_half_x_F_x + d_e0_slip_half_y*d_slip_half_y_F_x;
+    F_11[0] = d_s_rate_0_slip_half_x*d_slip_half_x_F_x + d_s_rate_0_slip_half_y*d_slip_half_y_F_x + d_s_rate_0_t_half0_x*d_t_half0_x_F_x + d_s_rate_0_t_half0_y*d_t_half0_y_F_x;
+    F_0[1] = 1.5*d_slip_half_x_F_y;
+    F_1[1] = 1.5*d_slip_half_y_F_y;
+    F_2[1] = d_slip_half_x_F_y*d_t0_slip_half_x + d_t0_F_y + 0.5*d_t_half0_x_F_y;
+    F_3[1] = d_slip_half_y_F_y*d_t1_slip_half_y + d_t1_F_y + 0.5*d_t_half0_y_F_y;
+    F_4[1] = d_slip_half_x_F_y*d_u0_slip_half_x + d_u0_F_y;
+    F_5[1] = d_slip_half_y_F_y*d_u1_slip_half_y + d_u1_F_y;
+    F_6[1] = d_slip_half_x_F_y*d_w0_slip_half_x + d_t_half0_x_F_y*d_w0_t_half0_x;
+    F_7[1] = d_slip_half_y_F_y*d_w1_slip_half_y + d_t_half0_y_F_y*d_w1_t_half0_y;
+    F_8[1] = d_k0_slip_half_x*d_slip_half_x_F_y + d_k0_t_half0_x*d_t_half0_x_F_y;
+    F_9[1] = d_k1_slip_half_y*d_slip_half_y_F_y + d_k1_t_half0_y*d_t_half0_y_F_y;
+    const fu_real F1_10 = d_e0_slip_half_x*d_slip_half_x_F_y + d_e0_slip_half_y*d_slip_half_y_F_y;
+    F_11[1] = d_s_rate_0_slip_half_x*d_slip_half_x_F_y + d_s_rate_0_slip_half_y*d_slip_half_y_F_y + d_s_rate_0_t_half0_x*d_t_half0_x_F_y + d_s_rate_0_t_half0_y*d_t_half0_y_F_y;
+    const fu_real
+        d_d0_inv_J = -(inv_J*inv_J*k[0]),
+        d_d0_s_rate_0 = d_d0_inv_J*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]) - inv_J*w[0],
+        d_d1_inv_J = -(inv_J*inv_J*k[1]),
+        d_d1_s_rate_0 = d_d1_inv_J*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]) - inv_J*w[1];
+    FU_EACH(g, 2,
+        d_t_J_00[g] = 2.0*t[g];
+        d_t_inv_J[g] = -(d_t_J_00[g]*inv_J*inv_J);
+        d_t_s_rate_0[g] = d_t_inv_J[g]*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]) - inv_J*u[g];)
+    const fu_real
+        d_u0_s_rate_0 = -(inv_J*t[0]),
+        d_u1_s_rate_0 = -(inv_J*t[1]),
+        d_w0_s_rate_0 = -(d[0]*inv_J),
+        d_w1_s_rate_0 = -(d[1]*inv_J),
+        d_k0_inv_J = -(d[0]*inv_J*inv_J),
+        d_k0_s_rate_0 = d_k0_inv_J*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]),
+        d_k1_inv_J = -(d[1]*inv_J*inv_J),
+        d_k1_s_rate_0 = d_k1_inv_J*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]);
+    FU_EACH(g, 2,
+        F_0_2[g] = F_0[g] + F_11[g]*d_d0_s_rate_0;
+        F_1_2[g] = F_1[g] + F_11[g]*d_d1_s_rate_0;
+        F_2_2[g] = F_11[g]*d_t_s_rate_0[0] + F_2[g];
+        F_3_2[g] = F_11[g]*d_t_s_rate_0[1] + F_3[g];
+        F_4_2[g] = F_11[g]*d_u0_s_rate_0 + F_4[g];
+        F_5_2[g] = F_11[g]*d_u1_s_rate_0 + F_5[g];
+        F_6_2[g] = F_11[g]*d_w0_s_rate_0 + F_6[g];
+        F_7_2[g] = F_11[g]*d_w1_s_rate_0 + F_7[g];
+        F_8_2[g] = F_11[g]*d_k0_s_rate_0 + F_8[g];
+        F_9_2[g] = F_11[g]*d_k1_s_rate_0 + F_9[g];)
     /* derivatives of the force along the lines */
     const fu_real
-        F_s0_x = d_d0_F_x*t[0] + d_d1_F_x*t[1] + d_e0_F_x + d_t0_F_x*k[0] + d_t1_F_x*k[1],
-        F_s0_y = d_d0_F_y*t[0] + d_d1_F_y*t[1] + d_e0_F_y + d_t0_F_y*k[0] + d_t1_F_y*k[1];
+        F_s0_x = F_0_2[0]*t[0] + F0_10 + F_1_2[0]*t[1] + F_2_2[0]*k[0] + F_3_2[0]*k[1] + F_4_2[0]*w[0] + F_5_2[0]*w[1] + F_6_2[0]*k_rate[0] + F_7_2[0]*k_rate[1] + F_8_2[0]*third[0] + F_9_2[0]*third[1],
+        F_s0_y = F_0_2[1]*t[0] + F1_10 + F_1_2[1]*t[1] + F_2_2[1]*k[0] + F_3_2[1]*k[1] + F_4_2[1]*w[0] + F_5_2[1]*w[1] + F_6_2[1]*k_rate[0] + F_7_2[1]*k_rate[1] + F_8_2[1]*third[0] + F_9_2[1]*third[1];
     /* outputs */
     F[0] = F_x;
     F[1] = F_y;
-    F_d[0] = F_s0_x*s0_0 + d_d0_F_x;
-    F_d[1] = F_s0_x*s0_1 + d_d1_F_x;
-    F_d[2] = F_s0_y*s0_0 + d_d0_F_y;
-    F_d[3] = F_s0_y*s0_1 + d_d1_F_y;
-    F_t[0] = F_s0_x*s0_2 + d_t0_F_x;
-    F_t[1] = F_s0_x*s0_3 + d_t1_F_x;
-    F_t[2] = F_s0_y*s0_2 + d_t0_F_y;
-    F_t[3] = F_s0_y*s0_3 + d_t1_F_y;
+    F_d[0] = F_0_2[0] + F_s0_x*s0_0;
+    F_d[1] = F_1_2[0] + F_s0_x*s0_1;
+    F_d[2] = F_0_2[1] + F_s0_y*s0_0;
+    F_d[3] = F_1_2[1] + F_s0_y*s0_1;
+    F_t[0] = F_2_2[0] + F_s0_x*s0_2;
+    F_t[1] = F_3_2[0] + F_s0_x*s0_3;
+    F_t[2] = F_2_2[1] + F_s0_y*s0_2;
+    F_t[3] = F_3_2[1] + F_s0_y*s0_3;
+    F_u[0] = F_4_2[0];
+    F_u[1] = F_5_2[0];
+    F_u[2] = F_4_2[1];
+    F_u[3] = F_5_2[1];
+    F_w[0] = F_6_2[0];
+    F_w[1] = F_7_2[0];
+    F_w[2] = F_6_2[1];
+    F_w[3] = F_7_2[1];
+    F_k[0] = F_8_2[0];
+    F_k[1] = F_9_2[0];
+    F_k[2] = F_8_2[1];
+    F_k[3] = F_9_2[1];
 }
 
 /* friction that slides, its derivatives with the points moving (Hunt & Crossley 1975; closest points by the implicit function theorem) */
-void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real mu, const fu_real *e, const fu_real *before, const fu_real *x, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u)
+void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
 {
+    (void)third;
+    (void)k_rate;
     /* normal */
     const fu_real
         len_m = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
@@ -330,31 +458,40 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
         root_p = FU_SQRT(size_p),
         elastic = depth*(c[2] + c[3]*root_p),
         N_law = elastic*(c[4]*rate + 1.0);
+    /* rates of the closest points */
+    const fu_real
+        J_00 = d[0]*k[0] + d[1]*k[1] + t[0]*t[0] + t[1]*t[1],
+        inv_J = 1.0/J_00,
+        s_rate_0 = inv_J*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]),
+        rate_d_x = s_rate_0*t[0] + u[0],
+        rate_d_y = s_rate_0*t[1] + u[1];
+    PLANAR_CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP
     /* stretch of the spring */
     const fu_real
         len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
         inv_t = 1.0/len_t,
         tau_x = inv_t*t[0],
         tau_y = inv_t*t[1],
-        old_x = tau_x*x[0],
-        old_y = tau_y*x[0],
-        way_x = -before[0] + d[0] + 0.5*e[0]*e[0]*k[0] - e[0]*t[0],
-        way_y = -before[1] + d[1] + 0.5*e[0]*e[0]*k[1] - e[0]*t[1],
-        n_way = n_x*way_x + n_y*way_y,
-        x_now_x = -n_way*n_x + old_x + way_x,
-        x_now_y = -n_way*n_y + old_y + way_y,
-        size = FU_SQRT(x_now_x*x_now_x + x_now_y*x_now_y),
-        inv_size = 1.0/size,
-        F_x_2 = -(N_law*inv_size*mu*x_now_x),
-        F_y_2 = -(N_law*inv_size*mu*x_now_y);
+        len_t_half = FU_SQRT(t_half0_x*t_half0_x + t_half0_y*t_half0_y),
+        inv_t_half = 1.0/len_t_half,
+        tau_half_x = inv_t_half*t_half0_x,
+        tau_half_y = inv_t_half*t_half0_y,
+        x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + x[0],
+        x_now_x = tau_x*x_0,
+        x_now_y = tau_y*x_0,
+        x_along = tau_x*x_now_x + tau_y*x_now_y,
+        size = FU_SQRT(x_along*x_along),
+        side_x = x_along/size,
+        F_x_2 = -(N_law*mu*side_x*tau_x),
+        F_y_2 = -(N_law*mu*side_x*tau_y);
     /* closest points: derivatives of the arc-lengths by d and by the slopes */
     const fu_real
-        J_00 = d[0]*k[0] + d[1]*k[1] + t[0]*t[0] + t[1]*t[1],
-        inv_J = 1.0/J_00,
-        s0_0 = -(inv_J*t[0]),
-        s0_1 = -(inv_J*t[1]),
-        s0_2 = -(d[0]*inv_J),
-        s0_3 = -(d[1]*inv_J);
+        J_00_2 = d[0]*k[0] + d[1]*k[1] + t[0]*t[0] + t[1]*t[1],
+        inv_J_2 = 1.0/J_00_2,
+        s0_0 = -(inv_J_2*t[0]),
+        s0_1 = -(inv_J_2*t[1]),
+        s0_2 = -(d[0]*inv_J_2),
+        s0_3 = -(d[1]*inv_J_2);
     /* derivatives of the force where the points stay */
     const fu_real
         d_d0_depth = -n_x,
@@ -362,23 +499,15 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
         d_d0_root_p = 0.5*d_d0_size_p/root_p,
         d_d0_elastic = c[3]*d_d0_root_p*depth + d_d0_depth*(c[2] + c[3]*root_p),
         d_d0_N_law = d_d0_elastic*(c[4]*rate + 1.0),
-        d_d0_x_now_x = -n_x*n_x + 1.0,
-        d_d0_x_now_y = -(n_x*n_y),
-        d_d0_size = inv_size*(d_d0_x_now_x*x_now_x + d_d0_x_now_y*x_now_y),
-        d_d0_inv_size = -(d_d0_size*inv_size*inv_size),
-        d_d0_F_x_2 = -N_law*d_d0_inv_size*mu*x_now_x - N_law*d_d0_x_now_x*inv_size*mu - d_d0_N_law*inv_size*mu*x_now_x,
-        d_d0_F_y_2 = -N_law*d_d0_inv_size*mu*x_now_y - N_law*d_d0_x_now_y*inv_size*mu - d_d0_N_law*inv_size*mu*x_now_y,
+        d_d0_F_x_2 = -(d_d0_N_law*mu*side_x*tau_x),
+        d_d0_F_y_2 = -(d_d0_N_law*mu*side_x*tau_y),
         d_d1_depth = -n_y,
         d_d1_size_p = d_d1_depth*depth/size_p,
         d_d1_root_p = 0.5*d_d1_size_p/root_p,
         d_d1_elastic = c[3]*d_d1_root_p*depth + d_d1_depth*(c[2] + c[3]*root_p),
         d_d1_N_law = d_d1_elastic*(c[4]*rate + 1.0),
-        d_d1_x_now_x = -(n_x*n_y),
-        d_d1_x_now_y = -n_y*n_y + 1.0,
-        d_d1_size = inv_size*(d_d1_x_now_x*x_now_x + d_d1_x_now_y*x_now_y),
-        d_d1_inv_size = -(d_d1_size*inv_size*inv_size),
-        d_d1_F_x_2 = -N_law*d_d1_inv_size*mu*x_now_x - N_law*d_d1_x_now_x*inv_size*mu - d_d1_N_law*inv_size*mu*x_now_x,
-        d_d1_F_y_2 = -N_law*d_d1_inv_size*mu*x_now_y - N_law*d_d1_x_now_y*inv_size*mu - d_d1_N_law*inv_size*mu*x_now_y,
+        d_d1_F_x_2 = -(d_d1_N_law*mu*side_x*tau_x),
+        d_d1_F_y_2 = -(d_d1_N_law*mu*side_x*tau_y),
         d_t0_len_m = inv_m*t[0],
         d_t0_inv_m = -(d_t0_len_m*inv_m*inv_m),
         d_t0_side_m = c[1]*d_t0_inv_m,
@@ -390,20 +519,12 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
         d_t0_elastic = c[3]*d_t0_root_p*depth + d_t0_depth*(c[2] + c[3]*root_p),
         d_t0_rate = -d_t0_n_x*u[0] - d_t0_n_y*u[1],
         d_t0_N_law = c[4]*d_t0_rate*elastic + d_t0_elastic*(c[4]*rate + 1.0),
-        d_t0_way_x = -e[0],
-        d_t0_n_way = d_t0_n_x*way_x + d_t0_n_y*way_y + d_t0_way_x*n_x,
         d_t0_len_t = inv_t*t[0],
         d_t0_inv_t = -(d_t0_len_t*inv_t*inv_t),
         d_t0_tau_x = d_t0_inv_t*t[0] + inv_t,
-        d_t0_old_x = d_t0_tau_x*x[0],
-        d_t0_x_now_x = -d_t0_n_way*n_x - d_t0_n_x*n_way + d_t0_old_x + d_t0_way_x,
+        d_t0_F_x_2 = -N_law*d_t0_tau_x*mu*side_x - d_t0_N_law*mu*side_x*tau_x,
         d_t0_tau_y = d_t0_inv_t*t[1],
-        d_t0_old_y = d_t0_tau_y*x[0],
-        d_t0_x_now_y = -d_t0_n_way*n_y - d_t0_n_y*n_way + d_t0_old_y,
-        d_t0_size = inv_size*(d_t0_x_now_x*x_now_x + d_t0_x_now_y*x_now_y),
-        d_t0_inv_size = -(d_t0_size*inv_size*inv_size),
-        d_t0_F_x_2 = -N_law*d_t0_inv_size*mu*x_now_x - N_law*d_t0_x_now_x*inv_size*mu - d_t0_N_law*inv_size*mu*x_now_x,
-        d_t0_F_y_2 = -N_law*d_t0_inv_size*mu*x_now_y - N_law*d_t0_x_now_y*inv_size*mu - d_t0_N_law*inv_size*mu*x_now_y,
+        d_t0_F_y_2 = -N_law*d_t0_tau_y*mu*side_x - d_t0_N_law*mu*side_x*tau_y,
         d_t1_len_m = inv_m*t[1],
         d_t1_inv_m = -(d_t1_len_m*inv_m*inv_m),
         d_t1_side_m = c[1]*d_t1_inv_m,
@@ -415,41 +536,24 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
         d_t1_elastic = c[3]*d_t1_root_p*depth + d_t1_depth*(c[2] + c[3]*root_p),
         d_t1_rate = -d_t1_n_x*u[0] - d_t1_n_y*u[1],
         d_t1_N_law = c[4]*d_t1_rate*elastic + d_t1_elastic*(c[4]*rate + 1.0),
-        d_t1_way_y = -e[0],
-        d_t1_n_way = d_t1_n_x*way_x + d_t1_n_y*way_y + d_t1_way_y*n_y,
         d_t1_len_t = inv_t*t[1],
         d_t1_inv_t = -(d_t1_len_t*inv_t*inv_t),
         d_t1_tau_x = d_t1_inv_t*t[0],
-        d_t1_old_x = d_t1_tau_x*x[0],
-        d_t1_x_now_x = -d_t1_n_way*n_x - d_t1_n_x*n_way + d_t1_old_x,
+        d_t1_F_x_2 = -N_law*d_t1_tau_x*mu*side_x - d_t1_N_law*mu*side_x*tau_x,
         d_t1_tau_y = d_t1_inv_t*t[1] + inv_t,
-        d_t1_old_y = d_t1_tau_y*x[0],
-        d_t1_x_now_y = -d_t1_n_way*n_y - d_t1_n_y*n_way + d_t1_old_y + d_t1_way_y,
-        d_t1_size = inv_size*(d_t1_x_now_x*x_now_x + d_t1_x_now_y*x_now_y),
-        d_t1_inv_size = -(d_t1_size*inv_size*inv_size),
-        d_t1_F_x_2 = -N_law*d_t1_inv_size*mu*x_now_x - N_law*d_t1_x_now_x*inv_size*mu - d_t1_N_law*inv_size*mu*x_now_x,
-        d_t1_F_y_2 = -N_law*d_t1_inv_size*mu*x_now_y - N_law*d_t1_x_now_y*inv_size*mu - d_t1_N_law*inv_size*mu*x_now_y,
+        d_t1_F_y_2 = -N_law*d_t1_tau_y*mu*side_x - d_t1_N_law*mu*side_x*tau_y,
         d_u0_rate = -n_x,
         d_u0_N_law = c[4]*d_u0_rate*elastic,
-        d_u0_F_x_2 = -(d_u0_N_law*inv_size*mu*x_now_x),
-        d_u0_F_y_2 = -(d_u0_N_law*inv_size*mu*x_now_y),
+        d_u0_F_x_2 = -(d_u0_N_law*mu*side_x*tau_x),
+        d_u0_F_y_2 = -(d_u0_N_law*mu*side_x*tau_y),
         d_u1_rate = -n_y,
         d_u1_N_law = c[4]*d_u1_rate*elastic,
-        d_u1_F_x_2 = -(d_u1_N_law*inv_size*mu*x_now_x),
-        d_u1_F_y_2 = -(d_u1_N_law*inv_size*mu*x_now_y),
-        d_e0_way_x = e[0]*k[0] - t[0],
-        d_e0_way_y = e[0]*k[1] - t[1],
-        d_e0_n_way = d_e0_way_x*n_x + d_e0_way_y*n_y,
-        d_e0_x_now_x = -d_e0_n_way*n_x + d_e0_way_x,
-        d_e0_x_now_y = -d_e0_n_way*n_y + d_e0_way_y,
-        d_e0_size = inv_size*(d_e0_x_now_x*x_now_x + d_e0_x_now_y*x_now_y),
-        d_e0_inv_size = -(d_e0_size*inv_size*inv_size),
-        d_e0_F_x_2 = -N_law*d_e0_inv_size*mu*x_now_x - N_law*d_e0_x_now_x*inv_size*mu,
-        d_e0_F_y_2 = -N_law*d_e0_inv_size*mu*x_now_y - N_law*d_e0_x_now_y*inv_size*mu;
+        d_u1_F_x_2 = -(d_u1_N_law*mu*side_x*tau_x),
+        d_u1_F_y_2 = -(d_u1_N_law*mu*side_x*tau_y);
     /* derivatives of the force along the lines */
     const fu_real
-        F_s0_x = d_d0_F_x_2*t[0] + d_d1_F_x_2*t[1] + d_e0_F_x_2 + d_t0_F_x_2*k[0] + d_t1_F_x_2*k[1] + d_u0_F_x_2*w[0] + d_u1_F_x_2*w[1],
-        F_s0_y = d_d0_F_y_2*t[0] + d_d1_F_y_2*t[1] + d_e0_F_y_2 + d_t0_F_y_2*k[0] + d_t1_F_y_2*k[1] + d_u0_F_y_2*w[0] + d_u1_F_y_2*w[1];
+        F_s0_x = d_d0_F_x_2*t[0] + d_d1_F_x_2*t[1] + d_t0_F_x_2*k[0] + d_t1_F_x_2*k[1] + d_u0_F_x_2*w[0] + d_u1_F_x_2*w[1],
+        F_s0_y = d_d0_F_y_2*t[0] + d_d1_F_y_2*t[1] + d_t0_F_y_2*k[0] + d_t1_F_y_2*k[1] + d_u0_F_y_2*w[0] + d_u1_F_y_2*w[1];
     /* outputs */
     F[0] = F_x_2;
     F[1] = F_y_2;
@@ -465,6 +569,10 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
     F_u[1] = d_u1_F_x_2;
     F_u[2] = d_u0_F_y_2;
     F_u[3] = d_u1_F_y_2;
+    FU_EACH(g, 4,
+        F_w[g] = 0.0;)
+    FU_EACH(g, 4,
+        F_k[g] = 0.0;)
 }
 
 /* forces over a step that balance energy (Hunt & Crossley 1975; closest points by the implicit function theorem; Gonzalez 1996) */

@@ -11,10 +11,12 @@ The force on the first line is N n, with N = k p^e (1 + damping p') of the penet
 odd in p, so that it is smooth across p = 0, where a run ends contact.
 
 Friction is Coulomb's, -mu N v/sqrt(v.v + v0^2) by the slip v: the part of the relative velocity of both lines'
-particles at the points that is square to n. Or it sticks (`stretch`): the spring is stretched by the way that
-particles of both lines have gone past each other, square to n, since the last step. Where the points were then, each
-line is the parabola of its slope and its curvature. What the spring was stretched by then turns with the last line that
-has a slope. All forces act at the points on the axes.
+particles at the points that is square to n. Or it sticks (`stretch`): the spring is stretched by the integral of v over
+the step. Its components are along the last line that has a slope and square to that line, and turn with it. The
+particles at the points change as these move along their lines: v is the rate of d, less the rates of the arc-lengths
+times the slopes. Within the step d, slopes and arc-lengths are cubics through values and rates at both ends. Simpson's
+rule then leaves an error of the fifth order in the step. The displacement of the particles at one end alone, along the
+tangent plane there, leaves one of the second. All forces act at the points on the axes.
 """
 
 from __future__ import annotations
@@ -25,7 +27,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import sympy as sp
 
-from ..codegen.program import Program, jacobian
+from ..codegen.program import Program
+from .crossing_stretch import Motion, Stretch, jacobian_along, stretch_after
 from .stretch import sliding_force, sticking_force
 
 CROSSINGS = {3: "crossing", 2: "planar_crossing"}
@@ -50,7 +53,7 @@ class _Lines(NamedTuple):
 
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
-    return [closest(dim), contact(dim), force(dim), stretch(dim), sticking(dim), sliding(dim), step(dim)]
+    return [closest(dim), contact(dim), force(dim), motion(dim), stretch(dim), sticking(dim), sliding(dim), step(dim)]
 
 
 def _lines(p: Program, dim: int, with_curvature: bool = True) -> _Lines:
@@ -154,114 +157,159 @@ def force(dim: int) -> Program:
     """Return the kernel of the force on the first line, and of its derivatives and those of the closest points."""
     p = Program(f"{CROSSINGS[dim]}_force", "contact force, and its derivatives with the closest points moving", SOURCE)
     lines = _lines(p, dim)
-    w = p.input("w", lines.t.shape, "1/s", "rates of the slopes")
-    u = p.input("u", dim, "m/s", "rate of the way d between the points on their lines")
+    w, u = _rates(p, lines)
     c = _penalty(p)
     p.stage("normal")
     n = _normal(p, lines, c[1])
     p.stage("law")
     F = _law(p, n, lines.d, u, c)["force"]
-    return _with_points_moving(p, lines, F, w, u)
+    return _with_points_moving(p, lines, F, _Moving(w, u))
 
 
-def _with_points_moving(p: Program, lines: _Lines, F: np.ndarray, w: np.ndarray = NONE, u: np.ndarray = NONE,
-                        e: np.ndarray = NONE) -> Program:
-    """Return the kernel with the force F on the first line and its derivatives, those of the closest points in them.
-
-    w, u: rates, where F depends on them; e: what F depends on that grows as the points move along the lines.
+class _Moving(NamedTuple):
+    """What a force depends on besides d and slopes, none where it does not: rates of the slopes and of d, curvatures,
+    and the arc-lengths that points have moved by; derivatives of curvatures along the lines, and in time; a chain of
+    definitions as `jacobian_along` takes it.
     """
+
+    w: np.ndarray = NONE
+    u: np.ndarray = NONE
+    k: np.ndarray = NONE
+    e: np.ndarray = NONE
+    third: np.ndarray = NONE
+    k_rate: np.ndarray = NONE
+    chain: tuple[np.ndarray, ...] = ()
+
+
+def _with_points_moving(p: Program, lines: _Lines, F: np.ndarray, of: _Moving,
+                        constant: Sequence[sp.Symbol] = ()) -> Program:
+    """Return the kernel with the force F on the first line and its derivatives, those of the closest points in them."""
     dim, t, k = len(lines.d), lines.t, lines.k
     moving = [*lines.d, *t.ravel()]
     s_by = _points_by(p, lines, moving)
+    by_rates = of.w.ravel() if len(of.e) else NONE
     p.stage("derivatives of the force where the points stay")
-    at_point = jacobian(p, F, [*moving, *u, *e])
-    by_d, by_t, by_u, by_e = np.split(at_point, np.cumsum([dim, t.size, len(u)]), axis=1)
+    at_point = jacobian_along(p, F, [*moving, *of.u, *by_rates, *of.k.ravel(), *of.e], of.chain, constant)
+    by_d, by_t, by_u, by_w, by_k, by_e = np.split(
+        at_point, np.cumsum([dim, t.size, len(of.u), len(by_rates), of.k.size]), axis=1)
     p.stage("derivatives of the force along the lines")
     along = []
     for i, sign in enumerate(lines.signs):
-        rate = sign * by_d @ t[i] + by_t[:, dim * i: dim * (i + 1)] @ k[i]
-        if len(u):
-            rate = rate + sign * by_u @ w[i]
-        along.append(p.vector(f"F_s{i}", rate + by_e[:, i] if len(e) else rate))
+        own = slice(dim * i, dim * (i + 1))
+        rate = sign * by_d @ t[i] + by_t[:, own] @ k[i] + sign * by_u @ of.w[i]
+        if len(of.e):
+            rate = rate + by_w[:, own] @ of.k_rate[i] + by_k[:, own] @ of.third[i] + by_e[:, i]
+        along.append(p.vector(f"F_s{i}", rate))
     total = at_point[:, :len(moving)] + np.stack(along, axis=-1) @ s_by
     p.output("F", F, "N", "force on the first line; its opposite acts on the second")
     p.output("F_d", total[:, :dim], "N/m", "derivatives of F by d, with the closest points moving")
     p.output("F_t", total[:, dim:], "N", "derivatives of F by the slopes, likewise")
-    if len(u):
-        p.output("F_u", by_u, "N s/m", "derivatives of F by u")
-    if not len(e):
+    p.output("F_u", by_u, "N s/m", "derivatives of F by u")
+    if len(of.e):
+        p.output("F_w", by_w, "N s", "derivatives of F by the rates of the slopes")
+        p.output("F_k", by_k, "N m", "derivatives of F by the curvatures")
+    else:
         p.output("s_d", s_by[:, :dim], "1", "derivatives of the arc-lengths of the closest points by d")
         p.output("s_t", s_by[:, dim:], "m", "derivatives of these by the slopes")
     return p
 
 
-class _Stretch(NamedTuple):
-    """Stretch of friction's spring without sliding; what it was before, along what; how far the points have moved."""
+def _motion(p: Program, lines: _Lines, w: np.ndarray, u: np.ndarray) -> Motion:
+    """Return how the closest points move."""
+    (rates,) = _solve(p, lines, [[-t.dot(u) - w[i].dot(lines.d) for i, t in enumerate(lines.t)]])
+    s_rate = np.array([p.define(f"s_rate_{i}", rate) for i, rate in enumerate(rates)])
+    d_rate = u
+    for sign, rate, t in zip(lines.signs, s_rate, lines.t, strict=True):
+        d_rate = d_rate + sign * rate * t
+    t_rate = np.stack([w[i] + rate * lines.k[i] for i, rate in enumerate(s_rate)])
+    return Motion(s_rate, t_rate, p.vector("rate_d", d_rate))
 
-    now: np.ndarray
-    old: np.ndarray
-    along: np.ndarray
-    e: np.ndarray
+
+def _stretch(p: Program, lines: _Lines, side: sp.Expr, n: np.ndarray, w: np.ndarray, u: np.ndarray) -> Stretch:
+    """Return the stretch of friction's spring after the step."""
+    p.stage("rates of the closest points")
+    return stretch_after(p, lines.d, lines.t, lines.signs, side, n, u, _motion(p, lines, w, u))
 
 
-def _stretch(p: Program, lines: _Lines, n: np.ndarray) -> _Stretch:
-    """Declare what is known of the last step; return the stretch that follows."""
-    t, k, d = lines.t, lines.k, lines.d
-    dim = len(d)
-    e = p.input("e", len(t), "m", "arc-lengths of the closest points less those of the last step")
-    before = p.input("before", dim, "m", "d of the last step")
-    x = p.input("x", dim - 1, "m", "stretch of the last step: along the last line that has a slope, and square to it")
-    p.stage("stretch of the spring")
-    last = t[-1]
-    along = p.vector("tau", p.define("inv_t", 1 / p.define("len_t", sp.sqrt(last.dot(last)))) * last)
-    old = p.vector("old", x[0] * along if dim == 2 else x[0] * along + x[1] * np.cross(n, along))
-    way = d - before
-    for i, sign in enumerate(lines.signs):
-        way = way - sign * (e[i] * t[i] - e[i] * e[i] / 2 * k[i])
-    way = p.vector("way", way)
-    return _Stretch(p.vector("x_now", old + way - p.define("n_way", n.dot(way)) * n), old, along, e)
+def motion(dim: int) -> Program:
+    """Return the kernel of how the closest points move."""
+    p = Program(f"{CROSSINGS[dim]}_motion", "how the closest points move in time", SOURCE)
+    lines = _lines(p, dim)
+    w, u = _rates(p, lines)
+    p.stage("conditions of closeness")
+    rates = _motion(p, lines, w, u)
+    p.output("s_dot", rates.s, "m/s", "rates of the arc-lengths")
+    p.output("t_dot", rates.t, "1/s", "rates of the slopes at the closest points")
+    p.output("d_dot", rates.d, "m/s", "rate of d")
+    return p
+
+
+def _rates(p: Program, lines: _Lines) -> tuple[np.ndarray, np.ndarray]:
+    """Declare the rates of slopes and of d."""
+    return (p.input("w", lines.t.shape, "1/s", "rates of the slopes"),
+            p.input("u", len(lines.d), "m/s", "rate of the way d between the points on their lines"))
 
 
 def stretch(dim: int) -> Program:
     """Return the kernel of what friction's spring is stretched by without sliding."""
     p = Program(f"{CROSSINGS[dim]}_stretch", "stretch of the spring that friction is while it sticks", SOURCE)
     lines = _lines(p, dim)
+    w, u = _rates(p, lines)
     c = _penalty(p)
     p.stage("normal")
     n = _normal(p, lines, c[1])
-    found = _stretch(p, lines, n)
+    found = _stretch(p, lines, c[1], n, w, u)
     p.output("now", found.now, "m", "stretch, square to the normal")
     p.output("old", found.old, "m", "that of the last step, turned with the lines")
     p.output("along", found.along, "1", "direction of the last line that has a slope")
     return p
 
 
+def _along_lines(p: Program, shape: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
+    """Declare the rates of curvatures along the lines and in time."""
+    return (p.input("third", shape, "1/m^2", "derivatives r_xxx of the lines"),
+            p.input("k_rate", shape, "1/(m s)", "rates of the curvatures in time"))
+
+
 def sticking(dim: int) -> Program:
     """Return the kernel of friction that sticks, with its derivatives."""
     p = Program(f"{CROSSINGS[dim]}_sticking", "friction that sticks, its derivatives with the points moving", SOURCE)
     lines = _lines(p, dim)
+    w, u = _rates(p, lines)
+    third, k_rate = _along_lines(p, lines.t.shape)
     c = _penalty(p)
     stiffness = p.input("k_t", (), "N/m", "stiffness of the spring")
     p.stage("normal")
     n = _normal(p, lines, c[1])
-    found = _stretch(p, lines, n)
-    return _with_points_moving(p, lines, sticking_force(p, found.now, stiffness), e=found.e)
+    found = _stretch(p, lines, c[1], n, w, u)
+    F = sticking_force(p, found.now, stiffness)
+    return _with_points_moving(p, lines, F, _Moving(w, u, lines.k, found.e, third, k_rate, found.chain))
 
 
 def sliding(dim: int) -> Program:
     """Return the kernel of friction that slides, with its derivatives."""
     p = Program(f"{CROSSINGS[dim]}_sliding", "friction that slides, its derivatives with the points moving", SOURCE)
     lines = _lines(p, dim)
-    w = p.input("w", lines.t.shape, "1/s", "rates of the slopes")
-    u = p.input("u", dim, "m/s", "rate of the way d between the points on their lines")
+    w, u = _rates(p, lines)
+    third, k_rate = _along_lines(p, lines.t.shape)
     c = _penalty(p)
     mu = p.input("mu", (), "1", "coefficient of friction")
     p.stage("normal")
     n = _normal(p, lines, c[1])
     p.stage("law")
     normal = _law(p, n, lines.d, u, c)["normal"]
-    found = _stretch(p, lines, n)
-    return _with_points_moving(p, lines, sliding_force(p, found.now, mu * normal), w, u, found.e)
+    found = _stretch(p, lines, c[1], n, w, u)
+    F, sides = _sliding_force(p, found, mu * normal)
+    return _with_points_moving(p, lines, F, _Moving(w, u, lines.k, found.e, third, k_rate, found.chain), sides)
+
+
+def _sliding_force(p: Program, found: Stretch, most: sp.Expr) -> tuple[np.ndarray, list[sp.Symbol]]:
+    """Return the force and what is constant in it: in the plane the spring is stretched to one of two sides."""
+    if len(found.along) == 3:
+        return sliding_force(p, found.now, most), []
+    size = p.define("x_along", found.now.dot(found.along))
+    side = p.define("side_x", size / p.define("size", sp.sqrt(size * size)))
+    return p.vector("F", -most * side * found.along), [side]
 
 
 def step(dim: int) -> Program:

@@ -379,11 +379,14 @@ def crossing_scope(name: str) -> Scope:
     law = [Symbol(s, "c", entry(k)) for k, s in enumerate(letters)]
     rows = [Symbol(latex, argument, row(k)) for argument, names in (
         ("t", (r"\mathbf{a}", r"\mathbf{b}")), ("k", (r"\boldsymbol{\kappa}_{a}", r"\boldsymbol{\kappa}_{b}")),
-        ("w", (r"\dot{\mathbf{a}}", r"\dot{\mathbf{b}}"))) for k, latex in enumerate(names[:family.dim - 1])]
+        ("w", (r"\dot{\mathbf{a}}", r"\dot{\mathbf{b}}")), ("t_0", (r"\mathbf{a}_{0}", r"\mathbf{b}_{0}")),
+        ("t_rate", (r"\mathbf{a}_{1}", r"\mathbf{b}_{1}"))) for k, latex in enumerate(names[:family.dim - 1])]
     of_spring = [Symbol(latex, argument, entry(k)) for argument, names in (
-        ("e", ("e_{a}", "e_{b}")), ("x", ("x_{1}", "x_{2}"))) for k, latex in enumerate(names[:family.dim - 1])]
+        ("e", ("e_{a}", "e_{b}")), ("x", ("x_{1}", "x_{2}")), ("v", ("y_{1}", "y_{2}")),
+        ("s_rate", ("c_{a}", "c_{b}"))) for k, latex in enumerate(names[:family.dim - 1])]
     return Scope(family, (Symbol(r"\mathbf{d}", "d", column), *rows, Symbol(r"\mathbf{u}", "u", column), *law,
-                          *of_spring, Symbol(r"\mathbf{d}_{0}", "before", column), Symbol("k_{t}", "k_t", number),
+                          *of_spring, Symbol("h", "h", number), Symbol(r"\mathbf{d}_{0}", "d_0", column),
+                          Symbol(r"\mathbf{d}_{1}", "d_rate", column), Symbol("k_{t}", "k_t", number),
                           Symbol(r"\mu_{t}", "mu", number)))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..parts.attachment import Attachment
 from ..parts.crossing import Crossing
-from ..parts.crossing_start import radii, sign_of, start_of
+from ..parts.crossing_start import Start, radii, sign_of, start_of
 from ..parts.scene_data import SceneData
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
@@ -17,7 +17,7 @@ from .coupling import CouplingModel
 LEAST_PENETRATION = 1e-30
 """m: what the size of a penetration is not below under a root."""
 
-GRIP_NUMBERS = 13
+GRIP_NUMBERS = 30
 """That a state keeps of friction that sticks: FU_CROSSING_GRIP of engine/couplings/crossing/crossing.h."""
 KERNELS = {2: "planar_crossing", 3: "crossing"}
 
@@ -27,9 +27,9 @@ class CrossingModel(CouplingModel):
     """Contact of a cable with another one, or with a bar at the one attachment.
 
     cables: their numbers, -1 for a bar; axis: of the bar, in the axes of what carries it; low, high: where the lines
-    end, m; law: as the kernels take it; start, way: arc-lengths of the closest points as drawn, and the way from the
-    second to the first, m; friction, tangential: of friction that sticks, its coefficient and its spring in N/m;
-    stiffness in N/m: makes forces of lengths.
+    end, m; law: as the kernels take it; start, way, slopes: arc-lengths of the closest points as drawn, the way from
+    the second to the first, m, and slopes of the lines that have one, flat; friction, tangential: of friction that
+    sticks, its coefficient and its spring in N/m; stiffness in N/m: makes forces of lengths.
     """
 
     kernel: str
@@ -41,6 +41,7 @@ class CrossingModel(CouplingModel):
     law: tuple[float, ...]
     start: tuple[float, ...]
     way: tuple[float, ...]
+    slopes: tuple[float, ...]
     friction: float
     tangential: float
     stiffness: float
@@ -75,8 +76,15 @@ def crossing_model(part: Crossing, scene: SceneData, attachments: AttachmentBuil
     return CrossingModel(
         kernel=KERNELS[dim], cables=numbers, attachments=ends, axis=axis, low=(0.0, low),
         high=(of_lines[0].mesh.total, high), law=law, start=tuple(start.s),
-        way=tuple(start.d), friction=sticking, n_numbers=GRIP_NUMBERS if sticking else 0,
+        way=tuple(start.d), slopes=_slopes(start, dim), friction=sticking, n_numbers=GRIP_NUMBERS if sticking else 0,
         tangential=part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness,
         stiffness=part.stiffness * (1.0 if linear else math.sqrt(max(radius, 1e-3))), type="crossing",
         name=part.name or "", scale=[max(*masses, *(end.mass for end in ends), 0.0)] * (2 * dim - 1),
         is_damped=part.damping > 0 or (part.friction is not None and not part.friction.sticks), follows_law=True)
+
+
+def _slopes(start: Start, dim: int) -> tuple[float, ...]:
+    """Return the slopes of the lines that have one, in the layout of the engine."""
+    slopes = np.zeros(6)
+    slopes[: dim * (dim - 1)] = start.slopes[: dim - 1, :dim].ravel()
+    return tuple(slopes)

@@ -23,12 +23,14 @@ ITERATIONS = 50
 
 @dataclass
 class Start:
-    """Closest points as drawn: arc-lengths s (2,) in m, the way d (3,) from b to a in m, the unit normal (3,) across
-    both lines, of no particular sign, and the sine of the angle between the lines, 1 in the plane.
+    """Closest points as drawn: arc-lengths s (2,) in m, the way d (3,) from b to a in m, slopes (2, 3) of both lines,
+    the unit normal (3,) across both lines, of no particular sign, and the sine of the angle between the lines, 1 in
+    the plane. In the plane the second slope is the normal of the plane.
     """
 
     s: np.ndarray
     d: np.ndarray
+    slopes: np.ndarray
     normal: np.ndarray
     sine: float
 
@@ -95,7 +97,7 @@ def start_of(scene: SceneData, part: Crossing) -> Start:
     normal = np.cross(t, other)
     sizes = float(np.linalg.norm(t) * np.linalg.norm(other))
     sine = float(np.linalg.norm(normal)) / sizes
-    return Start(s, d, normal / sizes / sine if sine else normal, sine)
+    return Start(s, d, np.array([t, other]), normal / sizes / sine if sine else normal, sine)
 
 
 def _nearest(a: _Line, b: _Line | _Bar, of_a: np.ndarray, of_b: np.ndarray) -> np.ndarray:

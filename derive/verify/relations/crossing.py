@@ -19,7 +19,7 @@ TRIALS = 12
 
 
 class Lines:
-    """Parabolas with the slopes and curvatures of a state, one or two."""
+    """Cubics with the slopes, curvatures and third derivatives of a state, one or two, and velocities along them."""
 
     def __init__(self, lines: int):
         self.lines, self.signs = lines, (1, -1)[:lines]
@@ -27,12 +27,17 @@ class Lines:
     def along(self, s: State, x: list[Any]) -> State:
         """Return the state at other points of the lines."""
         t, k, w = s["t"], s["k"], s["w"]
-        d, u, slopes = s["d"], s["u"], []
+        third, k_rate = s["third"], s["k_rate"]
+        d, u, slopes, curvatures, rates = s["d"], s["u"], [], [], []
         for i, sign in enumerate(self.signs):
-            d = d + sign * (x[i] * t[i] + x[i] * x[i] / 2 * k[i])
-            u = u + sign * x[i] * w[i]
-            slopes.append(t[i] + x[i] * k[i])
-        return {**s, "d": d, "u": u, "t": np.array(slopes), "e": s["e"] + np.array(x)}
+            square = x[i] * x[i] / 2
+            d = d + sign * (x[i] * t[i] + square * k[i] + x[i] * square / 3 * third[i])
+            u = u + sign * (x[i] * w[i] + square * k_rate[i])
+            slopes.append(t[i] + x[i] * k[i] + square * third[i])
+            curvatures.append(k[i] + x[i] * third[i])
+            rates.append(w[i] + x[i] * k_rate[i])
+        return {**s, "d": d, "u": u, "t": np.array(slopes), "k": np.array(curvatures), "w": np.array(rates),
+                "e": s["e"] + np.array(x)}
 
     def points(self, s: State) -> list[Any]:
         """Return the closest points, by their arc-lengths from those of the state."""
@@ -62,16 +67,23 @@ def crossing(family: CouplingFamily) -> list[Relation]:
     """
     dim, lines = family.dim, Lines(family.dim - 1)
     numbers = {"d": dim, "t": lines.lines * dim}
+    rates = {"u": dim, "w": lines.lines * dim, "k": lines.lines * dim}
 
     def moved(s: State, name: str, t: Any, j: int) -> State:
         return {**s, name: s[name] + t * entry(name)(s, j)}
 
     def off(s: State) -> State:
         """Return a state of straight lines off their closest points."""
-        return {**s, "d": s["d"] + s["t"][0] / 3, "k": 0 * s["k"]}
+        return {**s, "d": s["d"] + s["t"][0] / 3, "k": 0 * s["k"], "third": 0 * s["third"]}
 
     def force_by(name: str, kernel: str = "force") -> Callable:
         return lambda k, s, t, j: k(kernel, lines.closest(moved(s, name, t, j)))["F"]
+
+    def force_by_both(name: str, kernel: str) -> Callable:
+        return lambda k, s, t, j: force_by("d" if j < dim else name, kernel)(k, s, t, j if j < dim else j - dim)
+
+    def side_by_side(name: str, kernel: str) -> Callable:
+        return lambda k, s: np.concatenate([k(kernel, s)[each] for each in ("F_d", f"F_{name}")], axis=1)
 
     def points_by(name: str) -> Callable:
         return lambda k, s, t, j: np.array(lines.points(moved(s, name, t, j)))
@@ -82,8 +94,11 @@ def crossing(family: CouplingFamily) -> list[Relation]:
     return [*(Relation("force", f"F_{name}", f"dF by {name}, closest points found anew", 1, force_by(name), n)
               for name, n in (*numbers.items(), ("u", dim))),
             *(Relation(kernel, f"F_{name}", f"dF by {name}, closest points found anew", 1, force_by(name, kernel), n)
-              for kernel, more in (("sticking", {}), ("sliding", {"u": dim})) for name, n in (numbers | more).items()),
-            *_friction(lines),
+              for kernel in ("sticking", "sliding") for name, n in numbers.items()),
+            *(Relation(kernel, f"F_{name}", f"dF by d and {name} side by side, as the last are small", 1,
+                       force_by_both(name, kernel), dim + n, of=side_by_side(name, kernel))
+              for kernel in ("sticking", "sliding") for name, n in rates.items()),
+            *_motion(lines), *_friction(lines),
             *(Relation("force", f"s_{name}", f"closest points by {name}, found anew", 1, points_by(name), n)
               for name, n in numbers.items()),
             Relation("force", "F", "-dU by d without damping", 1, energy, dim,
@@ -107,6 +122,34 @@ def _size(s: State) -> Any:
     return (c[2] * p + c[3] * p * p**0.5) * (1 - c[4] * n.dot(s["u"]))
 
 
+def _moving(lines: Lines, s: State) -> State:
+    """Return the rates of arc-lengths, slopes and d at the closest points, by the conditions of closeness."""
+    t, k, d, u, w = (s[name] for name in ("t", "k", "d", "u", "w"))
+    right = [-(t[i].dot(u) + w[i].dot(d)) for i in range(lines.lines)]
+    a = t[0].dot(t[0]) + k[0].dot(d)
+    if lines.lines == 1:
+        speeds = np.array([right[0] / a])
+    else:
+        b, e = t[0].dot(t[1]), k[1].dot(d) - t[1].dot(t[1])
+        speeds = np.array([right[0] * e + b * right[1], a * right[1] - b * right[0]]) / (a * e + b * b)
+    d_dot = u
+    for sign, speed, slope in zip(lines.signs, speeds, t, strict=True):
+        d_dot = d_dot + sign * speed * slope
+    return {"s_dot": speeds, "t_dot": np.array([w[i] + speed * k[i] for i, speed in enumerate(speeds)]), "d_dot": d_dot}
+
+
+def _motion(lines: Lines) -> list[Relation]:
+    """Return the relations of how the closest points move in time."""
+    def later(s: State, t: Any) -> State:
+        return {**s, "d": s["d"] + t * s["u"], "t": s["t"] + t * s["w"], "e": 0 * s["e"]}
+
+    def at(name: str) -> Callable:
+        return lambda k, s, t, j: lines.closest(later(s, t))[name]
+
+    return [Relation("motion", output, f"{text} as the points move", 1, at(name)) for output, name, text in (
+        ("s_dot", "e", "arc-lengths"), ("t_dot", "t", "slopes"), ("d_dot", "d", "d"))]
+
+
 def _friction(lines: Lines) -> list[Relation]:
     """Return the relations of friction that sticks, or slides by its spring, in closed form."""
     def along(s: State) -> Any:
@@ -116,11 +159,29 @@ def _friction(lines: Lines) -> list[Relation]:
         i = along(s)
         return s["x"][0] * i + (s["x"][1] * np.cross(across(s), i) if lines.lines == 2 else 0)
 
+    def slip(s: State) -> Any:
+        """Return the components of the slip, along the last line and square to it."""
+        i = along(s)
+        return np.array([axis.dot(s["u"]) for axis in (i, *([np.cross(across(s), i)] if lines.lines == 2 else []))])
+
+    def half(s: State) -> State:
+        """Return slopes and slip half-way along cubics through values and rates at both ends."""
+        h, end = s["h"], _moving(lines, s)
+        def value(a: Any, a_rate: Any, b: Any, b_rate: Any) -> Any:
+            return (a + b) / 2 + h / 8 * (a_rate - b_rate)
+        def rate(a: Any, a_rate: Any, b: Any, b_rate: Any) -> Any:
+            return 3 * (b - a) / (2 * h) - (a_rate + b_rate) / 4
+        t = value(s["t_0"], s["t_rate"], s["t"], end["t_dot"])
+        speeds = rate(0 * s["e"], s["s_rate"], s["e"], end["s_dot"])
+        u = rate(s["d_0"], s["d_rate"], s["d"], end["d_dot"])
+        for sign, speed, slope in zip(lines.signs, speeds, t, strict=True):
+            u = u - sign * speed * slope
+        return {**s, "t": t, "u": u}
+
     def now(s: State) -> Any:
-        """Return the stretch after the way of the particles that were the closest points, square to the normal."""
-        way = lines.along(s, [-each for each in s["e"]])["d"] - s["before"]
-        n = across(s)
-        return old(s) + way - n * n.dot(way)
+        """Return the stretch and the integral of the slip, by Simpson's rule."""
+        x = s["x"] + s["h"] / 6 * (s["v"] + 4 * slip(half(s)) + slip(s))
+        return old({**s, "x": x})
 
     def sliding(s: State) -> Any:
         x = now(s)
@@ -128,7 +189,7 @@ def _friction(lines: Lines) -> list[Relation]:
 
     return [Relation(kernel, name, text, 0, root(function)) for kernel, name, text, function in (
         ("stretch", "along", "b/|b|, in the plane a/|a|", along), ("stretch", "old", "x_1 i + x_2 n x i", old),
-        ("stretch", "now", "old and the way of the particles, square to n", now),
+        ("stretch", "now", "old and the integral of the slip", now),
         ("sticking", "F", "-k_t now", lambda s: -s["k_t"] * now(s)), ("sliding", "F", "-mu N now/|now|", sliding))]
 
 

@@ -18,7 +18,11 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     return {"d": d, "t": t, "k": k, "w": w,
             "u": 0.3 * random.normal(size=dim), "c": np.array([0.7, side, 5.0, 3.0, 0.2, 1e-30, 0.3, 0.1]),
             "mu": 0.4, "k_t": 7.0, "e": 0.1 * random.normal(size=dim - 1),
-            "before": d + 0.1 * random.normal(size=dim), "x": 0.6 + 0.2 * random.random(dim - 1),
+            "third": 0.3 * random.normal(size=shape), "k_rate": 0.3 * random.normal(size=shape),
+            "d_0": d + 0.1 * random.normal(size=dim), "d_rate": random.normal(size=dim),
+            "t_0": t + 0.1 * random.normal(size=shape), "t_rate": random.normal(size=shape),
+            "s_rate": random.normal(size=dim - 1), "v": random.normal(size=dim - 1),
+            "x": 0.6 + 0.2 * random.random(dim - 1),
             "n": square / np.linalg.norm(square), "way": 0.1 * random.normal(size=dim),
             "turn": 0.1 * random.normal(size=shape), "size": 0.5 + random.random(dim - 1), "p": 0.3 * random.random(),
             "p_next": 0.3 * random.random(), "h": 0.1}

@@ -91,6 +91,29 @@ static void bends_of_line(const fu_model *model, const fu_crossing *crossing, in
     memcpy(out, rates.k, sizeof rates.k);
 }
 
+void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                      fu_line_bends *out)
+{
+    const int dim = model->dim;
+    double every[9 * FU_MAX_COORDINATES];
+    memset(out, 0, sizeof *out);
+    for (int line = 0; line < dim - 1 && crossing->cables[line] >= 0; ++line) {
+        const fu_cable *cable = &model->cables[crossing->cables[line]];
+        const int n = cable->coordinates / dim, element = points->line[line].element;
+        const double *q = state->q + cable->first + element * cable->per_node, *v = state->v + cable->first + element * cable->per_node;
+        const double s = points->s[line];
+        if (s < 0.0 || s > fu_cable_length(cable)) continue; /* straight beyond the ends */
+        cable->kernel->slopes(fu_element_length(cable, element), s - fu_cable_start(cable, element), every);
+        memcpy(out->N_xx[line], every + n, sizeof(double) * (size_t)n);
+        for (int i = 0; i < n; ++i)
+            for (int d = 0; d < dim; ++d) {
+                const int is_position = i % cable->kernel->vectors == 0; /* from the first node, as in point_of_cable */
+                out->third[line * dim + d] += every[2 * n + i] * (q[i * dim + d] - (is_position ? q[d] : 0.0));
+                out->rate[line * dim + d] += every[n + i] * (v[i * dim + d] - (is_position ? v[d] : 0.0));
+            }
+    }
+}
+
 /* Takes a quantity and its rate along the cubic through both ends of a step. */
 static void along_cubic(const fu_moment *at, const double *a, const double *a_t, const double *b, const double *b_t, double *value,
                         double *rate)

@@ -72,30 +72,47 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
 
 /* The force on the first line and its derivatives, and those of the arc-lengths, as the kernel gives them. */
 typedef struct {
-    double F[3], F_d[9], F_t[18], F_u[9], s_d[6], s_t[12];
+    double F[3], F_d[9], F_t[18], F_u[9], F_w[18], F_k[18], s_d[6], s_t[12];
+    fu_line_bends bends;
 } derivatives;
 
-static void add_friction_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                                     derivatives *by)
+static void add_friction_derivatives(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
+                                     const fu_closest_points *points, derivatives *by)
 {
     const int dim = crossing->kernel->dim;
     fu_crossing_grip_changes of;
     fu_crossing_contact contact;
     fu_crossing_contact_at(crossing, points, &contact);
-    fu_crossing_grip_derivatives(crossing, state, points, &contact, &of);
+    fu_line_bends_at(model, crossing, state, points, &by->bends);
+    fu_crossing_grip_derivatives(crossing, state, points, &by->bends, &contact, &of);
     for (int d = 0; d < dim; ++d) by->F[d] += of.F[d];
     for (int i = 0; i < dim * dim; ++i) {
         by->F_d[i] += of.F_d[i];
         by->F_u[i] += of.F_u[i];
     }
     for (int i = 0; i < dim * dim * (dim - 1); ++i) by->F_t[i] += of.F_t[i];
+    memcpy(by->F_w, of.F_w, sizeof by->F_w);
+    memcpy(by->F_k, of.F_k, sizeof by->F_k);
 }
 
-/* How a line's point moves by the unknowns: its derivatives turned, and what its velocity changes with the place. */
+/* How a line's point moves by the unknowns: its derivatives turned, and those of its velocity and of the slope's rate by the place. */
 typedef struct {
     fu_line_moves moves, turned;
-    double by_place[3 * FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    double by_place[3 * FU_ATTACHMENT_COORDINATES], slope_by_place[3 * FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
 } line_changes;
+
+/* The rate of a bar's slope is that of the point one metre on less that of the point. */
+static void turn_slope(const fu_model *model, const fu_crossing *crossing, const fu_equations *at, const fu_line_point *point,
+                       fu_attachment_state *end, line_changes *out)
+{
+    const int n = out->moves.n;
+    const double none[3] = {0.0};
+    double turned[3 * FU_ATTACHMENT_COORDINATES] = {0.0}, K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    fu_attachment on = point->on;
+    for (int d = 0; d < 3; ++d) on.u[d] += crossing->axis[d];
+    fu_turn_point(model, &on, at->next, none, at->psi, end, turned, out->slope_by_place, K);
+    for (int i = 0; i < 3 * n; ++i) out->slope_by_place[i] -= out->by_place[i];
+}
 
 static void changes_of(const fu_model *model, const fu_crossing *crossing, int line, const fu_equations *at,
                        const fu_line_point *point, const double *force, line_changes *out)
@@ -105,6 +122,7 @@ static void changes_of(const fu_model *model, const fu_crossing *crossing, int l
     const int n = out->moves.n;
     out->turned = out->moves;
     memset(out->by_place, 0, sizeof(double) * (size_t)(dim * n));
+    memset(out->slope_by_place, 0, sizeof(double) * (size_t)(dim * n));
     memset(out->K, 0, sizeof(double) * (size_t)(n * n));
     if (body < 0) return;
     fu_attachment_state end;
@@ -113,6 +131,16 @@ static void changes_of(const fu_model *model, const fu_crossing *crossing, int l
     fu_turn_point(model, &point->on, at->next, force, at->psi, &end, out->turned.P, out->by_place, out->K);
     if (at->psi)
         fu_turn_columns(model->bodies[body].kernel, out->turned.T, dim, n, 0, at->psi + model->bodies[body].dof);
+    if (crossing->friction > 0.0 && dim == 3) turn_slope(model, crossing, at, point, &end, out);
+}
+
+/* Change of a component of friction by one of a line's unknowns, through the rate of its slope and its curvature. */
+static double change_by_rates(const fu_crossing *crossing, int line, const line_changes *c, const derivatives *by, double rate, int d, int i)
+{
+    const int dim = crossing->kernel->dim, n = c->moves.n, first = (d * (dim - 1) + line) * dim;
+    double change = crossing->cables[line] < 0 ? 0.0 : by->F_k[first + i % dim] * by->bends.N_xx[line][i / dim];
+    for (int k = 0; k < dim; ++k) change += by->F_w[first + k] * (c->slope_by_place[k * n + i] + rate * c->moves.T[k * n + i]);
+    return change;
 }
 
 /* Adds to a system what a line's coordinates have in the rows and columns of the own unknowns, the first of them in `row`: dim
@@ -132,6 +160,7 @@ static void add_line(const fu_model *model, const fu_crossing *crossing, int lin
                 change += sign * by->F_u[d * dim + k] * (c->by_place[k * n + i] + rate * P[k * n + i]);
                 if (line < lines) change += by->F_t[(d * lines + line) * dim + k] * T_q[k * n + i];
             }
+            if (line < lines && crossing->friction > 0.0) change += change_by_rates(crossing, line, c, by, rate, d, i);
             along += T[d * n + i] * by->F[d];
             fu_add(model, system, row + d, c->moves.at[i], -stiffness * change);
             fu_add(model, system, c->moves.at[i], row + d, -sign * unit * P[d * n + i]);
@@ -163,7 +192,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     fu_find_closest(model, crossing, at->next, &points);
     crossing->kernel->force(points.d, points.t, points.k, points.w, points.u, crossing->law, by.F, by.F_d, by.F_t, by.F_u, by.s_d,
                             by.s_t);
-    if (crossing->friction > 0.0) add_friction_derivatives(crossing, at->next, &points, &by);
+    if (crossing->friction > 0.0) add_friction_derivatives(model, crossing, at->next, &points, &by);
     for (int line = 0; line < FU_LINES; ++line) {
         changes_of(model, crossing, line, at, &points.line[line], by.F, &changes);
         add_line(model, crossing, line, at, &changes, &by, row, unit, system);
@@ -285,6 +314,7 @@ static const fu_field fields[] = {
     FU_FIELD_ARRAY(fu_crossing, law, FU_REAL),
     FU_FIELD_ARRAY(fu_crossing, start, FU_REAL),
     FU_FIELD_ARRAY(fu_crossing, way, FU_REAL),
+    FU_FIELD_ARRAY(fu_crossing, slopes, FU_REAL),
     FU_FIELD(fu_crossing, friction, FU_REAL, 0),
     FU_FIELD(fu_crossing, tangential, FU_REAL, 0),
     FU_FIELD(fu_crossing, stiffness, FU_REAL, 0),

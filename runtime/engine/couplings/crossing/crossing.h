@@ -24,13 +24,14 @@ typedef struct {
     double law[FU_CROSSING_LAW]; /* as the kernels take them */
     double start[FU_LINES];      /* the arc-lengths as drawn, m */
     double way[3];               /* between the points as drawn, from the second, m */
+    double slopes[6];            /* of the lines there, as drawn */
     double friction, tangential; /* of friction that sticks: its coefficient, 0 for none, and its spring, N/m */
     double stiffness;            /* N/m: makes forces of lengths, to scale equations */
 } fu_crossing;
 extern const fu_coupling_type fu_crossing_type;
 
 /* Of the numbers of a state. */
-enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3, FU_CROSSING_GRIP = 13 };
+enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3, FU_CROSSING_GRIP = 30 };
 
 /* A point of a line, and its derivatives by arc-length and in time. */
 typedef struct {
@@ -50,6 +51,11 @@ typedef struct {
     double d[3], u[3], t[6], k[6], w[6];
 } fu_closest_points;
 
+/* How the curvatures of both lines change along them, r_xxx, in time, and with each nodal vector of a cable's element. */
+typedef struct {
+    double third[6], rate[6], N_xx[FU_LINES][FU_MAX_COORDINATES];
+} fu_line_bends;
+
 /* What kernel->contact tells, and friction that sticks: force and energy have it in them. */
 typedef struct {
     double normal[3], depth[2], size, force[3], energy, dissipated; /* depth: penetration and its rate */
@@ -68,7 +74,7 @@ typedef struct {
 
 /* The force of friction on the first line and its derivatives, as kernels give them. */
 typedef struct {
-    double F[3], F_d[9], F_t[18], F_u[9];
+    double F[3], F_d[9], F_t[18], F_u[9], F_w[18], F_k[18];
 } fu_crossing_grip_changes;
 
 /* Makes how a point moves with its n coordinates: dr = P dq, dt = T dq; the numbers of these for fu_add in `at`. */
@@ -92,6 +98,9 @@ void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const f
 void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out);
 /* Makes a line's point at an arc-length. */
 void fu_line_point_of(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state, double s, fu_line_point *out);
+/* Computes how the curvatures change at closest points of a state. */
+void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                      fu_line_bends *out);
 /* Returns the size of a line's pieces, m. */
 double fu_line_size(const fu_model *model, const fu_crossing *crossing, int line);
 void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state,
@@ -112,7 +121,7 @@ double fu_crossing_pass(const fu_model *model, const fu_crossing *crossing, cons
 void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
                          const fu_crossing_contact *contact, fu_crossing_grip *out);
 void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                                  const fu_crossing_contact *contact, fu_crossing_grip_changes *by);
+                                  const fu_line_bends *bends, const fu_crossing_contact *contact, fu_crossing_grip_changes *by);
 /* Returns what friction takes from one state of lines that touch to another, J; by_ends: by these alone. */
 double fu_crossing_slid_on_way(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int by_ends);
 double fu_crossing_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);

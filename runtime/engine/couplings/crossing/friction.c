@@ -1,5 +1,5 @@
-/* Friction that sticks where lines touch: a spring, stretched by the way that particles of both lines have gone past each other since
- * the last step, and no longer than friction allows (derive/couplings/stretch.py).
+/* Friction that sticks where lines touch: a spring, stretched by how far particles of both lines have slid past each other since
+ * the last step, and no longer than friction allows (derive/couplings/crossing.py, stretch.py).
  */
 #include "bodies/model.h"
 #include "couplings/crossing/crossing.h"
@@ -7,11 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-/* What a state keeps of the last step: the closest points, the way between them; along and across the last line the stretch and the
- * velocity of particles past each other; not zero where it has slid, as then the stretch is just what friction allows; the penetration
- * and its rate; the time. */
+/* State of the last step: the closest points, the way between them and the slopes there, with their rates; along and across the last line
+ * the stretch and the velocity of particles past each other; not zero where it has slid, as then the stretch is just what friction allows;
+ * the penetration and its rate; the time. */
 typedef struct {
-    double s[FU_LINES], way[3], stretch[2], slid, rate[2], depth, sinking, time;
+    double s[FU_LINES], s_rate[FU_LINES], way[3], way_rate[3], slopes[6], slope_rates[6];
+    double stretch[2], slid, rate[2], depth, sinking, time;
 } before;
 _Static_assert(sizeof(before) == FU_CROSSING_GRIP * sizeof(double), "numbers of a state are doubles");
 
@@ -23,6 +24,12 @@ static before *before_of(const fu_crossing *crossing, const fu_state *state)
 static void moved_since(const before *last, const fu_closest_points *points, double e[FU_LINES])
 {
     for (int line = 0; line < FU_LINES; ++line) e[line] = points->s[line] - last->s[line];
+}
+
+/* Time since the last step, s; 0 since what is drawn. */
+static double time_since(const before *last, double time)
+{
+    return fmax(time - last->time, 0.0);
 }
 
 /* What friction allows, N, by the law of kernel->contact. */
@@ -83,7 +90,8 @@ static void grip_since(const fu_crossing *crossing, const before *last, const fu
     fu_friction_way way;
     memset(out, 0, sizeof *out);
     moved_since(last, points, e);
-    crossing->kernel->stretch(points->d, points->t, points->k, crossing->law, e, last->way, last->stretch,
+    crossing->kernel->stretch(points->d, points->t, points->k, points->w, points->u, crossing->law, e, time_since(last, time), last->way,
+                              last->way_rate, last->slopes, last->slope_rates, last->s_rate, last->stretch, last->rate,
                               out->without_sliding, out->old, out->along);
     travel_since(crossing, last, points, contact, time, out, &travel, &way);
     const double size = fu_way_along(dim, &travel, along, &way);
@@ -113,18 +121,24 @@ static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_grip 
     const fu_cubic at = fu_cubic_at(grip->end.part);
     const double lag = crossing->tangential * h * at.rates[1], square = fu_dot(dim, grip->stretch, grip->stretch);
     for (int i = 0; i < dim * dim; ++i) by->F_d[i] = at.change * by->F_d[i] + (1.0 - at.change) * stuck->F_d[i];
-    for (int i = 0; i < dim * dim * (dim - 1); ++i) by->F_t[i] = at.change * by->F_t[i] + (1.0 - at.change) * stuck->F_t[i];
+    for (int i = 0; i < dim * dim * (dim - 1); ++i) {
+        by->F_t[i] = at.change * by->F_t[i] + (1.0 - at.change) * stuck->F_t[i];
+        by->F_w[i] = at.change * by->F_w[i] + (1.0 - at.change) * stuck->F_w[i];
+        by->F_k[i] = at.change * by->F_k[i] + (1.0 - at.change) * stuck->F_k[i];
+    }
     for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim && square > 0.0; ++j)
-            by->F_u[i * dim + j] = at.change * by->F_u[i * dim + j] + lag * grip->stretch[i] * grip->stretch[j] / square;
+        for (int j = 0; j < dim && square > 0.0; ++j) {
+            const int ij = i * dim + j;
+            by->F_u[ij] = at.change * by->F_u[ij] + (1.0 - at.change) * stuck->F_u[ij] + lag * grip->stretch[i] * grip->stretch[j] / square;
+        }
 }
 
 void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                                  const fu_crossing_contact *contact, fu_crossing_grip_changes *by)
+                                  const fu_line_bends *bends, const fu_crossing_contact *contact, fu_crossing_grip_changes *by)
 {
     const before *last = before_of(crossing, state);
     const fu_crossing_kernels *kernel = crossing->kernel;
-    const double friction = contact->size > 0.0 ? crossing->friction : 0.0;
+    const double friction = contact->size > 0.0 ? crossing->friction : 0.0, h = time_since(last, state->t);
     double e[FU_LINES];
     fu_crossing_grip grip;
     fu_crossing_grip_changes stuck;
@@ -133,11 +147,13 @@ void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *s
     memset(by, 0, sizeof *by);
     memset(&stuck, 0, sizeof stuck);
     if (grip.end.slid)
-        kernel->sliding(points->d, points->t, points->k, points->w, points->u, crossing->law, friction, e, last->way, last->stretch, by->F,
-                        by->F_d, by->F_t, by->F_u);
+        kernel->sliding(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate, crossing->law, friction, e, h,
+                        last->way, last->way_rate, last->slopes, last->slope_rates, last->s_rate, last->stretch, last->rate, by->F,
+                        by->F_d, by->F_t, by->F_u, by->F_w, by->F_k);
     if (!grip.slides)
-        kernel->sticking(points->d, points->t, points->k, crossing->law, crossing->tangential, e, last->way, last->stretch, stuck.F, stuck.F_d,
-                         stuck.F_t);
+        kernel->sticking(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate, crossing->law,
+                         crossing->tangential, e, h, last->way, last->way_rate, last->slopes, last->slope_rates, last->s_rate,
+                         last->stretch, last->rate, stuck.F, stuck.F_d, stuck.F_t, stuck.F_u, stuck.F_w, stuck.F_k);
     if (!grip.end.slid) *by = stuck;
     else if (!grip.slides) mix_derivatives(crossing, &grip, state->t - last->time, &stuck, by);
     memcpy(by->F, grip.force, sizeof by->F);
@@ -152,6 +168,8 @@ static void take_along(const fu_crossing *crossing, const fu_closest_points *poi
     memset(last, 0, sizeof *last);
     memcpy(last->s, points->s, sizeof last->s);
     memcpy(last->way, points->d, sizeof(double) * (size_t)dim);
+    memcpy(last->slopes, points->t, sizeof(double) * (size_t)(dim * (dim - 1)));
+    crossing->kernel->motion(points->d, points->t, points->k, points->w, points->u, last->s_rate, last->slope_rates, last->way_rate);
     last->depth = contact->depth[0];
     last->sinking = contact->depth[1];
     last->time = time;
@@ -172,6 +190,7 @@ void fu_crossing_begin_grip(const fu_crossing *crossing, const fu_closest_points
     fu_crossing_grip grip;
     fu_crossing_contact_at(crossing, points, &contact);
     memcpy(here.s, points->s, sizeof here.s);
+    memcpy(here.slopes, points->t, sizeof here.slopes);
     grip_since(crossing, &here, points, &contact, here.time, &grip); /* of it the direction of the last line */
     take_along(crossing, points, &contact, state->t, 0, grip.along, before_of(crossing, state));
 }
@@ -236,5 +255,6 @@ void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state)
     memset(last, 0, sizeof *last);
     memcpy(last->s, crossing->start, sizeof last->s);
     memcpy(last->way, crossing->way, sizeof last->way);
+    memcpy(last->slopes, crossing->slopes, sizeof last->slopes);
     last->time = FU_NO_TIME;
 }
