@@ -31,7 +31,7 @@ def test_counts_what_dense_eigenvalues_say(n, m):
         assert found == Inertia(expected, 0, free.shape[1] - expected)
 
 
-@pytest.mark.parametrize("n", [40, 400])
+@pytest.mark.parametrize("n", [40, 210])
 def test_redundant_constraints_count_once(n):
     rng = np.random.default_rng(1)
     K, C = banded(n, 5, rng), constraints(n, 6, rng)
