@@ -1,7 +1,7 @@
 """Types of the compiled engine; what its members do is said in engine.pyx."""
 
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,9 +12,16 @@ from .model.model import Model
 
 STATUS: dict[int, str]
 CAUSES: dict[int, str | None]
-SLIDE_OUTPUTS: dict[str, int]
-OUTPUT_KINDS: tuple[str, ...]
+OUTPUTS: dict[str, dict[str, Output]]
 SLACK_STRAIN: float
+
+class Output(NamedTuple):
+    first: int
+    size: int
+    units: str
+    turns: str
+
+def outputs_by_name(kind: str, numbers: np.ndarray) -> dict[str, np.ndarray]: ...
 
 class Engine:
     arrays: dict[str, np.ndarray]

@@ -5,6 +5,7 @@ The engine is C and not Cython because `cimport` does not work across the mapped
 generated kernels and the engine is a C header.
 """
 
+from collections import namedtuple
 from math import prod
 
 import numpy as np
@@ -39,19 +40,54 @@ cdef _take_lapack():
 
 _take_lapack()
 
+Output = namedtuple("Output", "first size units turns")
+Output.__doc__ = """A number or vector of a coupling in a row of output (base/fields.h): the first of its numbers, how many they are, their
+unit, and how other axes change it: as a "point", a "direction", a direction in "body axes", or "" not at all."""
+
+
+def _described_outputs():
+    """Return the fields of rows of output, by kind and name, as the types of couplings describe them."""
+    cdef size_t k = 0
+    cdef const fu_coupling_type *type = fu_coupling_type_at(0)
+    cdef const fu_output *field
+    found = {}
+    while type != NULL:
+        fields, field = {}, type.output_fields
+        while field != NULL and field.name != NULL:
+            if field.first != sum([each.size for each in fields.values()]):
+                raise ValueError(f"{type.name.decode()}: outputs before {field.name.decode()} are not in the order of their structure")
+            fields[field.name.decode()] = Output(field.first, field.size, field.unit.decode(),
+                                                 "" if field.turns == NULL else field.turns.decode())
+            field += 1
+        if fields:
+            if fu_n_outputs(type) != sum([each.size for each in fields.values()]):
+                raise ValueError(f"{type.name.decode()}: its structure has outputs without a field")
+            found[type.name.decode()] = fields
+        k += 1
+        type = fu_coupling_type_at(k)
+    return found
+
+
+def outputs_by_name(str kind, numbers):
+    """Return what rows of output say of couplings of a kind, by name: of numbers (..., numbers of one) the views (...) of
+    numbers, (..., size) of vectors.
+    """
+    if numbers.shape[-1] != sum([each.size for each in OUTPUTS[kind].values()]):
+        raise ValueError(f"a {kind} has {sum([each.size for each in OUTPUTS[kind].values()])} numbers, not {numbers.shape[-1]}")
+    return {name: numbers[..., each.first] if each.size == 1 else numbers[..., each.first:each.first + each.size]
+            for name, each in OUTPUTS[kind].items()}
+
+
 STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGENCE: "no_convergence",
           FU_SINGULAR: "singular", FU_EVENT: "event",
           FU_UNSTABLE: "unstable"}
 CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
           FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_SELF_LOCKING: "self_locking",
           FU_NOT_KNOWN: "not_known"}
-SLIDE_OUTPUTS = {"s_rate": 1, "s_acceleration": 1, "force": 3, "multiplier": 2, "traction": 1, "residual": 3}
-"""Numbers of a slide in a row of output, and how many each has; see fu_slide_output."""
-OUTPUT_KINDS = ("slide", "joint", "point_force", "drag", "crossing", "contact", "hard_contact")
-"""Kinds of couplings with numbers in a row of output, which a state of rest has, too."""
+OUTPUTS = _described_outputs()
+"""Of each kind of coupling that has some the fields of a row of output, by name; a state of rest has them, too."""
 SLACK_STRAIN = FU_SLACK_STRAIN
 """What an element is compressed by at least in its middle where it is slack."""
-cdef int TRACTION = sum([SLIDE_OUTPUTS[name] for name in ("s_rate", "s_acceleration", "force", "multiplier")])
 
 
 cdef const void *_found(list tables, str role, str name) except NULL:
@@ -167,7 +203,7 @@ cdef class Engine(Report):
             w = &self.watches[i]
             w.kind, w.index, w.direction, w.value = kinds[watch.kind], watch.index, watch.direction, watch.value
             if w.kind == FU_WATCH_OUTPUT:
-                w.which = TRACTION
+                w.which = OUTPUTS["slide"][watch.kind].first
             elif w.kind == FU_WATCH_S:
                 w.index = self.couplings[watch.index].coordinate
         fu_coupling_watches(&self.model, self.watches + n)
@@ -220,7 +256,7 @@ cdef class Engine(Report):
             shape = (rows, array.items) if array.axes == 2 else (rows,)
             fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
         output = self.arrays.pop("output")
-        for kind in OUTPUT_KINDS:
+        for kind in OUTPUTS:
             self.arrays[kind] = self._outputs(kind, output)
         cdef int status = fu_start(run)
         if status:
@@ -230,10 +266,10 @@ cdef class Engine(Report):
     def _outputs(self, str kind, output):
         """The part of rows of output that couplings of a kind have: a view, (rows, couplings, numbers of one)."""
         numbers = self._of(kind)
+        cdef int width = fu_n_outputs(fu_coupling_type_of(kind.encode()))
         if not numbers:
-            return output[:, :0].reshape(len(output), 0, 0)
+            return output[:, :0].reshape(len(output), 0, width)
         c = self.couplings[<int>numbers[0]]
-        cdef int width = c.type.n_outputs
         return output[:, c.output:c.output + len(numbers) * width].reshape(len(output), len(numbers), width)
 
     def advance(self, on_progress, int every=0, stream=None, double interval=0.05, long most_evaluations=0):
@@ -384,7 +420,7 @@ cdef class Engine(Report):
     def static_outputs(self, str kind):
         """(couplings, numbers of one): of all couplings of a kind in the static state, as in rows of output."""
         numbers = self._of(kind)
-        out = np.zeros((len(numbers), fu_coupling_type_of(kind.encode()).n_outputs))
+        out = np.zeros((len(numbers), fu_n_outputs(fu_coupling_type_of(kind.encode()))))
         cdef double[:, ::1] view = out
         cdef int k, number
         for k, number in enumerate(numbers):

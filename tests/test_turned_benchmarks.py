@@ -10,7 +10,8 @@ import pytest
 from funicular.choice.candidates import kinds_of
 from funicular.choice.planar import planar_of
 from funicular.choice.remaking import coarsest, remade
-from funicular.parts.plane_axes import DIRECTIONS, POINTS
+from funicular.parts.quantity import DIRECTION, NODAL_VECTORS, POINT
+from funicular.parts.turning import TURNING
 from turned_scenes import ASKEW, UPRIGHT, differences, turned_scene
 
 pytestmark = pytest.mark.slow
@@ -69,7 +70,7 @@ def compare_written_planar(scene, duration):
     """
     flat, upright = run(scene, duration, 500), run(turned_scene(scene, *UPRIGHT), duration, 500)
     for name in flat:
-        if name.rpartition(".")[2] in (*POINTS, *DIRECTIONS):
+        if TURNING.get(name.rpartition(".")[2]) in (POINT, DIRECTION, NODAL_VECTORS):
             size = max(1.0, np.abs(flat[name]).max(initial=0.0))
             assert np.abs(upright[name][..., 1]).max(initial=0.0) == 0 or name.endswith("moment"), name
             turned = np.stack([upright[name][..., 0], upright[name][..., 2], -upright[name][..., 1]], axis=-1)

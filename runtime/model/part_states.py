@@ -10,21 +10,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..engine import OUTPUT_KINDS, SLIDE_OUTPUTS, Engine
+from ..engine import OUTPUTS, Engine, outputs_by_name
 from ..parts.contact import Contact
 from ..parts.crossing import Crossing
 from ..parts.drag import Drag
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support
+from .contacts import ContactModel
 from .model import Model
 from .states import (
     body_rates,
     body_state,
-    contact_state,
-    crossing_state,
-    drag_states,
-    hard_contact_states,
     joint_state,
     modal_state,
     point_force_state,
@@ -39,7 +36,7 @@ class States:
     """States of a model as the engine has them, T of them.
 
     q (T, n_q), v and a (T, n_dof): configurations, velocities, accelerations; s (T, slides) in m; reaction (T, n_dof):
-    what supports give; numbers: of couplings by kind of OUTPUT_KINDS, (T, couplings, numbers of one).
+    what supports give; numbers: of couplings by kind of OUTPUTS, (T, couplings, numbers of one).
     """
 
     q: np.ndarray
@@ -53,7 +50,11 @@ class States:
     def of_rows(cls, rows: Mapping[str, np.ndarray]) -> States:
         """Return the states of an engine's rows of output."""
         return cls(rows["q"], rows["v"], rows["acceleration"], rows["s"], rows["reaction"],
-                   {kind: rows[kind] for kind in OUTPUT_KINDS})
+                   {kind: rows[kind] for kind in OUTPUTS})
+
+    def outputs(self, kind: str, k: int) -> dict[str, np.ndarray]:
+        """Return the outputs of coupling number k of a kind by name: numbers (T,), vectors (T, components)."""
+        return outputs_by_name(kind, self.numbers[kind][:, k])
 
     @classmethod
     def at_rest(cls, q: np.ndarray, s: np.ndarray, reaction: np.ndarray, numbers: dict[str, np.ndarray]) -> States:
@@ -64,7 +65,7 @@ class States:
 
 def numbers_at_rest(engine: Engine) -> dict[str, np.ndarray]:
     """Return the numbers of couplings in an engine's static state, by kind, (couplings, numbers of one)."""
-    return {kind: engine.static_outputs(kind) for kind in OUTPUT_KINDS}
+    return {kind: engine.static_outputs(kind) for kind in OUTPUTS}
 
 
 Values = dict[str, dict[str, np.ndarray]]
@@ -119,13 +120,12 @@ def _connections(model: Model, scene: SceneData, at: States, asked: Callable[[st
         return {support.label: support_reaction(model, scene, support, at.reaction, at.q) for support in supports
                 if asked(support.label)}
 
-    of_joints = [(joint, joint_state(joint, at.numbers["joint"][:, k])) for k, joint in enumerate(model.joints)]
-    slides = {slide.name: {"s": at.s[:, k]} | _slide_state(at.numbers["slide"][:, k])
+    of_joints = [(joint, joint_state(joint, at.outputs("joint", k))) for k, joint in enumerate(model.joints)]
+    slides = {slide.name: {"s": at.s[:, k]} | _slide_state(at.outputs("slide", k))
               for k, slide in enumerate(model.slides)}
     for joint, state in of_joints:
         if joint.slide is not None:
             slides[joint.slide]["moment"] = state["moment"]
-    numbers = at.numbers
     return {
         "slides": slides,
         "pins": {label: {"force": of["force"]} for label, of in reactions(scene.pins).items()},
@@ -134,22 +134,48 @@ def _connections(model: Model, scene: SceneData, at: States, asked: Callable[[st
         "ties": {name: tie_force(model, scene, tie, at.reaction, at.q) for name, tie in scene.ties.items()
                  if asked(name)},
         "joints": {joint.name: state for joint, state in of_joints if joint.slide is None},
-        PointForce.group: {force.name: point_force_state(model, force, at.numbers["point_force"][:, k], at.q)
+        PointForce.group: {force.name: point_force_state(model, force, at.outputs("point_force", k)["force"], at.q)
                            for k, force in enumerate(model.point_forces) if asked(force.name)},
-        Drag.group: drag_states(model, numbers["drag"]),
-        Crossing.group: {crossing.name: crossing_state(numbers["crossing"][:, k])
+        Drag.group: drag_states(model, at),
+        Crossing.group: {crossing.name: at.outputs("crossing", k)
                          for k, crossing in enumerate(model.crossings)},
-        Contact.group: {contact.name: contact_state(contact, numbers["contact"][:, k])
+        Contact.group: {contact.name: contact_state(contact, at.outputs("contact", k))
                         for k, contact in enumerate(model.contacts)}
-        | hard_contact_states(model, numbers["hard_contact"]),
+        | hard_contact_states(model, at),
     }
 
 
-def _slide_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what results tell of a slide, from the engine's numbers (T, numbers) of it; see fu_slide_output."""
-    ends = np.cumsum(list(SLIDE_OUTPUTS.values()))
-    if numbers.shape[-1] != ends[-1]:
-        raise ValueError(f"a slide has {numbers.shape[-1]} numbers, not {ends[-1]}")
-    found = {name: numbers[..., end - size : end] if size > 1 else numbers[..., end - 1]
-             for (name, size), end in zip(SLIDE_OUTPUTS.items(), ends, strict=True)}
-    return found | {"residual": np.linalg.norm(found["residual"], axis=-1)}
+def _slide_state(outputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the outputs of a slide with the size of its residual."""
+    return outputs | {"residual": np.linalg.norm(outputs["residual"], axis=-1)}
+
+
+def contact_state(contact: ContactModel, outputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the outputs of a contact, without arc-lengths where nothing touches."""
+    touching = outputs["touching"]
+    touches = touching > 0 if contact.cable >= 0 else np.zeros(len(touching), dtype=bool)
+    ends = {name: np.where(touches, outputs[name], np.nan) for name in ("first", "last")}
+    return outputs | ends | {"gap": np.full(len(touching), np.nan)}
+
+
+def hard_contact_states(model: Model, at: States) -> Values:
+    """Return the results of hard contacts by name: sums and extremes over the outputs of their points."""
+    found: Values = {}
+    for name in dict.fromkeys(point.name for point in model.hard_contacts):
+        points = [k for k, point in enumerate(model.hard_contacts) if point.name == name]
+        of = outputs_by_name("hard_contact", at.numbers["hard_contact"][:, points])
+        none, depth = np.full(len(at.q), np.nan), -of["gap"].min(axis=1)
+        found[name] = {"force": of["force"].sum(axis=1), "friction_force": of["friction_force"].sum(axis=1),
+                       "penetration": np.maximum(depth, 0.0),
+                       "touching": np.any(of["force"] != 0, axis=2).sum(axis=1).astype(float), "first": none,
+                       "last": none, "gap": -depth}
+    return found
+
+
+def drag_states(model: Model, at: States) -> Values:
+    """Return the results of drags by name: the sum of the forces of all their fluids."""
+    found: Values = {}
+    for k, drag in enumerate(model.drags):
+        force = at.outputs("drag", k)["force"]
+        found[drag.name] = {"force": force + (found[drag.name]["force"] if drag.name in found else 0.0)}
+    return found

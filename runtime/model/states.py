@@ -14,7 +14,6 @@ from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..rotations import cross, rotate
 from .attachments import AttachmentModel
-from .contacts import ContactModel
 from .joints import JointModel
 from .loads import PointForceModel
 from .model import BodyModel, Model
@@ -108,12 +107,10 @@ def modal_state(model: Model, body: BodyModel, state: dict[str, np.ndarray], q: 
                 {} if v is None else {"modal_velocities": v[:, rate : rate + body.modes]})
 
 
-def joint_state(joint: JointModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the force and moment on the end b, and residual, from the engine's numbers (..., FU_JOINT_OUTPUTS) of a
-    joint.
-    """
+def joint_state(joint: JointModel, outputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the outputs of a joint with the force and moment (..., 3) on the end b."""
     sign = -1.0 if joint.reversed else 1.0  # that has its ends at one point
-    return {"force": sign * numbers[..., :3], "moment": sign * numbers[..., 3:6], "residual": numbers[..., 6]}
+    return outputs | {name: sign * outputs[name] for name in ("force", "moment")}
 
 
 def _turning(rates: np.ndarray) -> np.ndarray:
@@ -133,29 +130,6 @@ def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
     return {"force": force, "length": length, "tension": np.sum(force * along, axis=1)}
 
 
-def contact_state(contact: ContactModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what results tell of a contact from its numbers (time, 10); see engine/couplings/contact/results.c."""
-    touches = numbers[:, 7] > 0 if contact.cable >= 0 else np.zeros(len(numbers), dtype=bool)
-    first, last = (np.where(touches, numbers[:, k], np.nan) for k in (8, 9))
-    return {"force": numbers[:, :3], "friction_force": numbers[:, 3:6], "penetration": numbers[:, 6],
-            "touching": numbers[:, 7], "first": first, "last": last, "gap": np.full(len(numbers), np.nan)}
-
-
-def hard_contact_states(model: Model, numbers: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
-    """Return what results tell of hard contacts, by name, from the numbers of their points (time, points, 7), which are
-    forces, friction and distances; see fu_hard_contact_output of the engine.
-    """
-    found: dict[str, dict[str, np.ndarray]] = {}
-    for name in dict.fromkeys(point.name for point in model.hard_contacts):
-        of = numbers[:, [k for k, point in enumerate(model.hard_contacts) if point.name == name]]
-        force, none = of[:, :, :3].sum(axis=1), np.full(len(numbers), np.nan)
-        found[name] = {"force": force, "friction_force": of[:, :, 3:6].sum(axis=1),
-                       "penetration": np.maximum(-of[:, :, 6].min(axis=1), 0.0),
-                       "touching": np.any(of[:, :, :3] != 0, axis=2).sum(axis=1).astype(float), "first": none,
-                       "last": none, "gap": of[:, :, 6].min(axis=1)}
-    return found
-
-
 def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
     """Return (time, 3): where an attachment is."""
     if attachment.cable >= 0:
@@ -171,19 +145,3 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
             arm = spatial(attachment.modal[0] + eta @ attachment.modal[1])
         return state["position"] + rotate(state["orientation"], arm)
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))
-
-
-def crossing_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what results tell of a crossing, from the engine's numbers (time, 14) of it."""
-    return {"force": numbers[:, :3], "normal_force": numbers[:, 3], "penetration": numbers[:, 4], "s": numbers[:, 5],
-            "s_b": numbers[:, 6], "position": numbers[:, 7:10], "friction_force": numbers[:, 10:13],
-            "sticking": numbers[:, 13]}
-
-
-def drag_states(model: Model, forces: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
-    """Return the force of each drag, that of all its fluids; forces (time, models of drags, 3)."""
-    found: dict[str, dict[str, np.ndarray]] = {}
-    for k, drag in enumerate(model.drags):
-        before = found[drag.name]["force"] if drag.name in found else 0.0
-        found[drag.name] = {"force": before + forces[:, k]}
-    return found

@@ -12,7 +12,7 @@ from .listed import Listed
 from .part import Part
 from .penalty_law import Exponent
 from .plane import across
-from .quantity import Quantity, vector_of_time
+from .quantity import Quantity, all_of_engine
 from .schemas import checked, list_schema
 from .validation import Name, Vector, not_negative, positive, shown, vector3, within
 
@@ -52,15 +52,15 @@ class Contact(Part):
     group: ClassVar[str] = "contacts"
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
     takes_lists: ClassVar[bool] = True
-    results: ClassVar[dict[str, Quantity]] = {
-        "force": vector_of_time("N", "force of the surface on the cable or body"),
-        "friction_force": vector_of_time("N", "the part of it that is friction"),
-        "penetration": Quantity(("time",), "m", "largest depth below the surface"),
-        "touching": Quantity(("time",), "1", "length of the cable that touches, m, or number of points that do"),
-        "first": Quantity(("time",), "m", "arc-length of the cable where it begins to touch, NaN where it does not"),
-        "last": Quantity(("time",), "m", "arc-length of the cable where it touches last, NaN where it does not"),
-        "gap": Quantity(("time",), "m", "of a hard contact: least distance of its points from the surface, else NaN"),
-    }
+    results: ClassVar[dict[str, Quantity]] = all_of_engine(
+        "contact",
+        force="force of the surface on the cable or body",
+        friction_force="the part of it that is friction",
+        penetration="largest depth below the surface",
+        touching="length of the cable that touches, m, or number of points that do",
+        first="arc-length of the cable where it begins to touch, NaN where it does not",
+        last="arc-length of the cable where it touches last, NaN where it does not",
+    ) | all_of_engine("hard_contact", gap="of a hard contact: least distance of its points from the surface, else NaN")
     name: Name | None = None
     a: Listed
     b: Listed

@@ -13,7 +13,7 @@ from .listed import Listed
 from .part import Part
 from .penalty_law import Exponent
 from .plane import across
-from .quantity import Quantity, of_time, vector_of_time
+from .quantity import Quantity, all_of_engine
 from .section import outer_radius_of
 from .validation import Name, Vector, direction, not_negative, positive, xyz
 
@@ -39,16 +39,17 @@ class Crossing(Part):
     group: ClassVar[str] = "crossings"
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
     takes_lists: ClassVar[bool] = True
-    results: ClassVar[dict[str, Quantity]] = {
-        "force": vector_of_time("N", "contact force on the cable a"),
-        "friction_force": vector_of_time("N", "the part of it that is friction"),
-        "sticking": of_time("1", "1 where the lines touch and friction holds them, else 0"),
-        "normal_force": of_time("N", "size of the contact force along the normal"),
-        "penetration": of_time("m", "penetration of both lines, negative where they are apart"),
-        "s": of_time("m", "arc-length of the closest point on the cable a"),
-        "s_b": of_time("m", "arc-length of the closest point on b, of a bar from its middle"),
-        "position": vector_of_time("m", "closest point on the axis of the cable a"),
-    }
+    results: ClassVar[dict[str, Quantity]] = all_of_engine(
+        "crossing",
+        force="contact force on the cable a",
+        friction_force="the part of it that is friction",
+        sticking="1 where the lines touch and friction holds them, else 0",
+        normal_force="size of the contact force along the normal",
+        penetration="penetration of both lines, negative where they are apart",
+        s="arc-length of the closest point on the cable a",
+        s_b="arc-length of the closest point on b, of a bar from its middle",
+        position="closest point on the axis of the cable a",
+    )
     name: Name | None = None
     a: Listed
     b: Listed | None = None

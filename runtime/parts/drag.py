@@ -13,7 +13,7 @@ from .cable import Cable
 from .part import Part
 from .plane import across
 from .polar import Polar
-from .quantity import Quantity, vector_of_time
+from .quantity import Quantity, all_of_engine
 from .schemas import checked, list_of_lists, list_schema, number_schema
 from .section import Tube, outer_radius_of
 from .validation import (
@@ -84,7 +84,7 @@ class Drag(Part):
     kind: ClassVar[str] = "drag"
     group: ClassVar[str] = "drags"
     positional: ClassVar[tuple[str, ...]] = ("on",)
-    results: ClassVar[dict[str, Quantity]] = {"force": vector_of_time("N", "drag and buoyancy on the cable or body")}
+    results: ClassVar[dict[str, Quantity]] = all_of_engine("drag", force="drag and buoyancy on the cable or body")
     name: Name | None = None
     on: Reference
     fluid: Reference | None = None

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from .attachment import AnyAttachment
 from .part import Part
 from .plane import across, in_plane
-from .quantity import Quantity, of_time, vector_of_time
+from .quantity import Quantity, all_of_engine
 from .signal import AnySignal, Integral, Signal
 from .validation import Name, Vector, direction, one_of, positive
 
@@ -56,11 +56,12 @@ class Joint(Part):
     kind: ClassVar[str] = "joint"
     group: ClassVar[str] = "joints"
     positional: ClassVar[tuple[str, ...]] = ("kind", "a", "b")
-    results: ClassVar[dict[str, Quantity]] = {
-        "force": vector_of_time("N", "force on what carries the end b, at that end"),
-        "moment": vector_of_time("N m", "moment on what carries the end b, about that end"),
-        "residual": of_time("1", "largest of its equations, in m or of cosines"),
-    }
+    results: ClassVar[dict[str, Quantity]] = all_of_engine(
+        "joint",
+        force="force on what carries the end b, at that end",
+        moment="moment on what carries the end b, about that end",
+        residual="largest of its equations, in m or of cosines",
+    )
     joint_kind: Annotated[str, one_of(KINDS)] = Field(alias="kind")
     name: Name | None = None
     a: AnyAttachment

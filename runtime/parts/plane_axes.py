@@ -9,12 +9,8 @@ import numpy as np
 
 from ..rotations import conjugate, product, quaternion, rotate
 from .plane import Plane, flattened
-
-POINTS = ("position", "nodes")
-DIRECTIONS = ("nodal_vectors", "nodal_velocity", "velocity", "acceleration", "displacement", "force", "friction_force",
-              "moment")
-IN_BODY_AXES = ("angular_velocity", "angular_acceleration", "rotation")
-"""Quantities of results by how they turn; all others, but for orientations, are the same in all axes."""
+from .quantity import IN_BODY_AXES, NODAL_VECTORS, ORIENTATION, POINT, UNCHANGED
+from .turning import TURNING
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,38 +35,41 @@ class PlaneAxes:
     def out(self, part: str, quantity: str, values: np.ndarray, moves: bool = False) -> np.ndarray:
         """Return a result of a part, (..., 3) or (..., 4), along the ground's axes; moves: it is a displacement.
 
-        Nodal vectors are (..., vectors, 3), of which the first one is a point.
+        Nodal vectors are (..., vectors, 3), of which the first one is a point. Raises KeyError for a quantity that is
+        none of results, see `turning`.
         """
-        if quantity == "orientation":
+        turns = TURNING[quantity]
+        if turns == UNCHANGED:
+            return values
+        if turns == ORIENTATION:
             back = conjugate(self.bodies.get(part, UNTURNED))
             return product(product(self.attitude, values), back)
-        if quantity in IN_BODY_AXES:
+        if turns == IN_BODY_AXES:
             return rotate(self.bodies[part], values) if part in self.bodies else values
-        if quantity in POINTS and not moves:
+        if turns == POINT and not moves:
             return self.plane.points_out(values)
-        if quantity not in (*POINTS, *DIRECTIONS):
-            return values
         made = self.plane.out(values)
-        if quantity == "nodal_vectors" and not moves:
+        if turns == NODAL_VECTORS and not moves:
             made[..., 0, :] += self.plane.origin
         return made
 
     def into(self, part: str, quantity: str, values: np.ndarray) -> np.ndarray:
         """Return a result of a part along the plane's axes: `out` undone, without what rounding leaves across it."""
-        if quantity == "orientation":
+        turns = TURNING[quantity]
+        if turns == UNCHANGED:
+            return values
+        if turns == ORIENTATION:
             turned = product(product(conjugate(self.attitude), values), self.bodies.get(part, UNTURNED))
             return np.where(np.abs(turned) <= ROUNDED, 0.0, turned)
-        if quantity in IN_BODY_AXES:
+        if turns == IN_BODY_AXES:
             turned = rotate(conjugate(self.bodies[part]), values) if part in self.bodies else np.asarray(values)
             return np.where(np.abs(turned) <= ROUNDED * np.abs(turned).max(initial=0.0), 0.0, turned)
-        if quantity in POINTS:
+        if turns == POINT:
             return flattened(self.plane.points_into(values), self.size)
-        if quantity not in DIRECTIONS:
-            return values
         values = np.array(values)
-        if quantity == "nodal_vectors":
+        if turns == NODAL_VECTORS:
             values[..., 0, :] -= self.plane.origin
-        return flattened(self.plane.into(values), self.size if quantity == "nodal_vectors" else 0.0)
+        return flattened(self.plane.into(values), self.size if turns == NODAL_VECTORS else 0.0)
 
 
 UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])

@@ -8,7 +8,7 @@ from pydantic import model_validator
 
 from .attachment import AnyAttachment
 from .part import Part
-from .quantity import Quantity, of_time, vector_of_time
+from .quantity import Quantity, of_engine, of_time
 from .validation import Name
 
 
@@ -22,7 +22,7 @@ class PointForce(Part):
     group: ClassVar[str] = "point_forces"
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
     results: ClassVar[dict[str, Quantity]] = {
-        "force": vector_of_time("N", "force on the first end"),
+        "force": of_engine("point_force", "force", "force on the first end"),
         "tension": of_time("N", "force with which the ends are drawn together"),
         "length": of_time("m", "distance of the ends"),
     }

@@ -11,7 +11,7 @@ import numpy as np
 from ..rotations import rotate
 from .part import Part
 from .plane import across, in_plane
-from .quantity import Quantity, vector_of_time
+from .quantity import IN_BODY_AXES, ORIENTATION, POINT, Quantity, vector_of_time
 from .schemas import checked, list_of_lists, list_schema
 from .solids import AnySolid
 from .validation import EXACT, Matrix, Name, Vector, positive, show, symmetric, vector, xyz
@@ -68,12 +68,13 @@ class RigidBody(Part):
     kind: ClassVar[str] = "rigid_body"
     group: ClassVar[str] = "bodies"
     results: ClassVar[dict[str, Quantity]] = {
-        "position": vector_of_time("m", "position of the body's origin"),
-        "orientation": Quantity(("time", "wxyz"), "1", "unit quaternion from body axes to the ground's"),
+        "position": vector_of_time("m", "position of the body's origin", POINT),
+        "orientation": Quantity(("time", "wxyz"), "1", "unit quaternion from body axes to the ground's",
+                                ORIENTATION),
         "velocity": vector_of_time("m/s", "velocity of the body's origin"),
-        "angular_velocity": vector_of_time("rad/s", "angular velocity in body axes"),
+        "angular_velocity": vector_of_time("rad/s", "angular velocity in body axes", IN_BODY_AXES),
         "acceleration": vector_of_time("m/s2", "acceleration of the body's origin"),
-        "angular_acceleration": vector_of_time("rad/s2", "angular acceleration in body axes"),
+        "angular_acceleration": vector_of_time("rad/s2", "angular acceleration in body axes", IN_BODY_AXES),
     }
     name: Name
     mass: Annotated[float, positive("kg")]

@@ -7,12 +7,13 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
+from ..engine import OUTPUTS
 from .attachment import Attachment
 from .end_stops import CableEnd, Stop
 from .friction import AnyFriction
 from .part import Part
 from .plane import across
-from .quantity import Quantity, of_time, vector_of_time
+from .quantity import Quantity, of_engine, of_time
 from .schemas import GivenAs, attachment_schema
 from .signal import AnySignal, Integral, Signal
 from .validation import Name, Reference, Vector, direction, finite, one_of, xyz
@@ -42,13 +43,15 @@ class Slide(Part):
     positional: ClassVar[tuple[str, ...]] = ("body",)
     results: ClassVar[dict[str, Quantity]] = {
         "s": of_time("m", "undeformed arc-length of the rider's place"),
-        "s_rate": of_time("m/s", "rate of s"),
-        "s_acceleration": of_time("m/s2", "second rate of s"),
-        "force": vector_of_time("N", "force on the rider"),
-        "multiplier": Quantity(("time", "normal"), "N", "multipliers of the two constraints across the cable"),
-        "traction": of_time("N", "force on the rider along the cable; of a driven slide its drive's power over s_rate"),
-        "moment": vector_of_time("N m", "moment on the rider, of a slide that ties its axes to the cable's frame"),
-        "residual": of_time("m", "distance of the rider's point to the cable"),
+        "s_rate": of_engine("slide", "s_rate", "rate of s"),
+        "s_acceleration": of_engine("slide", "s_acceleration", "second rate of s"),
+        "force": of_engine("slide", "force", "force on the rider"),
+        "multiplier": of_engine("slide", "multiplier", "multipliers of the two constraints across the cable", "normal"),
+        "traction": of_engine("slide", "traction",
+                              "force on the rider along the cable; of a driven slide its drive's power over s_rate"),
+        "moment": of_engine("joint", "moment",
+                            "moment on the rider, of a slide that ties its axes to the cable's frame"),
+        "residual": of_time(OUTPUTS["slide"]["residual"].units, "distance of the rider's point to the cable"),
     }
     body: Annotated[Reference | None, GivenAs(attachment_schema("or the point [x, y, z] of the ground"))]
     body_s: Annotated[float, finite("m")] | None = None

@@ -63,8 +63,8 @@ def labelled(rows: Any) -> tuple[dict[str, Variable], dict[str, Variable]]:
     for group, parts in rows.parts.items():
         for name, arrays in parts.items():
             for quantity, values in arrays.items():
-                along, units, long_name = QUANTITIES[group][quantity]
-                variables[f"{name}.{quantity}"] = Variable(along, values, units, long_name)
+                of = QUANTITIES[group][quantity]
+                variables[f"{name}.{quantity}"] = Variable(of.dims, values, of.units, of.long_name)
     for name, values in rows.energy.items():
         variables[f"energy.{name}"] = Variable(("time",), values, "J", ENERGIES[name])
     return variables, coords

@@ -116,6 +116,11 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
 
 
+def along_ground(model: Model, name: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the forces in sections of a cable with force and moment along the ground's axes; components stay."""
+    return found | model.results(name, {each: found[each] for each in GLOBAL})
+
+
 def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",
            side: str = "after") -> dict[str, np.ndarray]:
     """Return `cut_forces` of a run at the chosen times; s: (1 or T, n)."""
@@ -128,7 +133,7 @@ def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *,
         part = numbers[first : first + block]
         found.append(cut_forces(scene, model, _instants(run, part), name,
                                 s if len(s) == 1 else s[first : first + block], method=method, side=side))
-    return model.results(name, {key: np.concatenate([each[key] for each in found]) for key in found[0]})
+    return along_ground(model, name, {key: np.concatenate([each[key] for each in found]) for key in found[0]})
 
 
 def _instants(run: Results, numbers: np.ndarray) -> Instants:
@@ -150,8 +155,8 @@ def _instants(run: Results, numbers: np.ndarray) -> Instants:
 def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = "balance",
                    side: str = "after") -> dict[str, np.ndarray]:
     """Return `cut_forces` of a state of rest: T = 1; s: (1, n)."""
-    return state.model.results(name, cut_forces(laid(state.scene), state.model, rest_instants(state), name, s,
-                                                method=method, side=side))
+    return along_ground(state.model, name, cut_forces(laid(state.scene), state.model, rest_instants(state), name, s,
+                                                      method=method, side=side))
 
 
 def rest_instants(state: RestState) -> Instants:

@@ -24,7 +24,7 @@ from .cable_loads import Instants
 from .equilibrium import Equilibrium
 from .quantities import QUANTITIES
 from .section_components import labels
-from .section_forces import GLOBAL, cut_forces
+from .section_forces import GLOBAL, along_ground, cut_forces
 
 PLACE = re.compile(r"(?P<cable>[^@.]+)@(?P<s>[-+0-9.eE]+?)\.(?P<rest>[A-Za-z_].*)")
 """The name of a value at a place of a cable."""
@@ -105,7 +105,7 @@ class _Values:
         instants = Instants(np.zeros(len(self.at)), self.at.q, np.zeros((len(self.at), model.n_dof)),
                             lambda each: model.as_in_model(each, self._result(each)), problem.fraction, weight,
                             is_rest=True)
-        found = model.results(name, cut_forces(problem.scene, model, instants, name, s))
+        found = along_ground(model, name, cut_forces(problem.scene, model, instants, name, s))
         self.cuts[name] = {place: {quantity: values[:, k] for quantity, values in found.items()}
                            for k, place in enumerate(places)}
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engine import SLIDE_OUTPUTS
+from ..engine import outputs_by_name
 from ..model.middle_strain import middle_strain
 from ..model.model import Model, SlideModel
 from ..parts.cable import Cable
@@ -22,9 +22,6 @@ from .coarse_meshes import EVERY, LIMIT
 
 OF_LENGTH, OF_ANGLE = 0.02, 0.08
 """Difference of the tensions over the squared angle and h/sqrt(EI/N), and the largest over the squared angle alone."""
-BEFORE = dict(zip(SLIDE_OUTPUTS, np.cumsum([0, *SLIDE_OUTPUTS.values()]).tolist(), strict=False))
-FORCE = slice(BEFORE["force"], BEFORE["force"] + SLIDE_OUTPUTS["force"])
-"""Where the engine's numbers of a slide have the force on its rider."""
 
 
 class CoarseSlides:
@@ -41,7 +38,7 @@ class CoarseSlides:
     def see(self, rows: dict[str, np.ndarray]) -> None:
         """Take further output rows."""
         if self._model.slides:
-            self.take(rows["q"], rows["s"], rows["slide"][..., FORCE])
+            self.take(rows["q"], rows["s"], outputs_by_name("slide", rows["slide"])["force"])
 
     def take(self, q: np.ndarray, s: np.ndarray, force: np.ndarray, every: int = EVERY) -> None:
         """Take further states: coordinates (T, n), arc-lengths (T, slides) and forces on riders (T, slides, 3)."""

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..engine import outputs_by_name
 from ..model.contact_points import distances
 from ..model.model import Model
 from ..parts.scene_data import SceneData
@@ -53,7 +54,7 @@ def left(problem: StaticProblem, places: list[Lying]) -> list[str]:
     """Return a message for each of these places that the cable has left in the static state."""
     if not places:
         return []
-    touching = problem.engine.static_outputs("contact")[:, 7]
+    touching = outputs_by_name("contact", problem.engine.static_outputs("contact"))["touching"]
     return [f"{_lies(problem, place)}, and has left it: it slid off, or the search carried it past the surface. Take "
             "scene.relax(), or more friction" for place in places
             if touching[place.contact] < LITTLE * (place.last - place.first)]

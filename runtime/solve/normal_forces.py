@@ -6,15 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from ..engine import SLIDE_OUTPUTS
+from ..engine import outputs_by_name
 from ..model.model import Model
 from ..parts.scene_data import SceneData
 
 REVERSALS, OFTEN = 5, 0.1
 """Of a normal force between output times, and of all of these: from both on it vibrates. A zip line whose rider
 rebounds from its buffer has 11 in 500 and errs by 0.02 tol, wires that are let go have 7 and 13 in 40."""
-FIRST = list(SLIDE_OUTPUTS).index("force")
-FORCE = slice(start := sum(list(SLIDE_OUTPUTS.values())[:FIRST]), start + SLIDE_OUTPUTS["force"])
 
 
 class NormalForces:
@@ -30,8 +28,9 @@ class NormalForces:
     def see(self, rows: dict[str, np.ndarray]) -> None:
         """Take further output rows."""
         for k, name in self._slides:
+            rider = outputs_by_name("slide", rows["slide"][:, k])["force"]
             count, times, last = self.found.get(name, (0, 0, [0.0, 0.0, 0.0]))
-            force = np.concatenate([[last], rows["slide"][:, k, FORCE]])
+            force = np.concatenate([[last], rider])
             count += int(np.sum(np.sum(force[1:] * force[:-1], axis=1) < 0))
             self.found[name] = [count, times + len(rows["time"]), force[-1].tolist()]
 

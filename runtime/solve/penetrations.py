@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..checks.contact_resolution import radius_of
-from ..engine import Engine
+from ..engine import Engine, outputs_by_name
 from ..model.model import Model
-from ..model.states import crossing_state
 from ..parts.scene_data import SceneData
 
 DEEP = 0.1
@@ -66,9 +65,9 @@ class Penetrations:
     def see_rest(self, outputs: dict[str, np.ndarray]) -> None:
         """Take a state of rest, by the engine's numbers of each kind of coupling, (couplings, numbers)."""
         if len(outputs["contact"]):
-            self._take(self._limits["contact"], outputs["contact"][:, 6])
+            self._take(self._limits["contact"], outputs_by_name("contact", outputs["contact"])["penetration"])
         if len(outputs["crossing"]):  # beyond their ends lines may be past each other's axes and not touch
-            of = crossing_state(outputs["crossing"])
+            of = outputs_by_name("crossing", outputs["crossing"])
             self._take(self._limits["crossing"], np.where(of["normal_force"] > 0, of["penetration"], 0.0))
 
     def _take(self, limits: list[_Limit], depths: np.ndarray) -> None:

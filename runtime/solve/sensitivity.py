@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engine import Engine
+from ..engine import Engine, outputs_by_name
 from ..model.joints import JointModel
 from ..model.loops import joints_in_loops
 from ..model.middle_strain import stretches
@@ -113,7 +113,7 @@ class Sensitivity:
 
     def _of_joint(self, k: int, joint: JointModel, rows: dict[str, np.ndarray]) -> np.ndarray:
         """Return (times, 1): the larger rate at which a body at one of its ends falls over, 1/s."""
-        on_b = joint_state(joint, rows["joint"][:, k])["force"]
+        on_b = joint_state(joint, outputs_by_name("joint", rows["joint"][:, k]))["force"]
         found = np.zeros((len(on_b), 1))
         for end, force in zip(joint.attachments, (-on_b, on_b), strict=True):
             body = self._model.bodies[end.body] if end.body >= 0 else None

@@ -1,5 +1,6 @@
 /* What a coupling's structure takes from the model, described: cython/translation.pxi fills in each field from the attribute of
- * its name of the coupling's class in the package funicular.model, and knows no kind of coupling.
+ * its name of the coupling's class in the package funicular.model, and knows no kind of coupling. Likewise what a coupling gives
+ * to a row of output: Python finds the numbers by the names of these fields.
  */
 #ifndef FUNICULAR_BASE_FIELDS_H
 #define FUNICULAR_BASE_FIELDS_H
@@ -28,5 +29,19 @@ typedef struct {
 #define FU_FIELD_ARRAY(structure, member, kind)                                                                         \
     {#member, kind, offsetof(structure, member), sizeof(((structure *)0)->member) / sizeof(*((structure *)0)->member),  \
      sizeof(*((structure *)0)->member), NULL}
+
+/* A number or vector in a row of output: where it begins among the coupling's numbers, how many it has, its SI unit, and how other
+ * axes change it: as a "point", as a "direction", or as a direction in "body axes"; a null `turns`: not at all. */
+typedef struct {
+    const char *name; /* null: the last of a list, whose `first` counts the numbers of all */
+    int first, size;
+    const char *unit, *turns;
+} fu_output;
+
+/* The output of this name in a structure of doubles, and the end of the list of its outputs. */
+#define FU_OUTPUT(structure, member, unit, turns)                        \
+    {#member, (int)(offsetof(structure, member) / sizeof(double)),       \
+     (int)(sizeof(((structure *)0)->member) / sizeof(double)), unit, turns}
+#define FU_LAST_OUTPUT(structure) {NULL, (int)(sizeof(structure) / sizeof(double)), 0, NULL, NULL}
 
 #endif

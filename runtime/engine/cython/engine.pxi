@@ -147,12 +147,17 @@ cdef extern from * nogil:
         int kind, most
         size_t offset, stride
         const char *const *words
+    ctypedef struct fu_output:
+        const char *name
+        int first, size
+        const char *unit
+        const char *turns
     const fu_field *fu_coupling_fields
     ctypedef struct fu_coupling_type:
         const char *name
         size_t size
         const fu_field *fields
-        int n_outputs
+        const fu_output *output_fields
         const char *(*excess)(const fu_coupling *coupling)
         void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
         void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
@@ -165,6 +170,8 @@ cdef extern from * nogil:
     int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
     void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
     const fu_coupling_type *fu_coupling_type_of(const char *name)
+    const fu_coupling_type *fu_coupling_type_at(size_t k)
+    int fu_n_outputs(const fu_coupling_type *type)
     void fu_bind_events(fu_coupling *coupling)
     ctypedef struct fu_joint:
         fu_coupling base

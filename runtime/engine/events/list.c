@@ -25,6 +25,11 @@ const fu_coupling_type *fu_coupling_type_of(const char *name)
     return 0;
 }
 
+const fu_coupling_type *fu_coupling_type_at(size_t k)
+{
+    return k < sizeof types / sizeof *types ? types[k].type : 0;
+}
+
 void fu_bind_events(fu_coupling *coupling)
 {
     for (size_t k = 0; k < sizeof types / sizeof *types; ++k)

@@ -13,6 +13,7 @@ extern const fu_coupling_events fu_slide_events;
 
 /* The type of this name, null where there is none; gives a coupling the events of its type. */
 const fu_coupling_type *fu_coupling_type_of(const char *name);
+const fu_coupling_type *fu_coupling_type_at(size_t k); /* type number k, null beyond the last */
 void fu_bind_events(fu_coupling *coupling);
 
 #endif

@@ -126,7 +126,7 @@ struct fu_coupling_type {
     const char *name;
     size_t size;             /* bytes of its structure */
     const fu_field *fields;  /* what of it the model gives */
-    int n_outputs;           /* numbers that it gives to a row of output */
+    const fu_output *output_fields; /* what it gives to a row of output; null: nothing */
     int n_numbers, n_flags;  /* real and whole numbers that it keeps in a state */
     int n_scratch;           /* doubles that it keeps from `rows` to `outputs` */
 
@@ -153,7 +153,7 @@ struct fu_coupling_type {
     /* Adds the coupling's own force to f; adds a force from outside, whose work the energy balance counts as external. */
     void (*force)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f);
     void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
-    /* Make, after eq 38, the state's own forces; the numbers of a row of output. */
+    /* Make, after eq 38, the state's own forces; the numbers of `output_fields`. */
     void (*take_forces)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state);
     void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
                     const fu_accelerator *work, double *out);

@@ -29,6 +29,13 @@ static void list_coupling(fu_model *model, const fu_coupling *c)
     if (c->type->history && (!alone || c->n_numbers)) model->carrying[model->n_carrying++] = c;
 }
 
+int fu_n_outputs(const fu_coupling_type *type)
+{
+    const fu_output *output = type->output_fields;
+    while (output && output->name) ++output;
+    return output ? output->first : 0;
+}
+
 void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model)
 {
     model->couplings = (const fu_coupling *const *)couplings;
@@ -53,7 +60,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
         c->row = c->type->rows ? model->n_rows++ : -1;
         model->n_coordinates += c->n_coordinates;
         model->n_forces += c->n_forces;
-        model->n_outputs += c->type->n_outputs;
+        model->n_outputs += fu_n_outputs(c->type);
         model->n_numbers += c->type->n_numbers + c->n_numbers;
         model->n_flags += c->type->n_flags;
         model->n_scratch += c->type->n_scratch;

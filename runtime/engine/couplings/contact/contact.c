@@ -100,8 +100,18 @@ static const fu_field fields[] = {
 static const fu_proximity_operations proximity_of_surface = {.clearance = fu_contact_clearance, .between = fu_contact_between};
 static const fu_history_operations history = {.update = fu_contact_carry, .error = fu_contact_carried_error};
 
+static const fu_output output_fields[] = {
+    FU_OUTPUT(fu_contact_output, force, "N", "direction"),
+    FU_OUTPUT(fu_contact_output, friction_force, "N", "direction"),
+    FU_OUTPUT(fu_contact_output, penetration, "m", NULL),
+    FU_OUTPUT(fu_contact_output, touching, "1", NULL),
+    FU_OUTPUT(fu_contact_output, first, "m", NULL),
+    FU_OUTPUT(fu_contact_output, last, "m", NULL),
+    FU_LAST_OUTPUT(fu_contact_output),
+};
+
 const fu_coupling_type fu_contact_type = {
-    .name = "contact", .size = sizeof(fu_contact), .fields = fields, .n_outputs = FU_CONTACT_OUTPUTS, .n_flags = 1, .residual = residual, .tangent = tangent, .step_residual = fu_contact_step_residual, .step_tangent = fu_contact_step_tangent,
+    .name = "contact", .size = sizeof(fu_contact), .fields = fields, .output_fields = output_fields, .n_flags = 1, .residual = residual, .tangent = tangent, .step_residual = fu_contact_step_residual, .step_tangent = fu_contact_step_tangent,
     .step_dissipation = fu_contact_step_dissipation, .force = force, .energy = fu_contact_energy, .dissipation = fu_contact_dissipation,
     .lost_in_step = fu_contact_lost, .outputs = fu_contact_outputs, .reset = fu_contact_reset, .quadrature_error = fu_contact_quadrature_error,
     .proximity = &proximity_of_surface,

@@ -7,7 +7,6 @@
 #include "couplings/common/surfaces.h"
 
 #define FU_CONTACT_POINTS 16 /* of a body */
-#define FU_CONTACT_OUTPUTS 10
 
 /* What presses, by its depth d: stiffness d^e (1 + damping d'), e 3/2 where hertz is not zero. Friction has the coefficient
  * `friction` and a spring along the surface, whose stretch is among the numbers of a state: fu_friction_mark. */
@@ -48,6 +47,12 @@ typedef struct {
     fu_attachment attachments[FU_CONTACT_POINTS];
 } fu_contact;
 extern const fu_coupling_type fu_contact_type;
+
+/* Numbers of a row of output: the force on the cable or body, and the part of it that is friction; the largest depth; the length that
+ * touches, of a body how many points do; the arc-lengths of its ends. */
+typedef struct {
+    double force[3], friction_force[3], penetration, touching, first, last;
+} fu_contact_output;
 
 /* A point that may touch: where it is, how it moves; its mark, null without friction; the time since, s, the turn of its body past the
  * surface since then, and the rate of that, along the shape's axes; and how it touches: how deep it is and how fast it sinks, the normal,

@@ -78,7 +78,7 @@ void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_sta
 
 /* Sums over the points of a contact in their order, and the ends of what touches: what is between two points is linear. */
 typedef struct {
-    double *force, *friction, *penetration, *length, *first, *last;
+    fu_contact_output *numbers;
     double s, depth;
     int begun;
 } tally;
@@ -86,31 +86,31 @@ typedef struct {
 /* Takes a next point at s, this deep, into the length that touches, and its ends. */
 static void take_into_length(tally *sum, double s, double depth)
 {
+    fu_contact_output *numbers = sum->numbers;
     if (!sum->begun) sum->depth = depth; /* from the start of the cable, s = 0 */
     if (depth > 0.0 || sum->depth > 0.0) {
         const double part = sum->depth > 0.0 && depth > 0.0 ? 0.0 : sum->depth / (sum->depth - depth);
         const double cut = sum->s + part * (s - sum->s);
         const double from = sum->depth > 0.0 ? sum->s : cut, to = depth > 0.0 ? s : part > 0.0 ? cut : s;
-        if (*sum->length == 0.0) *sum->first = from;
-        *sum->length += to - from;
-        *sum->last = to;
+        if (numbers->touching == 0.0) numbers->first = from;
+        numbers->touching += to - from;
+        numbers->last = to;
     }
     sum->s = s;
     sum->depth = depth;
     sum->begun = 1;
 }
 
-/* Makes the force and the friction on the cable or body, the largest depth, the length that touches (of a body: how many points do), and
- * the arc-lengths of its ends. */
 void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
                         const fu_accelerator *work, double *out)
 {
     const fu_contact *contact = of(coupling);
     const int n = fu_contact_elements(model, contact);
     fu_attachment_state on;
-    tally sum = {.force = out, .friction = out + 3, .penetration = out + 6, .length = out + 7, .first = out + 8, .last = out + 9};
+    fu_contact_output *numbers = (fu_contact_output *)out;
+    tally sum = {.numbers = numbers};
     (void)acceleration, (void)work;
-    memset(out, 0, sizeof(double[FU_CONTACT_OUTPUTS]));
+    *numbers = (fu_contact_output){.penetration = 0.0};
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < n; ++e)
         for (int k = 0; k < contact->n_points; ++k) {
@@ -121,11 +121,11 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
             if (contact->cable >= 0) take_into_length(&sum, contact->arc[(long)e * contact->n_points + k], point.depth);
             if (!touches) continue;
             for (int d = 0; d < model->dim; ++d) {
-                sum.force[d] += weight * point.f[d];
-                sum.friction[d] += weight * point.friction[d];
+                numbers->force[d] += weight * point.f[d];
+                numbers->friction_force[d] += weight * point.friction[d];
             }
-            *sum.penetration = fmax(*sum.penetration, point.depth);
-            if (contact->cable < 0) *sum.length += 1.0;
+            numbers->penetration = fmax(numbers->penetration, point.depth);
+            if (contact->cable < 0) numbers->touching += 1.0;
         }
     if (contact->cable >= 0) take_into_length(&sum, contact->length, sum.depth); /* to its end */
 }

@@ -215,21 +215,27 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
     for (int i = 0; i < coupling->n_forces; ++i) state->forces[coupling->force + i] = 0.0;
 }
 
-/* Writes the force on the first line, the size of that along the normal, the penetration, the arc-lengths, the place on the first
- * line's axis, the part of the force that is friction, and whether that sticks. */
+/* The force on the first line and the size of that along the normal; how deep the lines are in each other; arc-lengths of the closest
+ * points, and the one on the first line's axis; the part of the force that is friction, and whether that sticks. */
+typedef struct {
+    double force[3], normal_force, penetration, s, s_b, position[3], friction_force[3], sticking;
+} fu_crossing_output;
+
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
                     const fu_accelerator *work, double *out)
 {
+    fu_crossing_output *numbers = (fu_crossing_output *)out;
     fu_closest_points points;
     fu_crossing_contact contact;
     (void)acceleration, (void)work;
-    contact_force(model, crossing_of(coupling), state, &points, &contact, out);
-    out[3] = state->flags[coupling->flags] ? contact.size : 0.0;
-    out[4] = contact.depth[0];
-    memcpy(out + 5, points.s, sizeof points.s);
-    memcpy(out + 7, points.line[0].r, sizeof points.line[0].r);
-    for (int d = 0; d < 3; ++d) out[10 + d] = state->flags[coupling->flags] ? contact.friction[d] : 0.0;
-    out[13] = state->flags[coupling->flags] ? contact.sticks : 0.0;
+    contact_force(model, crossing_of(coupling), state, &points, &contact, numbers->force);
+    numbers->normal_force = state->flags[coupling->flags] ? contact.size : 0.0;
+    numbers->penetration = contact.depth[0];
+    numbers->s = points.s[0];
+    numbers->s_b = points.s[1];
+    memcpy(numbers->position, points.line[0].r, sizeof points.line[0].r);
+    for (int d = 0; d < 3; ++d) numbers->friction_force[d] = state->flags[coupling->flags] ? contact.friction[d] : 0.0;
+    numbers->sticking = state->flags[coupling->flags] ? contact.sticks : 0.0;
 }
 
 static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
@@ -324,8 +330,20 @@ static const fu_field fields[] = {
 static const fu_proximity_operations proximity_of_lines = {.clearance = fu_crossing_clearance, .between = fu_crossing_between};
 static const fu_history_operations history = {.update = carry, .error = fu_crossing_carried_error};
 
+static const fu_output output_fields[] = {
+    FU_OUTPUT(fu_crossing_output, force, "N", "direction"),
+    FU_OUTPUT(fu_crossing_output, normal_force, "N", NULL),
+    FU_OUTPUT(fu_crossing_output, penetration, "m", NULL),
+    FU_OUTPUT(fu_crossing_output, s, "m", NULL),
+    FU_OUTPUT(fu_crossing_output, s_b, "m", NULL),
+    FU_OUTPUT(fu_crossing_output, position, "m", "point"),
+    FU_OUTPUT(fu_crossing_output, friction_force, "N", "direction"),
+    FU_OUTPUT(fu_crossing_output, sticking, "1", NULL),
+    FU_LAST_OUTPUT(fu_crossing_output),
+};
+
 const fu_coupling_type fu_crossing_type = {
-    .name = "crossing", .size = sizeof(fu_crossing), .fields = fields, .n_outputs = 14, .n_numbers = FU_CROSSING_NUMBERS,
+    .name = "crossing", .size = sizeof(fu_crossing), .fields = fields, .output_fields = output_fields, .n_numbers = FU_CROSSING_NUMBERS,
     .n_flags = 1, .residual = residual, .tangent = tangent,
     .step_residual = fu_crossing_step_residual, .step_tangent = step_tangent, .step_dissipation = fu_crossing_step_dissipation, .force = own_force,
     .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step, .reset = reset, .touch = touch,

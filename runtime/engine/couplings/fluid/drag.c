@@ -370,8 +370,16 @@ static const fu_field fields[] = {
 static const fu_inertia_operations inertia = {.force = fu_fluid_inertia, .matrix = fu_fluid_mass, .kinetic_energy = fu_fluid_kinetic_energy};
 static const fu_supply_operations supply = {.power = external_power, .step_work = step_work};
 
+typedef struct {
+    double force[3]; /* on the cable or body */
+} fu_drag_output;
+static const fu_output output_fields[] = {
+    FU_OUTPUT(fu_drag_output, force, "N", "direction"),
+    FU_LAST_OUTPUT(fu_drag_output),
+};
+
 const fu_coupling_type fu_drag_type = {
-    .name = "drag", .size = sizeof(fu_drag), .fields = fields, .n_outputs = 3, .n_flags = FU_DRAG_FLAGS, .residual = residual, .tangent = tangent,
+    .name = "drag", .size = sizeof(fu_drag), .fields = fields, .output_fields = output_fields, .n_flags = FU_DRAG_FLAGS, .residual = residual, .tangent = tangent,
     .step_residual = step_residual, .step_tangent = step_tangent, .step_dissipation = step_dissipation,
     .force = force, .dissipation = dissipation, .outputs = outputs,
     .inertia = &inertia,

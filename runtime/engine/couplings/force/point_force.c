@@ -335,8 +335,16 @@ static const fu_field fields[] = {
     {0},
 };
 
+typedef struct {
+    double force[3]; /* on the first end */
+} fu_point_force_output;
+static const fu_output output_fields[] = {
+    FU_OUTPUT(fu_point_force_output, force, "N", "direction"),
+    FU_LAST_OUTPUT(fu_point_force_output),
+};
+
 const fu_coupling_type fu_point_force_type = {
-    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .n_outputs = 3, .n_flags = 1, .touch = fu_touch_piece, .residual = residual, .tangent = tangent, .step_residual = step_residual,
+    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .output_fields = output_fields, .n_flags = 1, .touch = fu_touch_piece, .residual = residual, .tangent = tangent, .step_residual = step_residual,
     .step_tangent = step_tangent, .step_dissipation = step_dissipation, .force = own_force, .take_forces = take_forces,
     .outputs = outputs, .energy = energy, .dissipation = dissipation,
     .lost_in_step = lost_in_step};

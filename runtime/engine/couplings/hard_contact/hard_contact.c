@@ -290,9 +290,9 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
         fu_hard_along_at(model, contact_of(coupling), state, &row, &along);
         for (int d = 0; d < model->dim; ++d) {
             if (fu_hard_flags_of(coupling, state)->sticks)
-                for (int k = 1; k < model->dim; ++k) numbers->friction[d] -= multiplier[k] * along.t[k - 1][d];
-            else numbers->friction[d] = -contact_of(coupling)->friction * press * along.direction[d];
-            numbers->force[d] += numbers->friction[d];
+                for (int k = 1; k < model->dim; ++k) numbers->friction_force[d] -= multiplier[k] * along.t[k - 1][d];
+            else numbers->friction_force[d] = -contact_of(coupling)->friction * press * along.direction[d];
+            numbers->force[d] += numbers->friction_force[d];
         }
     }
     numbers->gap = row.g;
@@ -360,9 +360,16 @@ static const fu_field fields[] = {
 
 static const fu_history_operations history = {.update = carry};
 
+static const fu_output output_fields[] = {
+    FU_OUTPUT(fu_hard_contact_output, force, "N", "direction"),
+    FU_OUTPUT(fu_hard_contact_output, friction_force, "N", "direction"),
+    FU_OUTPUT(fu_hard_contact_output, gap, "m", NULL),
+    FU_LAST_OUTPUT(fu_hard_contact_output),
+};
+
 const fu_coupling_type fu_hard_contact_type = {
     .name = "hard_contact", .size = sizeof(fu_hard_contact), .fields = fields,
-    .n_outputs = (int)(sizeof(fu_hard_contact_output) / sizeof(double)), 
+    .output_fields = output_fields,
     .n_flags = (int)(sizeof(fu_hard_flags) / sizeof(int)), .n_numbers = (int)(sizeof(fu_hard_numbers) / sizeof(double)),
     .residual = residual, .tangent = tangent, .step_residual = step_residual, .step_tangent = step_tangent, .rows = rows,
     .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .dissipation = dissipation, .touch = touch, .is_possible = is_possible,

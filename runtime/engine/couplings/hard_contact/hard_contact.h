@@ -34,9 +34,8 @@ enum { FU_NO_NEWS, FU_STRUCK, FU_CAME_INTO_CONTACT, FU_LOST_CONTACT, FU_STUCK, F
 
 /* Numbers of a row of output: the force on the body, the part of it that is friction, the distance. */
 typedef struct {
-    double force[3], friction[3], gap;
+    double force[3], friction_force[3], gap;
 } fu_hard_contact_output;
-_Static_assert(sizeof(fu_hard_contact_output) == 7 * sizeof(double), "rows of output are arrays of doubles");
 
 /* How a point goes along the surface: velocity past it, two directions across the normal, rows of them over the dofs of the row, what
  * the rates of these velocities are where accelerations are zero, and the direction that friction is against. */

@@ -140,11 +140,18 @@ static const fu_field fields[] = {
     {0},
 };
 
+static const fu_output output_fields[] = {
+    FU_OUTPUT(fu_joint_output, force, "N", "direction"),
+    FU_OUTPUT(fu_joint_output, moment, "N m", "direction"),
+    FU_OUTPUT(fu_joint_output, residual, "m", NULL),
+    FU_LAST_OUTPUT(fu_joint_output),
+};
+
 const fu_coupling_type fu_joint_type = {
     .name = "joint",
     .size = sizeof(fu_joint),
     .fields = fields,
-    .n_outputs = (int)(sizeof(fu_joint_output) / sizeof(double)),
+    .output_fields = output_fields,
     .residual = residual,
     .tangent = tangent,
     .rows = fu_joint_rows,

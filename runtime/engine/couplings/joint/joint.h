@@ -21,7 +21,6 @@ extern const fu_coupling_type fu_joint_type;
 typedef struct {
     double force[3], moment[3], residual; /* on the second attachment, at its point; the largest of phi */
 } fu_joint_output;
-_Static_assert(sizeof(fu_joint_output) == 7 * sizeof(double), "rows of output are arrays of doubles");
 
 /* A joint's equations at a state: phi; of both attachments the numbers of their n coordinates for fu_add, and the derivatives J
  * of phi by these (rows x n). */

@@ -306,12 +306,22 @@ static const fu_reaction_operations reaction = {.update = fu_resistance_update, 
 static const fu_coordinate_operations coordinates = {.rates = rates, .solve = solve};
 static const fu_history_operations history = {.update = fu_carry_director};
 
+static const fu_output output_fields[] = {
+    FU_OUTPUT(fu_slide_output, s_rate, "m/s", NULL),
+    FU_OUTPUT(fu_slide_output, s_acceleration, "m/s2", NULL),
+    FU_OUTPUT(fu_slide_output, force, "N", "direction"),
+    FU_OUTPUT(fu_slide_output, multiplier, "N", NULL),
+    FU_OUTPUT(fu_slide_output, traction, "N", NULL),
+    FU_OUTPUT(fu_slide_output, residual, "m", "direction"),
+    FU_LAST_OUTPUT(fu_slide_output),
+};
+
 const fu_coupling_type fu_slide_type = {
     .name = "slide",
     .size = sizeof(fu_slide),
     .fields = fields,
     .excess = excess,
-    .n_outputs = (int)(sizeof(fu_slide_output) / sizeof(double)),
+    .output_fields = output_fields,
     .n_numbers = (int)(sizeof(fu_slide_numbers) / sizeof(double)),
     .n_flags = (int)(sizeof(fu_slide_flags) / sizeof(int)),
     .n_scratch = (int)FU_DOUBLES(1, fu_slide_state),

@@ -52,7 +52,6 @@ typedef struct {
 typedef struct {
     double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3];
 } fu_slide_output;
-_Static_assert(sizeof(fu_slide_output) == 11 * sizeof(double), "rows of output are arrays of doubles");
 
 /* Those parts of a state, and of the work space of eq 38, that belong to slide number j. */
 fu_slide_flags *fu_slide_flags_of(const fu_model *model, const fu_state *state, int j);

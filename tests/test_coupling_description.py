@@ -1,0 +1,68 @@
+"""One description of a coupling: fields in C say what its outputs are, and Python reads them."""
+
+import numpy as np
+import pytest
+from funicular.engine import OUTPUTS, outputs_by_name
+from funicular.parts.kinds import KINDS
+from funicular.parts.plane import Plane
+from funicular.parts.plane_axes import PlaneAxes
+from funicular.parts.quantity import TURNS, Quantity, of_engine, vector_of_time
+from funicular.parts.turning import TURNING, turning_by_name
+
+UPRIGHT = PlaneAxes(Plane.across(np.array([0.0, -1, 0]), np.zeros(3)), {}, 1.0)
+
+
+@pytest.mark.parametrize("kind", OUTPUTS)
+def test_outputs_say_unit_and_turning(kind):
+    for name, output in OUTPUTS[kind].items():
+        assert output.units and output.turns in TURNS, f"{kind}.{name}"
+        assert (output.size == 3) == bool(output.turns), f"{kind}.{name}: three numbers are a vector, others are none"
+
+
+def test_each_output_is_a_result_of_a_part():
+    """Add a new output of the engine to `results` of its part, with a sentence on what it is."""
+    known = {name for kind in KINDS for name in kind.results}
+    assert {name for fields in OUTPUTS.values() for name in fields} <= known
+
+
+def test_results_of_parts_have_the_units_of_the_engine():
+    assert of_engine("slide", "force", "").units == "N" and of_engine("crossing", "position", "").turns == "point"
+    slide = next(kind for kind in KINDS if kind.kind == "slide")
+    assert slide.results["multiplier"].dims == ("time", "normal") and slide.results["traction"].dims == ("time",)
+
+
+def test_outputs_by_name_are_views_of_the_row():
+    rows = np.arange(2 * 14.0).reshape(2, 14)
+    found = outputs_by_name("crossing", rows)
+    assert [*found] == [*OUTPUTS["crossing"]] and sum(values.size for values in found.values()) == rows.size
+    assert found["force"].tolist() == [[0, 1, 2], [14, 15, 16]] and found["sticking"].tolist() == [13, 27]
+    with pytest.raises(ValueError, match="a crossing has 14 numbers, not 13"):
+        outputs_by_name("crossing", rows[:, :13])
+
+
+def test_a_vector_says_how_it_turns():
+    with pytest.raises(ValueError, match="for a vector"):
+        Quantity(("time", "xyz"), "m", "a vector of a new name")
+    with pytest.raises(ValueError, match="nothing for a number"):
+        Quantity(("time",), "m", "a number", "direction")
+
+
+def test_a_vector_of_a_new_name_is_turned_by_its_declaration():
+    results = {"normal": vector_of_time("1", "normal of the surface"), "place": vector_of_time("m", "place", "point")}
+    found = turning_by_name([results])
+    assert found["normal"] == "direction" and found["place"] == "point"
+    with pytest.raises(ValueError, match='"normal" turn as "direction" and as "point"'):
+        turning_by_name([results, {"normal": vector_of_time("m", "a place", "point")}])
+
+
+def test_a_result_without_a_declaration_is_refused():
+    values = np.array([[1.0, 2.0, 0.0]])
+    assert UPRIGHT.out("A", "force", values).tolist() == [[1, 0, 2]]
+    assert UPRIGHT.out("A", "penetration", values[0]).tolist() == [1, 2, 0]
+    for turn in (UPRIGHT.out, UPRIGHT.into):
+        with pytest.raises(KeyError, match="unheard_of"):
+            turn("A", "unheard_of", values)
+
+
+def test_every_result_of_a_part_has_a_turning():
+    assert {name for kind in KINDS for name in kind.results} <= set(TURNING)
