@@ -100,6 +100,7 @@ struct fu_run {
 
     /* Energy: written by equations/energy_balance.c and the integrators. */
     double dissipated, dissipated_power, external, external_power; /* J, W */
+    double heat_owed; /* J: what steps beyond their stability limit gave back, which later heat pays first (explicit.c) */
     double drive_power, drive_power_before, drive_step; /* W, W, s: of drives; a step before; how long that
                                                          * was, 0 where only the first is known, -1 none */
     fu_energy_balance balance;

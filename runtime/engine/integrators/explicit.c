@@ -6,7 +6,9 @@
  * stage of the next step and the last of the error estimate (Hairer, Norsett & Wanner 1993, II.5 and II.10).
  */
 #include "base/clock.h"
+#include "bodies/cables.h"
 #include "bodies/rotation.h"
+#include "couplings/common/couplings.h"
 #include "equations/acceleration.h"
 #include "equations/projection.h"
 #include "equations/run.h"
@@ -17,6 +19,10 @@
 #include <string.h>
 
 #define COARSE_SHARE 0.01 /* of the coarse estimate's square, as in DOP853 (Hairer, Norsett & Wanner 1993, II.10) */
+#define RESOLVED 0.01     /* of the heat of a step: what the method's quadrature may be off by; from -z = 3 on it is more */
+
+/* The powers that a state keeps: that of damping within bodies, of all else that goes to heat, and external power, W. */
+enum { INTERNAL, OTHER, EXTERNAL, POWERS };
 
 /* An explicit Runge-Kutta method with two embedded error estimates: A (stages x stages, row by row), b, c (stages),
  * error, coarse (stages + 1: the last is of the state at the end). */
@@ -40,11 +46,11 @@ static long n_parameters(const double *given)
 }
 
 /* Returns the size of the work space: the rates of q and v of each stage, of the end of the step, and of an error estimate; then
- * the powers, dissipated and external, of each stage and of the end. */
+ * the powers of each stage and of the end. */
 static long n_scratch(const fu_run *run)
 {
     const long n = tableau_of(run).stages;
-    return (n + 2) * ((long)run->model->n_q + run->model->n_dof) + 2 * (n + 1);
+    return (n + 2) * ((long)run->model->n_q + run->model->n_dof) + POWERS * (n + 1);
 }
 
 static double *stage(const fu_run *run, int k)
@@ -54,7 +60,7 @@ static double *stage(const fu_run *run, int k)
 
 static double *powers(const fu_run *run, int k)
 {
-    return stage(run, tableau_of(run).stages + 2) + 2 * k;
+    return stage(run, tableau_of(run).stages + 2) + POWERS * k;
 }
 
 /* Makes the rates of the configuration and of the velocities of a state whose accelerations are known. */
@@ -87,8 +93,9 @@ static void combine(fu_run *run, const double *row, int n, double h, double *q, 
 static void keep(fu_run *run, int k, const fu_state *state)
 {
     rates(run->model, state, stage(run, k));
-    powers(run, k)[0] = fu_dissipated_power(run, state);
-    powers(run, k)[1] = fu_external_power(run, state, run->force);
+    powers(run, k)[INTERNAL] = fu_internal_dissipation(run->model, state->q, state->v);
+    powers(run, k)[OTHER] = fu_coupling_dissipation(run->model, state, &run->accelerator);
+    powers(run, k)[EXTERNAL] = fu_external_power(run, state, run->force);
 }
 
 /* Makes `next` from `now` and the row's combination, at t, with each slide where C_l = 0; returns 0 where that was found. */
@@ -139,8 +146,9 @@ static int step(fu_run *run, double h)
     fu_state *next = &run->next;
     fu_predict_own(run, h);
     rates(model, &run->now, stage(run, 0));
-    powers(run, 0)[0] = run->dissipated_power;
-    powers(run, 0)[1] = run->external_power;
+    powers(run, 0)[INTERNAL] = fu_internal_dissipation(model, run->now.q, run->now.v);
+    powers(run, 0)[OTHER] = run->dissipated_power - powers(run, 0)[INTERNAL];
+    powers(run, 0)[EXTERNAL] = run->external_power;
     if (evaluate(run, h)) return 1;
     if (move_to(run, method.b, n, run->now.t + h, h)) return 1;
     if (fu_return_to_joints(run, next)) return 1;
@@ -152,23 +160,29 @@ static int step(fu_run *run, double h)
     return 0;
 }
 
+/* Makes the increments of dofs of those of the configuration. */
+static void increments(const fu_run *run, const double *q, double *out)
+{
+    const fu_model *model = run->model;
+    const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
+    memcpy(out, q, sizeof(double) * (size_t)n_flexible);
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
+        fu_body_increment(body->kernel, run->next.q + body->configuration, q + body->configuration, out + body->dof);
+        memcpy(out + body->dof + body->kernel->velocity, q + body->configuration + body->kernel->configuration,
+               sizeof(double) * (size_t)body->modes);
+    }
+}
+
 /* Returns the size of an estimate as a length, m: of positions, and of velocities times the step. */
 static double estimate(fu_run *run, const double *row, double h)
 {
     const fu_model *model = run->model;
-    const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
     const int end = tableau_of(run).stages;
     double *q = stage(run, end + 1), *v = q + model->n_q;
     memset(q, 0, sizeof(double) * (size_t)(model->n_q + model->n_dof));
     combine(run, row, end + 1, h, q, v);
-    for (int i = 0; i < n_flexible; ++i) run->work[i] = q[i];
-    for (int b = 0; b < model->n_bodies; ++b) {
-        const fu_body *body = &model->bodies[b];
-        fu_body_increment(body->kernel, run->next.q + body->configuration, q + body->configuration,
-                          run->work + body->dof);
-        memcpy(run->work + body->dof + body->kernel->velocity, q + body->configuration + body->kernel->configuration,
-               sizeof(double) * (size_t)body->modes);
-    }
+    increments(run, q, run->work);
     for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = v[model->motions[k].dof] = 0.0;
     for (int i = 0; i < model->n_dof; ++i) v[i] *= h;
     /* what is not named must not either grow unstable: it errs by tol of the largest motion */
@@ -192,16 +206,59 @@ static fu_quadrature quadrature(const fu_run *run)
     return (fu_quadrature){method.stages, method.b, method.c};
 }
 
+/* Returns what damping takes in a step by its force's mean over the stages, along the way of the step, J. The power is a quadratic form of
+ * velocities, B(v, v), and this is h B(dq/h, (v_n + v_n+1)/2): what the method itself takes from a mode, however fast that decays. */
+static double taken_by_means(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    double *q = stage(run, tableau_of(run).stages + 1), *v = q + model->n_q;
+    const fu_state *now = &run->now, *next = &run->next;
+    double taken = 0.0;
+    memset(q, 0, sizeof(double) * (size_t)(model->n_q + model->n_dof));
+    combine(run, tableau_of(run).b, tableau_of(run).stages, 1.0, q, v);
+    increments(run, q, run->work);
+    for (int i = 0; i < model->n_q; ++i) q[i] = 0.5 * (now->q[i] + next->q[i]);
+    for (int sign = 1; sign >= -1; sign -= 2) {
+        for (int i = 0; i < model->n_dof; ++i) v[i] = 0.5 * run->work[i] + sign * 0.25 * (now->v[i] + next->v[i]);
+        taken += sign * h * fu_internal_dissipation(model, q, v);
+    }
+    return taken;
+}
+
+/* Returns what damping within bodies takes in a step, J: by the method's quadrature, whose error is known like that of the step. In steps
+ * at the stability limit the fastest modes decay by so much that stages overshoot them, and their squares count for many times the
+ * energy that the modes have. */
+static double taken_within(fu_run *run, double h)
+{
+    const tableau method = tableau_of(run);
+    double sum = 0.0, off = method.error[method.stages] * powers(run, method.stages)[INTERNAL];
+    for (int k = 0; k < method.stages; ++k) {
+        sum += method.b[k] * powers(run, k)[INTERNAL];
+        off += method.error[k] * powers(run, k)[INTERNAL];
+    }
+    return fabs(off) <= RESOLVED * fabs(sum) ? h * sum : taken_by_means(run, h);
+}
+
+/* Counts heat, J. In a step beyond the limit the method gives energy to the fastest modes, which is no heat: it is owed, and what the modes
+ * lose again pays for it first. While it is owed the balance shows it. */
+static void count_heat(fu_run *run, double heat)
+{
+    const double counted = fmax(heat - run->heat_owed, 0.0);
+    run->heat_owed = fmax(run->heat_owed - heat, 0.0);
+    run->dissipated += counted;
+}
+
 static void account(fu_run *run, double h)
 {
     const tableau method = tableau_of(run);
     const int n = method.stages;
+    count_heat(run, taken_within(run, h));
     for (int k = 0; k < n; ++k) {
-        run->dissipated += h * method.b[k] * powers(run, k)[0];
-        run->external += h * method.b[k] * powers(run, k)[1];
+        run->dissipated += h * method.b[k] * powers(run, k)[OTHER];
+        run->external += h * method.b[k] * powers(run, k)[EXTERNAL];
     }
-    run->dissipated_power = powers(run, n)[0];
-    run->external_power = powers(run, n)[1];
+    run->dissipated_power = powers(run, n)[INTERNAL] + powers(run, n)[OTHER];
+    run->external_power = powers(run, n)[EXTERNAL];
 }
 
 const fu_integrator fu_explicit = {.name = "explicit",

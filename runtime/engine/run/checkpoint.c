@@ -143,7 +143,7 @@ static int possible_numbers(const fu_run *run)
                               run->external_power, run->drive_power, run->drive_power_before, run->drive_step,
                               run->closed, run->allowed, run->round_off, run->newton_tolerance, run->statistics.h_min,
                               run->statistics.h_max, run->statistics.error_sum, run->balance.exchanged,
-                              run->balance.grown, run->balance.lost};
+                              run->balance.grown, run->balance.lost, run->heat_owed};
     for (size_t i = 0; i < sizeof steps / sizeof *steps; ++i)
         if (!(steps[i] >= SHORTEST * run->duration && steps[i] <= LONGEST * run->duration)) return 0;
     for (size_t i = 0; i < sizeof positive / sizeof *positive; ++i)
