@@ -50,6 +50,7 @@ def rope(**given) -> fu.Scene:
     ({"strain": "engineering"}, {"membrane": "reduced"}, "engineering_exact_reduced"),
     ({"strain": "engineering"}, {"curvature": "linear"}, "engineering_linear"),
     ({"law": "engineering_exact"}, {"membrane": "assumed"}, "engineering_exact_assumed"),
+    ({"law": "engineering_exact_tension_only"}, {"curvature": "exact"}, "engineering_exact_tension_only"),
     ({"strain": "engineering", "membrane": "reduced"}, {"membrane": None}, "engineering_exact"),
     ({"strain": "engineering", "membrane": "reduced"}, {"strain": None}, "green_exact_reduced"),
     ({"strain": "engineering"}, {"law": "green_exact"}, "green_exact"),

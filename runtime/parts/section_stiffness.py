@@ -89,7 +89,7 @@ def law_of_measures(strain: str, curvature: str, membrane: str) -> str:
 
 def measures_of_law(law: str) -> dict[str, str]:
     """Return the measures of a cable's law by keyword, those of `law_of_measures`; empty for another law."""
-    measures = dict(zip(("strain", "curvature", "membrane"), (*law.split("_"), "full"), strict=False))
+    measures = dict(zip(("strain", "curvature", "membrane"), (*law.split("_", 2), "full"), strict=False))
     return measures if len(measures) == 3 and law_of_measures(**measures) == law else {}
 
 
