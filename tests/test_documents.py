@@ -3,9 +3,12 @@
 import re
 
 import funicular
+import pytest
+from funicular.guides.site.printed import PRINTED
 from funicular.parts.kinds import PARTS
-from pages import page
+from pages import ROOT, page
 
+FOLDER = ROOT / "runtime" / "guides" / "pages"
 MACHINES = "runtime/guides/pages/machines.md"
 WANTED = ("saddle", "sheave", "haul rope", "winch", "temperature", "moving load", "float", "mooring", "dropper",
           "buffer", "brake", "tube", "cable robot", "footbridge", "crane", "pantograph", "tether", "belt")
@@ -37,3 +40,17 @@ def test_each_machine_names_parts_that_exist():
 def test_each_machine_has_a_guide_or_says_what_is_not_modelled():
     for row in rows_of_machines():
         assert "](" in row[2] or row[3], row
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_printed_pages_are_what_the_code_says(name):
+    assert (FOLDER / name).read_text(encoding="utf-8") == PRINTED[name](), \
+        "write it anew: python -m funicular.guides.site.printed"
+
+
+def test_every_argument_and_result_of_every_part_is_printed():
+    printed = page("runtime/guides/pages/parts.md").text
+    for part in PARTS.values():
+        section = printed.split(f"\n### {part.__name__}\n")[1].split("\n### ")[0]
+        rows = set(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE))
+        assert rows == {*part.keywords(), *part.results}, part

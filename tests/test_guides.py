@@ -85,7 +85,7 @@ def test_site(tmp_path):
     work.mkdir()
     assert build(out, work) == 0
     pages = {path.relative_to(out).as_posix() for path in out.rglob("*.html")}
-    assert {"index.html", "reference.html", "scene_files.html", "command_line.html", "api.html"} <= pages
+    assert {"index.html", "reference.html", "parts.html", "methods.html", "machines.html", "command_line.html"} <= pages
     assert {"theory.html", "theory/theory.html", *(f"theory/{name}.html" for name in ELEMENTS)} <= pages
     assert {f"guides/{guide.stem}.html" for guide in GUIDES} <= pages
     for page in pages:  # it is read offline

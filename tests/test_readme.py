@@ -374,7 +374,7 @@ def test_names_of_the_package_exist(of):
     """Classes, functions and methods, with the keywords that they are shown with."""
     for word in of.words:
         for owner, name, given in re.findall(r"\b(fu|scene)\.(\w+)(\([^)]*\))?", word):
-            called = getattr(funicular if owner == "fu" else funicular.Scene, name, None)
+            called = getattr(funicular if owner == "fu" else funicular.Scene(), name, None)
             assert called is not None, word
             if (keywords := re.findall(r"(\w+)=", given)) and not takes_any(called):
                 assert set(keywords) <= keywords_of(called), word

@@ -176,7 +176,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
             value = getattr(self, name)
             if isinstance(value, Part):
                 yield from value.refers_to()
-            elif isinstance(value, str) and _names_a_part(field):
+            elif isinstance(value, str) and names_a_part(field):
                 yield value
 
     @property
@@ -206,7 +206,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return data
 
 
-def _names_a_part(field: FieldInfo) -> bool:
+def names_a_part(field: FieldInfo) -> bool:
     """Return whether a field holds the name of another part."""
     of_types = (getattr(each, "__metadata__", ()) for each in get_args(field.annotation))
     return any(mark is NAMES_A_PART for mark in chain(field.metadata, *of_types))

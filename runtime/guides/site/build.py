@@ -8,7 +8,6 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 from funicular.errors import FunicularError
 from funicular.scene_schema import scene_schema
@@ -59,7 +58,6 @@ def _collect(work: Path) -> int:
     for page, name in PAGES.items():
         (work / name).write_text(_moved((REPOSITORY / page).read_text(encoding="utf-8"), page), encoding="utf-8")
         _copy_pictures(REPOSITORY / page, work)
-    (work / "scene_files.md").write_text(scene_files(), encoding="utf-8")
     (work / "command_line.md").write_text(command_line(), encoding="utf-8")
     (work / "extra").mkdir()
     (work / "extra" / "funicular.schema.json").write_text(json.dumps(scene_schema(), indent=1), encoding="utf-8")
@@ -148,69 +146,3 @@ def theory_page(extra: Path) -> str:
         tex = html.with_suffix(".tex").relative_to(extra).as_posix()
         lines.append(f'- <a href="{name}">{title}</a> (<a href="{tex}">LaTeX</a>)')
     return THEORY + "\n".join(lines) + "\n"
-
-
-SCENE_FILES = """# Scene files
-
-The tables of a scene file, from the same fields that check it. Editors complete and check scene files by
-<a href="funicular.schema.json">the JSON Schema</a>: `funicular schema` prints it.
-
-`gravity`: three numbers in m/s².
-"""
-BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
-
-
-def scene_files() -> str:
-    """Return the reference of scene files, from their schema: a section a table, a row an entry."""
-    schema = scene_schema()
-    lines = [SCENE_FILES]
-    for name, table in schema["properties"].items():
-        if name == "gravity":
-            continue
-        array = table.get("type") == "array"
-        lines += [f"## {'[[' + name + ']]' if array else '[' + name + ']'}", ""]
-        lines += _table(table["items"] if array else table)
-    for name, definition in schema["$defs"].items():
-        lines += [f"## {name}", ""]
-        for one in definition.get("oneOf", [definition]):
-            if "oneOf" in definition:
-                tag = next(iter(one["properties"]))
-                lines += [f"### {tag} = \"{one['properties'][tag]['const']}\"", ""]
-            lines += _table(one)
-    return "\n".join(lines) + "\n"
-
-
-def _table(schema: dict[str, Any]) -> list[str]:
-    """Return description and entries of a table as Markdown."""
-    rows = ["| entry | what it takes | default |", "|---|---|---|"]
-    required = set(schema.get("required", []))
-    for name, field in schema["properties"].items():
-        default = "required" if name in required else f"`{json.dumps(field['default'])}`" if "default" in field else ""
-        rows.append(f"| `{name}` | {_words(field)} | {default} |")
-    return [_prose(schema.get("description", "")), "", *rows, ""]
-
-
-def _prose(docstring: str) -> str:
-    """Return a docstring as Markdown."""
-    return re.sub(r"``([^`]+)``", r"`\1`", docstring)
-
-
-def _words(field: dict[str, Any]) -> str:
-    """Return in words what a field takes."""
-    note = f" {field['description']}" if "description" in field else ""
-    if "$ref" in field:
-        name = field["$ref"].rsplit("/", 1)[1]
-        return f"[{name}](#{name.lower()})"
-    if "enum" in field:
-        return ", ".join(f'`"{word}"`' for word in field["enum"])
-    if "const" in field:
-        return f'`"{field["const"]}"`'
-    if "anyOf" in field:
-        return " or ".join(dict.fromkeys(_words(each) for each in field["anyOf"])) + note
-    if field.get("type") == "array":
-        least, most = field.get("minItems"), field.get("maxItems")
-        count = f"{least}" if least == most else f"{least} to {most}" if most else f"{least} or more"
-        of = field.get("items", {})
-        return f"list of {count} {'lists' if of.get('type') == 'array' else 'numbers' if of else 'entries'}{note}"
-    bounds = [f"{sign} {field[key]:g}" for key, sign in BOUNDS.items() if key in field]
-    return field.get("type", "anything") + (" " + ", ".join(bounds) if bounds else "") + note

@@ -5,15 +5,13 @@ import warnings
 
 import funicular
 from funicular.guides.site.build import place_in_order
-from sphinx.application import Sphinx
 
 project = "funicular"
 author = "The funicular authors"
 copyright = "The funicular authors"
 release = version = funicular.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.doctest",
-              "sphinx_gallery.gen_gallery"]
+extensions = ["myst_parser", "sphinx_gallery.gen_gallery"]
 html_theme = "furo"
 html_title = "funicular"
 html_extra_path = ["extra"]
@@ -24,8 +22,6 @@ html_copy_source = False
 exclude_patterns = ["guides_source"]
 myst_heading_anchors = 4
 myst_enable_extensions = ["colon_fence"]
-autodoc_typehints = "signature"
-autodoc_member_order = "bysource"
 suppress_warnings = ["config.cache"]
 
 sphinx_gallery_conf = {
@@ -45,22 +41,3 @@ sphinx_gallery_conf = {
 
 warnings.filterwarnings("ignore", category=DeprecationWarning)
 logging.getLogger("funicular").setLevel(logging.WARNING)
-
-
-def with_tables(app: Sphinx, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
-    """Turn the tables of docstrings, which are as Markdown has them, into those of reStructuredText."""
-    found: list[str] = []
-    for line in lines:
-        if not line.startswith("|"):
-            found.append(line)
-        elif not set(line) <= set("|- "):
-            if not found or not found[-1].startswith("    "):
-                found += [".. list-table::", "    :header-rows: 1", ""]
-            cells = [cell.strip() for cell in line.strip("|").split("|")]
-            found += [("    * - " if k == 0 else "      - ") + cell for k, cell in enumerate(cells)]
-    lines[:] = found
-
-
-def setup(app: Sphinx) -> None:
-    """Register what this configuration adds."""
-    app.connect("autodoc-process-docstring", with_tables)

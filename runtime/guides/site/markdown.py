@@ -1,0 +1,38 @@
+"""Docstrings as Markdown, for the printed pages."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterable
+
+
+def prose(thing: object, linked: Iterable[str] = ()) -> str:
+    """Return the docstring of a class or a function as Markdown; linked: names with a heading of their own."""
+    return markdown(inspect.getdoc(thing) or "", linked)
+
+
+def markdown(docstring: str, linked: Iterable[str] = ()) -> str:
+    """Return the text of a docstring as Markdown: code and examples marked, names with headings linked."""
+    known = set(linked)
+
+    def code(found: re.Match[str]) -> str:
+        name = found[1]
+        return f"[`{name}`](#{anchor(name)})" if name in known else f"`{name}`"
+
+    text = re.sub(r"``([^`]+)``", "\0\\1\0", docstring)
+    text = re.sub(r"`([^`]+)`", code, text).replace("\0", "`")
+    return re.sub(r"^>>> .*(?:\n.+)*", r"```pycon\n\g<0>\n```", text, flags=re.MULTILINE)
+
+
+def anchor(heading: str) -> str:
+    """Return the anchor of a heading, as hosts make them."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> list[str]:
+    """Return the lines of a table and an empty one; none where there are no rows."""
+    cells = [" | ".join(cell.replace("|", r"\|") for cell in row) for row in rows]
+    columns = list(head)
+    lines = [" | ".join(columns), "|".join(["---"] * len(columns)), *cells]
+    return [*(f"| {line} |" if "---" not in line else f"|{line}|" for line in lines), ""] if cells else []

@@ -1,0 +1,79 @@
+"""The page of functions, classes and methods of the package, from their signatures and docstrings."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterable, Iterator
+
+import funicular
+from funicular import catenary
+from funicular.described_scene import DescribedScene
+from funicular.results.equilibrium import Equilibrium
+from funicular.results.run import Run
+from funicular.solve.rest_state import RestState
+from funicular.results.viewable import Viewable
+
+from .markdown import anchor, prose, table
+
+HEAD = """# Functions and methods
+
+Printed by `python -m funicular.guides.site.printed` from signatures and docstrings: change those. The [parts of a
+scene](parts.md) have a page of their own.
+"""
+
+FUNCTIONS = ("load_scene", "load_run", "combine", "run_many", "sweep", "sweep_cost", "load_sweep", "bundled_scenes")
+CLASSES: dict[str, tuple[type, ...]] = {
+    "Scene": (funicular.Scene, DescribedScene), "Run": (Run,), "Equilibrium": (Equilibrium, RestState),
+    "Modes": (funicular.Modes,), "Choice": (funicular.Choice,), "Pictures": (Viewable,)}
+"""Titles of sections, and the classes whose methods they list; all but the last three have those of `Viewable`."""
+
+INTERNAL = re.compile(r"_|check_|of$|start$|put$|(from_recording|heading|overview|sketch|summary_rows|facts)$")
+"""Names that users have no need of."""
+
+
+def methods_page() -> str:
+    """Return the page as Markdown."""
+    titles = ["Functions", *CLASSES, "Catenaries", "Errors"]
+    lines = [HEAD, *(f"- [{title}](#{anchor(title)})" for title in titles), "", "## Functions", ""]
+    for name in FUNCTIONS:
+        lines += _described(f"fu.{name}", getattr(funicular, name))
+    for title, classes in CLASSES.items():
+        lines += [f"## {title}", "", prose(classes[0]), ""]
+        for owner in classes:
+            lines += _members(title, owner, also=classes[0])
+    lines += ["## Catenaries", ""]
+    for name in catenary.__all__:
+        lines += _described(f"catenary.{name}", getattr(catenary, name))
+    return "\n".join([*lines, "## Errors", "", *_errors()]).rstrip() + "\n"
+
+
+def _members(title: str, owner: type, also: type) -> Iterator[str]:
+    """Yield the lines on the methods and properties that a class has of its own; also: the class that may have more."""
+    for name, member in vars(owner).items():
+        taken = owner is not also and name in vars(also)
+        if INTERNAL.match(name) or taken or (title != "Pictures" and name in vars(Viewable)):
+            continue
+        if isinstance(member, property | staticmethod | classmethod) or inspect.isfunction(member):
+            yield from _described(f"{title.lower()}.{name}", getattr(owner, name))
+
+
+def _described(name: str, thing: object) -> Iterable[str]:
+    """Return heading, arguments and docstring of a function, a class or a property."""
+    arguments = _arguments(thing) if callable(thing) else ""
+    return [f"### {name}", "", f"`{name}{arguments}`", "", prose(thing), ""]
+
+
+def _arguments(thing: object) -> str:
+    """Return the parameters in brackets, without types."""
+    parameters = inspect.signature(thing).parameters.values()  # type: ignore[arg-type]  # of what is callable
+    bare = [each.replace(annotation=inspect.Parameter.empty) for each in parameters if each.name not in ("self", "cls")]
+    return re.sub(r"<[^>]*>", "...", str(inspect.Signature(bare)))
+
+
+def _errors() -> list[str]:
+    """Return the table of errors and warnings."""
+    kinds = [each for name in sorted(dir(funicular)) if inspect.isclass(each := getattr(funicular, name))
+             and issubclass(each, Exception)]
+    return table(("error", "is"), [
+        (f"`fu.{each.__name__}`", prose(each).split("\n\n")[0].replace("\n", " ")) for each in kinds])

@@ -1,0 +1,208 @@
+"""The page of the parts of a scene: arguments, bounds, defaults and results, from their fields and docstrings."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from itertools import takewhile
+from typing import Any
+
+from funicular.kernels.elements import ElementKind, built_in
+from funicular.parts.cable_laws import MEASURES, possible_laws
+from funicular.parts.kinds import KINDS
+from funicular.parts.part import Part, names_a_part, parameters_of
+from funicular.parts.scene_text import SETTINGS
+from funicular.parts.section_stiffness import measures_of_law
+from funicular.parts.validation import LIMITS, OTHER_LIMITS
+from funicular.results.quantities import ENERGIES
+from funicular.scene_file import bundled_scenes
+from funicular.scene_schema import GROUPS, scene_schema
+
+from .markdown import anchor, prose, table
+
+HEAD = """# Parts of a scene
+
+Printed by `python -m funicular.guides.site.printed` from the fields and docstrings of the parts: change those.
+
+A part is made by a method of the scene, such as `scene.spring(...)`, or stands in a scene file as a table of the same
+name, `[[spring]]`. Arguments are keywords and entries of the table alike. Tables within it, such as a section, are
+classes of the package: `fu.Circle(radius=0.01)` is `{ shape = "circle", radius = 0.01 }` in a file. Results of a part
+have its name in front: `run["dropper.tension"]`.
+"""
+
+BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
+
+
+def parts_page() -> str:
+    """Return the page as Markdown."""
+    schema = scene_schema()
+    kinds: list[tuple[str, list[type[Part]]]] = [
+        ("Parts", list(KINDS)), ("Settings", list(SETTINGS.values())), *_groups(schema)]
+    linked = [part.__name__ for _, parts in kinds for part in parts]
+    lines = [HEAD]
+    for title, parts in kinds:
+        links = ", ".join(f"[{part.__name__}](#{anchor(part.__name__)})" for part in parts)
+        lines.append(f"- [{title}](#{anchor(title)}): {links}")
+    lines += [f"- [{title}](#{anchor(title)})" for title in LISTS] + [""]
+    for title, parts in kinds:
+        lines += [f"## {title}", ""]
+        for part in parts:
+            lines += _section(part, schema, linked)
+    for title, printed in LISTS.items():
+        lines += [f"## {title}", "", *printed()]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _groups(schema: dict[str, Any]) -> Iterator[tuple[str, list[type[Part]]]]:
+    """Yield the titles and classes of the tables within parts, each class once."""
+    seen: set[type[Part]] = set()
+    for name, (_, parts) in GROUPS.items():
+        new = [part for part in parts if part not in seen]
+        seen.update(new)
+        yield TITLES[name], new
+    alone = {part.__name__: part for part in _classes(Part) if part.__name__ in schema["$defs"]}
+    yield "Other tables", [alone[name] for name in schema["$defs"] if name in alone]
+
+
+TITLES = {"section": "Sections", "signal": "Signals", "stop": "Ends of cables", "solid": "Shapes of bodies",
+          "profile": "Profiles of a flow", "surface_shape": "Shapes of surfaces alone"}
+"""Of the groups of tables."""
+
+
+def _classes(base: type[Part]) -> Iterator[type[Part]]:
+    """Yield all classes derived from a class of parts."""
+    for part in base.__subclasses__():
+        yield part
+        yield from _classes(part)
+
+
+def _section(part: type[Part], schema: dict[str, Any], linked: list[str]) -> list[str]:
+    """Return heading, way to write it, docstring, arguments and results of a part."""
+    entries, tag = _entries(part, schema)
+    lines = [f"### {part.__name__}", "", _written(part, tag), "", prose(part, linked), ""]
+    required = set(entries.get("required", []))
+    rows = [(f"`{parameter.name}`", _taken(part, parameter.name, entries["properties"]),
+             "required" if parameter.name in required else _default(entries["properties"].get(parameter.name, {})))
+            for parameter in parameters_of(part)]
+    lines += table(("argument", "takes", "default"), rows)
+    return lines + table(("result", "unit", "is"), [
+        (f"`{name}`", quantity.units, quantity.long_name) for name, quantity in part.results.items()])
+
+
+def _taken(part: type[Part], keyword: str, properties: dict[str, Any]) -> str:
+    """Return in words what a part takes for a keyword."""
+    field = properties.get(keyword, {"type": "a function; in Python only"})
+    named = names_a_part(part.model_fields[part.keywords()[keyword]]) and "description" not in field
+    return "a part or its name" if named else _words(field)
+
+
+def _default(field: dict[str, Any]) -> str:
+    """Return the default of a field as code; nothing where there is none."""
+    return f"`{_number(field['default'])}`" if "default" in field else ""
+
+
+def _number(value: Any) -> str:
+    """Return a value as users write it."""
+    if isinstance(value, list):
+        return f"({', '.join(map(_number, value))})"
+    return f"{value:g}" if isinstance(value, float) else json.dumps(value)
+
+
+def _written(part: type[Part], tag: tuple[str, str] | None) -> str:
+    """Return how a part is written in Python and in a file."""
+    if part in KINDS:
+        return f"`scene.{part.kind}()`, `[[{part.kind}]]`"
+    for name, settings in SETTINGS.items():
+        if part is settings:
+            return f"`scene.{name}()`, `[{name}]`"
+    return f"`fu.{part.__name__}`" + (f', `{tag[0]} = "{tag[1]}"`' if tag else "")
+
+
+def _entries(part: type[Part], schema: dict[str, Any]) -> tuple[dict[str, Any], tuple[str, str] | None]:
+    """Return the schema of a part's table, and the entry that says which part it is."""
+    for name, settings in SETTINGS.items():
+        if part is settings:
+            return schema["properties"][name], None
+    if part in KINDS:
+        return schema["properties"][part.kind]["items"], None
+    for name, (tag, parts) in GROUPS.items():
+        for k, each in enumerate(parts):
+            if each is part:
+                return schema["$defs"][name]["oneOf"][k], (tag, getattr(part, tag))
+    return schema["$defs"][part.__name__], None
+
+
+def _words(field: dict[str, Any]) -> str:
+    """Return in words what a field takes."""
+    note = f" {field['description']}" if "description" in field else ""
+    if "$ref" in field:
+        name = field["$ref"].rsplit("/", 1)[1]
+        title = TITLES.get(name, name)
+        return f"[{title.lower() if name in TITLES else name}](#{anchor(title)})"
+    if "enum" in field:
+        return ", ".join(f'`"{word}"`' for word in field["enum"])
+    if "const" in field:
+        return f'`"{field["const"]}"`'
+    if "anyOf" in field:
+        each = [_words(one) for one in field["anyOf"] if one != {"type": "null"}]
+        return " or ".join(dict.fromkeys(each)) + note
+    if field.get("type") == "array":
+        least, most = field.get("minItems"), field.get("maxItems")
+        count = f"{least}" if least == most else f"{least} to {most}" if most else f"{least} or more"
+        of = field.get("items", {})
+        unit = of.get("description", "") if not note else ""
+        of_what = "lists" if of.get("type") == "array" else "numbers" if of else "entries"
+        return f"list of {count} {of_what}{note}{' ' * bool(unit)}{unit}"
+    bounds = [f"{sign} {field[key]:g}" for key, sign in BOUNDS.items() if key in field]
+    return WORDS.get(field.get("type", "anything"), field.get("type", "anything")) + note + "".join(
+        f", {bound}" for bound in bounds)
+
+
+WORDS = {"string": "text", "boolean": "true or false", "object": "table"}
+"""Of types of JSON."""
+
+
+def _limits() -> list[str]:
+    """Return the bounds of all numbers."""
+    rows = [(unit, f"{least:g}", f"{most:g}") for unit, (least, most) in LIMITS.items()]
+    least, most = OTHER_LIMITS
+    return ["A number has at most the larger size, and at least the smaller one where it must be positive. What lies "
+            "outside is refused.", "", *table(("unit", "from", "to"), [*rows, ("other", f"{least:g}", f"{most:g}")])]
+
+
+def _elements() -> list[str]:
+    """Return the elements of cables with their laws."""
+    return table(("element", "in", "nodal vectors", "laws, the first is the default"), [
+        (f'`"{name}"`', "the plane" if kind.dim == 2 else "space", ", ".join(kind.nodal_vectors), _laws(kind))
+        for name, kind in built_in().items()])
+
+
+def _laws(kind: ElementKind) -> str:
+    """Return how the laws of an element are named: by ``law``, or by the measures of a cable."""
+    laws = possible_laws(kind)
+    if not kind.is_cable:
+        return ", ".join(f'`law="{law}"`' for law in laws)
+    measures = [measures_of_law(law) for law in laws]
+    found = ((name, dict.fromkeys(each[name] for each in measures)) for name in MEASURES)
+    return "; ".join(", ".join(f'`{name}="{value}"`' for value in values) for name, values in found)
+
+
+def _energies() -> list[str]:
+    """Return the energies among the results of a run."""
+    return table(("result", "unit", "is"), [(f"`energy.{name}`", "J", what) for name, what in ENERGIES.items()])
+
+
+def _scenes() -> list[str]:
+    """Return the scenes of the package, with the first paragraph of their files."""
+    return table(("scene", "is"), [(f"[`{name}`](../../scenes/{path.name})", _first_paragraph(path.read_text("utf-8")))
+                                   for name, path in bundled_scenes().items()])
+
+
+def _first_paragraph(text: str) -> str:
+    """Return the first paragraph of the comment at the head of a file."""
+    return " ".join(line.removeprefix("#").strip() for line in takewhile(lambda line: len(line) > 1, text.splitlines()))
+
+
+LISTS = {"Elements of cables": _elements, "Energies": _energies, "Bounds of numbers": _limits,
+         "Bundled scenes": _scenes}
+"""Titles of the sections after those of parts, and what prints them."""

@@ -1,0 +1,26 @@
+"""Writes the pages that are printed from the code: ``python -m funicular.guides.site.printed``."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from .methods_page import methods_page
+from .parts_page import parts_page
+
+FOLDER = Path(__file__).parents[1] / "pages"
+PRINTED: dict[str, Callable[[], str]] = {"parts.md": parts_page, "methods.md": methods_page}
+"""What writes each of them."""
+
+
+def main() -> int:
+    """Write the pages into the folder `guides/pages` of the repository; returns 0."""
+    for name, page in PRINTED.items():
+        (FOLDER / name).write_text(page(), encoding="utf-8")
+        print(FOLDER / name)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
