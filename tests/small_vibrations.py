@@ -1,0 +1,65 @@
+"""Scenes that vibrate freely about their rest, and what they are let go from: the shape of a mode."""
+
+from __future__ import annotations
+
+import re
+
+import funicular as fu
+import numpy as np
+from funicular.parts.cable import Cable
+from funicular.parts.load import Load
+from funicular.parts.part import Part
+from funicular.parts.point_force import PointForce
+from funicular.results.equilibrium import Equilibrium
+from funicular.results.modes import Modes
+from funicular.rotations import product, turned_by
+
+STATE = ("nodal_vectors", "position", "orientation", "modal_coordinates", "s")
+"""What results tell of a state."""
+
+
+def free_to_vibrate(scene: fu.Scene) -> bool:
+    """Return whether a scene without its dampers and loads has modes that are its vibrations: nothing drives it, flows,
+    touches or rubs.
+    """
+    driven = any(joint.is_driven for joint in scene.joints.values()) or any(
+        slide.is_driven or slide.friction is not None for slide in scene.slides.values())
+    return not (driven or scene.fluids or scene.motions or scene.contacts or scene.crossings)
+
+
+def undamped(scene: fu.Scene) -> fu.Scene:
+    """Return a scene without damping and without loads."""
+    return scene.with_parts(_undamped(part) for part in scene.parts() if not isinstance(part, Load))
+
+
+def _undamped(part: Part) -> Part:
+    if isinstance(part, Cable):
+        return part.remade({"material": part.material.remade({"damping_time": 0.0, "mass_damping": 0.0})})
+    return part.remade({"damping": 0.0}) if isinstance(part, PointForce) else part.as_made()
+
+
+def lowest_modes(scene: fu.Scene, rest: Equilibrium, n: int) -> Modes:
+    """Return n modes about a state of rest, or all that there are of a scene with fewer degrees of freedom."""
+    try:
+        return scene.modes(n, about=rest)
+    except fu.SceneError as error:
+        there = re.search(r"has (\d+) degrees of freedom", str(error))
+        assert there is not None, error
+        return scene.modes(int(there[1]), about=rest)
+
+
+def displaced(scene: fu.Scene, rest: Equilibrium, modes: Modes, mode: int, size: float) -> dict[str, np.ndarray]:
+    """Return the state at rest displaced by a mode, whose largest displacement is a size in m, without velocities."""
+    state = {name: np.array(rest[name]) for name in rest.keys() if name.endswith(STATE)}
+    for name in modes.keys():
+        part, quantity = name.split(".")
+        shape = size * modes[name][mode]
+        if quantity == "rotation":
+            state[f"{part}.orientation"] = product(state[f"{part}.orientation"], turned_by(shape))
+        else:
+            state[f"{part}.{'position' if quantity == 'displacement' else quantity}"] += shape
+    for name in scene.cables:
+        state[f"{name}.nodal_velocity"] = 0.0 * state[f"{name}.nodal_vectors"]
+    for name in scene.bodies:
+        state[f"{name}.velocity"] = state[f"{name}.angular_velocity"] = np.zeros(3)
+    return state
