@@ -25,6 +25,7 @@ from .path_following import Critical, Point, follow
 from .penetrations import penetrations
 from .reduced_strain import compressed
 from .rest_state import CriticalPoint, RestState
+from .spinning_sections import spinning
 from .stability import stability
 from .static_problem import StaticProblem, fitted
 from .surface_ends import beyond_ends
@@ -70,8 +71,9 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
         raise EquilibriumError(
             f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
             f"{remedy}{problem.cause()}; the state there is kept in .state", state, reached)
-    if settings.seek_stable and settings.method == "newton":
-        state.check_stable(problem.cause())
+    if settings.seek_stable and settings.method == "newton" and state.unstable_directions:
+        problem.restore(state.static_state)
+        state.check_stable(problem.cause() or spinning(problem))
     return state
 
 

@@ -29,7 +29,7 @@ def catenary(kind: Kind, elements: int, weight: float, axial: float, length: flo
                 material=Material(youngs_modulus=axial / area, poisson_ratio=0, density=weight / GRAVITY / area))
     scene.pin("rope", s=0)
     scene.pin("rope", s=length)
-    state = scene.equilibrium(seek_stable=False)  # the twist of so thin a beam is rounding: its sign tells no stability
+    state = scene.equilibrium(seek_stable=False)  # these elements are too long for the torsion of so thin a beam
     return abs(state["rope@0.force"][0]), -state["rope.position"][elements // 2, 1]
 
 
