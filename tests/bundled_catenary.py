@@ -16,7 +16,7 @@ HEAD = """\
 # Written by `python tests/bundled_catenary.py` with funicular.catenary: the lengths of the droppers are those with
 # which the contact wire lies on a parabola of 55 mm at the droppers and pulls with 22 kN. The mesh is coarse, for a
 # quick look; what its elements leave of the dents in the wires is in the stiffnesses of droppers and contact: see
-# runtime/README.md, "Catenaries".
+# runtime/guides/pages/catenaries.md.
 """
 COARSE = 3.0, 6.0
 """Longest elements of contact wire and messenger, m."""

@@ -6,10 +6,13 @@ import funicular
 import pytest
 from funicular.guides.site.printed import PRINTED
 from funicular.parts.kinds import PARTS
-from pages import ROOT, page
+from pages import ROOT, SUBJECTS, page
 
 FOLDER = ROOT / "runtime" / "guides" / "pages"
 MACHINES = "runtime/guides/pages/machines.md"
+HAND_WRITTEN = ["runtime/README.md", *(path for path in SUBJECTS if path.split("/")[-1] not in PRINTED)]
+MOST_WORDS = {"a page": 700, "all": 5300}
+"""Outside of blocks of code."""
 WANTED = ("saddle", "sheave", "haul rope", "winch", "temperature", "moving load", "float", "mooring", "dropper",
           "buffer", "brake", "tube", "cable robot", "footbridge", "crane", "pantograph", "tether", "belt")
 """Words that users look for."""
@@ -54,3 +57,16 @@ def test_every_argument_and_result_of_every_part_is_printed():
         section = printed.split(f"\n### {part.__name__}\n")[1].split("\n### ")[0]
         rows = set(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE))
         assert rows == {*part.keywords(), *part.results}, part
+
+
+def words(path: str) -> int:
+    """Number of words of a page outside of its blocks of code."""
+    return len(re.sub(r"^```.*?^```", "", page(path).text, flags=re.MULTILINE | re.DOTALL).split())
+
+
+def test_pages_are_short():
+    """Run with -s it prints the number of words of each page."""
+    found = {path: words(path) for path in HAND_WRITTEN}
+    print("", *(f"{number:5d} {path}" for path, number in found.items()), f"{sum(found.values()):5d} in all", sep="\n")
+    assert {path: number for path, number in found.items() if number > MOST_WORDS["a page"]} == {}
+    assert sum(found.values()) <= MOST_WORDS["all"]

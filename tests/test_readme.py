@@ -82,6 +82,21 @@ def towed_line(space):
     assert forces == pytest.approx([0, weight, 0], rel=1e-6, abs=1e-6 * weight)
 
 
+def buoy(space):
+    height = space["falls_in"]["buoy.position"][:, 1]
+    assert height[0] == 3 and abs(height[-1]) < 0.6, "it swims"
+
+
+def swaying_line(space):
+    turning, swaying = space["swaying"].frequency
+    assert turning < 1e-6, "the sinker turns freely about its line"
+    assert 0.9 * 0.0807 < swaying < 0.0910, "a pendulum of 30 m with and without its added mass"
+
+
+def bouncing_ball(space):
+    assert "struck" in {event["what"] for event in space["run"].report["events"]}
+
+
 def moored_line(space):
     assert 10 < space["moored"]["lying.last"] < 40 and space["moored"].stable
 
@@ -151,23 +166,27 @@ def collector(space):
     assert run["contact.s"][-1] - run["contact.s"][0] == pytest.approx(10, abs=0.1)
 
 
+SUBJECTS = "runtime/guides/pages/"
 AFTERWARDS = {("README.md", "First scene"): saved,
-              ("runtime/README.md", "The model for a tolerance"): chosen_model,
               ("runtime/README.md", "Scenes"): first_scene,
-              ("runtime/README.md", "Cables and beams"): unequal_elements,
-              ("runtime/README.md", "Wind and water"): towed_line,
-              ("runtime/README.md", "Surfaces and contact"): moored_line,
-              ("runtime/README.md", "Joints and springs"): trolley,
-              ("runtime/README.md", "Cables that touch bars and cables"): collector,
-              ("runtime/README.md", "Catenaries"): passage,
-              ("runtime/README.md", "Running a scene"): named_quantities,
-              ("runtime/README.md", "Events"): events,
-              ("runtime/README.md", "Sweeps"): sweeps,
-              ("runtime/README.md", "See it"): pages_and_pictures,
-              ("runtime/README.md", "Many scenes"): many_scenes,
-              ("runtime/README.md", "Statics, modes and section forces"): rest,
-              ("runtime/README.md", "A state with given values"): given_values,
-              ("runtime/README.md", "Rest by a damped motion"): held_by_friction,
+              (f"{SUBJECTS}model.md", "A choice"): chosen_model,
+              (f"{SUBJECTS}cables.md", "Unequal elements"): unequal_elements,
+              (f"{SUBJECTS}fluids.md", "A towed line"): towed_line,
+              (f"{SUBJECTS}fluids.md", "A surface"): buoy,
+              (f"{SUBJECTS}fluids.md", "A table of the flow"): swaying_line,
+              (f"{SUBJECTS}contact.md", "A line on a bed"): moored_line,
+              (f"{SUBJECTS}contact.md", "Hard contact"): bouncing_ball,
+              (f"{SUBJECTS}contact.md", "Crossings"): collector,
+              (f"{SUBJECTS}joints.md", "A carriage"): trolley,
+              (f"{SUBJECTS}catenaries.md", "A passage"): passage,
+              (f"{SUBJECTS}running.md", "Tolerance"): named_quantities,
+              (f"{SUBJECTS}running.md", "Events"): events,
+              (f"{SUBJECTS}sweeps.md", "Sweeps"): sweeps,
+              (f"{SUBJECTS}sweeps.md", "Several runs"): many_scenes,
+              (f"{SUBJECTS}pictures.md", "See it"): pages_and_pictures,
+              (f"{SUBJECTS}statics.md", "Equilibrium"): rest,
+              (f"{SUBJECTS}statics.md", "A state with given values"): given_values,
+              (f"{SUBJECTS}statics.md", "Rest by a damped motion"): held_by_friction,
               ("derive/README.md", "Kernels from Python"): middle_of_an_element,
               ("derive/README.md", "Your own element"): own_element,
               ("derive/README.md", "A force between two points"): force_law}
