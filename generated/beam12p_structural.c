@@ -13,15 +13,109 @@
 #include "kernels.h"
 #include "beam12p_stages.h"
 
-/* frames, strains: of beam12p_structural_energy and 1 more */
-#define BEAM12P_STRUCTURAL_FRAMES_STRAINS \
-    fu_real a[2], inv_a[2], t2_x[2], t2_y[2], t1_y[2]; \
+/* part of forces on the parts: of beam12p_structural_elastic_force and 3 more */
+#define BEAM12P_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS \
     const fu_real \
-        w = 1.0/l, \
-        chord3_x = w*(-e[0] + e[6]), \
-        chord3_y = w*(-e[1] + e[7]), \
-        xm_x = 1.5*chord3_x - 0.25*e[2] - 0.25*e[8], \
-        xm_y = 1.5*chord3_y - 0.25*e[3] - 0.25*e[9]; \
+        d_m1_stretch = inv_stretch*m1, \
+        d_m1_inv_stretch = -(d_m1_stretch*inv_stretch*inv_stretch), \
+        d_m1_cosine = d_m1_inv_stretch*m1 + inv_stretch, \
+        d_m1_larger = -(0.5*d_m1_cosine*larger*larger), \
+        d_m1_shear2 = d_m1_larger*m2, \
+        d_m2_stretch = A[5]*inv_stretch*shared2, \
+        d_m2_inv_stretch = -(d_m2_stretch*inv_stretch*inv_stretch), \
+        d_m2_cosine = d_m2_inv_stretch*m1, \
+        d_m2_larger = -(0.5*d_m2_cosine*larger*larger), \
+        d_m2_shear2 = d_m2_larger*m2 + larger, \
+        d_g3_gg = 2.0*g3, \
+        d_g3_secant = 0.5*d_g3_gg/secant, \
+        d_g3_m1 = d_g3_secant*mean1, \
+        d_g3_m2 = d_g3_secant*mean2, \
+        d_g3_inv_arc = -(d_g3_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)), \
+        d_g3_arc = 2.0*d_g3_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0), \
+        d_g3_k3 = arc + d_g3_arc*g3;
+
+/* part of forces on the parts: of beam12p_structural_elastic_force and 1 more */
+#define BEAM12P_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_2 \
+    const fu_real \
+        f_x1_x = n_e1_1*t2_y[0] + n_e2_1*t2_x[0], \
+        f_x1_y = n_e1_1*t1_y[0] + n_e2_1*t2_y[0], \
+        f_xm_x = 0.5*V_1*t2_y[0] + 0.5*V_1*t2_y[1] + 0.5*V_2*t2_x[0] + 0.5*V_2*t2_x[1], \
+        f_xm_y = 0.5*V_1*t1_y[0] + 0.5*V_1*t1_y[1] + 0.5*V_2*t2_y[0] + 0.5*V_2*t2_y[1], \
+        f_x2_x = n_e1_2*t2_y[1] + n_e2_2*t2_x[1], \
+        f_x2_y = n_e1_2*t1_y[1] + n_e2_2*t2_y[1];
+
+/* part of derivatives at constant resultants, over motions of the parts: of beam12p_structural_elastic_tangent and 1 more */
+#define BEAM12P_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS \
+    const fu_real \
+        d_m1_d_m1_stretch = d_m1_inv_stretch*m1 + inv_stretch, \
+        d_m1_d_m1_inv_stretch = -d_m1_d_m1_stretch*inv_stretch*inv_stretch - 2.0*d_m1_inv_stretch*d_m1_stretch*inv_stretch, \
+        d_m1_d_m1_cosine = d_m1_d_m1_inv_stretch*m1 + 2.0*d_m1_inv_stretch, \
+        d_m1_d_m1_larger = -d_m1_cosine*d_m1_larger*larger - 0.5*d_m1_d_m1_cosine*larger*larger, \
+        d_m1_d_m1_shear2 = d_m1_d_m1_larger*m2, \
+        d_m1_F_1 = d_m1_d_m1_shear2*n_e2_m + d_m1_d_m1_stretch*n_e1_m, \
+        d_m2_d_m1_stretch = d_m2_inv_stretch*m1, \
+        d_m2_d_m1_inv_stretch = -2.0*d_m1_stretch*d_m2_inv_stretch*inv_stretch - d_m2_d_m1_stretch*inv_stretch*inv_stretch, \
+        d_m2_d_m1_cosine = d_m2_d_m1_inv_stretch*m1 + d_m2_inv_stretch, \
+        d_m2_d_m1_larger = -d_m1_cosine*d_m2_larger*larger - 0.5*d_m2_d_m1_cosine*larger*larger, \
+        d_m2_d_m1_shear2 = d_m1_larger + d_m2_d_m1_larger*m2, \
+        d_m2_F_1 = d_m2_d_m1_shear2*n_e2_m + d_m2_d_m1_stretch*n_e1_m, \
+        d_m2_d_m2_stretch = A[5]*A[5]*inv_stretch + A[5]*d_m2_inv_stretch*shared2, \
+        d_m2_d_m2_inv_stretch = -d_m2_d_m2_stretch*inv_stretch*inv_stretch - 2.0*d_m2_inv_stretch*d_m2_stretch*inv_stretch, \
+        d_m2_d_m2_cosine = d_m2_d_m2_inv_stretch*m1, \
+        d_m2_d_m2_larger = -d_m2_cosine*d_m2_larger*larger - 0.5*d_m2_d_m2_cosine*larger*larger, \
+        d_m2_d_m2_shear2 = d_m2_d_m2_larger*m2 + 2.0*d_m2_larger, \
+        d_m2_F_2 = d_m2_d_m2_shear2*n_e2_m + d_m2_d_m2_stretch*n_e1_m, \
+        dF_1_1 = d_m1_F_1*secant, \
+        dF_1_2 = d_m2_F_1*secant, \
+        dF_1_3 = d_g3_m1*d_m1_F_1 + d_g3_m2*d_m2_F_1, \
+        dF_2_2 = d_m2_F_2*secant, \
+        dF_2_3 = d_g3_m1*d_m2_F_1 + d_g3_m2*d_m2_F_2, \
+        d_mean1_V_1 = dF_1_1*secant, \
+        d_mean2_V_1 = dF_1_2*secant, \
+        d_mean2_V_2 = dF_2_2*secant, \
+        d_g3_V_1 = F_1*d_g3_secant + dF_1_3*secant, \
+        d_g3_V_2 = F_2*d_g3_secant + dF_2_3*secant, \
+        d_g3_d_g3_inv_arc = -450.0*d_g3_gg*d_g3_gg*inv_arc*inv_arc - 2.0*d_g3_gg*d_g3_inv_arc*inv_arc*(450.0*gg + 1050.0) - 2.0*inv_arc*inv_arc*(450.0*gg + 1050.0), \
+        d_g3_d_g3_arc = 2.0*d_g3_d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + 2.0*d_g3_gg*d_g3_inv_arc*w*(128.0*gg + 735.0) + d_g3_gg*(256.0*d_g3_gg*inv_arc*w + 2.0*d_g3_inv_arc*w*(128.0*gg + 735.0)) + 4.0*inv_arc*w*(128.0*gg + 735.0), \
+        d_g3_d_g3_k3 = 2.0*d_g3_arc + d_g3_d_g3_arc*g3, \
+        d_g3_d_g3_secant = -0.5*d_g3_gg*d_g3_secant/(secant*secant) + 1.0/secant, \
+        d_g3_d_g3_m1 = d_g3_d_g3_secant*mean1, \
+        d_g3_d_g3_m2 = d_g3_d_g3_secant*mean2, \
+        d_g3_V_3 = F_1*d_g3_d_g3_m1 + F_2*d_g3_d_g3_m2 + dF_1_3*d_g3_m1 + dF_2_3*d_g3_m2 + d_g3_d_g3_k3*n_k3;
+
+/* part of derivatives at constant resultants, over motions of the parts: of beam12p_structural_elastic_tangent and 1 more */
+#define BEAM12P_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_2 \
+    const fu_real \
+        turn6_dg3_13 = -(dg3_13*g3), \
+        turn6_moment1_3 = -0.5*V_1*p1_1 - 0.5*V_2*p1_2 + V_3*turn6_dg3_13 + dV_g3_6*dg3_13 + 0.5*dV_mean1_6*p1_2 - 0.5*dV_mean2_6*p1_1 - n_e1_1*q1_1 - n_e2_1*q1_2, \
+        dV_mean1_7 = d_g3_V_1*dg3_23 + d_mean1_V_1*moved_7 + d_mean2_V_1*moved_8, \
+        dV_mean2_7 = d_g3_V_2*dg3_23 + d_mean2_V_1*moved_7 + d_mean2_V_2*moved_8, \
+        dV_g3_7 = d_g3_V_1*moved_7 + d_g3_V_2*moved_8 + d_g3_V_3*dg3_23;
+
+/* part of derivatives at constant resultants, over motions of the parts: of beam12p_structural_elastic_tangent and 1 more */
+#define BEAM12P_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_3 \
+    const fu_real \
+        turn7_dg3_13 = -(dg3_23*g3), \
+        turn7_moment1_3 = V_3*turn7_dg3_13 + dV_g3_7*dg3_13 + 0.5*dV_mean1_7*p1_2 - 0.5*dV_mean2_7*p1_1, \
+        turn7_dg3_23 = dg3_23*g3, \
+        turn7_moment2_3 = -0.5*V_1*p2_1 - 0.5*V_2*p2_2 + V_3*turn7_dg3_23 + dV_g3_7*dg3_23 + 0.5*dV_mean1_7*p2_2 - 0.5*dV_mean2_7*p2_1 - n_e1_2*q2_1 - n_e2_2*q2_2;
+
+/* part of strains by motions of the parts: of beam12p_structural_elastic_tangent and 1 more */
+#define BEAM12P_STRUCTURAL_PART_OF_STRAINS_BY_MOTIONS_OF_THE_PARTS \
+    B_0[0] = d_1_1*moved + d_1_2*moved_2; \
+    B_1[0] = d_2_1*moved + d_2_2*moved_2; \
+    B_0[1] = d_1_1*moved_3 + d_1_2*moved_4; \
+    B_1[1] = d_2_1*moved_3 + d_2_2*moved_4; \
+    const fu_real \
+        B_0_6 = d_1_1*moved_5 + d_1_2*moved_6 + d_1_3*dg3_13, \
+        B_1_6 = d_2_1*moved_5 + d_2_2*moved_6 + d_2_3*dg3_13, \
+        B_2_6 = d_g3_k3*dg3_13, \
+        B_0_7 = d_1_1*moved_7 + d_1_2*moved_8 + d_1_3*dg3_23, \
+        B_1_7 = d_2_1*moved_7 + d_2_2*moved_8 + d_2_3*dg3_23, \
+        B_2_7 = d_g3_k3*dg3_23;
+
+/* part of frames, strains: of beam12p_structural_energy and 4 more */
+#define BEAM12P_STRUCTURAL_PART_OF_FRAMES_STRAINS \
     FU_EACH(g, 2, \
         a[g] = FU_SQRT(e[6*g + 4]*e[6*g + 4] + e[6*g + 5]*e[6*g + 5]); \
         inv_a[g] = 1.0/a[g]; \
@@ -38,7 +132,19 @@
         p2_1 = t1_y[1]*xm_y + t2_y[1]*xm_x, \
         p2_2 = t2_x[1]*xm_x + t2_y[1]*xm_y, \
         inv_turn = 1.0/(t1_y[0]*t1_y[1] + t2_x[0]*t2_x[1] + 2.0*t2_y[0]*t2_y[1] + 2.0), \
-        g3 = inv_turn*(-t1_y[0]*t2_y[1] + t1_y[1]*t2_y[0] + t2_x[0]*t2_y[1] - t2_y[0]*t2_x[1]), \
+        g3 = inv_turn*(-t1_y[0]*t2_y[1] + t1_y[1]*t2_y[0] + t2_x[0]*t2_y[1] - t2_y[0]*t2_x[1]);
+
+/* frames, strains: of beam12p_structural_energy and 1 more */
+#define BEAM12P_STRUCTURAL_FRAMES_STRAINS \
+    fu_real a[2], inv_a[2], t2_x[2], t2_y[2], t1_y[2]; \
+    const fu_real \
+        w = 1.0/l, \
+        chord3_x = w*(-e[0] + e[6]), \
+        chord3_y = w*(-e[1] + e[7]), \
+        xm_x = 1.5*chord3_x - 0.25*e[2] - 0.25*e[8], \
+        xm_y = 1.5*chord3_y - 0.25*e[3] - 0.25*e[9]; \
+    BEAM12P_STRUCTURAL_PART_OF_FRAMES_STRAINS \
+    const fu_real \
         mean1 = 0.5*p1_1 + 0.5*p2_1, \
         mean2 = 0.5*p1_2 + 0.5*p2_2, \
         gg = g3*g3, \
@@ -93,23 +199,8 @@
         chord3_y = w*(-e[1] + e[7]), \
         xm_x = 1.5*chord3_x - 0.25*e[2] - 0.25*e[8], \
         xm_y = 1.5*chord3_y - 0.25*e[3] - 0.25*e[9]; \
-    FU_EACH(g, 2, \
-        a[g] = FU_SQRT(e[6*g + 4]*e[6*g + 4] + e[6*g + 5]*e[6*g + 5]); \
-        inv_a[g] = 1.0/a[g]; \
-        t2_x[g] = e[6*g + 4]*inv_a[g]; \
-        t2_y[g] = e[6*g + 5]*inv_a[g]; \
-        t1_y[g] = -t2_x[g];) \
+    BEAM12P_STRUCTURAL_PART_OF_FRAMES_STRAINS \
     const fu_real \
-        q1_1 = e[2]*t2_y[0] + e[3]*t1_y[0], \
-        q1_2 = e[2]*t2_x[0] + e[3]*t2_y[0], \
-        q2_1 = e[8]*t2_y[1] + e[9]*t1_y[1], \
-        q2_2 = e[8]*t2_x[1] + e[9]*t2_y[1], \
-        p1_1 = t1_y[0]*xm_y + t2_y[0]*xm_x, \
-        p1_2 = t2_x[0]*xm_x + t2_y[0]*xm_y, \
-        p2_1 = t1_y[1]*xm_y + t2_y[1]*xm_x, \
-        p2_2 = t2_x[1]*xm_x + t2_y[1]*xm_y, \
-        inv_turn = 1.0/(t1_y[0]*t1_y[1] + t2_x[0]*t2_x[1] + 2.0*t2_y[0]*t2_y[1] + 2.0), \
-        g3 = inv_turn*(-t1_y[0]*t2_y[1] + t1_y[1]*t2_y[0] + t2_x[0]*t2_y[1] - t2_y[0]*t2_x[1]), \
         mean1 = 0.5*p1_1 + 0.5*p2_1, \
         mean2 = 0.5*p1_2 + 0.5*p2_2, \
         gg = g3*g3, \
@@ -290,37 +381,17 @@ FU_KERNEL void beam12p_structural_elastic_force(fu_real l, const fu_real *e, con
         d_eyy_2 = -A[14] + across_2;
     BEAM12P_STRUCTURAL_RESULTANTS
     /* forces on the parts */
+    BEAM12P_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS
     const fu_real
-        d_m1_stretch = inv_stretch*m1,
-        d_m1_inv_stretch = -(d_m1_stretch*inv_stretch*inv_stretch),
-        d_m1_cosine = d_m1_inv_stretch*m1 + inv_stretch,
-        d_m1_larger = -(0.5*d_m1_cosine*larger*larger),
-        d_m1_shear2 = d_m1_larger*m2,
-        d_m2_stretch = A[5]*inv_stretch*shared2,
-        d_m2_inv_stretch = -(d_m2_stretch*inv_stretch*inv_stretch),
-        d_m2_cosine = d_m2_inv_stretch*m1,
-        d_m2_larger = -(0.5*d_m2_cosine*larger*larger),
-        d_m2_shear2 = d_m2_larger*m2 + larger,
-        d_g3_gg = 2.0*g3,
-        d_g3_secant = 0.5*d_g3_gg/secant,
-        d_g3_m1 = d_g3_secant*mean1,
-        d_g3_m2 = d_g3_secant*mean2,
-        d_g3_inv_arc = -(d_g3_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g3_arc = 2.0*d_g3_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g3_k3 = arc + d_g3_arc*g3,
         F_1 = d_m1_shear2*n_e2_m + d_m1_stretch*n_e1_m,
         F_2 = d_m2_shear2*n_e2_m + d_m2_stretch*n_e1_m,
         V_1 = F_1*secant,
         V_2 = F_2*secant,
         V_3 = F_1*d_g3_m1 + F_2*d_g3_m2 + d_g3_k3*n_k3,
         dg3_13 = -0.5*g3*g3 - 0.5,
-        dg3_23 = 0.5*g3*g3 + 0.5,
-        f_x1_x = n_e1_1*t2_y[0] + n_e2_1*t2_x[0],
-        f_x1_y = n_e1_1*t1_y[0] + n_e2_1*t2_y[0],
-        f_xm_x = 0.5*V_1*t2_y[0] + 0.5*V_1*t2_y[1] + 0.5*V_2*t2_x[0] + 0.5*V_2*t2_x[1],
-        f_xm_y = 0.5*V_1*t1_y[0] + 0.5*V_1*t1_y[1] + 0.5*V_2*t2_y[0] + 0.5*V_2*t2_y[1],
-        f_x2_x = n_e1_2*t2_y[1] + n_e2_2*t2_x[1],
-        f_x2_y = n_e1_2*t1_y[1] + n_e2_2*t2_y[1],
+        dg3_23 = 0.5*g3*g3 + 0.5;
+    BEAM12P_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_2
+    const fu_real
         moment1_3 = 0.5*V_1*p1_2 - 0.5*V_2*p1_1 + V_3*dg3_13 + n_e1_1*q1_2 - n_e2_1*q1_1,
         moment2_3 = 0.5*V_1*p2_2 - 0.5*V_2*p2_1 + V_3*dg3_23 + n_e1_2*q2_2 - n_e2_2*q2_1,
         y1_1 = -(inv_a[0]*moment1_3),
@@ -404,24 +475,8 @@ FU_KERNEL void beam12p_structural_elastic_tangent(fu_real l, const fu_real *e, c
         d_eyy_2 = -A[14] + across_2;
     BEAM12P_STRUCTURAL_RESULTANTS
     /* forces on the parts */
+    BEAM12P_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS
     const fu_real
-        d_m1_stretch = inv_stretch*m1,
-        d_m1_inv_stretch = -(d_m1_stretch*inv_stretch*inv_stretch),
-        d_m1_cosine = d_m1_inv_stretch*m1 + inv_stretch,
-        d_m1_larger = -(0.5*d_m1_cosine*larger*larger),
-        d_m1_shear2 = d_m1_larger*m2,
-        d_m2_stretch = A[5]*inv_stretch*shared2,
-        d_m2_inv_stretch = -(d_m2_stretch*inv_stretch*inv_stretch),
-        d_m2_cosine = d_m2_inv_stretch*m1,
-        d_m2_larger = -(0.5*d_m2_cosine*larger*larger),
-        d_m2_shear2 = d_m2_larger*m2 + larger,
-        d_g3_gg = 2.0*g3,
-        d_g3_secant = 0.5*d_g3_gg/secant,
-        d_g3_m1 = d_g3_secant*mean1,
-        d_g3_m2 = d_g3_secant*mean2,
-        d_g3_inv_arc = -(d_g3_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g3_arc = 2.0*d_g3_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g3_k3 = arc + d_g3_arc*g3,
         d_1_1 = d_m1_stretch*secant,
         d_1_2 = d_m2_stretch*secant,
         d_1_3 = d_g3_m1*d_m1_stretch + d_g3_m2*d_m2_stretch,
@@ -440,42 +495,8 @@ FU_KERNEL void beam12p_structural_elastic_tangent(fu_real l, const fu_real *e, c
         y1_1 = -(inv_a1*moment1_3),
         y1_2 = -(inv_a2*moment2_3);
     /* derivatives at constant resultants, over motions of the parts */
+    BEAM12P_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS
     const fu_real
-        d_m1_d_m1_stretch = d_m1_inv_stretch*m1 + inv_stretch,
-        d_m1_d_m1_inv_stretch = -d_m1_d_m1_stretch*inv_stretch*inv_stretch - 2.0*d_m1_inv_stretch*d_m1_stretch*inv_stretch,
-        d_m1_d_m1_cosine = d_m1_d_m1_inv_stretch*m1 + 2.0*d_m1_inv_stretch,
-        d_m1_d_m1_larger = -d_m1_cosine*d_m1_larger*larger - 0.5*d_m1_d_m1_cosine*larger*larger,
-        d_m1_d_m1_shear2 = d_m1_d_m1_larger*m2,
-        d_m1_F_1 = d_m1_d_m1_shear2*n_e2_m + d_m1_d_m1_stretch*n_e1_m,
-        d_m2_d_m1_stretch = d_m2_inv_stretch*m1,
-        d_m2_d_m1_inv_stretch = -2.0*d_m1_stretch*d_m2_inv_stretch*inv_stretch - d_m2_d_m1_stretch*inv_stretch*inv_stretch,
-        d_m2_d_m1_cosine = d_m2_d_m1_inv_stretch*m1 + d_m2_inv_stretch,
-        d_m2_d_m1_larger = -d_m1_cosine*d_m2_larger*larger - 0.5*d_m2_d_m1_cosine*larger*larger,
-        d_m2_d_m1_shear2 = d_m1_larger + d_m2_d_m1_larger*m2,
-        d_m2_F_1 = d_m2_d_m1_shear2*n_e2_m + d_m2_d_m1_stretch*n_e1_m,
-        d_m2_d_m2_stretch = A[5]*A[5]*inv_stretch + A[5]*d_m2_inv_stretch*shared2,
-        d_m2_d_m2_inv_stretch = -d_m2_d_m2_stretch*inv_stretch*inv_stretch - 2.0*d_m2_inv_stretch*d_m2_stretch*inv_stretch,
-        d_m2_d_m2_cosine = d_m2_d_m2_inv_stretch*m1,
-        d_m2_d_m2_larger = -d_m2_cosine*d_m2_larger*larger - 0.5*d_m2_d_m2_cosine*larger*larger,
-        d_m2_d_m2_shear2 = d_m2_d_m2_larger*m2 + 2.0*d_m2_larger,
-        d_m2_F_2 = d_m2_d_m2_shear2*n_e2_m + d_m2_d_m2_stretch*n_e1_m,
-        dF_1_1 = d_m1_F_1*secant,
-        dF_1_2 = d_m2_F_1*secant,
-        dF_1_3 = d_g3_m1*d_m1_F_1 + d_g3_m2*d_m2_F_1,
-        dF_2_2 = d_m2_F_2*secant,
-        dF_2_3 = d_g3_m1*d_m2_F_1 + d_g3_m2*d_m2_F_2,
-        d_mean1_V_1 = dF_1_1*secant,
-        d_mean2_V_1 = dF_1_2*secant,
-        d_mean2_V_2 = dF_2_2*secant,
-        d_g3_V_1 = F_1*d_g3_secant + dF_1_3*secant,
-        d_g3_V_2 = F_2*d_g3_secant + dF_2_3*secant,
-        d_g3_d_g3_inv_arc = -450.0*d_g3_gg*d_g3_gg*inv_arc*inv_arc - 2.0*d_g3_gg*d_g3_inv_arc*inv_arc*(450.0*gg + 1050.0) - 2.0*inv_arc*inv_arc*(450.0*gg + 1050.0),
-        d_g3_d_g3_arc = 2.0*d_g3_d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + 2.0*d_g3_gg*d_g3_inv_arc*w*(128.0*gg + 735.0) + d_g3_gg*(256.0*d_g3_gg*inv_arc*w + 2.0*d_g3_inv_arc*w*(128.0*gg + 735.0)) + 4.0*inv_arc*w*(128.0*gg + 735.0),
-        d_g3_d_g3_k3 = 2.0*d_g3_arc + d_g3_d_g3_arc*g3,
-        d_g3_d_g3_secant = -0.5*d_g3_gg*d_g3_secant/(secant*secant) + 1.0/secant,
-        d_g3_d_g3_m1 = d_g3_d_g3_secant*mean1,
-        d_g3_d_g3_m2 = d_g3_d_g3_secant*mean2,
-        d_g3_V_3 = F_1*d_g3_d_g3_m1 + F_2*d_g3_d_g3_m2 + dF_1_3*d_g3_m1 + dF_2_3*d_g3_m2 + d_g3_d_g3_k3*n_k3,
         moved = 0.5*t2_1[1] + 0.5*t2_2[1],
         moved_2 = 0.5*t2_1[0] + 0.5*t2_2[0],
         moved_3 = 0.5*t1_1_y + 0.5*t1_2_y,
@@ -497,33 +518,17 @@ FU_KERNEL void beam12p_structural_elastic_tangent(fu_real l, const fu_real *e, c
         turn6_f_x1_x = -n_e1_1*t1_1_y - n_e2_1*t2_1[1],
         turn6_f_x1_y = n_e1_1*t2_1[1] - n_e2_1*t1_1_y,
         turn6_f_xm_x = -0.5*V_1*t1_1_y - 0.5*V_2*t2_1[1] + dV_mean1_6*(0.5*t2_1[1] + 0.5*t2_2[1]) + dV_mean2_6*(0.5*t2_1[0] + 0.5*t2_2[0]),
-        turn6_f_xm_y = 0.5*V_1*t2_1[1] - 0.5*V_2*t1_1_y + dV_mean1_6*(0.5*t1_1_y + 0.5*t1_2_y) + dV_mean2_6*(0.5*t2_1[1] + 0.5*t2_2[1]),
-        turn6_dg3_13 = -(dg3_13*g3),
-        turn6_moment1_3 = -0.5*V_1*p1_1 - 0.5*V_2*p1_2 + V_3*turn6_dg3_13 + dV_g3_6*dg3_13 + 0.5*dV_mean1_6*p1_2 - 0.5*dV_mean2_6*p1_1 - n_e1_1*q1_1 - n_e2_1*q1_2,
-        dV_mean1_7 = d_g3_V_1*dg3_23 + d_mean1_V_1*moved_7 + d_mean2_V_1*moved_8,
-        dV_mean2_7 = d_g3_V_2*dg3_23 + d_mean2_V_1*moved_7 + d_mean2_V_2*moved_8,
-        dV_g3_7 = d_g3_V_1*moved_7 + d_g3_V_2*moved_8 + d_g3_V_3*dg3_23,
+        turn6_f_xm_y = 0.5*V_1*t2_1[1] - 0.5*V_2*t1_1_y + dV_mean1_6*(0.5*t1_1_y + 0.5*t1_2_y) + dV_mean2_6*(0.5*t2_1[1] + 0.5*t2_2[1]);
+    BEAM12P_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_2
+    const fu_real
         turn7_f_xm_x = -0.5*V_1*t1_2_y - 0.5*V_2*t2_2[1] + dV_mean1_7*(0.5*t2_1[1] + 0.5*t2_2[1]) + dV_mean2_7*(0.5*t2_1[0] + 0.5*t2_2[0]),
         turn7_f_xm_y = 0.5*V_1*t2_2[1] - 0.5*V_2*t1_2_y + dV_mean1_7*(0.5*t1_1_y + 0.5*t1_2_y) + dV_mean2_7*(0.5*t2_1[1] + 0.5*t2_2[1]),
         turn7_f_x2_x = -n_e1_2*t1_2_y - n_e2_2*t2_2[1],
-        turn7_f_x2_y = n_e1_2*t2_2[1] - n_e2_2*t1_2_y,
-        turn7_dg3_13 = -(dg3_23*g3),
-        turn7_moment1_3 = V_3*turn7_dg3_13 + dV_g3_7*dg3_13 + 0.5*dV_mean1_7*p1_2 - 0.5*dV_mean2_7*p1_1,
-        turn7_dg3_23 = dg3_23*g3,
-        turn7_moment2_3 = -0.5*V_1*p2_1 - 0.5*V_2*p2_2 + V_3*turn7_dg3_23 + dV_g3_7*dg3_23 + 0.5*dV_mean1_7*p2_2 - 0.5*dV_mean2_7*p2_1 - n_e1_2*q2_1 - n_e2_2*q2_2;
+        turn7_f_x2_y = n_e1_2*t2_2[1] - n_e2_2*t1_2_y;
+    BEAM12P_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_3
     /* strains by motions of the parts */
     fu_real B_0[2], B_1[2];
-    B_0[0] = d_1_1*moved + d_1_2*moved_2;
-    B_1[0] = d_2_1*moved + d_2_2*moved_2;
-    B_0[1] = d_1_1*moved_3 + d_1_2*moved_4;
-    B_1[1] = d_2_1*moved_3 + d_2_2*moved_4;
-    const fu_real
-        B_0_6 = d_1_1*moved_5 + d_1_2*moved_6 + d_1_3*dg3_13,
-        B_1_6 = d_2_1*moved_5 + d_2_2*moved_6 + d_2_3*dg3_13,
-        B_2_6 = d_g3_k3*dg3_13,
-        B_0_7 = d_1_1*moved_7 + d_1_2*moved_8 + d_1_3*dg3_23,
-        B_1_7 = d_2_1*moved_7 + d_2_2*moved_8 + d_2_3*dg3_23,
-        B_2_7 = d_g3_k3*dg3_23;
+    BEAM12P_STRUCTURAL_PART_OF_STRAINS_BY_MOTIONS_OF_THE_PARTS
     /* resultants by motions of the parts */
     fu_real K_3[2], K_4[2], K_5[2], K_6[2], K_7[2], sum_at[6], t_eyy_1_eyy_1[2], t_eyy_1_eyy_2[2], t_eyy_2_eyy_2[2];
     const fu_real
@@ -763,35 +768,15 @@ FU_KERNEL void beam12p_structural_damping_force(fu_real l, const fu_real *e, con
         S[g] = A[g]*l*tau;)
     BEAM12P_STRUCTURAL_RESULTANTS_2
     /* forces on the parts */
+    BEAM12P_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS
     const fu_real
-        d_m1_stretch = inv_stretch*m1,
-        d_m1_inv_stretch = -(d_m1_stretch*inv_stretch*inv_stretch),
-        d_m1_cosine = d_m1_inv_stretch*m1 + inv_stretch,
-        d_m1_larger = -(0.5*d_m1_cosine*larger*larger),
-        d_m1_shear2 = d_m1_larger*m2,
-        d_m2_stretch = A[5]*inv_stretch*shared2,
-        d_m2_inv_stretch = -(d_m2_stretch*inv_stretch*inv_stretch),
-        d_m2_cosine = d_m2_inv_stretch*m1,
-        d_m2_larger = -(0.5*d_m2_cosine*larger*larger),
-        d_m2_shear2 = d_m2_larger*m2 + larger,
-        d_g3_gg = 2.0*g3,
-        d_g3_secant = 0.5*d_g3_gg/secant,
-        d_g3_m1 = d_g3_secant*mean1,
-        d_g3_m2 = d_g3_secant*mean2,
-        d_g3_inv_arc = -(d_g3_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g3_arc = 2.0*d_g3_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g3_k3 = arc + d_g3_arc*g3,
         F_1 = d_m1_shear2*n_e2_m + d_m1_stretch*n_e1_m,
         F_2 = d_m2_shear2*n_e2_m + d_m2_stretch*n_e1_m,
         V_1 = F_1*secant,
         V_2 = F_2*secant,
-        V_3 = F_1*d_g3_m1 + F_2*d_g3_m2 + d_g3_k3*n_k3,
-        f_x1_x = n_e1_1*t2_y[0] + n_e2_1*t2_x[0],
-        f_x1_y = n_e1_1*t1_y[0] + n_e2_1*t2_y[0],
-        f_xm_x = 0.5*V_1*t2_y[0] + 0.5*V_1*t2_y[1] + 0.5*V_2*t2_x[0] + 0.5*V_2*t2_x[1],
-        f_xm_y = 0.5*V_1*t1_y[0] + 0.5*V_1*t1_y[1] + 0.5*V_2*t2_y[0] + 0.5*V_2*t2_y[1],
-        f_x2_x = n_e1_2*t2_y[1] + n_e2_2*t2_x[1],
-        f_x2_y = n_e1_2*t1_y[1] + n_e2_2*t2_y[1],
+        V_3 = F_1*d_g3_m1 + F_2*d_g3_m2 + d_g3_k3*n_k3;
+    BEAM12P_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_2
+    const fu_real
         moment1_3 = 0.5*V_1*p1_2 - 0.5*V_2*p1_1 + V_3*dg3_13 + n_e1_1*q1_2 - n_e2_1*q1_1,
         moment2_3 = 0.5*V_1*p2_2 - 0.5*V_2*p2_1 + V_3*dg3_23 + n_e1_2*q2_2 - n_e2_2*q2_1,
         y1_1 = -(inv_a[0]*moment1_3),
@@ -869,24 +854,8 @@ void beam12p_structural_damping_tangent(fu_real l, const fu_real *e, const fu_re
         rate_eyy_2 = e[10]*v[10] + e[11]*v[11];
     BEAM12P_STRUCTURAL_RESULTANTS_2
     /* forces on the parts */
+    BEAM12P_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS
     const fu_real
-        d_m1_stretch = inv_stretch*m1,
-        d_m1_inv_stretch = -(d_m1_stretch*inv_stretch*inv_stretch),
-        d_m1_cosine = d_m1_inv_stretch*m1 + inv_stretch,
-        d_m1_larger = -(0.5*d_m1_cosine*larger*larger),
-        d_m1_shear2 = d_m1_larger*m2,
-        d_m2_stretch = A[5]*inv_stretch*shared2,
-        d_m2_inv_stretch = -(d_m2_stretch*inv_stretch*inv_stretch),
-        d_m2_cosine = d_m2_inv_stretch*m1,
-        d_m2_larger = -(0.5*d_m2_cosine*larger*larger),
-        d_m2_shear2 = d_m2_larger*m2 + larger,
-        d_g3_gg = 2.0*g3,
-        d_g3_secant = 0.5*d_g3_gg/secant,
-        d_g3_m1 = d_g3_secant*mean1,
-        d_g3_m2 = d_g3_secant*mean2,
-        d_g3_inv_arc = -(d_g3_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g3_arc = 2.0*d_g3_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g3_k3 = arc + d_g3_arc*g3,
         d_1_1 = d_m1_stretch*secant,
         d_1_2 = d_m2_stretch*secant,
         d_1_3 = d_g3_m1*d_m1_stretch + d_g3_m2*d_m2_stretch,
@@ -903,42 +872,8 @@ void beam12p_structural_damping_tangent(fu_real l, const fu_real *e, const fu_re
         y1_1 = -(inv_a[0]*moment1_3),
         y1_2 = -(inv_a[1]*moment2_3);
     /* derivatives at constant resultants, over motions of the parts */
+    BEAM12P_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS
     const fu_real
-        d_m1_d_m1_stretch = d_m1_inv_stretch*m1 + inv_stretch,
-        d_m1_d_m1_inv_stretch = -d_m1_d_m1_stretch*inv_stretch*inv_stretch - 2.0*d_m1_inv_stretch*d_m1_stretch*inv_stretch,
-        d_m1_d_m1_cosine = d_m1_d_m1_inv_stretch*m1 + 2.0*d_m1_inv_stretch,
-        d_m1_d_m1_larger = -d_m1_cosine*d_m1_larger*larger - 0.5*d_m1_d_m1_cosine*larger*larger,
-        d_m1_d_m1_shear2 = d_m1_d_m1_larger*m2,
-        d_m1_F_1 = d_m1_d_m1_shear2*n_e2_m + d_m1_d_m1_stretch*n_e1_m,
-        d_m2_d_m1_stretch = d_m2_inv_stretch*m1,
-        d_m2_d_m1_inv_stretch = -2.0*d_m1_stretch*d_m2_inv_stretch*inv_stretch - d_m2_d_m1_stretch*inv_stretch*inv_stretch,
-        d_m2_d_m1_cosine = d_m2_d_m1_inv_stretch*m1 + d_m2_inv_stretch,
-        d_m2_d_m1_larger = -d_m1_cosine*d_m2_larger*larger - 0.5*d_m2_d_m1_cosine*larger*larger,
-        d_m2_d_m1_shear2 = d_m1_larger + d_m2_d_m1_larger*m2,
-        d_m2_F_1 = d_m2_d_m1_shear2*n_e2_m + d_m2_d_m1_stretch*n_e1_m,
-        d_m2_d_m2_stretch = A[5]*A[5]*inv_stretch + A[5]*d_m2_inv_stretch*shared2,
-        d_m2_d_m2_inv_stretch = -d_m2_d_m2_stretch*inv_stretch*inv_stretch - 2.0*d_m2_inv_stretch*d_m2_stretch*inv_stretch,
-        d_m2_d_m2_cosine = d_m2_d_m2_inv_stretch*m1,
-        d_m2_d_m2_larger = -d_m2_cosine*d_m2_larger*larger - 0.5*d_m2_d_m2_cosine*larger*larger,
-        d_m2_d_m2_shear2 = d_m2_d_m2_larger*m2 + 2.0*d_m2_larger,
-        d_m2_F_2 = d_m2_d_m2_shear2*n_e2_m + d_m2_d_m2_stretch*n_e1_m,
-        dF_1_1 = d_m1_F_1*secant,
-        dF_1_2 = d_m2_F_1*secant,
-        dF_1_3 = d_g3_m1*d_m1_F_1 + d_g3_m2*d_m2_F_1,
-        dF_2_2 = d_m2_F_2*secant,
-        dF_2_3 = d_g3_m1*d_m2_F_1 + d_g3_m2*d_m2_F_2,
-        d_mean1_V_1 = dF_1_1*secant,
-        d_mean2_V_1 = dF_1_2*secant,
-        d_mean2_V_2 = dF_2_2*secant,
-        d_g3_V_1 = F_1*d_g3_secant + dF_1_3*secant,
-        d_g3_V_2 = F_2*d_g3_secant + dF_2_3*secant,
-        d_g3_d_g3_inv_arc = -450.0*d_g3_gg*d_g3_gg*inv_arc*inv_arc - 2.0*d_g3_gg*d_g3_inv_arc*inv_arc*(450.0*gg + 1050.0) - 2.0*inv_arc*inv_arc*(450.0*gg + 1050.0),
-        d_g3_d_g3_arc = 2.0*d_g3_d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + 2.0*d_g3_gg*d_g3_inv_arc*w*(128.0*gg + 735.0) + d_g3_gg*(256.0*d_g3_gg*inv_arc*w + 2.0*d_g3_inv_arc*w*(128.0*gg + 735.0)) + 4.0*inv_arc*w*(128.0*gg + 735.0),
-        d_g3_d_g3_k3 = 2.0*d_g3_arc + d_g3_d_g3_arc*g3,
-        d_g3_d_g3_secant = -0.5*d_g3_gg*d_g3_secant/(secant*secant) + 1.0/secant,
-        d_g3_d_g3_m1 = d_g3_d_g3_secant*mean1,
-        d_g3_d_g3_m2 = d_g3_d_g3_secant*mean2,
-        d_g3_V_3 = F_1*d_g3_d_g3_m1 + F_2*d_g3_d_g3_m2 + dF_1_3*d_g3_m1 + dF_2_3*d_g3_m2 + d_g3_d_g3_k3*n_k3,
         moved = 0.5*t2_y[0] + 0.5*t2_y[1],
         moved_2 = 0.5*t2_x[0] + 0.5*t2_x[1],
         moved_3 = 0.5*t1_y[0] + 0.5*t1_y[1],
@@ -960,33 +895,18 @@ void beam12p_structural_damping_tangent(fu_real l, const fu_real *e, const fu_re
         turn6_f_x1_x = -n_e1_1*t1_y[0] - n_e2_1*t2_y[0],
         turn6_f_x1_y = n_e1_1*t2_y[0] - n_e2_1*t1_y[0],
         turn6_f_xm_x = -0.5*V_1*t1_y[0] - 0.5*V_2*t2_y[0] + dV_mean1_6*(0.5*t2_y[0] + 0.5*t2_y[1]) + dV_mean2_6*(0.5*t2_x[0] + 0.5*t2_x[1]),
-        turn6_f_xm_y = 0.5*V_1*t2_y[0] - 0.5*V_2*t1_y[0] + dV_mean1_6*(0.5*t1_y[0] + 0.5*t1_y[1]) + dV_mean2_6*(0.5*t2_y[0] + 0.5*t2_y[1]),
-        turn6_dg3_13 = -(dg3_13*g3),
-        turn6_moment1_3 = -0.5*V_1*p1_1 - 0.5*V_2*p1_2 + V_3*turn6_dg3_13 + dV_g3_6*dg3_13 + 0.5*dV_mean1_6*p1_2 - 0.5*dV_mean2_6*p1_1 - n_e1_1*q1_1 - n_e2_1*q1_2,
-        dV_mean1_7 = d_g3_V_1*dg3_23 + d_mean1_V_1*moved_7 + d_mean2_V_1*moved_8,
-        dV_mean2_7 = d_g3_V_2*dg3_23 + d_mean2_V_1*moved_7 + d_mean2_V_2*moved_8,
-        dV_g3_7 = d_g3_V_1*moved_7 + d_g3_V_2*moved_8 + d_g3_V_3*dg3_23,
+        turn6_f_xm_y = 0.5*V_1*t2_y[0] - 0.5*V_2*t1_y[0] + dV_mean1_6*(0.5*t1_y[0] + 0.5*t1_y[1]) + dV_mean2_6*(0.5*t2_y[0] + 0.5*t2_y[1]);
+    BEAM12P_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_2
+    const fu_real
         turn7_f_xm_x = -0.5*V_1*t1_y[1] - 0.5*V_2*t2_y[1] + dV_mean1_7*(0.5*t2_y[0] + 0.5*t2_y[1]) + dV_mean2_7*(0.5*t2_x[0] + 0.5*t2_x[1]),
         turn7_f_xm_y = 0.5*V_1*t2_y[1] - 0.5*V_2*t1_y[1] + dV_mean1_7*(0.5*t1_y[0] + 0.5*t1_y[1]) + dV_mean2_7*(0.5*t2_y[0] + 0.5*t2_y[1]),
         turn7_f_x2_x = -n_e1_2*t1_y[1] - n_e2_2*t2_y[1],
-        turn7_f_x2_y = n_e1_2*t2_y[1] - n_e2_2*t1_y[1],
-        turn7_dg3_13 = -(dg3_23*g3),
-        turn7_moment1_3 = V_3*turn7_dg3_13 + dV_g3_7*dg3_13 + 0.5*dV_mean1_7*p1_2 - 0.5*dV_mean2_7*p1_1,
-        turn7_dg3_23 = dg3_23*g3,
-        turn7_moment2_3 = -0.5*V_1*p2_1 - 0.5*V_2*p2_2 + V_3*turn7_dg3_23 + dV_g3_7*dg3_23 + 0.5*dV_mean1_7*p2_2 - 0.5*dV_mean2_7*p2_1 - n_e1_2*q2_1 - n_e2_2*q2_2;
+        turn7_f_x2_y = n_e1_2*t2_y[1] - n_e2_2*t1_y[1];
+    BEAM12P_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_3
     /* strains by motions of the parts */
     fu_real B_0[2], B_1[2];
-    B_0[0] = d_1_1*moved + d_1_2*moved_2;
-    B_1[0] = d_2_1*moved + d_2_2*moved_2;
-    B_0[1] = d_1_1*moved_3 + d_1_2*moved_4;
-    B_1[1] = d_2_1*moved_3 + d_2_2*moved_4;
+    BEAM12P_STRUCTURAL_PART_OF_STRAINS_BY_MOTIONS_OF_THE_PARTS
     const fu_real
-        B_0_6 = d_1_1*moved_5 + d_1_2*moved_6 + d_1_3*dg3_13,
-        B_1_6 = d_2_1*moved_5 + d_2_2*moved_6 + d_2_3*dg3_13,
-        B_2_6 = d_g3_k3*dg3_13,
-        B_0_7 = d_1_1*moved_7 + d_1_2*moved_8 + d_1_3*dg3_23,
-        B_1_7 = d_2_1*moved_7 + d_2_2*moved_8 + d_2_3*dg3_23,
-        B_2_7 = d_g3_k3*dg3_23,
         Bv = rate*t2_y[0] + v_t2_y[0],
         Bv_2 = rate*t1_y[0] + v_t1_y[0],
         Bv_3 = q1_2*rate + v_q1_2,

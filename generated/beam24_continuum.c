@@ -16,6 +16,37 @@
 #include "kernels.h"
 #include "beam24_stages.h"
 
+/* part of u = tau A dG/dt: of beam24_continuum_damping_tangent and 2 more */
+#define BEAM24_CONTINUUM_PART_OF_U_TAU_A_DG_DT \
+    const fu_real \
+        u_t0t0 = tau*(A[0]*dG_t0t0 + A[1]*dG_y0y0 + A[2]*dG_z0z0 + A[3]*dG_y1y1 + A[4]*dG_z1z1 + A[5]*dG_t1t1 + A[6]*dG_t2t2), \
+        u_t0y0 = tau*(A[7]*dG_t0y0 + A[8]*dG_y1t1), \
+        u_t0z0 = tau*(A[10]*dG_z1t1 + A[9]*dG_t0z0), \
+        u_t0y1 = tau*(A[11]*dG_t0y1 + A[12]*dG_y1t2 + A[8]*dG_y0t1), \
+        u_t0z1 = tau*(A[10]*dG_z0t1 + A[13]*dG_t0z1 + A[14]*dG_z1t2), \
+        u_t0t1 = tau*(A[15]*dG_t0t1 + A[16]*dG_y0y1 + A[17]*dG_z0z1 + A[18]*dG_t1t2), \
+        u_t0t2 = tau*(A[19]*dG_t0t2 + A[20]*dG_y1y1 + A[21]*dG_z1z1 + A[22]*dG_t1t1 + A[23]*dG_t2t2), \
+        u_y0y0 = tau*(A[1]*dG_t0t0 + A[24]*dG_y0y0 + A[25]*dG_z0z0 + A[26]*dG_y1y1 + A[27]*dG_z1z1 + A[28]*dG_t1t1 + A[29]*dG_t2t2), \
+        u_y0z0 = tau*(A[30]*dG_y0z0 + A[31]*dG_y1z1), \
+        u_y0y1 = tau*(A[16]*dG_t0t1 + A[32]*dG_y0y1 + A[33]*dG_z0z1 + A[34]*dG_t1t2), \
+        u_y0z1 = tau*(A[31]*dG_z0y1 + A[35]*dG_y0z1);
+
+/* part of u = tau A dG/dt: of beam24_continuum_damping_tangent and 2 more */
+#define BEAM24_CONTINUUM_PART_OF_U_TAU_A_DG_DT_2 \
+    const fu_real \
+        u_y0t2 = tau*(A[12]*dG_y1t1 + A[36]*dG_y0t2), \
+        u_z0z0 = tau*(A[25]*dG_y0y0 + A[2]*dG_t0t0 + A[37]*dG_z0z0 + A[38]*dG_y1y1 + A[39]*dG_z1z1 + A[40]*dG_t1t1 + A[41]*dG_t2t2), \
+        u_z0y1 = tau*(A[31]*dG_y0z1 + A[42]*dG_z0y1), \
+        u_z0z1 = tau*(A[17]*dG_t0t1 + A[33]*dG_y0y1 + A[43]*dG_z0z1 + A[44]*dG_t1t2);
+
+/* part of u = tau A dG/dt: of beam24_continuum_damping_tangent and 2 more */
+#define BEAM24_CONTINUUM_PART_OF_U_TAU_A_DG_DT_3 \
+    const fu_real \
+        u_z1t2 = tau*(A[14]*(dG_t0z1 + dG_z0t1) + A[57]*dG_z1t2), \
+        u_t1t1 = tau*(A[22]*dG_t0t2 + A[28]*dG_y0y0 + A[40]*dG_z0z0 + A[48]*dG_y1y1 + A[54]*dG_z1z1 + A[58]*dG_t2t2 + A[5]*dG_t0t0 + A[6]*dG_t1t1), \
+        u_t1t2 = tau*(A[18]*dG_t0t1 + A[34]*dG_y0y1 + A[44]*dG_z0z1 + A[59]*dG_t1t2), \
+        u_t2t2 = tau*(A[23]*dG_t0t2 + A[29]*dG_y0y0 + A[41]*dG_z0z0 + A[49]*dG_y1y1 + A[55]*dG_z1z1 + A[58]*dG_t1t1 + A[60]*dG_t2t2 + A[6]*dG_t0t0);
+
 /* u = A (G - G0): of beam24_continuum_energy and 3 more */
 #define BEAM24_CONTINUUM_U_A_G_G0 \
     const fu_real \
@@ -102,23 +133,10 @@
 
 /* u = tau A dG/dt: of beam24_continuum_damping_force and 1 more */
 #define BEAM24_CONTINUUM_U_TAU_A_DG_DT \
+    BEAM24_CONTINUUM_PART_OF_U_TAU_A_DG_DT \
+    const fu_real u_y0t1 = tau*(A[12]*dG_y1t2 + A[8]*(dG_t0y1 + dG_y0t1)); \
+    BEAM24_CONTINUUM_PART_OF_U_TAU_A_DG_DT_2 \
     const fu_real \
-        u_t0t0 = tau*(A[0]*dG_t0t0 + A[1]*dG_y0y0 + A[2]*dG_z0z0 + A[3]*dG_y1y1 + A[4]*dG_z1z1 + A[5]*dG_t1t1 + A[6]*dG_t2t2), \
-        u_t0y0 = tau*(A[7]*dG_t0y0 + A[8]*dG_y1t1), \
-        u_t0z0 = tau*(A[10]*dG_z1t1 + A[9]*dG_t0z0), \
-        u_t0y1 = tau*(A[11]*dG_t0y1 + A[12]*dG_y1t2 + A[8]*dG_y0t1), \
-        u_t0z1 = tau*(A[10]*dG_z0t1 + A[13]*dG_t0z1 + A[14]*dG_z1t2), \
-        u_t0t1 = tau*(A[15]*dG_t0t1 + A[16]*dG_y0y1 + A[17]*dG_z0z1 + A[18]*dG_t1t2), \
-        u_t0t2 = tau*(A[19]*dG_t0t2 + A[20]*dG_y1y1 + A[21]*dG_z1z1 + A[22]*dG_t1t1 + A[23]*dG_t2t2), \
-        u_y0y0 = tau*(A[1]*dG_t0t0 + A[24]*dG_y0y0 + A[25]*dG_z0z0 + A[26]*dG_y1y1 + A[27]*dG_z1z1 + A[28]*dG_t1t1 + A[29]*dG_t2t2), \
-        u_y0z0 = tau*(A[30]*dG_y0z0 + A[31]*dG_y1z1), \
-        u_y0y1 = tau*(A[16]*dG_t0t1 + A[32]*dG_y0y1 + A[33]*dG_z0z1 + A[34]*dG_t1t2), \
-        u_y0z1 = tau*(A[31]*dG_z0y1 + A[35]*dG_y0z1), \
-        u_y0t1 = tau*(A[12]*dG_y1t2 + A[8]*(dG_t0y1 + dG_y0t1)), \
-        u_y0t2 = tau*(A[12]*dG_y1t1 + A[36]*dG_y0t2), \
-        u_z0z0 = tau*(A[25]*dG_y0y0 + A[2]*dG_t0t0 + A[37]*dG_z0z0 + A[38]*dG_y1y1 + A[39]*dG_z1z1 + A[40]*dG_t1t1 + A[41]*dG_t2t2), \
-        u_z0y1 = tau*(A[31]*dG_y0z1 + A[42]*dG_z0y1), \
-        u_z0z1 = tau*(A[17]*dG_t0t1 + A[33]*dG_y0y1 + A[43]*dG_z0z1 + A[44]*dG_t1t2), \
         u_z0t1 = tau*(A[10]*(dG_t0z1 + dG_z0t1) + A[14]*dG_z1t2), \
         u_z0t2 = tau*(A[14]*dG_z1t1 + A[45]*dG_z0t2), \
         u_y1y1 = tau*(A[20]*dG_t0t2 + A[26]*dG_y0y0 + A[38]*dG_z0z0 + A[3]*dG_t0t0 + A[46]*dG_y1y1 + A[47]*dG_z1z1 + A[48]*dG_t1t1 + A[49]*dG_t2t2), \
@@ -126,11 +144,8 @@
         u_y1t1 = tau*(A[12]*dG_y0t2 + A[51]*dG_y1t1 + A[8]*dG_t0y0), \
         u_y1t2 = tau*(A[12]*(dG_t0y1 + dG_y0t1) + A[52]*dG_y1t2), \
         u_z1z1 = tau*(A[21]*dG_t0t2 + A[27]*dG_y0y0 + A[39]*dG_z0z0 + A[47]*dG_y1y1 + A[4]*dG_t0t0 + A[53]*dG_z1z1 + A[54]*dG_t1t1 + A[55]*dG_t2t2), \
-        u_z1t1 = tau*(A[10]*dG_t0z0 + A[14]*dG_z0t2 + A[56]*dG_z1t1), \
-        u_z1t2 = tau*(A[14]*(dG_t0z1 + dG_z0t1) + A[57]*dG_z1t2), \
-        u_t1t1 = tau*(A[22]*dG_t0t2 + A[28]*dG_y0y0 + A[40]*dG_z0z0 + A[48]*dG_y1y1 + A[54]*dG_z1z1 + A[58]*dG_t2t2 + A[5]*dG_t0t0 + A[6]*dG_t1t1), \
-        u_t1t2 = tau*(A[18]*dG_t0t1 + A[34]*dG_y0y1 + A[44]*dG_z0z1 + A[59]*dG_t1t2), \
-        u_t2t2 = tau*(A[23]*dG_t0t2 + A[29]*dG_y0y0 + A[41]*dG_z0z0 + A[49]*dG_y1y1 + A[55]*dG_z1z1 + A[58]*dG_t1t1 + A[60]*dG_t2t2 + A[6]*dG_t0t0);
+        u_z1t1 = tau*(A[10]*dG_t0z0 + A[14]*dG_z0t2 + A[56]*dG_z1t1); \
+    BEAM24_CONTINUUM_PART_OF_U_TAU_A_DG_DT_3
 
 #ifndef FU_BLOCK
 /* constants of the law from the stiffness of the section (eq 7; eq 5-8) */
@@ -537,13 +552,7 @@ void beam24_continuum_discrete_force(fu_real l, const fu_real *e, const fu_real 
         mean_t1t1 = 0.5*G_t1t1 + 0.5*G_t1t1_2,
         mean_t1t2 = 0.5*G_t1t2 + 0.5*G_t1t2_2,
         mean_t2t2 = 0.5*G_t2t2 + 0.5*G_t2t2_2;
-    FU_EACH(i, 3, mean_t0[i] = 0.5*chordnext_4[i] + 0.5*chordnow_4[i];)
-    FU_EACH(i, 3, mean_y0[i] = 0.5*next_y0[i] + 0.5*now_y0[i];)
-    FU_EACH(i, 3, mean_z0[i] = 0.5*next_z0[i] + 0.5*now_z0[i];)
-    FU_EACH(i, 3, mean_y1[i] = 0.5*next_y1[i] + 0.5*now_y1[i];)
-    FU_EACH(i, 3, mean_z1[i] = 0.5*next_z1[i] + 0.5*now_z1[i];)
-    FU_EACH(i, 3, mean_t1[i] = 0.5*next_t1[i] + 0.5*now_t1[i];)
-    FU_EACH(i, 3, mean_t2[i] = 0.5*next_t2[i] + 0.5*now_t2[i];)
+    BEAM24_PART_OF_MEAN_STRAIN_AND_VECTORS
     /* u = A (G - G0) */
     const fu_real
         u_t0t0 = A[0]*mean_t0t0 + A[1]*mean_y0y0 + A[2]*mean_z0z0 + A[3]*mean_y1y1 + A[4]*mean_z1z1 + A[5]*mean_t1t1 + A[6]*mean_t2t2,
@@ -623,24 +632,9 @@ void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real
     BEAM24_CONTINUUM_RATES_OF_THE_GRAM_PRODUCTS
     /* u = tau A dG/dt */
     fu_real u_yt1[2], u_zt1[2];
-    const fu_real
-        u_t0t0 = tau*(A[0]*dG_t0t0 + A[1]*dG_y0y0 + A[2]*dG_z0z0 + A[3]*dG_y1y1 + A[4]*dG_z1z1 + A[5]*dG_t1t1 + A[6]*dG_t2t2),
-        u_t0y0 = tau*(A[7]*dG_t0y0 + A[8]*dG_y1t1),
-        u_t0z0 = tau*(A[10]*dG_z1t1 + A[9]*dG_t0z0),
-        u_t0y1 = tau*(A[11]*dG_t0y1 + A[12]*dG_y1t2 + A[8]*dG_y0t1),
-        u_t0z1 = tau*(A[10]*dG_z0t1 + A[13]*dG_t0z1 + A[14]*dG_z1t2),
-        u_t0t1 = tau*(A[15]*dG_t0t1 + A[16]*dG_y0y1 + A[17]*dG_z0z1 + A[18]*dG_t1t2),
-        u_t0t2 = tau*(A[19]*dG_t0t2 + A[20]*dG_y1y1 + A[21]*dG_z1z1 + A[22]*dG_t1t1 + A[23]*dG_t2t2),
-        u_y0y0 = tau*(A[1]*dG_t0t0 + A[24]*dG_y0y0 + A[25]*dG_z0z0 + A[26]*dG_y1y1 + A[27]*dG_z1z1 + A[28]*dG_t1t1 + A[29]*dG_t2t2),
-        u_y0z0 = tau*(A[30]*dG_y0z0 + A[31]*dG_y1z1),
-        u_y0y1 = tau*(A[16]*dG_t0t1 + A[32]*dG_y0y1 + A[33]*dG_z0z1 + A[34]*dG_t1t2),
-        u_y0z1 = tau*(A[31]*dG_z0y1 + A[35]*dG_y0z1);
+    BEAM24_CONTINUUM_PART_OF_U_TAU_A_DG_DT
     u_yt1[0] = tau*(A[12]*dG_y1t2 + A[8]*(dG_t0y1 + dG_y0t1));
-    const fu_real
-        u_y0t2 = tau*(A[12]*dG_y1t1 + A[36]*dG_y0t2),
-        u_z0z0 = tau*(A[25]*dG_y0y0 + A[2]*dG_t0t0 + A[37]*dG_z0z0 + A[38]*dG_y1y1 + A[39]*dG_z1z1 + A[40]*dG_t1t1 + A[41]*dG_t2t2),
-        u_z0y1 = tau*(A[31]*dG_y0z1 + A[42]*dG_z0y1),
-        u_z0z1 = tau*(A[17]*dG_t0t1 + A[33]*dG_y0y1 + A[43]*dG_z0z1 + A[44]*dG_t1t2);
+    BEAM24_CONTINUUM_PART_OF_U_TAU_A_DG_DT_2
     u_zt1[0] = tau*(A[10]*(dG_t0z1 + dG_z0t1) + A[14]*dG_z1t2);
     const fu_real
         u_z0t2 = tau*(A[14]*dG_z1t1 + A[45]*dG_z0t2),
@@ -651,11 +645,7 @@ void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real
         u_y1t2 = tau*(A[12]*(dG_t0y1 + dG_y0t1) + A[52]*dG_y1t2),
         u_z1z1 = tau*(A[21]*dG_t0t2 + A[27]*dG_y0y0 + A[39]*dG_z0z0 + A[47]*dG_y1y1 + A[4]*dG_t0t0 + A[53]*dG_z1z1 + A[54]*dG_t1t1 + A[55]*dG_t2t2);
     u_zt1[1] = tau*(A[10]*dG_t0z0 + A[14]*dG_z0t2 + A[56]*dG_z1t1);
-    const fu_real
-        u_z1t2 = tau*(A[14]*(dG_t0z1 + dG_z0t1) + A[57]*dG_z1t2),
-        u_t1t1 = tau*(A[22]*dG_t0t2 + A[28]*dG_y0y0 + A[40]*dG_z0z0 + A[48]*dG_y1y1 + A[54]*dG_z1z1 + A[58]*dG_t2t2 + A[5]*dG_t0t0 + A[6]*dG_t1t1),
-        u_t1t2 = tau*(A[18]*dG_t0t1 + A[34]*dG_y0y1 + A[44]*dG_z0z1 + A[59]*dG_t1t2),
-        u_t2t2 = tau*(A[23]*dG_t0t2 + A[29]*dG_y0y0 + A[41]*dG_z0z0 + A[49]*dG_y1y1 + A[55]*dG_z1z1 + A[58]*dG_t1t1 + A[60]*dG_t2t2 + A[6]*dG_t0t0);
+    BEAM24_CONTINUUM_PART_OF_U_TAU_A_DG_DT_3
     /* b = tau (dc/dt + rate c) */
     fu_real b_t0[3], b_y0[3], b_z0[3], b_y1[3], b_z1[3], b_t1[3], b_t2[3];
     FU_EACH(i, 3, b_t0[i] = tau*(chord4[i]*rate + chordd4[i]);)
@@ -1269,28 +1259,8 @@ void beam24_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, con
     /* strain vectors */
     const fu_real
         w = 1.0/l,
-        X = 2.0*w*x - 1.0,
-        chord4_x = w*(-e[0] + e[12]),
-        chord4_y = w*(e[13] - e[1]),
-        chord4_z = w*(e[14] - e[2]),
-        y0_x = 0.5*e[18] + 0.5*e[6],
-        y0_y = 0.5*e[19] + 0.5*e[7],
-        y0_z = 0.5*e[20] + 0.5*e[8],
-        z0_x = 0.5*e[21] + 0.5*e[9],
-        z0_y = 0.5*e[10] + 0.5*e[22],
-        z0_z = 0.5*e[11] + 0.5*e[23],
-        y1_x = 0.5*e[18] - 0.5*e[6],
-        y1_y = 0.5*e[19] - 0.5*e[7],
-        y1_z = 0.5*e[20] - 0.5*e[8],
-        z1_x = 0.5*e[21] - 0.5*e[9],
-        z1_y = -0.5*e[10] + 0.5*e[22],
-        z1_z = -0.5*e[11] + 0.5*e[23],
-        t1_x = 0.5*e[15] - 0.5*e[3],
-        t1_y = 0.5*e[16] - 0.5*e[4],
-        t1_z = 0.5*e[17] - 0.5*e[5],
-        t2_x = -chord4_x + 0.5*e[15] + 0.5*e[3],
-        t2_y = -chord4_y + 0.5*e[16] + 0.5*e[4],
-        t2_z = -chord4_z + 0.5*e[17] + 0.5*e[5];
+        X = 2.0*w*x - 1.0;
+    BEAM24_PART_OF_STRAIN_VECTORS
     /* columns of F as polynomials in y and z */
     const fu_real
         Fx_0_x = X*t1_x + chord4_x + t2_x*(1.5*X*X - 0.5),

@@ -1122,13 +1122,7 @@ void beam24_continuum_curved_discrete_force(fu_real l, const fu_real *e, const f
         mean_t1t1 = 0.5*g_t1t1 + 0.5*g_t1t1_2,
         mean_t1t2 = 0.5*g_t1t2 + 0.5*g_t1t2_2,
         mean_t2t2 = 0.5*g_t2t2 + 0.5*g_t2t2_2;
-    FU_EACH(i, 3, mean_t0[i] = 0.5*chordnext_4[i] + 0.5*chordnow_4[i];)
-    FU_EACH(i, 3, mean_y0[i] = 0.5*next_y0[i] + 0.5*now_y0[i];)
-    FU_EACH(i, 3, mean_z0[i] = 0.5*next_z0[i] + 0.5*now_z0[i];)
-    FU_EACH(i, 3, mean_y1[i] = 0.5*next_y1[i] + 0.5*now_y1[i];)
-    FU_EACH(i, 3, mean_z1[i] = 0.5*next_z1[i] + 0.5*now_z1[i];)
-    FU_EACH(i, 3, mean_t1[i] = 0.5*next_t1[i] + 0.5*now_t1[i];)
-    FU_EACH(i, 3, mean_t2[i] = 0.5*next_t2[i] + 0.5*now_t2[i];)
+    BEAM24_PART_OF_MEAN_STRAIN_AND_VECTORS
     /* u = A (G - G0) */
     const fu_real
         u_t0t0 = A[61]*mean_t0t0 + A[62]*mean_t0y0 + A[63]*mean_t0z0 + A[64]*mean_t0y1 + A[65]*mean_t0z1 + A[66]*mean_t0t1 + A[67]*mean_t0t2 + A[68]*mean_y0y0 + A[69]*mean_y0z0 + A[70]*mean_y0y1 + A[71]*mean_y0z1 + A[72]*mean_y0t1 + A[73]*mean_y0t2 + A[74]*mean_z0z0 + A[75]*mean_z0y1 + A[76]*mean_z0z1 + A[77]*mean_z0t1 + A[78]*mean_z0t2 + A[79]*mean_y1y1 + A[80]*mean_y1z1 + A[81]*mean_y1t1 + A[82]*mean_y1t2 + A[83]*mean_z1z1 + A[84]*mean_z1t1 + A[85]*mean_z1t2 + A[86]*mean_t1t1 + A[87]*mean_t1t2 + A[88]*mean_t2t2,
@@ -1224,28 +1218,9 @@ void beam24_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real 
     /* strain vectors */
     const fu_real
         w = 1.0/l,
-        X = 2.0*w*x - 1.0,
-        chord4_x = w*(-e[0] + e[12]),
-        chord4_y = w*(e[13] - e[1]),
-        chord4_z = w*(e[14] - e[2]),
-        y0_x = 0.5*e[18] + 0.5*e[6],
-        y0_y = 0.5*e[19] + 0.5*e[7],
-        y0_z = 0.5*e[20] + 0.5*e[8],
-        z0_x = 0.5*e[21] + 0.5*e[9],
-        z0_y = 0.5*e[10] + 0.5*e[22],
-        z0_z = 0.5*e[11] + 0.5*e[23],
-        y1_x = 0.5*e[18] - 0.5*e[6],
-        y1_y = 0.5*e[19] - 0.5*e[7],
-        y1_z = 0.5*e[20] - 0.5*e[8],
-        z1_x = 0.5*e[21] - 0.5*e[9],
-        z1_y = -0.5*e[10] + 0.5*e[22],
-        z1_z = -0.5*e[11] + 0.5*e[23],
-        t1_x = 0.5*e[15] - 0.5*e[3],
-        t1_y = 0.5*e[16] - 0.5*e[4],
-        t1_z = 0.5*e[17] - 0.5*e[5],
-        t2_x = -chord4_x + 0.5*e[15] + 0.5*e[3],
-        t2_y = -chord4_y + 0.5*e[16] + 0.5*e[4],
-        t2_z = -chord4_z + 0.5*e[17] + 0.5*e[5],
+        X = 2.0*w*x - 1.0;
+    BEAM24_PART_OF_STRAIN_VECTORS
+    const fu_real
         chordr0_4_x = w*(-e0[0] + e0[12]),
         chordr0_4_y = w*(e0[13] - e0[1]),
         chordr0_4_z = w*(e0[14] - e0[2]),

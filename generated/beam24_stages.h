@@ -5,10 +5,19 @@
 #ifndef FUNICULAR_BEAM24_STAGES_H
 #define FUNICULAR_BEAM24_STAGES_H
 
-/* strain vectors: of beam24_continuum_energy and 1 more */
-#define BEAM24_STRAIN_VECTORS \
+/* part of mean strain and vectors: of beam24_continuum_discrete_force and 1 more */
+#define BEAM24_PART_OF_MEAN_STRAIN_AND_VECTORS \
+    FU_EACH(i, 3, mean_t0[i] = 0.5*chordnext_4[i] + 0.5*chordnow_4[i];) \
+    FU_EACH(i, 3, mean_y0[i] = 0.5*next_y0[i] + 0.5*now_y0[i];) \
+    FU_EACH(i, 3, mean_z0[i] = 0.5*next_z0[i] + 0.5*now_z0[i];) \
+    FU_EACH(i, 3, mean_y1[i] = 0.5*next_y1[i] + 0.5*now_y1[i];) \
+    FU_EACH(i, 3, mean_z1[i] = 0.5*next_z1[i] + 0.5*now_z1[i];) \
+    FU_EACH(i, 3, mean_t1[i] = 0.5*next_t1[i] + 0.5*now_t1[i];) \
+    FU_EACH(i, 3, mean_t2[i] = 0.5*next_t2[i] + 0.5*now_t2[i];)
+
+/* part of strain vectors: of beam24_continuum_section_forces and 3 more */
+#define BEAM24_PART_OF_STRAIN_VECTORS \
     const fu_real \
-        w = 1.0/l, \
         chord4_x = w*(-e[0] + e[12]), \
         chord4_y = w*(e[13] - e[1]), \
         chord4_z = w*(e[14] - e[2]), \
@@ -30,6 +39,11 @@
         t2_x = -chord4_x + 0.5*e[15] + 0.5*e[3], \
         t2_y = -chord4_y + 0.5*e[16] + 0.5*e[4], \
         t2_z = -chord4_z + 0.5*e[17] + 0.5*e[5];
+
+/* strain vectors: of beam24_continuum_energy and 1 more */
+#define BEAM24_STRAIN_VECTORS \
+    const fu_real w = 1.0/l; \
+    BEAM24_PART_OF_STRAIN_VECTORS
 
 /* Gram products G - G0: of beam24_continuum_energy and 1 more */
 #define BEAM24_GRAM_PRODUCTS_G_G0 \

@@ -13,6 +13,801 @@
 #include "kernels.h"
 #include "beam24_stages.h"
 
+/* part of frames, strains: of beam24_structural_energy and 3 more */
+#define BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS \
+    const fu_real \
+        q1_1 = e[3]*t_x[0] + e[4]*t_y[0] + e[5]*t_z[0], \
+        q1_2 = e[3]*t_x[1] + e[4]*t_y[1] + e[5]*t_z[1], \
+        q1_3 = e[3]*t_x[2] + e[4]*t_y[2] + e[5]*t_z[2], \
+        q2_1 = e[15]*t_x[3] + e[16]*t_y[3] + e[17]*t_z[3], \
+        q2_2 = e[15]*t_x[4] + e[16]*t_y[4] + e[17]*t_z[4], \
+        q2_3 = e[15]*t_x[5] + e[16]*t_y[5] + e[17]*t_z[5]; \
+    FU_EACH(g, 6, \
+        p[g] = t_x[g]*xm_x + t_y[g]*xm_y + t_z[g]*xm_z;) \
+    const fu_real \
+        inv_turn = 1.0/(t_x[0]*t_x[3] + t_y[0]*t_y[3] + t_z[0]*t_z[3] + t_x[1]*t_x[4] + t_y[1]*t_y[4] + t_z[1]*t_z[4] + t_x[2]*t_x[5] + t_y[2]*t_y[5] + t_z[2]*t_z[5] + 1.0), \
+        g1 = inv_turn*(-t_x[1]*t_x[5] - t_y[1]*t_y[5] - t_z[1]*t_z[5] + t_x[4]*t_x[2] + t_y[4]*t_y[2] + t_z[4]*t_z[2]), \
+        g2 = inv_turn*(t_x[0]*t_x[5] + t_y[0]*t_y[5] + t_z[0]*t_z[5] - t_x[3]*t_x[2] - t_y[3]*t_y[2] - t_z[3]*t_z[2]), \
+        g3 = inv_turn*(-t_x[0]*t_x[4] - t_y[0]*t_y[4] - t_z[0]*t_z[4] + t_x[3]*t_x[1] + t_y[3]*t_y[1] + t_z[3]*t_z[1]);
+
+/* part of frames, strains: of beam24_structural_energy and 6 more */
+#define BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_2 \
+    const fu_real \
+        gg = g1*g1 + g2*g2 + g3*g3, \
+        secant = FU_SQRT(gg + 1.0), \
+        inv_secant = 1.0/(secant + 1.0), \
+        along = inv_secant*(g1*mean1 + g2*mean2 + g3*mean3), \
+        inv_arc = 1.0/(gg*(225.0*gg + 1050.0) + 945.0), \
+        arc = 2.0*inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0), \
+        m1 = -along*g1 + mean1*secant, \
+        m2 = -along*g2 + mean2*secant, \
+        m3 = -along*g3 + mean3*secant;
+
+/* part of frames, strains: of beam24_structural_energy and 2 more */
+#define BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_3 \
+    const fu_real \
+        across = 0.5*e[6]*e[6] + 0.5*e[7]*e[7] + 0.5*e[8]*e[8], \
+        across_2 = 0.5*e[10]*e[10] + 0.5*e[11]*e[11] + 0.5*e[9]*e[9], \
+        across_3 = e[10]*e[7] + e[11]*e[8] + e[6]*e[9], \
+        across_4 = 0.5*e[18]*e[18] + 0.5*e[19]*e[19] + 0.5*e[20]*e[20], \
+        across_5 = 0.5*e[21]*e[21] + 0.5*e[22]*e[22] + 0.5*e[23]*e[23], \
+        across_6 = e[18]*e[21] + e[19]*e[22] + e[20]*e[23];
+
+/* part of forces on the parts: of beam24_structural_elastic_force and 3 more */
+#define BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS \
+    const fu_real \
+        d_mean1_along = g1*inv_secant, \
+        d_mean1_m1 = -d_mean1_along*g1 + secant, \
+        d_mean1_m2 = -(d_mean1_along*g2), \
+        d_mean1_m3 = -(d_mean1_along*g3), \
+        d_mean2_along = g2*inv_secant, \
+        d_mean2_m1 = -(d_mean2_along*g1), \
+        d_mean2_m2 = -d_mean2_along*g2 + secant, \
+        d_mean2_m3 = -(d_mean2_along*g3), \
+        d_mean3_along = g3*inv_secant, \
+        d_mean3_m1 = -(d_mean3_along*g1), \
+        d_mean3_m2 = -(d_mean3_along*g2), \
+        d_mean3_m3 = -d_mean3_along*g3 + secant, \
+        d_g1_gg = 2.0*g1, \
+        d_g1_secant = 0.5*d_g1_gg/secant, \
+        d_g1_inv_secant = -(d_g1_secant*inv_secant*inv_secant), \
+        d_g1_along = d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean1, \
+        d_g1_m1 = -along - d_g1_along*g1 + d_g1_secant*mean1, \
+        d_g1_m2 = -d_g1_along*g2 + d_g1_secant*mean2, \
+        d_g1_m3 = -d_g1_along*g3 + d_g1_secant*mean3;
+
+/* part of forces on the parts: of beam24_structural_elastic_force and 3 more */
+#define BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_2 \
+    const fu_real \
+        d_g2_inv_secant = -(d_g2_secant*inv_secant*inv_secant), \
+        d_g2_along = d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean2, \
+        d_g2_m1 = -d_g2_along*g1 + d_g2_secant*mean1, \
+        d_g2_m2 = -along - d_g2_along*g2 + d_g2_secant*mean2, \
+        d_g2_m3 = -d_g2_along*g3 + d_g2_secant*mean3;
+
+/* part of forces on the parts: of beam24_structural_elastic_force and 3 more */
+#define BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_3 \
+    const fu_real \
+        d_g3_inv_secant = -(d_g3_secant*inv_secant*inv_secant), \
+        d_g3_along = d_g3_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean3, \
+        d_g3_m1 = -d_g3_along*g1 + d_g3_secant*mean1, \
+        d_g3_m2 = -d_g3_along*g2 + d_g3_secant*mean2, \
+        d_g3_m3 = -along - d_g3_along*g3 + d_g3_secant*mean3, \
+        d_g1_inv_arc = -(d_g1_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)), \
+        d_g1_arc = 2.0*d_g1_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0), \
+        d_g1_k1 = arc + d_g1_arc*g1, \
+        d_g1_k2 = d_g1_arc*g2, \
+        d_g1_k3 = d_g1_arc*g3;
+
+/* part of forces on the parts: of beam24_structural_elastic_force and 2 more */
+#define BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_4 \
+    const fu_real \
+        d_g2_inv_arc = -(d_g2_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)), \
+        d_g2_arc = 2.0*d_g2_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g2_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0), \
+        d_g2_k1 = d_g2_arc*g1, \
+        d_g2_k2 = arc + d_g2_arc*g2, \
+        d_g2_k3 = d_g2_arc*g3, \
+        d_g3_inv_arc = -(d_g3_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)), \
+        d_g3_arc = 2.0*d_g3_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0), \
+        d_g3_k1 = d_g3_arc*g1, \
+        d_g3_k2 = d_g3_arc*g2, \
+        d_g3_k3 = arc + d_g3_arc*g3;
+
+/* part of forces on the parts: of beam24_structural_elastic_force and 3 more */
+#define BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_5 \
+    const fu_real \
+        V_1 = F_1*d_mean1_m1 + F_2*d_mean1_m2 + F_3*d_mean1_m3, \
+        V_2 = F_1*d_mean2_m1 + F_2*d_mean2_m2 + F_3*d_mean2_m3, \
+        V_3 = F_1*d_mean3_m1 + F_2*d_mean3_m2 + F_3*d_mean3_m3, \
+        V_4 = F_1*d_g1_m1 + F_2*d_g1_m2 + F_3*d_g1_m3 + d_g1_k1*n_k1 + d_g1_k2*n_k2 + d_g1_k3*n_k3, \
+        V_5 = F_1*d_g2_m1 + F_2*d_g2_m2 + F_3*d_g2_m3 + d_g2_k1*n_k1 + d_g2_k2*n_k2 + d_g2_k3*n_k3, \
+        V_6 = F_1*d_g3_m1 + F_2*d_g3_m2 + F_3*d_g3_m3 + d_g3_k1*n_k1 + d_g3_k2*n_k2 + d_g3_k3*n_k3;
+
+/* part of forces on the parts: of beam24_structural_elastic_force and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_6 \
+    const fu_real \
+        dg1_11 = -0.5*g1*g1 - 0.5, \
+        dg2_11 = -0.5*g1*g2 + 0.5*g3, \
+        dg3_11 = -0.5*g1*g3 - 0.5*g2, \
+        dg1_12 = -0.5*g1*g2 - 0.5*g3, \
+        dg2_12 = -0.5*g2*g2 - 0.5, \
+        dg3_12 = 0.5*g1 - 0.5*g2*g3, \
+        dg1_13 = -0.5*g1*g3 + 0.5*g2, \
+        dg2_13 = -0.5*g1 - 0.5*g2*g3, \
+        dg3_13 = -0.5*g3*g3 - 0.5, \
+        dg1_21 = 0.5*g1*g1 + 0.5, \
+        dg2_21 = 0.5*g1*g2 + 0.5*g3, \
+        dg3_21 = 0.5*g1*g3 - 0.5*g2, \
+        dg1_22 = 0.5*g1*g2 - 0.5*g3, \
+        dg2_22 = 0.5*g2*g2 + 0.5, \
+        dg3_22 = 0.5*g1 + 0.5*g2*g3, \
+        dg1_23 = 0.5*g1*g3 + 0.5*g2, \
+        dg2_23 = -0.5*g1 + 0.5*g2*g3, \
+        dg3_23 = 0.5*g3*g3 + 0.5;
+
+/* part of forces on the parts: of beam24_structural_elastic_force and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_7 \
+    const fu_real \
+        f_x1_x = n_e1_1*t_x[0] + n_e2_1*t_x[1] + n_e3_1*t_x[2], \
+        f_x1_y = n_e1_1*t_y[0] + n_e2_1*t_y[1] + n_e3_1*t_y[2], \
+        f_x1_z = n_e1_1*t_z[0] + n_e2_1*t_z[1] + n_e3_1*t_z[2], \
+        f_xm_x = 0.5*V_1*t_x[0] + 0.5*V_1*t_x[3] + 0.5*V_2*t_x[1] + 0.5*V_2*t_x[4] + 0.5*V_3*t_x[2] + 0.5*V_3*t_x[5], \
+        f_xm_y = 0.5*V_1*t_y[0] + 0.5*V_1*t_y[3] + 0.5*V_2*t_y[1] + 0.5*V_2*t_y[4] + 0.5*V_3*t_y[2] + 0.5*V_3*t_y[5], \
+        f_xm_z = 0.5*V_1*t_z[0] + 0.5*V_1*t_z[3] + 0.5*V_2*t_z[1] + 0.5*V_2*t_z[4] + 0.5*V_3*t_z[2] + 0.5*V_3*t_z[5], \
+        f_x2_x = n_e1_2*t_x[3] + n_e2_2*t_x[4] + n_e3_2*t_x[5], \
+        f_x2_y = n_e1_2*t_y[3] + n_e2_2*t_y[4] + n_e3_2*t_y[5], \
+        f_x2_z = n_e1_2*t_z[3] + n_e2_2*t_z[4] + n_e3_2*t_z[5];
+
+/* part of forces on the parts: of beam24_structural_elastic_force and 2 more */
+#define BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_8 \
+    moment_1[0] = 0.5*V_2*p[2] - 0.5*V_3*p[1] + V_4*dg1_11 + V_5*dg2_11 + V_6*dg3_11 + n_e2_1*q1_3 - n_e3_1*q1_2; \
+    moment_2[0] = -0.5*V_1*p[2] + 0.5*V_3*p[0] + V_4*dg1_12 + V_5*dg2_12 + V_6*dg3_12 - n_e1_1*q1_3 + n_e3_1*q1_1; \
+    moment_3[0] = 0.5*V_1*p[1] - 0.5*V_2*p[0] + V_4*dg1_13 + V_5*dg2_13 + V_6*dg3_13 + n_e1_1*q1_2 - n_e2_1*q1_1; \
+    moment_1[1] = 0.5*V_2*p[5] - 0.5*V_3*p[4] + V_4*dg1_21 + V_5*dg2_21 + V_6*dg3_21 + n_e2_2*q2_3 - n_e3_2*q2_2; \
+    moment_2[1] = -0.5*V_1*p[5] + 0.5*V_3*p[3] + V_4*dg1_22 + V_5*dg2_22 + V_6*dg3_22 - n_e1_2*q2_3 + n_e3_2*q2_1; \
+    moment_3[1] = 0.5*V_1*p[4] - 0.5*V_2*p[3] + V_4*dg1_23 + V_5*dg2_23 + V_6*dg3_23 + n_e1_2*q2_2 - n_e2_2*q2_1;
+
+/* part of frames, strains: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_4 \
+    const fu_real \
+        q1_1 = e[3]*t[0][0] + e[4]*t[0][1] + e[5]*t[0][2], \
+        q1_2 = e[3]*t[1][0] + e[4]*t[1][1] + e[5]*t[1][2], \
+        q1_3 = e[3]*t[2][0] + e[4]*t[2][1] + e[5]*t[2][2], \
+        q2_1 = e[15]*t[3][0] + e[16]*t[3][1] + e[17]*t[3][2], \
+        q2_2 = e[15]*t[4][0] + e[16]*t[4][1] + e[17]*t[4][2], \
+        q2_3 = e[15]*t[5][0] + e[16]*t[5][1] + e[17]*t[5][2]; \
+    FU_EACH(g, 6, \
+        p[g] = t[g][0]*xm[0] + t[g][1]*xm[1] + t[g][2]*xm[2];) \
+    const fu_real \
+        inv_turn = 1.0/(t[0][0]*t[3][0] + t[0][1]*t[3][1] + t[0][2]*t[3][2] + t[1][0]*t[4][0] + t[1][1]*t[4][1] + t[1][2]*t[4][2] + t[2][0]*t[5][0] + t[2][1]*t[5][1] + t[2][2]*t[5][2] + 1.0), \
+        g1 = inv_turn*(-t[1][0]*t[5][0] - t[1][1]*t[5][1] - t[1][2]*t[5][2] + t[4][0]*t[2][0] + t[4][1]*t[2][1] + t[4][2]*t[2][2]), \
+        g2 = inv_turn*(t[0][0]*t[5][0] + t[0][1]*t[5][1] + t[0][2]*t[5][2] - t[3][0]*t[2][0] - t[3][1]*t[2][1] - t[3][2]*t[2][2]), \
+        g3 = inv_turn*(-t[0][0]*t[4][0] - t[0][1]*t[4][1] - t[0][2]*t[4][2] + t[3][0]*t[1][0] + t[3][1]*t[1][1] + t[3][2]*t[1][2]);
+
+/* part of forces on the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_9 \
+    const fu_real \
+        d_1_1 = d_m1_stretch*d_mean1_m1 + d_m2_stretch*d_mean1_m2 + d_m3_stretch*d_mean1_m3, \
+        d_1_2 = d_m1_stretch*d_mean2_m1 + d_m2_stretch*d_mean2_m2 + d_m3_stretch*d_mean2_m3, \
+        d_1_3 = d_m1_stretch*d_mean3_m1 + d_m2_stretch*d_mean3_m2 + d_m3_stretch*d_mean3_m3, \
+        d_1_4 = d_g1_m1*d_m1_stretch + d_g1_m2*d_m2_stretch + d_g1_m3*d_m3_stretch, \
+        d_1_5 = d_g2_m1*d_m1_stretch + d_g2_m2*d_m2_stretch + d_g2_m3*d_m3_stretch, \
+        d_1_6 = d_g3_m1*d_m1_stretch + d_g3_m2*d_m2_stretch + d_g3_m3*d_m3_stretch; \
+    FU_EACH(g, 2, \
+        d_1[g] = d_m1_shear[g]*d_mean1_m1 + d_m2_shear[g]*d_mean1_m2 + d_m3_shear[g]*d_mean1_m3; \
+        d_2[g] = d_m1_shear[g]*d_mean2_m1 + d_m2_shear[g]*d_mean2_m2 + d_m3_shear[g]*d_mean2_m3; \
+        d_3[g] = d_m1_shear[g]*d_mean3_m1 + d_m2_shear[g]*d_mean3_m2 + d_m3_shear[g]*d_mean3_m3; \
+        d_4[g] = d_g1_m1*d_m1_shear[g] + d_g1_m2*d_m2_shear[g] + d_g1_m3*d_m3_shear[g]; \
+        d_5[g] = d_g2_m1*d_m1_shear[g] + d_g2_m2*d_m2_shear[g] + d_g2_m3*d_m3_shear[g]; \
+        d_6[g] = d_g3_m1*d_m1_shear[g] + d_g3_m2*d_m2_shear[g] + d_g3_m3*d_m3_shear[g];) \
+    const fu_real \
+        F_1 = d_m1_shear[0]*n_e2_m + d_m1_shear[1]*n_e3_m + d_m1_stretch*n_e1_m, \
+        F_2 = d_m2_shear[0]*n_e2_m + d_m2_shear[1]*n_e3_m + d_m2_stretch*n_e1_m, \
+        F_3 = d_m3_shear[0]*n_e2_m + d_m3_shear[1]*n_e3_m + d_m3_stretch*n_e1_m;
+
+/* part of derivatives at constant resultants, over motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS \
+    const fu_real \
+        d_m1_d_m1_stretch = d_m1_inv_stretch*m1 + inv_stretch, \
+        d_m1_d_m1_inv_stretch = -d_m1_d_m1_stretch*inv_stretch*inv_stretch - 2.0*d_m1_inv_stretch*d_m1_stretch*inv_stretch, \
+        d_m1_d_m1_cosine = d_m1_d_m1_inv_stretch*m1 + 2.0*d_m1_inv_stretch, \
+        d_m1_d_m1_larger = -d_m1_cosine*d_m1_larger*larger - 0.5*d_m1_d_m1_cosine*larger*larger, \
+        d_m1_d_m1_shear2 = d_m1_d_m1_larger*m2, \
+        d_m1_d_m1_shear3 = d_m1_d_m1_larger*m3, \
+        d_m1_F_1 = d_m1_d_m1_shear2*n_e2_m + d_m1_d_m1_shear3*n_e3_m + d_m1_d_m1_stretch*n_e1_m, \
+        d_m2_d_m1_stretch = d_m2_inv_stretch*m1, \
+        d_m2_d_m1_inv_stretch = -2.0*d_m1_stretch*d_m2_inv_stretch*inv_stretch - d_m2_d_m1_stretch*inv_stretch*inv_stretch, \
+        d_m2_d_m1_cosine = d_m2_d_m1_inv_stretch*m1 + d_m2_inv_stretch, \
+        d_m2_d_m1_larger = -d_m1_cosine*d_m2_larger*larger - 0.5*d_m2_d_m1_cosine*larger*larger, \
+        d_m2_d_m1_shear2 = d_m1_larger + d_m2_d_m1_larger*m2, \
+        d_m2_d_m1_shear3 = d_m2_d_m1_larger*m3, \
+        d_m2_F_1 = d_m2_d_m1_shear2*n_e2_m + d_m2_d_m1_shear3*n_e3_m + d_m2_d_m1_stretch*n_e1_m, \
+        d_m2_d_m2_stretch = A[11]*A[11]*inv_stretch + A[11]*d_m2_inv_stretch*shared2, \
+        d_m2_d_m2_inv_stretch = -d_m2_d_m2_stretch*inv_stretch*inv_stretch - 2.0*d_m2_inv_stretch*d_m2_stretch*inv_stretch, \
+        d_m2_d_m2_cosine = d_m2_d_m2_inv_stretch*m1, \
+        d_m2_d_m2_larger = -d_m2_cosine*d_m2_larger*larger - 0.5*d_m2_d_m2_cosine*larger*larger, \
+        d_m2_d_m2_shear2 = d_m2_d_m2_larger*m2 + 2.0*d_m2_larger, \
+        d_m2_d_m2_shear3 = d_m2_d_m2_larger*m3, \
+        d_m2_F_2 = d_m2_d_m2_shear2*n_e2_m + d_m2_d_m2_shear3*n_e3_m + d_m2_d_m2_stretch*n_e1_m, \
+        d_m3_d_m1_stretch = d_m3_inv_stretch*m1, \
+        d_m3_d_m1_inv_stretch = -2.0*d_m1_stretch*d_m3_inv_stretch*inv_stretch - d_m3_d_m1_stretch*inv_stretch*inv_stretch, \
+        d_m3_d_m1_cosine = d_m3_d_m1_inv_stretch*m1 + d_m3_inv_stretch, \
+        d_m3_d_m1_larger = -d_m1_cosine*d_m3_larger*larger - 0.5*d_m3_d_m1_cosine*larger*larger, \
+        d_m3_d_m1_shear2 = d_m3_d_m1_larger*m2, \
+        d_m3_d_m1_shear3 = d_m1_larger + d_m3_d_m1_larger*m3, \
+        d_m3_F_1 = d_m3_d_m1_shear2*n_e2_m + d_m3_d_m1_shear3*n_e3_m + d_m3_d_m1_stretch*n_e1_m, \
+        d_m3_d_m2_stretch = A[11]*d_m3_inv_stretch*shared2, \
+        d_m3_d_m2_inv_stretch = -2.0*d_m2_stretch*d_m3_inv_stretch*inv_stretch - d_m3_d_m2_stretch*inv_stretch*inv_stretch, \
+        d_m3_d_m2_cosine = d_m3_d_m2_inv_stretch*m1, \
+        d_m3_d_m2_larger = -d_m2_cosine*d_m3_larger*larger - 0.5*d_m3_d_m2_cosine*larger*larger, \
+        d_m3_d_m2_shear2 = d_m3_d_m2_larger*m2 + d_m3_larger, \
+        d_m3_d_m2_shear3 = d_m2_larger + d_m3_d_m2_larger*m3, \
+        d_m3_F_2 = d_m3_d_m2_shear2*n_e2_m + d_m3_d_m2_shear3*n_e3_m + d_m3_d_m2_stretch*n_e1_m, \
+        d_m3_d_m3_stretch = A[12]*A[12]*inv_stretch + A[12]*d_m3_inv_stretch*shared3, \
+        d_m3_d_m3_inv_stretch = -d_m3_d_m3_stretch*inv_stretch*inv_stretch - 2.0*d_m3_inv_stretch*d_m3_stretch*inv_stretch, \
+        d_m3_d_m3_cosine = d_m3_d_m3_inv_stretch*m1, \
+        d_m3_d_m3_larger = -d_m3_cosine*d_m3_larger*larger - 0.5*d_m3_d_m3_cosine*larger*larger, \
+        d_m3_d_m3_shear2 = d_m3_d_m3_larger*m2, \
+        d_m3_d_m3_shear3 = d_m3_d_m3_larger*m3 + 2.0*d_m3_larger, \
+        d_m3_F_3 = d_m3_d_m3_shear2*n_e2_m + d_m3_d_m3_shear3*n_e3_m + d_m3_d_m3_stretch*n_e1_m, \
+        dF_1_1 = d_m1_F_1*d_mean1_m1 + d_m2_F_1*d_mean1_m2 + d_m3_F_1*d_mean1_m3, \
+        dF_1_2 = d_m1_F_1*d_mean2_m1 + d_m2_F_1*d_mean2_m2 + d_m3_F_1*d_mean2_m3, \
+        dF_1_3 = d_m1_F_1*d_mean3_m1 + d_m2_F_1*d_mean3_m2 + d_m3_F_1*d_mean3_m3, \
+        dF_1_4 = d_g1_m1*d_m1_F_1 + d_g1_m2*d_m2_F_1 + d_g1_m3*d_m3_F_1, \
+        dF_1_5 = d_g2_m1*d_m1_F_1 + d_g2_m2*d_m2_F_1 + d_g2_m3*d_m3_F_1, \
+        dF_1_6 = d_g3_m1*d_m1_F_1 + d_g3_m2*d_m2_F_1 + d_g3_m3*d_m3_F_1, \
+        dF_2_1 = d_m2_F_1*d_mean1_m1 + d_m2_F_2*d_mean1_m2 + d_m3_F_2*d_mean1_m3, \
+        dF_2_2 = d_m2_F_1*d_mean2_m1 + d_m2_F_2*d_mean2_m2 + d_m3_F_2*d_mean2_m3, \
+        dF_2_3 = d_m2_F_1*d_mean3_m1 + d_m2_F_2*d_mean3_m2 + d_m3_F_2*d_mean3_m3, \
+        dF_2_4 = d_g1_m1*d_m2_F_1 + d_g1_m2*d_m2_F_2 + d_g1_m3*d_m3_F_2, \
+        dF_2_5 = d_g2_m1*d_m2_F_1 + d_g2_m2*d_m2_F_2 + d_g2_m3*d_m3_F_2, \
+        dF_2_6 = d_g3_m1*d_m2_F_1 + d_g3_m2*d_m2_F_2 + d_g3_m3*d_m3_F_2, \
+        dF_3_1 = d_m3_F_1*d_mean1_m1 + d_m3_F_2*d_mean1_m2 + d_m3_F_3*d_mean1_m3, \
+        dF_3_2 = d_m3_F_1*d_mean2_m1 + d_m3_F_2*d_mean2_m2 + d_m3_F_3*d_mean2_m3, \
+        dF_3_3 = d_m3_F_1*d_mean3_m1 + d_m3_F_2*d_mean3_m2 + d_m3_F_3*d_mean3_m3, \
+        dF_3_4 = d_g1_m1*d_m3_F_1 + d_g1_m2*d_m3_F_2 + d_g1_m3*d_m3_F_3, \
+        dF_3_5 = d_g2_m1*d_m3_F_1 + d_g2_m2*d_m3_F_2 + d_g2_m3*d_m3_F_3, \
+        dF_3_6 = d_g3_m1*d_m3_F_1 + d_g3_m2*d_m3_F_2 + d_g3_m3*d_m3_F_3, \
+        d_mean1_V_1 = dF_1_1*d_mean1_m1 + dF_2_1*d_mean1_m2 + dF_3_1*d_mean1_m3, \
+        d_mean2_V_1 = dF_1_2*d_mean1_m1 + dF_2_2*d_mean1_m2 + dF_3_2*d_mean1_m3, \
+        d_mean2_V_2 = dF_1_2*d_mean2_m1 + dF_2_2*d_mean2_m2 + dF_3_2*d_mean2_m3, \
+        d_mean3_V_1 = dF_1_3*d_mean1_m1 + dF_2_3*d_mean1_m2 + dF_3_3*d_mean1_m3, \
+        d_mean3_V_2 = dF_1_3*d_mean2_m1 + dF_2_3*d_mean2_m2 + dF_3_3*d_mean2_m3, \
+        d_mean3_V_3 = dF_1_3*d_mean3_m1 + dF_2_3*d_mean3_m2 + dF_3_3*d_mean3_m3, \
+        d_g1_d_mean1_along = d_g1_inv_secant*g1 + inv_secant, \
+        d_g1_d_mean1_m1 = -d_g1_d_mean1_along*g1 + d_g1_secant - d_mean1_along, \
+        d_g1_d_mean1_m2 = -(d_g1_d_mean1_along*g2), \
+        d_g1_d_mean1_m3 = -(d_g1_d_mean1_along*g3), \
+        d_g1_V_1 = F_1*d_g1_d_mean1_m1 + F_2*d_g1_d_mean1_m2 + F_3*d_g1_d_mean1_m3 + dF_1_4*d_mean1_m1 + dF_2_4*d_mean1_m2 + dF_3_4*d_mean1_m3, \
+        d_g1_d_mean2_along = d_g1_inv_secant*g2, \
+        d_g1_d_mean2_m1 = -d_g1_d_mean2_along*g1 - d_mean2_along, \
+        d_g1_d_mean2_m2 = -d_g1_d_mean2_along*g2 + d_g1_secant, \
+        d_g1_d_mean2_m3 = -(d_g1_d_mean2_along*g3), \
+        d_g1_V_2 = F_1*d_g1_d_mean2_m1 + F_2*d_g1_d_mean2_m2 + F_3*d_g1_d_mean2_m3 + dF_1_4*d_mean2_m1 + dF_2_4*d_mean2_m2 + dF_3_4*d_mean2_m3, \
+        d_g1_d_mean3_along = d_g1_inv_secant*g3, \
+        d_g1_d_mean3_m1 = -d_g1_d_mean3_along*g1 - d_mean3_along, \
+        d_g1_d_mean3_m2 = -(d_g1_d_mean3_along*g2), \
+        d_g1_d_mean3_m3 = -d_g1_d_mean3_along*g3 + d_g1_secant, \
+        d_g1_V_3 = F_1*d_g1_d_mean3_m1 + F_2*d_g1_d_mean3_m2 + F_3*d_g1_d_mean3_m3 + dF_1_4*d_mean3_m1 + dF_2_4*d_mean3_m2 + dF_3_4*d_mean3_m3, \
+        d_g1_d_g1_inv_arc = -450.0*d_g1_gg*d_g1_gg*inv_arc*inv_arc - 2.0*d_g1_gg*d_g1_inv_arc*inv_arc*(450.0*gg + 1050.0) - 2.0*inv_arc*inv_arc*(450.0*gg + 1050.0), \
+        d_g1_d_g1_arc = 2.0*d_g1_d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + 2.0*d_g1_gg*d_g1_inv_arc*w*(128.0*gg + 735.0) + d_g1_gg*(256.0*d_g1_gg*inv_arc*w + 2.0*d_g1_inv_arc*w*(128.0*gg + 735.0)) + 4.0*inv_arc*w*(128.0*gg + 735.0), \
+        d_g1_d_g1_k1 = 2.0*d_g1_arc + d_g1_d_g1_arc*g1, \
+        d_g1_d_g1_k2 = d_g1_d_g1_arc*g2, \
+        d_g1_d_g1_k3 = d_g1_d_g1_arc*g3, \
+        d_g1_d_g1_secant = -0.5*d_g1_gg*d_g1_secant/(secant*secant) + 1.0/secant, \
+        d_g1_d_g1_inv_secant = -d_g1_d_g1_secant*inv_secant*inv_secant - 2.0*d_g1_inv_secant*d_g1_secant*inv_secant, \
+        d_g1_d_g1_along = d_g1_d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + 2.0*d_g1_inv_secant*mean1, \
+        d_g1_d_g1_m1 = -2.0*d_g1_along - d_g1_d_g1_along*g1 + d_g1_d_g1_secant*mean1, \
+        d_g1_d_g1_m2 = -d_g1_d_g1_along*g2 + d_g1_d_g1_secant*mean2, \
+        d_g1_d_g1_m3 = -d_g1_d_g1_along*g3 + d_g1_d_g1_secant*mean3, \
+        d_g1_V_4 = F_1*d_g1_d_g1_m1 + F_2*d_g1_d_g1_m2 + F_3*d_g1_d_g1_m3 + dF_1_4*d_g1_m1 + dF_2_4*d_g1_m2 + dF_3_4*d_g1_m3 + d_g1_d_g1_k1*n_k1 + d_g1_d_g1_k2*n_k2 + d_g1_d_g1_k3*n_k3, \
+        d_g2_d_mean1_along = d_g2_inv_secant*g1, \
+        d_g2_d_mean1_m1 = -d_g2_d_mean1_along*g1 + d_g2_secant, \
+        d_g2_d_mean1_m2 = -d_g2_d_mean1_along*g2 - d_mean1_along, \
+        d_g2_d_mean1_m3 = -(d_g2_d_mean1_along*g3), \
+        d_g2_V_1 = F_1*d_g2_d_mean1_m1 + F_2*d_g2_d_mean1_m2 + F_3*d_g2_d_mean1_m3 + dF_1_5*d_mean1_m1 + dF_2_5*d_mean1_m2 + dF_3_5*d_mean1_m3, \
+        d_g2_d_mean2_along = d_g2_inv_secant*g2 + inv_secant, \
+        d_g2_d_mean2_m1 = -(d_g2_d_mean2_along*g1), \
+        d_g2_d_mean2_m2 = -d_g2_d_mean2_along*g2 + d_g2_secant - d_mean2_along, \
+        d_g2_d_mean2_m3 = -(d_g2_d_mean2_along*g3), \
+        d_g2_V_2 = F_1*d_g2_d_mean2_m1 + F_2*d_g2_d_mean2_m2 + F_3*d_g2_d_mean2_m3 + dF_1_5*d_mean2_m1 + dF_2_5*d_mean2_m2 + dF_3_5*d_mean2_m3, \
+        d_g2_d_mean3_along = d_g2_inv_secant*g3, \
+        d_g2_d_mean3_m1 = -(d_g2_d_mean3_along*g1), \
+        d_g2_d_mean3_m2 = -d_g2_d_mean3_along*g2 - d_mean3_along, \
+        d_g2_d_mean3_m3 = -d_g2_d_mean3_along*g3 + d_g2_secant, \
+        d_g2_V_3 = F_1*d_g2_d_mean3_m1 + F_2*d_g2_d_mean3_m2 + F_3*d_g2_d_mean3_m3 + dF_1_5*d_mean3_m1 + dF_2_5*d_mean3_m2 + dF_3_5*d_mean3_m3;
+
+/* part of derivatives at constant resultants, over motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_2 \
+    const fu_real \
+        d_g2_d_g1_k2 = d_g1_arc + d_g2_d_g1_arc*g2, \
+        d_g2_d_g1_k3 = d_g2_d_g1_arc*g3, \
+        d_g2_d_g1_secant = -(0.5*d_g1_gg*d_g2_secant/(secant*secant)), \
+        d_g2_d_g1_inv_secant = -2.0*d_g1_secant*d_g2_inv_secant*inv_secant - d_g2_d_g1_secant*inv_secant*inv_secant, \
+        d_g2_d_g1_along = d_g1_inv_secant*mean2 + d_g2_d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + d_g2_inv_secant*mean1, \
+        d_g2_d_g1_m1 = -d_g2_along - d_g2_d_g1_along*g1 + d_g2_d_g1_secant*mean1, \
+        d_g2_d_g1_m2 = -d_g1_along - d_g2_d_g1_along*g2 + d_g2_d_g1_secant*mean2, \
+        d_g2_d_g1_m3 = -d_g2_d_g1_along*g3 + d_g2_d_g1_secant*mean3, \
+        d_g2_V_4 = F_1*d_g2_d_g1_m1 + F_2*d_g2_d_g1_m2 + F_3*d_g2_d_g1_m3 + dF_1_5*d_g1_m1 + dF_2_5*d_g1_m2 + dF_3_5*d_g1_m3 + d_g2_d_g1_k1*n_k1 + d_g2_d_g1_k2*n_k2 + d_g2_d_g1_k3*n_k3;
+
+/* part of derivatives at constant resultants, over motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_3 \
+    const fu_real \
+        d_g2_d_g2_inv_secant = -d_g2_d_g2_secant*inv_secant*inv_secant - 2.0*d_g2_inv_secant*d_g2_secant*inv_secant, \
+        d_g2_d_g2_along = d_g2_d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + 2.0*d_g2_inv_secant*mean2, \
+        d_g2_d_g2_m1 = -d_g2_d_g2_along*g1 + d_g2_d_g2_secant*mean1, \
+        d_g2_d_g2_m2 = -2.0*d_g2_along - d_g2_d_g2_along*g2 + d_g2_d_g2_secant*mean2, \
+        d_g2_d_g2_m3 = -d_g2_d_g2_along*g3 + d_g2_d_g2_secant*mean3, \
+        d_g2_V_5 = F_1*d_g2_d_g2_m1 + F_2*d_g2_d_g2_m2 + F_3*d_g2_d_g2_m3 + dF_1_5*d_g2_m1 + dF_2_5*d_g2_m2 + dF_3_5*d_g2_m3 + d_g2_d_g2_k1*n_k1 + d_g2_d_g2_k2*n_k2 + d_g2_d_g2_k3*n_k3, \
+        d_g3_d_mean1_along = d_g3_inv_secant*g1, \
+        d_g3_d_mean1_m1 = -d_g3_d_mean1_along*g1 + d_g3_secant, \
+        d_g3_d_mean1_m2 = -(d_g3_d_mean1_along*g2), \
+        d_g3_d_mean1_m3 = -d_g3_d_mean1_along*g3 - d_mean1_along, \
+        d_g3_V_1 = F_1*d_g3_d_mean1_m1 + F_2*d_g3_d_mean1_m2 + F_3*d_g3_d_mean1_m3 + dF_1_6*d_mean1_m1 + dF_2_6*d_mean1_m2 + dF_3_6*d_mean1_m3, \
+        d_g3_d_mean2_along = d_g3_inv_secant*g2, \
+        d_g3_d_mean2_m1 = -(d_g3_d_mean2_along*g1), \
+        d_g3_d_mean2_m2 = -d_g3_d_mean2_along*g2 + d_g3_secant, \
+        d_g3_d_mean2_m3 = -d_g3_d_mean2_along*g3 - d_mean2_along, \
+        d_g3_V_2 = F_1*d_g3_d_mean2_m1 + F_2*d_g3_d_mean2_m2 + F_3*d_g3_d_mean2_m3 + dF_1_6*d_mean2_m1 + dF_2_6*d_mean2_m2 + dF_3_6*d_mean2_m3, \
+        d_g3_d_mean3_along = d_g3_inv_secant*g3 + inv_secant, \
+        d_g3_d_mean3_m1 = -(d_g3_d_mean3_along*g1), \
+        d_g3_d_mean3_m2 = -(d_g3_d_mean3_along*g2), \
+        d_g3_d_mean3_m3 = -d_g3_d_mean3_along*g3 + d_g3_secant - d_mean3_along, \
+        d_g3_V_3 = F_1*d_g3_d_mean3_m1 + F_2*d_g3_d_mean3_m2 + F_3*d_g3_d_mean3_m3 + dF_1_6*d_mean3_m1 + dF_2_6*d_mean3_m2 + dF_3_6*d_mean3_m3;
+
+/* part of derivatives at constant resultants, over motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_4 \
+    const fu_real \
+        d_g3_d_g1_k2 = d_g3_d_g1_arc*g2, \
+        d_g3_d_g1_k3 = d_g1_arc + d_g3_d_g1_arc*g3, \
+        d_g3_d_g1_secant = -(0.5*d_g1_gg*d_g3_secant/(secant*secant)), \
+        d_g3_d_g1_inv_secant = -2.0*d_g1_secant*d_g3_inv_secant*inv_secant - d_g3_d_g1_secant*inv_secant*inv_secant, \
+        d_g3_d_g1_along = d_g1_inv_secant*mean3 + d_g3_d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + d_g3_inv_secant*mean1, \
+        d_g3_d_g1_m1 = -d_g3_along - d_g3_d_g1_along*g1 + d_g3_d_g1_secant*mean1, \
+        d_g3_d_g1_m2 = -d_g3_d_g1_along*g2 + d_g3_d_g1_secant*mean2, \
+        d_g3_d_g1_m3 = -d_g1_along - d_g3_d_g1_along*g3 + d_g3_d_g1_secant*mean3, \
+        d_g3_V_4 = F_1*d_g3_d_g1_m1 + F_2*d_g3_d_g1_m2 + F_3*d_g3_d_g1_m3 + dF_1_6*d_g1_m1 + dF_2_6*d_g1_m2 + dF_3_6*d_g1_m3 + d_g3_d_g1_k1*n_k1 + d_g3_d_g1_k2*n_k2 + d_g3_d_g1_k3*n_k3;
+
+/* part of derivatives at constant resultants, over motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_5 \
+    const fu_real \
+        d_g3_d_g2_inv_secant = -2.0*d_g2_secant*d_g3_inv_secant*inv_secant - d_g3_d_g2_secant*inv_secant*inv_secant, \
+        d_g3_d_g2_along = d_g2_inv_secant*mean3 + d_g3_d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + d_g3_inv_secant*mean2, \
+        d_g3_d_g2_m1 = -d_g3_d_g2_along*g1 + d_g3_d_g2_secant*mean1, \
+        d_g3_d_g2_m2 = -d_g3_along - d_g3_d_g2_along*g2 + d_g3_d_g2_secant*mean2, \
+        d_g3_d_g2_m3 = -d_g2_along - d_g3_d_g2_along*g3 + d_g3_d_g2_secant*mean3, \
+        d_g3_V_5 = F_1*d_g3_d_g2_m1 + F_2*d_g3_d_g2_m2 + F_3*d_g3_d_g2_m3 + dF_1_6*d_g2_m1 + dF_2_6*d_g2_m2 + dF_3_6*d_g2_m3 + d_g3_d_g2_k1*n_k1 + d_g3_d_g2_k2*n_k2 + d_g3_d_g2_k3*n_k3;
+
+/* part of derivatives at constant resultants, over motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_6 \
+    const fu_real \
+        d_g3_d_g3_inv_secant = -d_g3_d_g3_secant*inv_secant*inv_secant - 2.0*d_g3_inv_secant*d_g3_secant*inv_secant, \
+        d_g3_d_g3_along = d_g3_d_g3_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + 2.0*d_g3_inv_secant*mean3, \
+        d_g3_d_g3_m1 = -d_g3_d_g3_along*g1 + d_g3_d_g3_secant*mean1, \
+        d_g3_d_g3_m2 = -d_g3_d_g3_along*g2 + d_g3_d_g3_secant*mean2, \
+        d_g3_d_g3_m3 = -2.0*d_g3_along - d_g3_d_g3_along*g3 + d_g3_d_g3_secant*mean3, \
+        d_g3_V_6 = F_1*d_g3_d_g3_m1 + F_2*d_g3_d_g3_m2 + F_3*d_g3_d_g3_m3 + dF_1_6*d_g3_m1 + dF_2_6*d_g3_m2 + dF_3_6*d_g3_m3 + d_g3_d_g3_k1*n_k1 + d_g3_d_g3_k2*n_k2 + d_g3_d_g3_k3*n_k3, \
+        moved = 0.5*t[0][0] + 0.5*t[3][0], \
+        moved_2 = 0.5*t[1][0] + 0.5*t[4][0], \
+        moved_3 = 0.5*t[2][0] + 0.5*t[5][0], \
+        moved_4 = 0.5*t[0][1] + 0.5*t[3][1], \
+        moved_5 = 0.5*t[1][1] + 0.5*t[4][1], \
+        moved_6 = 0.5*t[2][1] + 0.5*t[5][1], \
+        moved_7 = 0.5*t[0][2] + 0.5*t[3][2], \
+        moved_8 = 0.5*t[1][2] + 0.5*t[4][2], \
+        moved_9 = 0.5*t[2][2] + 0.5*t[5][2], \
+        moved_10 = 0.5*p[2], \
+        moved_11 = -(0.5*p[1]), \
+        moved_12 = -(0.5*p[2]), \
+        moved_13 = 0.5*p[0], \
+        moved_14 = 0.5*p[1], \
+        moved_15 = -(0.5*p[0]), \
+        moved_16 = 0.5*p[5], \
+        moved_17 = -(0.5*p[4]), \
+        moved_18 = -(0.5*p[5]), \
+        moved_19 = 0.5*p[3], \
+        moved_20 = 0.5*p[4], \
+        moved_21 = -(0.5*p[3]), \
+        dV_mean1_3 = d_mean1_V_1*moved + d_mean2_V_1*moved_2 + d_mean3_V_1*moved_3, \
+        dV_mean2_3 = d_mean2_V_1*moved + d_mean2_V_2*moved_2 + d_mean3_V_2*moved_3, \
+        dV_mean3_3 = d_mean3_V_1*moved + d_mean3_V_2*moved_2 + d_mean3_V_3*moved_3, \
+        turn3_f_xm_x = dV_mean1_3*(0.5*t[0][0] + 0.5*t[3][0]) + dV_mean2_3*(0.5*t[1][0] + 0.5*t[4][0]) + dV_mean3_3*(0.5*t[2][0] + 0.5*t[5][0]), \
+        dV_mean1_4 = d_mean1_V_1*moved_4 + d_mean2_V_1*moved_5 + d_mean3_V_1*moved_6, \
+        dV_mean2_4 = d_mean2_V_1*moved_4 + d_mean2_V_2*moved_5 + d_mean3_V_2*moved_6, \
+        dV_mean3_4 = d_mean3_V_1*moved_4 + d_mean3_V_2*moved_5 + d_mean3_V_3*moved_6, \
+        turn4_f_xm_x = dV_mean1_4*(0.5*t[0][0] + 0.5*t[3][0]) + dV_mean2_4*(0.5*t[1][0] + 0.5*t[4][0]) + dV_mean3_4*(0.5*t[2][0] + 0.5*t[5][0]), \
+        turn4_f_xm_y = dV_mean1_4*(0.5*t[0][1] + 0.5*t[3][1]) + dV_mean2_4*(0.5*t[1][1] + 0.5*t[4][1]) + dV_mean3_4*(0.5*t[2][1] + 0.5*t[5][1]), \
+        dV_mean1_5 = d_mean1_V_1*moved_7 + d_mean2_V_1*moved_8 + d_mean3_V_1*moved_9, \
+        dV_mean2_5 = d_mean2_V_1*moved_7 + d_mean2_V_2*moved_8 + d_mean3_V_2*moved_9, \
+        dV_mean3_5 = d_mean3_V_1*moved_7 + d_mean3_V_2*moved_8 + d_mean3_V_3*moved_9; \
+    FU_EACH(i, 3, turn5_f_xm[i] = dV_mean1_5*(0.5*t[0][i] + 0.5*t[3][i]) + dV_mean2_5*(0.5*t[1][i] + 0.5*t[4][i]) + dV_mean3_5*(0.5*t[2][i] + 0.5*t[5][i]);)
+
+/* part of strains by motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_STRAINS_BY_MOTIONS_OF_THE_PARTS \
+    B_0[0] = d_1_1*moved + d_1_2*moved_2 + d_1_3*moved_3; \
+    B_1[0] = d_1[0]*moved + d_2[0]*moved_2 + d_3[0]*moved_3; \
+    B_2[0] = d_1[1]*moved + d_2[1]*moved_2 + d_3[1]*moved_3; \
+    B_0[1] = d_1_1*moved_4 + d_1_2*moved_5 + d_1_3*moved_6; \
+    B_1[1] = d_1[0]*moved_4 + d_2[0]*moved_5 + d_3[0]*moved_6; \
+    B_2[1] = d_1[1]*moved_4 + d_2[1]*moved_5 + d_3[1]*moved_6;
+
+/* part of resultants by motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS \
+    const fu_real \
+        K_6_6 = C_61*t[3][0] + C_62*t[4][0] + C_63*t[5][0], \
+        K_6_7 = C_70*t[3][0] + C_71*t[4][0] + C_72*t[5][0], \
+        K_6_8 = C_79*t[3][0] + C_80*t[4][0] + C_81*t[5][0], \
+        K_6_9 = C_88*t[3][0] + C_89*t[4][0] + C_90*t[5][0], \
+        K_6_10 = C_100*t[3][0] + C_101*t[4][0] + C_102*t[5][0], \
+        K_6_11 = C_112*t[3][0] + C_113*t[4][0] + C_114*t[5][0], \
+        K_6_12 = C_124*t[3][0] + C_125*t[4][0] + C_126*t[5][0], \
+        K_6_13 = C_136*t[3][0] + C_137*t[4][0] + C_138*t[5][0], \
+        K_6_14 = C_148*t[3][0] + C_149*t[4][0] + C_150*t[5][0];
+
+/* part of resultants by motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_2 \
+    const fu_real \
+        K_7_7 = C_70*t[3][1] + C_71*t[4][1] + C_72*t[5][1], \
+        K_7_8 = C_79*t[3][1] + C_80*t[4][1] + C_81*t[5][1], \
+        K_7_9 = C_88*t[3][1] + C_89*t[4][1] + C_90*t[5][1], \
+        K_7_10 = C_100*t[3][1] + C_101*t[4][1] + C_102*t[5][1], \
+        K_7_11 = C_112*t[3][1] + C_113*t[4][1] + C_114*t[5][1], \
+        K_7_12 = C_124*t[3][1] + C_125*t[4][1] + C_126*t[5][1], \
+        K_7_13 = C_136*t[3][1] + C_137*t[4][1] + C_138*t[5][1], \
+        K_7_14 = C_148*t[3][1] + C_149*t[4][1] + C_150*t[5][1];
+
+/* part of resultants by motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_3 \
+    const fu_real \
+        K_8_8 = C_79*t[3][2] + C_80*t[4][2] + C_81*t[5][2], \
+        K_8_9 = C_88*t[3][2] + C_89*t[4][2] + C_90*t[5][2], \
+        K_8_10 = C_100*t[3][2] + C_101*t[4][2] + C_102*t[5][2], \
+        K_8_11 = C_112*t[3][2] + C_113*t[4][2] + C_114*t[5][2], \
+        K_8_12 = C_124*t[3][2] + C_125*t[4][2] + C_126*t[5][2], \
+        K_8_13 = C_136*t[3][2] + C_137*t[4][2] + C_138*t[5][2], \
+        K_8_14 = C_148*t[3][2] + C_149*t[4][2] + C_150*t[5][2];
+
+/* part of resultants by motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_4 \
+    const fu_real \
+        sum_11 = K_4_at[0] + turn4_f_xm_x, \
+        sum_12 = K_5_at[0] + turn5_f_xm[0], \
+        sum_13 = K_9_at[0] + turn9_f_xm[0], \
+        sum_14 = K_10_at[0] + turn10_f_xm[0], \
+        sum_15 = K_11_at[0] + turn11_f_xm[0], \
+        sum_16 = K_12_at[0] + turn12_f_xm[0]; \
+    sum_at[0] = K_13_at[0] + turn13_f_xm[0]; \
+    const fu_real sum_18 = K_14_at[0] + turn14_f_xm[0];
+
+/* part of resultants by motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_5 \
+    const fu_real \
+        sum_20 = K_4_at[1] + turn4_f_xm_y, \
+        sum_21 = K_5_at[1] + turn5_f_xm[1], \
+        sum_22 = K_9_at[1] + turn9_f_xm[1], \
+        sum_23 = K_10_at[1] + turn10_f_xm[1], \
+        sum_24 = K_11_at[1] + turn11_f_xm[1], \
+        sum_25 = K_12_at[1] + turn12_f_xm[1]; \
+    sum_at[1] = K_13_at[1] + turn13_f_xm[1]; \
+    const fu_real sum_27 = K_14_at[1] + turn14_f_xm[1];
+
+/* part of resultants by motions of the parts: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_6 \
+    const fu_real sum_37 = K_6_12 + turn12_f_x2[0]; \
+    sum_at[3] = K_6_13 + turn13_f_x2[0]; \
+    const fu_real \
+        sum_39 = K_6_14 + turn14_f_x2[0], \
+        sum_40 = K_7_12 + turn12_f_x2[1]; \
+    sum_at[4] = K_7_13 + turn13_f_x2[1]; \
+    const fu_real \
+        sum_42 = K_7_14 + turn14_f_x2[1], \
+        sum_43 = K_8_12 + turn12_f_x2[2]; \
+    sum_at[5] = K_8_13 + turn13_f_x2[2]; \
+    const fu_real sum_45 = K_8_14 + turn14_f_x2[2];
+
+/* part of over r_x at the three places and directors: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS \
+    const fu_real \
+        by_y1_0_y1_1 = -change_11*inv_a[0]*slant[0] - change_12*inv_a[0] - inv_a[0]*inv_a[0]*t[1][0]*(-moment_2[0]*slant[0] - moment_3[0]) - inv_a[0]*inv_c[0]*moment_2[0]*(W1_y1[0]*b1*slant[0] + W1_y1[0]*c1), \
+        by_y1_0_y3_1 = change_10*inv_a[0] - inv_a[0]*inv_a[0]*moment_1[0]*t[1][0], \
+        by_y1_1_y1_1 = -change_26*inv_a[0]*slant[0] - change_27*inv_a[0] - inv_a[0]*inv_a[0]*t[1][1]*(-moment_2[0]*slant[0] - moment_3[0]) - inv_a[0]*inv_c[0]*moment_2[0]*(W1_y1[1]*b1*slant[0] + W1_y1[1]*c1), \
+        by_y1_1_y3_1 = change_25*inv_a[0] - inv_a[0]*inv_a[0]*moment_1[0]*t[1][1], \
+        by_y1_2_y1_1 = -change_41*inv_a[0]*slant[0] - change_42*inv_a[0] - inv_a[0]*inv_a[0]*t[1][2]*(-moment_2[0]*slant[0] - moment_3[0]) - inv_a[0]*inv_c[0]*moment_2[0]*(W1_y1[2]*b1*slant[0] + W1_y1[2]*c1), \
+        by_y1_2_y3_1 = change_40*inv_a[0] - inv_a[0]*inv_a[0]*moment_1[0]*t[1][2]; \
+    K_y1_y1[0][0] = by_y1_0_y1_1*t[0][0] + by_y1_0_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_1[0] + e[9]*t_eyz_1_eyz_1[0] + n_eyy_1 + y1[0]*(-W2_y1[0]*t[2][0] + W3_y1[0]*t[1][0]) + y3[0]*(-W1_y1[0]*t[1][0] + W2_y1[0]*t[0][0]); \
+    K_y1_y1[0][1] = by_y1_1_y1_1*t[0][0] + by_y1_1_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_1[1] + e[9]*t_eyz_1_eyz_1[1] + y1[0]*(-W2_y1[1]*t[2][0] + W3_y1[1]*t[1][0]) + y3[0]*(-W1_y1[1]*t[1][0] + W2_y1[1]*t[0][0]); \
+    K_y1_y1[0][2] = by_y1_2_y1_1*t[0][0] + by_y1_2_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_1[2] + e[9]*t_eyz_1_eyz_1[2] + y1[0]*(-W2_y1[2]*t[2][0] + W3_y1[2]*t[1][0]) + y3[0]*(-W1_y1[2]*t[1][0] + W2_y1[2]*t[0][0]);
+
+/* part of over r_x at the three places and directors: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_2 \
+    K_y1_y1[1][1] = by_y1_1_y1_1*t[0][1] + by_y1_1_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1[1] + e[7]*t_eyy_1_eyy_1[1] + n_eyy_1 + y1[0]*(-W2_y1[1]*t[2][1] + W3_y1[1]*t[1][1]) + y3[0]*(-W1_y1[1]*t[1][1] + W2_y1[1]*t[0][1]); \
+    K_y1_y1[1][2] = by_y1_2_y1_1*t[0][1] + by_y1_2_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1[2] + e[7]*t_eyy_1_eyy_1[2] + y1[0]*(-W2_y1[2]*t[2][1] + W3_y1[2]*t[1][1]) + y3[0]*(-W1_y1[2]*t[1][1] + W2_y1[2]*t[0][1]);
+
+/* part of over r_x at the three places and directors: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_3 \
+    const fu_real \
+        by_z1_0_y1_1 = -change_56*inv_a[0]*slant[0] - change_57*inv_a[0] - inv_a[0]*inv_c[0]*moment_2[0]*(-slant[0]*t[2][0] + t[1][0]), \
+        by_z1_0_y3_1 = change_55*inv_a[0], \
+        by_z1_1_y1_1 = -change_71*inv_a[0]*slant[0] - change_72*inv_a[0] - inv_a[0]*inv_c[0]*moment_2[0]*(-slant[0]*t[2][1] + t[1][1]), \
+        by_z1_1_y3_1 = change_70*inv_a[0], \
+        by_z1_2_y1_1 = -change_86*inv_a[0]*slant[0] - change_87*inv_a[0] - inv_a[0]*inv_c[0]*moment_2[0]*(-slant[0]*t[2][2] + t[1][2]), \
+        by_z1_2_y3_1 = change_85*inv_a[0]; \
+    K_y1_z1[0][0] = W2_z1[0]*t[0][0]*y3[0] - W2_z1[0]*t[2][0]*y1[0] + by_z1_0_y1_1*t[0][0] + by_z1_0_y3_1*t[2][0] + e[9]*t_eyz_1_eyz_1_2[0] + n_eyz_1; \
+    K_y1_z1[0][1] = W2_z1[1]*t[0][0]*y3[0] - W2_z1[1]*t[2][0]*y1[0] + by_z1_1_y1_1*t[0][0] + by_z1_1_y3_1*t[2][0] + e[9]*t_eyz_1_eyz_1_2[1]; \
+    K_y1_z1[0][2] = W2_z1[2]*t[0][0]*y3[0] - W2_z1[2]*t[2][0]*y1[0] + by_z1_2_y1_1*t[0][0] + by_z1_2_y3_1*t[2][0] + e[9]*t_eyz_1_eyz_1_2[2]; \
+    K_y1_z1[1][0] = W2_z1[0]*t[0][1]*y3[0] - W2_z1[0]*t[2][1]*y1[0] + by_z1_0_y1_1*t[0][1] + by_z1_0_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1_2[0]; \
+    K_y1_z1[1][1] = W2_z1[1]*t[0][1]*y3[0] - W2_z1[1]*t[2][1]*y1[0] + by_z1_1_y1_1*t[0][1] + by_z1_1_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1_2[1] + n_eyz_1; \
+    K_y1_z1[1][2] = W2_z1[2]*t[0][1]*y3[0] - W2_z1[2]*t[2][1]*y1[0] + by_z1_2_y1_1*t[0][1] + by_z1_2_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1_2[2]; \
+    K_y1_z1[2][0] = W2_z1[0]*t[0][2]*y3[0] - W2_z1[0]*t[2][2]*y1[0] + by_z1_0_y1_1*t[0][2] + by_z1_0_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1_2[0]; \
+    K_y1_z1[2][1] = W2_z1[1]*t[0][2]*y3[0] - W2_z1[1]*t[2][2]*y1[0] + by_z1_1_y1_1*t[0][2] + by_z1_1_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1_2[1]; \
+    K_y1_z1[2][2] = W2_z1[2]*t[0][2]*y3[0] - W2_z1[2]*t[2][2]*y1[0] + by_z1_2_y1_1*t[0][2] + by_z1_2_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1_2[2] + n_eyz_1; \
+    const fu_real \
+        by_z1_0_z1_1 = change_56*inv_c[0] - inv_c[0]*inv_c[0]*moment_2[0]*t[2][0], \
+        by_z1_1_z1_1 = change_71*inv_c[0] - inv_c[0]*inv_c[0]*moment_2[0]*t[2][1], \
+        by_z1_2_z1_1 = change_86*inv_c[0] - inv_c[0]*inv_c[0]*moment_2[0]*t[2][2]; \
+    K_z1_z1[0][0] = -W2_z1[0]*t[2][0]*z1[0] + by_z1_0_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_1_2[0] + e[9]*t_ezz_1_ezz_1[0] + n_ezz_1; \
+    K_z1_z1[0][1] = -W2_z1[1]*t[2][0]*z1[0] + by_z1_1_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_1_2[1] + e[9]*t_ezz_1_ezz_1[1]; \
+    K_z1_z1[0][2] = -W2_z1[2]*t[2][0]*z1[0] + by_z1_2_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_1_2[2] + e[9]*t_ezz_1_ezz_1[2];
+
+/* part of over r_x at the three places and directors: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_4 \
+    const fu_real \
+        by_y2_0_y1_1 = -change_101*inv_a[0]*slant[0] - change_102*inv_a[0], \
+        by_y2_0_y3_1 = change_100*inv_a[0], \
+        by_y2_1_y1_1 = -change_116*inv_a[0]*slant[0] - change_117*inv_a[0], \
+        by_y2_1_y3_1 = change_115*inv_a[0], \
+        by_y2_2_y1_1 = -change_131*inv_a[0]*slant[0] - change_132*inv_a[0], \
+        by_y2_2_y3_1 = change_130*inv_a[0]; \
+    K_y1_y2[0][0] = by_y2_0_y1_1*t[0][0] + by_y2_0_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_2[0] + e[9]*t_eyz_1_eyz_2[0]; \
+    K_y1_y2[0][1] = by_y2_1_y1_1*t[0][0] + by_y2_1_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_2[1] + e[9]*t_eyz_1_eyz_2[1]; \
+    K_y1_y2[0][2] = by_y2_2_y1_1*t[0][0] + by_y2_2_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_2[2] + e[9]*t_eyz_1_eyz_2[2]; \
+    FU_EACH(g, 2, \
+        K_y1_y2[g + 1][0] = by_y2_0_y1_1*t[0][g + 1] + by_y2_0_y3_1*t[2][g + 1] + e[g + 10]*t_eyz_1_eyz_2[0] + e[g + 7]*t_eyy_1_eyy_2[0]; \
+        K_y1_y2[g + 1][1] = by_y2_1_y1_1*t[0][g + 1] + by_y2_1_y3_1*t[2][g + 1] + e[g + 10]*t_eyz_1_eyz_2[1] + e[g + 7]*t_eyy_1_eyy_2[1]; \
+        K_y1_y2[g + 1][2] = by_y2_2_y1_1*t[0][g + 1] + by_y2_2_y3_1*t[2][g + 1] + e[g + 10]*t_eyz_1_eyz_2[2] + e[g + 7]*t_eyy_1_eyy_2[2];) \
+    const fu_real \
+        by_y2_0_z1_1 = change_101*inv_c[0], \
+        by_y2_1_z1_1 = change_116*inv_c[0], \
+        by_y2_2_z1_1 = change_131*inv_c[0]; \
+    FU_EACH(g, 3, \
+        K_z1_y2[g][0] = by_y2_0_z1_1*t[0][g] + e[g + 6]*t_eyz_1_eyz_2[0]; \
+        K_z1_y2[g][1] = by_y2_1_z1_1*t[0][g] + e[g + 6]*t_eyz_1_eyz_2[1]; \
+        K_z1_y2[g][2] = by_y2_2_z1_1*t[0][g] + e[g + 6]*t_eyz_1_eyz_2[2];) \
+    const fu_real \
+        by_y2_0_y1_2 = -change_104*inv_a[1]*slant[1] - change_105*inv_a[1] - inv_a[1]*inv_a[1]*t[4][0]*(-moment_2[1]*slant[1] - moment_3[1]) - inv_a[1]*inv_c[1]*moment_2[1]*(W1_y2[0]*b2*slant[1] + W1_y2[0]*c2), \
+        by_y2_0_y3_2 = change_103*inv_a[1] - inv_a[1]*inv_a[1]*moment_1[1]*t[4][0], \
+        by_y2_1_y1_2 = -change_119*inv_a[1]*slant[1] - change_120*inv_a[1] - inv_a[1]*inv_a[1]*t[4][1]*(-moment_2[1]*slant[1] - moment_3[1]) - inv_a[1]*inv_c[1]*moment_2[1]*(W1_y2[1]*b2*slant[1] + W1_y2[1]*c2), \
+        by_y2_1_y3_2 = change_118*inv_a[1] - inv_a[1]*inv_a[1]*moment_1[1]*t[4][1], \
+        by_y2_2_y1_2 = -change_134*inv_a[1]*slant[1] - change_135*inv_a[1] - inv_a[1]*inv_a[1]*t[4][2]*(-moment_2[1]*slant[1] - moment_3[1]) - inv_a[1]*inv_c[1]*moment_2[1]*(W1_y2[2]*b2*slant[1] + W1_y2[2]*c2), \
+        by_y2_2_y3_2 = change_133*inv_a[1] - inv_a[1]*inv_a[1]*moment_1[1]*t[4][2]; \
+    K_y2_y2[0][0] = by_y2_0_y1_2*t[3][0] + by_y2_0_y3_2*t[5][0] + e[18]*t_eyy_2_eyy_2[0] + e[21]*t_eyz_2_eyz_2[0] + n_eyy_2 + y1[1]*(-W2_y2[0]*t[5][0] + W3_y2[0]*t[4][0]) + y3[1]*(-W1_y2[0]*t[4][0] + W2_y2[0]*t[3][0]); \
+    K_y2_y2[0][1] = by_y2_1_y1_2*t[3][0] + by_y2_1_y3_2*t[5][0] + e[18]*t_eyy_2_eyy_2[1] + e[21]*t_eyz_2_eyz_2[1] + y1[1]*(-W2_y2[1]*t[5][0] + W3_y2[1]*t[4][0]) + y3[1]*(-W1_y2[1]*t[4][0] + W2_y2[1]*t[3][0]); \
+    K_y2_y2[0][2] = by_y2_2_y1_2*t[3][0] + by_y2_2_y3_2*t[5][0] + e[18]*t_eyy_2_eyy_2[2] + e[21]*t_eyz_2_eyz_2[2] + y1[1]*(-W2_y2[2]*t[5][0] + W3_y2[2]*t[4][0]) + y3[1]*(-W1_y2[2]*t[4][0] + W2_y2[2]*t[3][0]);
+
+/* part of over r_x at the three places and directors: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_5 \
+    K_y2_y2[1][1] = by_y2_1_y1_2*t[3][1] + by_y2_1_y3_2*t[5][1] + e[19]*t_eyy_2_eyy_2[1] + e[22]*t_eyz_2_eyz_2[1] + n_eyy_2 + y1[1]*(-W2_y2[1]*t[5][1] + W3_y2[1]*t[4][1]) + y3[1]*(-W1_y2[1]*t[4][1] + W2_y2[1]*t[3][1]); \
+    K_y2_y2[1][2] = by_y2_2_y1_2*t[3][1] + by_y2_2_y3_2*t[5][1] + e[19]*t_eyy_2_eyy_2[2] + e[22]*t_eyz_2_eyz_2[2] + y1[1]*(-W2_y2[2]*t[5][1] + W3_y2[2]*t[4][1]) + y3[1]*(-W1_y2[2]*t[4][1] + W2_y2[2]*t[3][1]);
+
+/* part of over r_x at the three places and directors: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_6 \
+    const fu_real \
+        by_z2_0_y1_1 = -change_at[7]*inv_a[0]*slant[0] - change_at[8]*inv_a[0], \
+        by_z2_0_y3_1 = change_at[6]*inv_a[0], \
+        by_z2_1_y1_1 = -change_161*inv_a[0]*slant[0] - change_162*inv_a[0], \
+        by_z2_1_y3_1 = change_160*inv_a[0], \
+        by_z2_2_y1_1 = -change_176*inv_a[0]*slant[0] - change_177*inv_a[0], \
+        by_z2_2_y3_1 = change_175*inv_a[0]; \
+    FU_EACH(g, 3, \
+        K_y1_z2[g][0] = by_z2_0_y1_1*t[0][g] + by_z2_0_y3_1*t[2][g] + e[g + 9]*t_eyz_1_eyz_2_2[0]; \
+        K_y1_z2[g][1] = by_z2_1_y1_1*t[0][g] + by_z2_1_y3_1*t[2][g] + e[g + 9]*t_eyz_1_eyz_2_2[1]; \
+        K_y1_z2[g][2] = by_z2_2_y1_1*t[0][g] + by_z2_2_y3_1*t[2][g] + e[g + 9]*t_eyz_1_eyz_2_2[2];) \
+    const fu_real \
+        by_z2_0_z1_1 = change_at[7]*inv_c[0], \
+        by_z2_1_z1_1 = change_161*inv_c[0], \
+        by_z2_2_z1_1 = change_176*inv_c[0]; \
+    K_z1_z2[0][0] = by_z2_0_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_2_2[0] + e[9]*t_ezz_1_ezz_2[0]; \
+    K_z1_z2[0][1] = by_z2_1_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_2_2[1] + e[9]*t_ezz_1_ezz_2[1]; \
+    K_z1_z2[0][2] = by_z2_2_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_2_2[2] + e[9]*t_ezz_1_ezz_2[2]; \
+    FU_EACH(g, 2, \
+        K_z1_z2[g + 1][0] = by_z2_0_z1_1*t[0][g + 1] + e[g + 10]*t_ezz_1_ezz_2[0] + e[g + 7]*t_eyz_1_eyz_2_2[0]; \
+        K_z1_z2[g + 1][1] = by_z2_1_z1_1*t[0][g + 1] + e[g + 10]*t_ezz_1_ezz_2[1] + e[g + 7]*t_eyz_1_eyz_2_2[1]; \
+        K_z1_z2[g + 1][2] = by_z2_2_z1_1*t[0][g + 1] + e[g + 10]*t_ezz_1_ezz_2[2] + e[g + 7]*t_eyz_1_eyz_2_2[2];) \
+    const fu_real \
+        by_z2_0_y1_2 = -change_at[10]*inv_a[1]*slant[1] - change_at[11]*inv_a[1] - inv_a[1]*inv_c[1]*moment_2[1]*(-slant[1]*t[5][0] + t[4][0]), \
+        by_z2_0_y3_2 = change_at[9]*inv_a[1], \
+        by_z2_1_y1_2 = -change_164*inv_a[1]*slant[1] - change_165*inv_a[1] - inv_a[1]*inv_c[1]*moment_2[1]*(-slant[1]*t[5][1] + t[4][1]), \
+        by_z2_1_y3_2 = change_163*inv_a[1], \
+        by_z2_2_y1_2 = -change_179*inv_a[1]*slant[1] - change_180*inv_a[1] - inv_a[1]*inv_c[1]*moment_2[1]*(-slant[1]*t[5][2] + t[4][2]), \
+        by_z2_2_y3_2 = change_178*inv_a[1]; \
+    K_y2_z2[0][0] = W2_z2[0]*t[3][0]*y3[1] - W2_z2[0]*t[5][0]*y1[1] + by_z2_0_y1_2*t[3][0] + by_z2_0_y3_2*t[5][0] + e[21]*t_eyz_2_eyz_2_2[0] + n_eyz_2; \
+    K_y2_z2[0][1] = W2_z2[1]*t[3][0]*y3[1] - W2_z2[1]*t[5][0]*y1[1] + by_z2_1_y1_2*t[3][0] + by_z2_1_y3_2*t[5][0] + e[21]*t_eyz_2_eyz_2_2[1]; \
+    K_y2_z2[0][2] = W2_z2[2]*t[3][0]*y3[1] - W2_z2[2]*t[5][0]*y1[1] + by_z2_2_y1_2*t[3][0] + by_z2_2_y3_2*t[5][0] + e[21]*t_eyz_2_eyz_2_2[2]; \
+    K_y2_z2[1][0] = W2_z2[0]*t[3][1]*y3[1] - W2_z2[0]*t[5][1]*y1[1] + by_z2_0_y1_2*t[3][1] + by_z2_0_y3_2*t[5][1] + e[22]*t_eyz_2_eyz_2_2[0]; \
+    K_y2_z2[1][1] = W2_z2[1]*t[3][1]*y3[1] - W2_z2[1]*t[5][1]*y1[1] + by_z2_1_y1_2*t[3][1] + by_z2_1_y3_2*t[5][1] + e[22]*t_eyz_2_eyz_2_2[1] + n_eyz_2; \
+    K_y2_z2[1][2] = W2_z2[2]*t[3][1]*y3[1] - W2_z2[2]*t[5][1]*y1[1] + by_z2_2_y1_2*t[3][1] + by_z2_2_y3_2*t[5][1] + e[22]*t_eyz_2_eyz_2_2[2]; \
+    K_y2_z2[2][0] = W2_z2[0]*t[3][2]*y3[1] - W2_z2[0]*t[5][2]*y1[1] + by_z2_0_y1_2*t[3][2] + by_z2_0_y3_2*t[5][2] + e[23]*t_eyz_2_eyz_2_2[0]; \
+    K_y2_z2[2][1] = W2_z2[1]*t[3][2]*y3[1] - W2_z2[1]*t[5][2]*y1[1] + by_z2_1_y1_2*t[3][2] + by_z2_1_y3_2*t[5][2] + e[23]*t_eyz_2_eyz_2_2[1]; \
+    K_y2_z2[2][2] = W2_z2[2]*t[3][2]*y3[1] - W2_z2[2]*t[5][2]*y1[1] + by_z2_2_y1_2*t[3][2] + by_z2_2_y3_2*t[5][2] + e[23]*t_eyz_2_eyz_2_2[2] + n_eyz_2; \
+    const fu_real \
+        by_z2_0_z1_2 = change_at[10]*inv_c[1] - inv_c[1]*inv_c[1]*moment_2[1]*t[5][0], \
+        by_z2_1_z1_2 = change_164*inv_c[1] - inv_c[1]*inv_c[1]*moment_2[1]*t[5][1], \
+        by_z2_2_z1_2 = change_179*inv_c[1] - inv_c[1]*inv_c[1]*moment_2[1]*t[5][2]; \
+    K_z2_z2[0][0] = -W2_z2[0]*t[5][0]*z1[1] + by_z2_0_z1_2*t[3][0] + e[18]*t_eyz_2_eyz_2_2[0] + e[21]*t_ezz_2_ezz_2[0] + n_ezz_2; \
+    K_z2_z2[0][1] = -W2_z2[1]*t[5][0]*z1[1] + by_z2_1_z1_2*t[3][0] + e[18]*t_eyz_2_eyz_2_2[1] + e[21]*t_ezz_2_ezz_2[1]; \
+    K_z2_z2[0][2] = -W2_z2[2]*t[5][0]*z1[1] + by_z2_2_z1_2*t[3][0] + e[18]*t_eyz_2_eyz_2_2[2] + e[21]*t_ezz_2_ezz_2[2];
+
+/* part of over the nodal vectors: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS \
+    K_r_x1_r_y1[0][0] = change - 0.25*change_4; \
+    K_r_x1_r_y1[0][1] = change_16 - 0.25*change_19; \
+    K_r_x1_r_y1[0][2] = change_31 - 0.25*change_34; \
+    K_r_x1_r_y1[1][0] = change_2 - 0.25*change_5; \
+    K_r_x1_r_y1[1][1] = change_17 - 0.25*change_20; \
+    K_r_x1_r_y1[1][2] = change_32 - 0.25*change_35; \
+    K_r_x1_r_y1[2][0] = change_3 - 0.25*change_6; \
+    K_r_x1_r_y1[2][1] = change_18 - 0.25*change_21; \
+    K_r_x1_r_y1[2][2] = change_33 - 0.25*change_36; \
+    K_r_x1_r_z1[0][0] = change_46 - 0.25*change_49; \
+    K_r_x1_r_z1[0][1] = change_61 - 0.25*change_64; \
+    K_r_x1_r_z1[0][2] = change_76 - 0.25*change_79; \
+    K_r_x1_r_z1[1][0] = change_47 - 0.25*change_50; \
+    K_r_x1_r_z1[1][1] = change_62 - 0.25*change_65; \
+    K_r_x1_r_z1[1][2] = change_77 - 0.25*change_80; \
+    K_r_x1_r_z1[2][0] = change_48 - 0.25*change_51; \
+    K_r_x1_r_z1[2][1] = change_63 - 0.25*change_66; \
+    K_r_x1_r_z1[2][2] = change_78 - 0.25*change_81; \
+    K_r_x1_r_2[0][0] = 1.5*K_3[0]*w - 0.375*sum_10*w; \
+    K_r_x1_r_2[0][1] = 1.5*K_4[0]*w - 0.375*sum_11*w; \
+    K_r_x1_r_2[0][2] = 1.5*K_5[0]*w - 0.375*sum_12*w;
+
+/* part of over the nodal vectors: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS_2 \
+    K_r_x1_r_y2[0][0] = change_91 - 0.25*change_94; \
+    K_r_x1_r_y2[0][1] = change_106 - 0.25*change_109; \
+    K_r_x1_r_y2[0][2] = change_121 - 0.25*change_124; \
+    K_r_x1_r_y2[1][0] = change_92 - 0.25*change_95; \
+    K_r_x1_r_y2[1][1] = change_107 - 0.25*change_110; \
+    K_r_x1_r_y2[1][2] = change_122 - 0.25*change_125; \
+    K_r_x1_r_y2[2][0] = change_93 - 0.25*change_96; \
+    K_r_x1_r_y2[2][1] = change_108 - 0.25*change_111; \
+    K_r_x1_r_y2[2][2] = change_123 - 0.25*change_126; \
+    K_r_x1_r_z2[0][0] = change_136 - 0.25*change_at[0]; \
+    K_r_x1_r_z2[0][1] = change_151 - 0.25*change_154; \
+    K_r_x1_r_z2[0][2] = change_166 - 0.25*change_169; \
+    K_r_x1_r_z2[1][0] = change_137 - 0.25*change_at[1]; \
+    K_r_x1_r_z2[1][1] = change_152 - 0.25*change_155; \
+    K_r_x1_r_z2[1][2] = change_167 - 0.25*change_170; \
+    K_r_x1_r_z2[2][0] = change_138 - 0.25*change_at[2]; \
+    K_r_x1_r_z2[2][1] = change_153 - 0.25*change_156; \
+    K_r_x1_r_z2[2][2] = change_168 - 0.25*change_171;
+
+/* part of over the nodal vectors: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS_3 \
+    K_r_2_r_y2[0][0] = 1.5*change_94*w; \
+    K_r_2_r_y2[0][1] = 1.5*change_109*w; \
+    K_r_2_r_y2[0][2] = 1.5*change_124*w; \
+    K_r_2_r_y2[1][0] = 1.5*change_95*w; \
+    K_r_2_r_y2[1][1] = 1.5*change_110*w; \
+    K_r_2_r_y2[1][2] = 1.5*change_125*w; \
+    K_r_2_r_y2[2][0] = 1.5*change_96*w; \
+    K_r_2_r_y2[2][1] = 1.5*change_111*w; \
+    K_r_2_r_y2[2][2] = 1.5*change_126*w; \
+    K_r_2_r_z2[0][0] = 1.5*change_at[0]*w; \
+    K_r_2_r_z2[0][1] = 1.5*change_154*w; \
+    K_r_2_r_z2[0][2] = 1.5*change_169*w; \
+    K_r_2_r_z2[1][0] = 1.5*change_at[1]*w; \
+    K_r_2_r_z2[1][1] = 1.5*change_155*w; \
+    K_r_2_r_z2[1][2] = 1.5*change_170*w; \
+    K_r_2_r_z2[2][0] = 1.5*change_at[2]*w; \
+    K_r_2_r_z2[2][1] = 1.5*change_156*w; \
+    K_r_2_r_z2[2][2] = 1.5*change_171*w;
+
+/* part of over the nodal vectors: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS_4 \
+    K_r_x2_r_y2[0][0] = -0.25*change_94 + change_97; \
+    K_r_x2_r_y2[0][1] = -0.25*change_109 + change_112; \
+    K_r_x2_r_y2[0][2] = -0.25*change_124 + change_127; \
+    K_r_x2_r_y2[1][0] = -0.25*change_95 + change_98; \
+    K_r_x2_r_y2[1][1] = -0.25*change_110 + change_113; \
+    K_r_x2_r_y2[1][2] = -0.25*change_125 + change_128; \
+    K_r_x2_r_y2[2][0] = -0.25*change_96 + change_99; \
+    K_r_x2_r_y2[2][1] = -0.25*change_111 + change_114; \
+    K_r_x2_r_y2[2][2] = -0.25*change_126 + change_129; \
+    K_r_x2_r_z2[0][0] = -0.25*change_at[0] + change_at[3]; \
+    K_r_x2_r_z2[0][1] = -0.25*change_154 + change_157; \
+    K_r_x2_r_z2[0][2] = -0.25*change_169 + change_172; \
+    K_r_x2_r_z2[1][0] = -0.25*change_at[1] + change_at[4]; \
+    K_r_x2_r_z2[1][1] = -0.25*change_155 + change_158; \
+    K_r_x2_r_z2[1][2] = -0.25*change_170 + change_173; \
+    K_r_x2_r_z2[2][0] = -0.25*change_at[2] + change_at[5]; \
+    K_r_x2_r_z2[2][1] = -0.25*change_156 + change_159; \
+    K_r_x2_r_z2[2][2] = -0.25*change_171 + change_174;
+
+/* part of outputs: of beam24_structural_elastic_tangent and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_OUTPUTS \
+    FU_PAIRS(i, j, 3, K[24*i + j + 75] = K_r_x1_r_x1[i][j];) \
+    FU_PAIRS(i, j, 3, K[24*i + j + 78] = K_r_x1_r_y1[i][j];) \
+    FU_PAIRS(i, j, 3, K[24*i + j + 81] = K_r_x1_r_z1[i][j];) \
+    FU_PAIRS(i, j, 3, K[24*i + j + 84] = K_r_x1_r_2[i][j];) \
+    FU_PAIRS(i, j, 3, K[24*i + j + 87] = K_r_x1_r_x2[i][j];) \
+    FU_PAIRS(i, j, 3, K[24*i + j + 90] = K_r_x1_r_y2[i][j];) \
+    FU_PAIRS(i, j, 3, K[24*i + j + 93] = K_r_x1_r_z2[i][j];)
+
+/* part of spins of the frames, rates of the strains: of beam24_structural_damping_force and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_SPINS_OF_THE_FRAMES_RATES_OF_THE_STRAINS \
+    const fu_real \
+        chord_rate4_x = w*(-v[0] + v[12]), \
+        chord_rate4_y = w*(v[13] - v[1]), \
+        chord_rate4_z = w*(v[14] - v[2]), \
+        xm_rate_x = 1.5*chord_rate4_x - 0.25*v[15] - 0.25*v[3], \
+        xm_rate_y = 1.5*chord_rate4_y - 0.25*v[16] - 0.25*v[4], \
+        xm_rate_z = 1.5*chord_rate4_z - 0.25*v[17] - 0.25*v[5];
+
+/* part of spins of the frames, rates of the strains: of beam24_structural_damping_force and 1 more */
+#define BEAM24_STRUCTURAL_PART_OF_SPINS_OF_THE_FRAMES_RATES_OF_THE_STRAINS_2 \
+    const fu_real \
+        dg1_11 = -0.5*g1*g1 - 0.5, \
+        dg2_11 = -0.5*g1*g2 + 0.5*g3, \
+        dg3_11 = -0.5*g1*g3 - 0.5*g2, \
+        dg1_12 = -0.5*g1*g2 - 0.5*g3, \
+        dg2_12 = -0.5*g2*g2 - 0.5, \
+        dg3_12 = 0.5*g1 - 0.5*g2*g3, \
+        dg1_13 = -0.5*g1*g3 + 0.5*g2, \
+        dg2_13 = -0.5*g1 - 0.5*g2*g3, \
+        dg3_13 = -0.5*g3*g3 - 0.5, \
+        dg1_21 = 0.5*g1*g1 + 0.5, \
+        dg2_21 = 0.5*g1*g2 + 0.5*g3, \
+        dg3_21 = 0.5*g1*g3 - 0.5*g2, \
+        dg1_22 = 0.5*g1*g2 - 0.5*g3, \
+        dg2_22 = 0.5*g2*g2 + 0.5, \
+        dg3_22 = 0.5*g1 + 0.5*g2*g3, \
+        dg1_23 = 0.5*g1*g3 + 0.5*g2, \
+        dg2_23 = -0.5*g1 + 0.5*g2*g3, \
+        dg3_23 = 0.5*g3*g3 + 0.5, \
+        v_q1_1 = q1_2*spin1_3 - q1_3*spin1_2 + t_x[0]*v[3] + t_y[0]*v[4] + t_z[0]*v[5], \
+        v_q1_2 = -q1_1*spin1_3 + q1_3*spin1_1 + t_x[1]*v[3] + t_y[1]*v[4] + t_z[1]*v[5], \
+        v_q1_3 = q1_1*spin1_2 - q1_2*spin1_1 + t_x[2]*v[3] + t_y[2]*v[4] + t_z[2]*v[5], \
+        v_q2_1 = q2_2*spin2_3 - q2_3*spin2_2 + t_x[3]*v[15] + t_y[3]*v[16] + t_z[3]*v[17], \
+        v_q2_2 = -q2_1*spin2_3 + q2_3*spin2_1 + t_x[4]*v[15] + t_y[4]*v[16] + t_z[4]*v[17], \
+        v_q2_3 = q2_1*spin2_2 - q2_2*spin2_1 + t_x[5]*v[15] + t_y[5]*v[16] + t_z[5]*v[17], \
+        v_p1_1 = p[1]*spin1_3 - p[2]*spin1_2 + t_x[0]*xm_rate_x + t_y[0]*xm_rate_y + t_z[0]*xm_rate_z, \
+        v_p1_2 = -p[0]*spin1_3 + p[2]*spin1_1 + t_x[1]*xm_rate_x + t_y[1]*xm_rate_y + t_z[1]*xm_rate_z, \
+        v_p1_3 = p[0]*spin1_2 - p[1]*spin1_1 + t_x[2]*xm_rate_x + t_y[2]*xm_rate_y + t_z[2]*xm_rate_z, \
+        v_p2_1 = p[4]*spin2_3 - p[5]*spin2_2 + t_x[3]*xm_rate_x + t_y[3]*xm_rate_y + t_z[3]*xm_rate_z, \
+        v_p2_2 = -p[3]*spin2_3 + p[5]*spin2_1 + t_x[4]*xm_rate_x + t_y[4]*xm_rate_y + t_z[4]*xm_rate_z, \
+        v_p2_3 = p[3]*spin2_2 - p[4]*spin2_1 + t_x[5]*xm_rate_x + t_y[5]*xm_rate_y + t_z[5]*xm_rate_z, \
+        v_g1 = dg1_11*spin1_1 + dg1_12*spin1_2 + dg1_13*spin1_3 + dg1_21*spin2_1 + dg1_22*spin2_2 + dg1_23*spin2_3, \
+        v_g2 = dg2_11*spin1_1 + dg2_12*spin1_2 + dg2_13*spin1_3 + dg2_21*spin2_1 + dg2_22*spin2_2 + dg2_23*spin2_3, \
+        v_g3 = dg3_11*spin1_1 + dg3_12*spin1_2 + dg3_13*spin1_3 + dg3_21*spin2_1 + dg3_22*spin2_2 + dg3_23*spin2_3, \
+        v_gg = 2.0*g1*v_g1 + 2.0*g2*v_g2 + 2.0*g3*v_g3, \
+        v_secant = 0.5*v_gg/secant, \
+        v_inv_secant = -(inv_secant*inv_secant*v_secant), \
+        v_mean1 = 0.5*v_p1_1 + 0.5*v_p2_1, \
+        v_mean2 = 0.5*v_p1_2 + 0.5*v_p2_2, \
+        v_mean3 = 0.5*v_p1_3 + 0.5*v_p2_3, \
+        v_along = g1*inv_secant*v_mean1 + g2*inv_secant*v_mean2 + g3*inv_secant*v_mean3 + inv_secant*mean1*v_g1 + inv_secant*mean2*v_g2 + inv_secant*mean3*v_g3 + v_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3), \
+        v_m1 = -along*v_g1 - g1*v_along + mean1*v_secant + secant*v_mean1, \
+        v_m2 = -along*v_g2 - g2*v_along + mean2*v_secant + secant*v_mean2, \
+        v_shared2 = A[11]*v_m2, \
+        v_m3 = -along*v_g3 - g3*v_along + mean3*v_secant + secant*v_mean3, \
+        v_shared3 = A[12]*v_m3, \
+        v_stretch = inv_stretch*(m1*v_m1 + shared2*v_shared2 + shared3*v_shared3), \
+        v_inv_stretch = -(inv_stretch*inv_stretch*v_stretch), \
+        v_cosine = inv_stretch*v_m1 + m1*v_inv_stretch, \
+        v_larger = -(0.5*larger*larger*v_cosine), \
+        v_shear2 = larger*v_m2 + m2*v_larger, \
+        v_shear3 = larger*v_m3 + m3*v_larger, \
+        v_inv_arc = -(inv_arc*inv_arc*v_gg*(450.0*gg + 1050.0)), \
+        v_arc = 2.0*inv_arc*v_gg*w*(128.0*gg + 735.0) + 2.0*v_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0), \
+        v_k1 = arc*v_g1 + g1*v_arc, \
+        v_k2 = arc*v_g2 + g2*v_arc, \
+        v_k3 = arc*v_g3 + g3*v_arc; \
+    FU_EACH(g, 2, \
+        rate_eyy[g] = e[12*g + 6]*v[12*g + 6] + e[12*g + 7]*v[12*g + 7] + e[12*g + 8]*v[12*g + 8]; \
+        rate_ezz[g] = e[11*g + 10]*v[11*g + 10] + e[11*g + 11]*v[11*g + 11] + e[14*g + 9]*v[14*g + 9]; \
+        rate_eyz[g] = e[8*g + 10]*v[14*g + 7] + e[8*g + 11]*v[14*g + 8] + e[14*g + 6]*v[14*g + 9] + e[14*g + 7]*v[8*g + 10] + e[14*g + 8]*v[8*g + 11] + e[14*g + 9]*v[14*g + 6];)
+
 /* strains from the reference: of beam24_structural_energy and 2 more */
 #define BEAM24_STRUCTURAL_STRAINS_FROM_THE_REFERENCE \
     const fu_real \
@@ -314,32 +1109,13 @@ void beam24_structural_energy(fu_real l, const fu_real *e, const fu_real *A, fu_
     t_x[3] = t_y[4]*t_z[5] - t_z[4]*t_y[5];
     t_y[3] = -t_x[4]*t_z[5] + t_z[4]*t_x[5];
     t_z[3] = t_x[4]*t_y[5] - t_y[4]*t_x[5];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS
     const fu_real
-        q1_1 = e[3]*t_x[0] + e[4]*t_y[0] + e[5]*t_z[0],
-        q1_2 = e[3]*t_x[1] + e[4]*t_y[1] + e[5]*t_z[1],
-        q1_3 = e[3]*t_x[2] + e[4]*t_y[2] + e[5]*t_z[2],
-        q2_1 = e[15]*t_x[3] + e[16]*t_y[3] + e[17]*t_z[3],
-        q2_2 = e[15]*t_x[4] + e[16]*t_y[4] + e[17]*t_z[4],
-        q2_3 = e[15]*t_x[5] + e[16]*t_y[5] + e[17]*t_z[5];
-    FU_EACH(g, 6,
-        p[g] = t_x[g]*xm_x + t_y[g]*xm_y + t_z[g]*xm_z;)
-    const fu_real
-        inv_turn = 1.0/(t_x[0]*t_x[3] + t_y[0]*t_y[3] + t_z[0]*t_z[3] + t_x[1]*t_x[4] + t_y[1]*t_y[4] + t_z[1]*t_z[4] + t_x[2]*t_x[5] + t_y[2]*t_y[5] + t_z[2]*t_z[5] + 1.0),
-        g1 = inv_turn*(-t_x[1]*t_x[5] - t_y[1]*t_y[5] - t_z[1]*t_z[5] + t_x[4]*t_x[2] + t_y[4]*t_y[2] + t_z[4]*t_z[2]),
-        g2 = inv_turn*(t_x[0]*t_x[5] + t_y[0]*t_y[5] + t_z[0]*t_z[5] - t_x[3]*t_x[2] - t_y[3]*t_y[2] - t_z[3]*t_z[2]),
-        g3 = inv_turn*(-t_x[0]*t_x[4] - t_y[0]*t_y[4] - t_z[0]*t_z[4] + t_x[3]*t_x[1] + t_y[3]*t_y[1] + t_z[3]*t_z[1]),
         mean1 = 0.5*p[0] + 0.5*p[3],
         mean2 = 0.5*p[1] + 0.5*p[4],
-        mean3 = 0.5*p[2] + 0.5*p[5],
-        gg = g1*g1 + g2*g2 + g3*g3,
-        secant = FU_SQRT(gg + 1.0),
-        inv_secant = 1.0/(secant + 1.0),
-        along = inv_secant*(g1*mean1 + g2*mean2 + g3*mean3),
-        inv_arc = 1.0/(gg*(225.0*gg + 1050.0) + 945.0),
-        arc = 2.0*inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        m1 = -along*g1 + mean1*secant,
-        m2 = -along*g2 + mean2*secant,
-        m3 = -along*g3 + mean3*secant,
+        mean3 = 0.5*p[2] + 0.5*p[5];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_2
+    const fu_real
         shared2 = A[11]*m2,
         shared3 = A[12]*m3,
         stretch = FU_SQRT(m1*m1 + shared2*shared2 + shared3*shared3),
@@ -350,13 +1126,8 @@ void beam24_structural_energy(fu_real l, const fu_real *e, const fu_real *A, fu_
         shear3 = larger*m3,
         k1 = arc*g1,
         k2 = arc*g2,
-        k3 = arc*g3,
-        across = 0.5*e[6]*e[6] + 0.5*e[7]*e[7] + 0.5*e[8]*e[8],
-        across_2 = 0.5*e[10]*e[10] + 0.5*e[11]*e[11] + 0.5*e[9]*e[9],
-        across_3 = e[10]*e[7] + e[11]*e[8] + e[6]*e[9],
-        across_4 = 0.5*e[18]*e[18] + 0.5*e[19]*e[19] + 0.5*e[20]*e[20],
-        across_5 = 0.5*e[21]*e[21] + 0.5*e[22]*e[22] + 0.5*e[23]*e[23],
-        across_6 = e[18]*e[21] + e[19]*e[22] + e[20]*e[23];
+        k3 = arc*g3;
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_3
     BEAM24_STRUCTURAL_STRAINS_FROM_THE_REFERENCE
     /* stiffness of the element */
     fu_real S[11];
@@ -418,32 +1189,13 @@ FU_KERNEL void beam24_structural_elastic_force(fu_real l, const fu_real *e, cons
     t_y[3] = -t_x[4]*t_z[5] + t_z[4]*t_x[5];
     t_z[3] = t_x[4]*t_y[5] - t_y[4]*t_x[5];
     slant[1] = b2*inv_c[1];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS
     const fu_real
-        q1_1 = e[3]*t_x[0] + e[4]*t_y[0] + e[5]*t_z[0],
-        q1_2 = e[3]*t_x[1] + e[4]*t_y[1] + e[5]*t_z[1],
-        q1_3 = e[3]*t_x[2] + e[4]*t_y[2] + e[5]*t_z[2],
-        q2_1 = e[15]*t_x[3] + e[16]*t_y[3] + e[17]*t_z[3],
-        q2_2 = e[15]*t_x[4] + e[16]*t_y[4] + e[17]*t_z[4],
-        q2_3 = e[15]*t_x[5] + e[16]*t_y[5] + e[17]*t_z[5];
-    FU_EACH(g, 6,
-        p[g] = t_x[g]*xm_x + t_y[g]*xm_y + t_z[g]*xm_z;)
-    const fu_real
-        inv_turn = 1.0/(t_x[0]*t_x[3] + t_y[0]*t_y[3] + t_z[0]*t_z[3] + t_x[1]*t_x[4] + t_y[1]*t_y[4] + t_z[1]*t_z[4] + t_x[2]*t_x[5] + t_y[2]*t_y[5] + t_z[2]*t_z[5] + 1.0),
-        g1 = inv_turn*(-t_x[1]*t_x[5] - t_y[1]*t_y[5] - t_z[1]*t_z[5] + t_x[4]*t_x[2] + t_y[4]*t_y[2] + t_z[4]*t_z[2]),
-        g2 = inv_turn*(t_x[0]*t_x[5] + t_y[0]*t_y[5] + t_z[0]*t_z[5] - t_x[3]*t_x[2] - t_y[3]*t_y[2] - t_z[3]*t_z[2]),
-        g3 = inv_turn*(-t_x[0]*t_x[4] - t_y[0]*t_y[4] - t_z[0]*t_z[4] + t_x[3]*t_x[1] + t_y[3]*t_y[1] + t_z[3]*t_z[1]),
         mean1 = 0.5*p[0] + 0.5*p[3],
         mean2 = 0.5*p[1] + 0.5*p[4],
-        mean3 = 0.5*p[2] + 0.5*p[5],
-        gg = g1*g1 + g2*g2 + g3*g3,
-        secant = FU_SQRT(gg + 1.0),
-        inv_secant = 1.0/(secant + 1.0),
-        along = inv_secant*(g1*mean1 + g2*mean2 + g3*mean3),
-        inv_arc = 1.0/(gg*(225.0*gg + 1050.0) + 945.0),
-        arc = 2.0*inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        m1 = -along*g1 + mean1*secant,
-        m2 = -along*g2 + mean2*secant,
-        m3 = -along*g3 + mean3*secant,
+        mean3 = 0.5*p[2] + 0.5*p[5];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_2
+    const fu_real
         shared2 = A[11]*m2,
         shared3 = A[12]*m3,
         stretch = FU_SQRT(m1*m1 + shared2*shared2 + shared3*shared3),
@@ -454,13 +1206,8 @@ FU_KERNEL void beam24_structural_elastic_force(fu_real l, const fu_real *e, cons
         shear3 = larger*m3,
         k1 = arc*g1,
         k2 = arc*g2,
-        k3 = arc*g3,
-        across = 0.5*e[6]*e[6] + 0.5*e[7]*e[7] + 0.5*e[8]*e[8],
-        across_2 = 0.5*e[10]*e[10] + 0.5*e[11]*e[11] + 0.5*e[9]*e[9],
-        across_3 = e[10]*e[7] + e[11]*e[8] + e[6]*e[9],
-        across_4 = 0.5*e[18]*e[18] + 0.5*e[19]*e[19] + 0.5*e[20]*e[20],
-        across_5 = 0.5*e[21]*e[21] + 0.5*e[22]*e[22] + 0.5*e[23]*e[23],
-        across_6 = e[18]*e[21] + e[19]*e[22] + e[20]*e[23];
+        k3 = arc*g3;
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_3
     /* stiffness of the element */
     fu_real S[11];
     FU_EACH(g, 11,
@@ -487,97 +1234,25 @@ FU_KERNEL void beam24_structural_elastic_force(fu_real l, const fu_real *e, cons
         d_m3_cosine = d_m3_inv_stretch*m1,
         d_m3_larger = -(0.5*d_m3_cosine*larger*larger),
         d_m3_shear2 = d_m3_larger*m2,
-        d_m3_shear3 = d_m3_larger*m3 + larger,
-        d_mean1_along = g1*inv_secant,
-        d_mean1_m1 = -d_mean1_along*g1 + secant,
-        d_mean1_m2 = -(d_mean1_along*g2),
-        d_mean1_m3 = -(d_mean1_along*g3),
-        d_mean2_along = g2*inv_secant,
-        d_mean2_m1 = -(d_mean2_along*g1),
-        d_mean2_m2 = -d_mean2_along*g2 + secant,
-        d_mean2_m3 = -(d_mean2_along*g3),
-        d_mean3_along = g3*inv_secant,
-        d_mean3_m1 = -(d_mean3_along*g1),
-        d_mean3_m2 = -(d_mean3_along*g2),
-        d_mean3_m3 = -d_mean3_along*g3 + secant,
-        d_g1_gg = 2.0*g1,
-        d_g1_secant = 0.5*d_g1_gg/secant,
-        d_g1_inv_secant = -(d_g1_secant*inv_secant*inv_secant),
-        d_g1_along = d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean1,
-        d_g1_m1 = -along - d_g1_along*g1 + d_g1_secant*mean1,
-        d_g1_m2 = -d_g1_along*g2 + d_g1_secant*mean2,
-        d_g1_m3 = -d_g1_along*g3 + d_g1_secant*mean3,
+        d_m3_shear3 = d_m3_larger*m3 + larger;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS
+    const fu_real
         d_g2_gg = 2.0*g2,
-        d_g2_secant = 0.5*d_g2_gg/secant,
-        d_g2_inv_secant = -(d_g2_secant*inv_secant*inv_secant),
-        d_g2_along = d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean2,
-        d_g2_m1 = -d_g2_along*g1 + d_g2_secant*mean1,
-        d_g2_m2 = -along - d_g2_along*g2 + d_g2_secant*mean2,
-        d_g2_m3 = -d_g2_along*g3 + d_g2_secant*mean3,
+        d_g2_secant = 0.5*d_g2_gg/secant;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_2
+    const fu_real
         d_g3_gg = 2.0*g3,
-        d_g3_secant = 0.5*d_g3_gg/secant,
-        d_g3_inv_secant = -(d_g3_secant*inv_secant*inv_secant),
-        d_g3_along = d_g3_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean3,
-        d_g3_m1 = -d_g3_along*g1 + d_g3_secant*mean1,
-        d_g3_m2 = -d_g3_along*g2 + d_g3_secant*mean2,
-        d_g3_m3 = -along - d_g3_along*g3 + d_g3_secant*mean3,
-        d_g1_inv_arc = -(d_g1_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g1_arc = 2.0*d_g1_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g1_k1 = arc + d_g1_arc*g1,
-        d_g1_k2 = d_g1_arc*g2,
-        d_g1_k3 = d_g1_arc*g3,
-        d_g2_inv_arc = -(d_g2_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g2_arc = 2.0*d_g2_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g2_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g2_k1 = d_g2_arc*g1,
-        d_g2_k2 = arc + d_g2_arc*g2,
-        d_g2_k3 = d_g2_arc*g3,
-        d_g3_inv_arc = -(d_g3_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g3_arc = 2.0*d_g3_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g3_k1 = d_g3_arc*g1,
-        d_g3_k2 = d_g3_arc*g2,
-        d_g3_k3 = arc + d_g3_arc*g3,
+        d_g3_secant = 0.5*d_g3_gg/secant;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_3
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_4
+    const fu_real
         F_1 = d_m1_shear2*n_e2_m + d_m1_shear3*n_e3_m + d_m1_stretch*n_e1_m,
         F_2 = d_m2_shear2*n_e2_m + d_m2_shear3*n_e3_m + d_m2_stretch*n_e1_m,
-        F_3 = d_m3_shear2*n_e2_m + d_m3_shear3*n_e3_m + d_m3_stretch*n_e1_m,
-        V_1 = F_1*d_mean1_m1 + F_2*d_mean1_m2 + F_3*d_mean1_m3,
-        V_2 = F_1*d_mean2_m1 + F_2*d_mean2_m2 + F_3*d_mean2_m3,
-        V_3 = F_1*d_mean3_m1 + F_2*d_mean3_m2 + F_3*d_mean3_m3,
-        V_4 = F_1*d_g1_m1 + F_2*d_g1_m2 + F_3*d_g1_m3 + d_g1_k1*n_k1 + d_g1_k2*n_k2 + d_g1_k3*n_k3,
-        V_5 = F_1*d_g2_m1 + F_2*d_g2_m2 + F_3*d_g2_m3 + d_g2_k1*n_k1 + d_g2_k2*n_k2 + d_g2_k3*n_k3,
-        V_6 = F_1*d_g3_m1 + F_2*d_g3_m2 + F_3*d_g3_m3 + d_g3_k1*n_k1 + d_g3_k2*n_k2 + d_g3_k3*n_k3,
-        dg1_11 = -0.5*g1*g1 - 0.5,
-        dg2_11 = -0.5*g1*g2 + 0.5*g3,
-        dg3_11 = -0.5*g1*g3 - 0.5*g2,
-        dg1_12 = -0.5*g1*g2 - 0.5*g3,
-        dg2_12 = -0.5*g2*g2 - 0.5,
-        dg3_12 = 0.5*g1 - 0.5*g2*g3,
-        dg1_13 = -0.5*g1*g3 + 0.5*g2,
-        dg2_13 = -0.5*g1 - 0.5*g2*g3,
-        dg3_13 = -0.5*g3*g3 - 0.5,
-        dg1_21 = 0.5*g1*g1 + 0.5,
-        dg2_21 = 0.5*g1*g2 + 0.5*g3,
-        dg3_21 = 0.5*g1*g3 - 0.5*g2,
-        dg1_22 = 0.5*g1*g2 - 0.5*g3,
-        dg2_22 = 0.5*g2*g2 + 0.5,
-        dg3_22 = 0.5*g1 + 0.5*g2*g3,
-        dg1_23 = 0.5*g1*g3 + 0.5*g2,
-        dg2_23 = -0.5*g1 + 0.5*g2*g3,
-        dg3_23 = 0.5*g3*g3 + 0.5,
-        f_x1_x = n_e1_1*t_x[0] + n_e2_1*t_x[1] + n_e3_1*t_x[2],
-        f_x1_y = n_e1_1*t_y[0] + n_e2_1*t_y[1] + n_e3_1*t_y[2],
-        f_x1_z = n_e1_1*t_z[0] + n_e2_1*t_z[1] + n_e3_1*t_z[2],
-        f_xm_x = 0.5*V_1*t_x[0] + 0.5*V_1*t_x[3] + 0.5*V_2*t_x[1] + 0.5*V_2*t_x[4] + 0.5*V_3*t_x[2] + 0.5*V_3*t_x[5],
-        f_xm_y = 0.5*V_1*t_y[0] + 0.5*V_1*t_y[3] + 0.5*V_2*t_y[1] + 0.5*V_2*t_y[4] + 0.5*V_3*t_y[2] + 0.5*V_3*t_y[5],
-        f_xm_z = 0.5*V_1*t_z[0] + 0.5*V_1*t_z[3] + 0.5*V_2*t_z[1] + 0.5*V_2*t_z[4] + 0.5*V_3*t_z[2] + 0.5*V_3*t_z[5],
-        f_x2_x = n_e1_2*t_x[3] + n_e2_2*t_x[4] + n_e3_2*t_x[5],
-        f_x2_y = n_e1_2*t_y[3] + n_e2_2*t_y[4] + n_e3_2*t_y[5],
-        f_x2_z = n_e1_2*t_z[3] + n_e2_2*t_z[4] + n_e3_2*t_z[5];
-    moment_1[0] = 0.5*V_2*p[2] - 0.5*V_3*p[1] + V_4*dg1_11 + V_5*dg2_11 + V_6*dg3_11 + n_e2_1*q1_3 - n_e3_1*q1_2;
-    moment_2[0] = -0.5*V_1*p[2] + 0.5*V_3*p[0] + V_4*dg1_12 + V_5*dg2_12 + V_6*dg3_12 - n_e1_1*q1_3 + n_e3_1*q1_1;
-    moment_3[0] = 0.5*V_1*p[1] - 0.5*V_2*p[0] + V_4*dg1_13 + V_5*dg2_13 + V_6*dg3_13 + n_e1_1*q1_2 - n_e2_1*q1_1;
-    moment_1[1] = 0.5*V_2*p[5] - 0.5*V_3*p[4] + V_4*dg1_21 + V_5*dg2_21 + V_6*dg3_21 + n_e2_2*q2_3 - n_e3_2*q2_2;
-    moment_2[1] = -0.5*V_1*p[5] + 0.5*V_3*p[3] + V_4*dg1_22 + V_5*dg2_22 + V_6*dg3_22 - n_e1_2*q2_3 + n_e3_2*q2_1;
-    moment_3[1] = 0.5*V_1*p[4] - 0.5*V_2*p[3] + V_4*dg1_23 + V_5*dg2_23 + V_6*dg3_23 + n_e1_2*q2_2 - n_e2_2*q2_1;
+        F_3 = d_m3_shear2*n_e2_m + d_m3_shear3*n_e3_m + d_m3_stretch*n_e1_m;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_5
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_6
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_7
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_8
     FU_EACH(g, 2,
         y1[g] = -(inv_a[g]*(moment_2[g]*slant[g] + moment_3[g]));
         y3[g] = inv_a[g]*moment_1[g];
@@ -619,32 +1294,13 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
     t[3][1] = -t[4][0]*t[5][2] + t[4][2]*t[5][0];
     t[3][2] = t[4][0]*t[5][1] - t[4][1]*t[5][0];
     slant[1] = b2*inv_c[1];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_4
     const fu_real
-        q1_1 = e[3]*t[0][0] + e[4]*t[0][1] + e[5]*t[0][2],
-        q1_2 = e[3]*t[1][0] + e[4]*t[1][1] + e[5]*t[1][2],
-        q1_3 = e[3]*t[2][0] + e[4]*t[2][1] + e[5]*t[2][2],
-        q2_1 = e[15]*t[3][0] + e[16]*t[3][1] + e[17]*t[3][2],
-        q2_2 = e[15]*t[4][0] + e[16]*t[4][1] + e[17]*t[4][2],
-        q2_3 = e[15]*t[5][0] + e[16]*t[5][1] + e[17]*t[5][2];
-    FU_EACH(g, 6,
-        p[g] = t[g][0]*xm[0] + t[g][1]*xm[1] + t[g][2]*xm[2];)
-    const fu_real
-        inv_turn = 1.0/(t[0][0]*t[3][0] + t[0][1]*t[3][1] + t[0][2]*t[3][2] + t[1][0]*t[4][0] + t[1][1]*t[4][1] + t[1][2]*t[4][2] + t[2][0]*t[5][0] + t[2][1]*t[5][1] + t[2][2]*t[5][2] + 1.0),
-        g1 = inv_turn*(-t[1][0]*t[5][0] - t[1][1]*t[5][1] - t[1][2]*t[5][2] + t[4][0]*t[2][0] + t[4][1]*t[2][1] + t[4][2]*t[2][2]),
-        g2 = inv_turn*(t[0][0]*t[5][0] + t[0][1]*t[5][1] + t[0][2]*t[5][2] - t[3][0]*t[2][0] - t[3][1]*t[2][1] - t[3][2]*t[2][2]),
-        g3 = inv_turn*(-t[0][0]*t[4][0] - t[0][1]*t[4][1] - t[0][2]*t[4][2] + t[3][0]*t[1][0] + t[3][1]*t[1][1] + t[3][2]*t[1][2]),
         mean1 = 0.5*p[0] + 0.5*p[3],
         mean2 = 0.5*p[1] + 0.5*p[4],
-        mean3 = 0.5*p[2] + 0.5*p[5],
-        gg = g1*g1 + g2*g2 + g3*g3,
-        secant = FU_SQRT(gg + 1.0),
-        inv_secant = 1.0/(secant + 1.0),
-        along = inv_secant*(g1*mean1 + g2*mean2 + g3*mean3),
-        inv_arc = 1.0/(gg*(225.0*gg + 1050.0) + 945.0),
-        arc = 2.0*inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        m1 = -along*g1 + mean1*secant,
-        m2 = -along*g2 + mean2*secant,
-        m3 = -along*g3 + mean3*secant,
+        mean3 = 0.5*p[2] + 0.5*p[5];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_2
+    const fu_real
         shared2 = A[11]*m2,
         shared3 = A[12]*m3,
         stretch = FU_SQRT(m1*m1 + shared2*shared2 + shared3*shared3),
@@ -655,13 +1311,8 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
         shear3 = larger*m3,
         k1 = arc*g1,
         k2 = arc*g2,
-        k3 = arc*g3,
-        across = 0.5*e[6]*e[6] + 0.5*e[7]*e[7] + 0.5*e[8]*e[8],
-        across_2 = 0.5*e[10]*e[10] + 0.5*e[11]*e[11] + 0.5*e[9]*e[9],
-        across_3 = e[10]*e[7] + e[11]*e[8] + e[6]*e[9],
-        across_4 = 0.5*e[18]*e[18] + 0.5*e[19]*e[19] + 0.5*e[20]*e[20],
-        across_5 = 0.5*e[21]*e[21] + 0.5*e[22]*e[22] + 0.5*e[23]*e[23],
-        across_6 = e[18]*e[21] + e[19]*e[22] + e[20]*e[23];
+        k3 = arc*g3;
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_3
     /* stiffness of the element */
     fu_real S[11];
     FU_EACH(g, 11,
@@ -692,102 +1343,20 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
         d_m3_larger = -(0.5*d_m3_cosine*larger*larger);
     d_m3_shear[0] = d_m3_larger*m2;
     d_m3_shear[1] = d_m3_larger*m3 + larger;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS
     const fu_real
-        d_mean1_along = g1*inv_secant,
-        d_mean1_m1 = -d_mean1_along*g1 + secant,
-        d_mean1_m2 = -(d_mean1_along*g2),
-        d_mean1_m3 = -(d_mean1_along*g3),
-        d_mean2_along = g2*inv_secant,
-        d_mean2_m1 = -(d_mean2_along*g1),
-        d_mean2_m2 = -d_mean2_along*g2 + secant,
-        d_mean2_m3 = -(d_mean2_along*g3),
-        d_mean3_along = g3*inv_secant,
-        d_mean3_m1 = -(d_mean3_along*g1),
-        d_mean3_m2 = -(d_mean3_along*g2),
-        d_mean3_m3 = -d_mean3_along*g3 + secant,
-        d_g1_gg = 2.0*g1,
-        d_g1_secant = 0.5*d_g1_gg/secant,
-        d_g1_inv_secant = -(d_g1_secant*inv_secant*inv_secant),
-        d_g1_along = d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean1,
-        d_g1_m1 = -along - d_g1_along*g1 + d_g1_secant*mean1,
-        d_g1_m2 = -d_g1_along*g2 + d_g1_secant*mean2,
-        d_g1_m3 = -d_g1_along*g3 + d_g1_secant*mean3,
         d_g2_gg = 2.0*g2,
-        d_g2_secant = 0.5*d_g2_gg/secant,
-        d_g2_inv_secant = -(d_g2_secant*inv_secant*inv_secant),
-        d_g2_along = d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean2,
-        d_g2_m1 = -d_g2_along*g1 + d_g2_secant*mean1,
-        d_g2_m2 = -along - d_g2_along*g2 + d_g2_secant*mean2,
-        d_g2_m3 = -d_g2_along*g3 + d_g2_secant*mean3,
-        d_g3_gg = 2.0*g3,
-        d_g3_secant = 0.5*d_g3_gg/secant,
-        d_g3_inv_secant = -(d_g3_secant*inv_secant*inv_secant),
-        d_g3_along = d_g3_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean3,
-        d_g3_m1 = -d_g3_along*g1 + d_g3_secant*mean1,
-        d_g3_m2 = -d_g3_along*g2 + d_g3_secant*mean2,
-        d_g3_m3 = -along - d_g3_along*g3 + d_g3_secant*mean3,
-        d_g1_inv_arc = -(d_g1_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g1_arc = 2.0*d_g1_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g1_k1 = arc + d_g1_arc*g1,
-        d_g1_k2 = d_g1_arc*g2,
-        d_g1_k3 = d_g1_arc*g3,
-        d_g2_inv_arc = -(d_g2_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g2_arc = 2.0*d_g2_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g2_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g2_k1 = d_g2_arc*g1,
-        d_g2_k2 = arc + d_g2_arc*g2,
-        d_g2_k3 = d_g2_arc*g3,
-        d_g3_inv_arc = -(d_g3_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g3_arc = 2.0*d_g3_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g3_k1 = d_g3_arc*g1,
-        d_g3_k2 = d_g3_arc*g2,
-        d_g3_k3 = arc + d_g3_arc*g3,
-        d_1_1 = d_m1_stretch*d_mean1_m1 + d_m2_stretch*d_mean1_m2 + d_m3_stretch*d_mean1_m3,
-        d_1_2 = d_m1_stretch*d_mean2_m1 + d_m2_stretch*d_mean2_m2 + d_m3_stretch*d_mean2_m3,
-        d_1_3 = d_m1_stretch*d_mean3_m1 + d_m2_stretch*d_mean3_m2 + d_m3_stretch*d_mean3_m3,
-        d_1_4 = d_g1_m1*d_m1_stretch + d_g1_m2*d_m2_stretch + d_g1_m3*d_m3_stretch,
-        d_1_5 = d_g2_m1*d_m1_stretch + d_g2_m2*d_m2_stretch + d_g2_m3*d_m3_stretch,
-        d_1_6 = d_g3_m1*d_m1_stretch + d_g3_m2*d_m2_stretch + d_g3_m3*d_m3_stretch;
-    FU_EACH(g, 2,
-        d_1[g] = d_m1_shear[g]*d_mean1_m1 + d_m2_shear[g]*d_mean1_m2 + d_m3_shear[g]*d_mean1_m3;
-        d_2[g] = d_m1_shear[g]*d_mean2_m1 + d_m2_shear[g]*d_mean2_m2 + d_m3_shear[g]*d_mean2_m3;
-        d_3[g] = d_m1_shear[g]*d_mean3_m1 + d_m2_shear[g]*d_mean3_m2 + d_m3_shear[g]*d_mean3_m3;
-        d_4[g] = d_g1_m1*d_m1_shear[g] + d_g1_m2*d_m2_shear[g] + d_g1_m3*d_m3_shear[g];
-        d_5[g] = d_g2_m1*d_m1_shear[g] + d_g2_m2*d_m2_shear[g] + d_g2_m3*d_m3_shear[g];
-        d_6[g] = d_g3_m1*d_m1_shear[g] + d_g3_m2*d_m2_shear[g] + d_g3_m3*d_m3_shear[g];)
+        d_g2_secant = 0.5*d_g2_gg/secant;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_2
     const fu_real
-        F_1 = d_m1_shear[0]*n_e2_m + d_m1_shear[1]*n_e3_m + d_m1_stretch*n_e1_m,
-        F_2 = d_m2_shear[0]*n_e2_m + d_m2_shear[1]*n_e3_m + d_m2_stretch*n_e1_m,
-        F_3 = d_m3_shear[0]*n_e2_m + d_m3_shear[1]*n_e3_m + d_m3_stretch*n_e1_m,
-        V_1 = F_1*d_mean1_m1 + F_2*d_mean1_m2 + F_3*d_mean1_m3,
-        V_2 = F_1*d_mean2_m1 + F_2*d_mean2_m2 + F_3*d_mean2_m3,
-        V_3 = F_1*d_mean3_m1 + F_2*d_mean3_m2 + F_3*d_mean3_m3,
-        V_4 = F_1*d_g1_m1 + F_2*d_g1_m2 + F_3*d_g1_m3 + d_g1_k1*n_k1 + d_g1_k2*n_k2 + d_g1_k3*n_k3,
-        V_5 = F_1*d_g2_m1 + F_2*d_g2_m2 + F_3*d_g2_m3 + d_g2_k1*n_k1 + d_g2_k2*n_k2 + d_g2_k3*n_k3,
-        V_6 = F_1*d_g3_m1 + F_2*d_g3_m2 + F_3*d_g3_m3 + d_g3_k1*n_k1 + d_g3_k2*n_k2 + d_g3_k3*n_k3,
-        dg1_11 = -0.5*g1*g1 - 0.5,
-        dg2_11 = -0.5*g1*g2 + 0.5*g3,
-        dg3_11 = -0.5*g1*g3 - 0.5*g2,
-        dg1_12 = -0.5*g1*g2 - 0.5*g3,
-        dg2_12 = -0.5*g2*g2 - 0.5,
-        dg3_12 = 0.5*g1 - 0.5*g2*g3,
-        dg1_13 = -0.5*g1*g3 + 0.5*g2,
-        dg2_13 = -0.5*g1 - 0.5*g2*g3,
-        dg3_13 = -0.5*g3*g3 - 0.5,
-        dg1_21 = 0.5*g1*g1 + 0.5,
-        dg2_21 = 0.5*g1*g2 + 0.5*g3,
-        dg3_21 = 0.5*g1*g3 - 0.5*g2,
-        dg1_22 = 0.5*g1*g2 - 0.5*g3,
-        dg2_22 = 0.5*g2*g2 + 0.5,
-        dg3_22 = 0.5*g1 + 0.5*g2*g3,
-        dg1_23 = 0.5*g1*g3 + 0.5*g2,
-        dg2_23 = -0.5*g1 + 0.5*g2*g3,
-        dg3_23 = 0.5*g3*g3 + 0.5;
-    moment_1[0] = 0.5*V_2*p[2] - 0.5*V_3*p[1] + V_4*dg1_11 + V_5*dg2_11 + V_6*dg3_11 + n_e2_1*q1_3 - n_e3_1*q1_2;
-    moment_2[0] = -0.5*V_1*p[2] + 0.5*V_3*p[0] + V_4*dg1_12 + V_5*dg2_12 + V_6*dg3_12 - n_e1_1*q1_3 + n_e3_1*q1_1;
-    moment_3[0] = 0.5*V_1*p[1] - 0.5*V_2*p[0] + V_4*dg1_13 + V_5*dg2_13 + V_6*dg3_13 + n_e1_1*q1_2 - n_e2_1*q1_1;
-    moment_1[1] = 0.5*V_2*p[5] - 0.5*V_3*p[4] + V_4*dg1_21 + V_5*dg2_21 + V_6*dg3_21 + n_e2_2*q2_3 - n_e3_2*q2_2;
-    moment_2[1] = -0.5*V_1*p[5] + 0.5*V_3*p[3] + V_4*dg1_22 + V_5*dg2_22 + V_6*dg3_22 - n_e1_2*q2_3 + n_e3_2*q2_1;
-    moment_3[1] = 0.5*V_1*p[4] - 0.5*V_2*p[3] + V_4*dg1_23 + V_5*dg2_23 + V_6*dg3_23 + n_e1_2*q2_2 - n_e2_2*q2_1;
+        d_g3_gg = 2.0*g3,
+        d_g3_secant = 0.5*d_g3_gg/secant;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_3
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_4
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_9
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_5
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_6
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_8
     FU_EACH(g, 2,
         y1[g] = -(inv_a[g]*(moment_2[g]*slant[g] + moment_3[g]));
         y3[g] = inv_a[g]*moment_1[g];
@@ -795,224 +1364,41 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
     /* derivatives at constant resultants, over motions of the parts */
     fu_real turn5_f_xm[3], turn9_f_x1[3], turn9_f_xm[3], turn10_f_x1[3], turn10_f_xm[3], turn11_f_x1[3], turn11_f_xm[3],
         turn12_f_xm[3], turn12_f_x2[3], turn13_f_xm[3], turn13_f_x2[3], turn14_f_xm[3], turn14_f_x2[3];
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS
     const fu_real
-        d_m1_d_m1_stretch = d_m1_inv_stretch*m1 + inv_stretch,
-        d_m1_d_m1_inv_stretch = -d_m1_d_m1_stretch*inv_stretch*inv_stretch - 2.0*d_m1_inv_stretch*d_m1_stretch*inv_stretch,
-        d_m1_d_m1_cosine = d_m1_d_m1_inv_stretch*m1 + 2.0*d_m1_inv_stretch,
-        d_m1_d_m1_larger = -d_m1_cosine*d_m1_larger*larger - 0.5*d_m1_d_m1_cosine*larger*larger,
-        d_m1_d_m1_shear2 = d_m1_d_m1_larger*m2,
-        d_m1_d_m1_shear3 = d_m1_d_m1_larger*m3,
-        d_m1_F_1 = d_m1_d_m1_shear2*n_e2_m + d_m1_d_m1_shear3*n_e3_m + d_m1_d_m1_stretch*n_e1_m,
-        d_m2_d_m1_stretch = d_m2_inv_stretch*m1,
-        d_m2_d_m1_inv_stretch = -2.0*d_m1_stretch*d_m2_inv_stretch*inv_stretch - d_m2_d_m1_stretch*inv_stretch*inv_stretch,
-        d_m2_d_m1_cosine = d_m2_d_m1_inv_stretch*m1 + d_m2_inv_stretch,
-        d_m2_d_m1_larger = -d_m1_cosine*d_m2_larger*larger - 0.5*d_m2_d_m1_cosine*larger*larger,
-        d_m2_d_m1_shear2 = d_m1_larger + d_m2_d_m1_larger*m2,
-        d_m2_d_m1_shear3 = d_m2_d_m1_larger*m3,
-        d_m2_F_1 = d_m2_d_m1_shear2*n_e2_m + d_m2_d_m1_shear3*n_e3_m + d_m2_d_m1_stretch*n_e1_m,
-        d_m2_d_m2_stretch = A[11]*A[11]*inv_stretch + A[11]*d_m2_inv_stretch*shared2,
-        d_m2_d_m2_inv_stretch = -d_m2_d_m2_stretch*inv_stretch*inv_stretch - 2.0*d_m2_inv_stretch*d_m2_stretch*inv_stretch,
-        d_m2_d_m2_cosine = d_m2_d_m2_inv_stretch*m1,
-        d_m2_d_m2_larger = -d_m2_cosine*d_m2_larger*larger - 0.5*d_m2_d_m2_cosine*larger*larger,
-        d_m2_d_m2_shear2 = d_m2_d_m2_larger*m2 + 2.0*d_m2_larger,
-        d_m2_d_m2_shear3 = d_m2_d_m2_larger*m3,
-        d_m2_F_2 = d_m2_d_m2_shear2*n_e2_m + d_m2_d_m2_shear3*n_e3_m + d_m2_d_m2_stretch*n_e1_m,
-        d_m3_d_m1_stretch = d_m3_inv_stretch*m1,
-        d_m3_d_m1_inv_stretch = -2.0*d_m1_stretch*d_m3_inv_stretch*inv_stretch - d_m3_d_m1_stretch*inv_stretch*inv_stretch,
-        d_m3_d_m1_cosine = d_m3_d_m1_inv_stretch*m1 + d_m3_inv_stretch,
-        d_m3_d_m1_larger = -d_m1_cosine*d_m3_larger*larger - 0.5*d_m3_d_m1_cosine*larger*larger,
-        d_m3_d_m1_shear2 = d_m3_d_m1_larger*m2,
-        d_m3_d_m1_shear3 = d_m1_larger + d_m3_d_m1_larger*m3,
-        d_m3_F_1 = d_m3_d_m1_shear2*n_e2_m + d_m3_d_m1_shear3*n_e3_m + d_m3_d_m1_stretch*n_e1_m,
-        d_m3_d_m2_stretch = A[11]*d_m3_inv_stretch*shared2,
-        d_m3_d_m2_inv_stretch = -2.0*d_m2_stretch*d_m3_inv_stretch*inv_stretch - d_m3_d_m2_stretch*inv_stretch*inv_stretch,
-        d_m3_d_m2_cosine = d_m3_d_m2_inv_stretch*m1,
-        d_m3_d_m2_larger = -d_m2_cosine*d_m3_larger*larger - 0.5*d_m3_d_m2_cosine*larger*larger,
-        d_m3_d_m2_shear2 = d_m3_d_m2_larger*m2 + d_m3_larger,
-        d_m3_d_m2_shear3 = d_m2_larger + d_m3_d_m2_larger*m3,
-        d_m3_F_2 = d_m3_d_m2_shear2*n_e2_m + d_m3_d_m2_shear3*n_e3_m + d_m3_d_m2_stretch*n_e1_m,
-        d_m3_d_m3_stretch = A[12]*A[12]*inv_stretch + A[12]*d_m3_inv_stretch*shared3,
-        d_m3_d_m3_inv_stretch = -d_m3_d_m3_stretch*inv_stretch*inv_stretch - 2.0*d_m3_inv_stretch*d_m3_stretch*inv_stretch,
-        d_m3_d_m3_cosine = d_m3_d_m3_inv_stretch*m1,
-        d_m3_d_m3_larger = -d_m3_cosine*d_m3_larger*larger - 0.5*d_m3_d_m3_cosine*larger*larger,
-        d_m3_d_m3_shear2 = d_m3_d_m3_larger*m2,
-        d_m3_d_m3_shear3 = d_m3_d_m3_larger*m3 + 2.0*d_m3_larger,
-        d_m3_F_3 = d_m3_d_m3_shear2*n_e2_m + d_m3_d_m3_shear3*n_e3_m + d_m3_d_m3_stretch*n_e1_m,
-        dF_1_1 = d_m1_F_1*d_mean1_m1 + d_m2_F_1*d_mean1_m2 + d_m3_F_1*d_mean1_m3,
-        dF_1_2 = d_m1_F_1*d_mean2_m1 + d_m2_F_1*d_mean2_m2 + d_m3_F_1*d_mean2_m3,
-        dF_1_3 = d_m1_F_1*d_mean3_m1 + d_m2_F_1*d_mean3_m2 + d_m3_F_1*d_mean3_m3,
-        dF_1_4 = d_g1_m1*d_m1_F_1 + d_g1_m2*d_m2_F_1 + d_g1_m3*d_m3_F_1,
-        dF_1_5 = d_g2_m1*d_m1_F_1 + d_g2_m2*d_m2_F_1 + d_g2_m3*d_m3_F_1,
-        dF_1_6 = d_g3_m1*d_m1_F_1 + d_g3_m2*d_m2_F_1 + d_g3_m3*d_m3_F_1,
-        dF_2_1 = d_m2_F_1*d_mean1_m1 + d_m2_F_2*d_mean1_m2 + d_m3_F_2*d_mean1_m3,
-        dF_2_2 = d_m2_F_1*d_mean2_m1 + d_m2_F_2*d_mean2_m2 + d_m3_F_2*d_mean2_m3,
-        dF_2_3 = d_m2_F_1*d_mean3_m1 + d_m2_F_2*d_mean3_m2 + d_m3_F_2*d_mean3_m3,
-        dF_2_4 = d_g1_m1*d_m2_F_1 + d_g1_m2*d_m2_F_2 + d_g1_m3*d_m3_F_2,
-        dF_2_5 = d_g2_m1*d_m2_F_1 + d_g2_m2*d_m2_F_2 + d_g2_m3*d_m3_F_2,
-        dF_2_6 = d_g3_m1*d_m2_F_1 + d_g3_m2*d_m2_F_2 + d_g3_m3*d_m3_F_2,
-        dF_3_1 = d_m3_F_1*d_mean1_m1 + d_m3_F_2*d_mean1_m2 + d_m3_F_3*d_mean1_m3,
-        dF_3_2 = d_m3_F_1*d_mean2_m1 + d_m3_F_2*d_mean2_m2 + d_m3_F_3*d_mean2_m3,
-        dF_3_3 = d_m3_F_1*d_mean3_m1 + d_m3_F_2*d_mean3_m2 + d_m3_F_3*d_mean3_m3,
-        dF_3_4 = d_g1_m1*d_m3_F_1 + d_g1_m2*d_m3_F_2 + d_g1_m3*d_m3_F_3,
-        dF_3_5 = d_g2_m1*d_m3_F_1 + d_g2_m2*d_m3_F_2 + d_g2_m3*d_m3_F_3,
-        dF_3_6 = d_g3_m1*d_m3_F_1 + d_g3_m2*d_m3_F_2 + d_g3_m3*d_m3_F_3,
-        d_mean1_V_1 = dF_1_1*d_mean1_m1 + dF_2_1*d_mean1_m2 + dF_3_1*d_mean1_m3,
-        d_mean2_V_1 = dF_1_2*d_mean1_m1 + dF_2_2*d_mean1_m2 + dF_3_2*d_mean1_m3,
-        d_mean2_V_2 = dF_1_2*d_mean2_m1 + dF_2_2*d_mean2_m2 + dF_3_2*d_mean2_m3,
-        d_mean3_V_1 = dF_1_3*d_mean1_m1 + dF_2_3*d_mean1_m2 + dF_3_3*d_mean1_m3,
-        d_mean3_V_2 = dF_1_3*d_mean2_m1 + dF_2_3*d_mean2_m2 + dF_3_3*d_mean2_m3,
-        d_mean3_V_3 = dF_1_3*d_mean3_m1 + dF_2_3*d_mean3_m2 + dF_3_3*d_mean3_m3,
-        d_g1_d_mean1_along = d_g1_inv_secant*g1 + inv_secant,
-        d_g1_d_mean1_m1 = -d_g1_d_mean1_along*g1 + d_g1_secant - d_mean1_along,
-        d_g1_d_mean1_m2 = -(d_g1_d_mean1_along*g2),
-        d_g1_d_mean1_m3 = -(d_g1_d_mean1_along*g3),
-        d_g1_V_1 = F_1*d_g1_d_mean1_m1 + F_2*d_g1_d_mean1_m2 + F_3*d_g1_d_mean1_m3 + dF_1_4*d_mean1_m1 + dF_2_4*d_mean1_m2 + dF_3_4*d_mean1_m3,
-        d_g1_d_mean2_along = d_g1_inv_secant*g2,
-        d_g1_d_mean2_m1 = -d_g1_d_mean2_along*g1 - d_mean2_along,
-        d_g1_d_mean2_m2 = -d_g1_d_mean2_along*g2 + d_g1_secant,
-        d_g1_d_mean2_m3 = -(d_g1_d_mean2_along*g3),
-        d_g1_V_2 = F_1*d_g1_d_mean2_m1 + F_2*d_g1_d_mean2_m2 + F_3*d_g1_d_mean2_m3 + dF_1_4*d_mean2_m1 + dF_2_4*d_mean2_m2 + dF_3_4*d_mean2_m3,
-        d_g1_d_mean3_along = d_g1_inv_secant*g3,
-        d_g1_d_mean3_m1 = -d_g1_d_mean3_along*g1 - d_mean3_along,
-        d_g1_d_mean3_m2 = -(d_g1_d_mean3_along*g2),
-        d_g1_d_mean3_m3 = -d_g1_d_mean3_along*g3 + d_g1_secant,
-        d_g1_V_3 = F_1*d_g1_d_mean3_m1 + F_2*d_g1_d_mean3_m2 + F_3*d_g1_d_mean3_m3 + dF_1_4*d_mean3_m1 + dF_2_4*d_mean3_m2 + dF_3_4*d_mean3_m3,
-        d_g1_d_g1_inv_arc = -450.0*d_g1_gg*d_g1_gg*inv_arc*inv_arc - 2.0*d_g1_gg*d_g1_inv_arc*inv_arc*(450.0*gg + 1050.0) - 2.0*inv_arc*inv_arc*(450.0*gg + 1050.0),
-        d_g1_d_g1_arc = 2.0*d_g1_d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + 2.0*d_g1_gg*d_g1_inv_arc*w*(128.0*gg + 735.0) + d_g1_gg*(256.0*d_g1_gg*inv_arc*w + 2.0*d_g1_inv_arc*w*(128.0*gg + 735.0)) + 4.0*inv_arc*w*(128.0*gg + 735.0),
-        d_g1_d_g1_k1 = 2.0*d_g1_arc + d_g1_d_g1_arc*g1,
-        d_g1_d_g1_k2 = d_g1_d_g1_arc*g2,
-        d_g1_d_g1_k3 = d_g1_d_g1_arc*g3,
-        d_g1_d_g1_secant = -0.5*d_g1_gg*d_g1_secant/(secant*secant) + 1.0/secant,
-        d_g1_d_g1_inv_secant = -d_g1_d_g1_secant*inv_secant*inv_secant - 2.0*d_g1_inv_secant*d_g1_secant*inv_secant,
-        d_g1_d_g1_along = d_g1_d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + 2.0*d_g1_inv_secant*mean1,
-        d_g1_d_g1_m1 = -2.0*d_g1_along - d_g1_d_g1_along*g1 + d_g1_d_g1_secant*mean1,
-        d_g1_d_g1_m2 = -d_g1_d_g1_along*g2 + d_g1_d_g1_secant*mean2,
-        d_g1_d_g1_m3 = -d_g1_d_g1_along*g3 + d_g1_d_g1_secant*mean3,
-        d_g1_V_4 = F_1*d_g1_d_g1_m1 + F_2*d_g1_d_g1_m2 + F_3*d_g1_d_g1_m3 + dF_1_4*d_g1_m1 + dF_2_4*d_g1_m2 + dF_3_4*d_g1_m3 + d_g1_d_g1_k1*n_k1 + d_g1_d_g1_k2*n_k2 + d_g1_d_g1_k3*n_k3,
-        d_g2_d_mean1_along = d_g2_inv_secant*g1,
-        d_g2_d_mean1_m1 = -d_g2_d_mean1_along*g1 + d_g2_secant,
-        d_g2_d_mean1_m2 = -d_g2_d_mean1_along*g2 - d_mean1_along,
-        d_g2_d_mean1_m3 = -(d_g2_d_mean1_along*g3),
-        d_g2_V_1 = F_1*d_g2_d_mean1_m1 + F_2*d_g2_d_mean1_m2 + F_3*d_g2_d_mean1_m3 + dF_1_5*d_mean1_m1 + dF_2_5*d_mean1_m2 + dF_3_5*d_mean1_m3,
-        d_g2_d_mean2_along = d_g2_inv_secant*g2 + inv_secant,
-        d_g2_d_mean2_m1 = -(d_g2_d_mean2_along*g1),
-        d_g2_d_mean2_m2 = -d_g2_d_mean2_along*g2 + d_g2_secant - d_mean2_along,
-        d_g2_d_mean2_m3 = -(d_g2_d_mean2_along*g3),
-        d_g2_V_2 = F_1*d_g2_d_mean2_m1 + F_2*d_g2_d_mean2_m2 + F_3*d_g2_d_mean2_m3 + dF_1_5*d_mean2_m1 + dF_2_5*d_mean2_m2 + dF_3_5*d_mean2_m3,
-        d_g2_d_mean3_along = d_g2_inv_secant*g3,
-        d_g2_d_mean3_m1 = -(d_g2_d_mean3_along*g1),
-        d_g2_d_mean3_m2 = -d_g2_d_mean3_along*g2 - d_mean3_along,
-        d_g2_d_mean3_m3 = -d_g2_d_mean3_along*g3 + d_g2_secant,
-        d_g2_V_3 = F_1*d_g2_d_mean3_m1 + F_2*d_g2_d_mean3_m2 + F_3*d_g2_d_mean3_m3 + dF_1_5*d_mean3_m1 + dF_2_5*d_mean3_m2 + dF_3_5*d_mean3_m3,
         d_g2_d_g1_inv_arc = -450.0*d_g1_gg*d_g2_gg*inv_arc*inv_arc - 2.0*d_g1_gg*d_g2_inv_arc*inv_arc*(450.0*gg + 1050.0),
         d_g2_d_g1_arc = 2.0*d_g1_gg*d_g2_inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g2_d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + d_g2_gg*(256.0*d_g1_gg*inv_arc*w + 2.0*d_g1_inv_arc*w*(128.0*gg + 735.0)),
-        d_g2_d_g1_k1 = d_g2_arc + d_g2_d_g1_arc*g1,
-        d_g2_d_g1_k2 = d_g1_arc + d_g2_d_g1_arc*g2,
-        d_g2_d_g1_k3 = d_g2_d_g1_arc*g3,
-        d_g2_d_g1_secant = -(0.5*d_g1_gg*d_g2_secant/(secant*secant)),
-        d_g2_d_g1_inv_secant = -2.0*d_g1_secant*d_g2_inv_secant*inv_secant - d_g2_d_g1_secant*inv_secant*inv_secant,
-        d_g2_d_g1_along = d_g1_inv_secant*mean2 + d_g2_d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + d_g2_inv_secant*mean1,
-        d_g2_d_g1_m1 = -d_g2_along - d_g2_d_g1_along*g1 + d_g2_d_g1_secant*mean1,
-        d_g2_d_g1_m2 = -d_g1_along - d_g2_d_g1_along*g2 + d_g2_d_g1_secant*mean2,
-        d_g2_d_g1_m3 = -d_g2_d_g1_along*g3 + d_g2_d_g1_secant*mean3,
-        d_g2_V_4 = F_1*d_g2_d_g1_m1 + F_2*d_g2_d_g1_m2 + F_3*d_g2_d_g1_m3 + dF_1_5*d_g1_m1 + dF_2_5*d_g1_m2 + dF_3_5*d_g1_m3 + d_g2_d_g1_k1*n_k1 + d_g2_d_g1_k2*n_k2 + d_g2_d_g1_k3*n_k3,
+        d_g2_d_g1_k1 = d_g2_arc + d_g2_d_g1_arc*g1;
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_2
+    const fu_real
         d_g2_d_g2_inv_arc = -450.0*d_g2_gg*d_g2_gg*inv_arc*inv_arc - 2.0*d_g2_gg*d_g2_inv_arc*inv_arc*(450.0*gg + 1050.0) - 2.0*inv_arc*inv_arc*(450.0*gg + 1050.0),
         d_g2_d_g2_arc = 2.0*d_g2_d_g2_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + 2.0*d_g2_gg*d_g2_inv_arc*w*(128.0*gg + 735.0) + d_g2_gg*(256.0*d_g2_gg*inv_arc*w + 2.0*d_g2_inv_arc*w*(128.0*gg + 735.0)) + 4.0*inv_arc*w*(128.0*gg + 735.0),
         d_g2_d_g2_k1 = d_g2_d_g2_arc*g1,
         d_g2_d_g2_k2 = 2.0*d_g2_arc + d_g2_d_g2_arc*g2,
         d_g2_d_g2_k3 = d_g2_d_g2_arc*g3,
-        d_g2_d_g2_secant = -0.5*d_g2_gg*d_g2_secant/(secant*secant) + 1.0/secant,
-        d_g2_d_g2_inv_secant = -d_g2_d_g2_secant*inv_secant*inv_secant - 2.0*d_g2_inv_secant*d_g2_secant*inv_secant,
-        d_g2_d_g2_along = d_g2_d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + 2.0*d_g2_inv_secant*mean2,
-        d_g2_d_g2_m1 = -d_g2_d_g2_along*g1 + d_g2_d_g2_secant*mean1,
-        d_g2_d_g2_m2 = -2.0*d_g2_along - d_g2_d_g2_along*g2 + d_g2_d_g2_secant*mean2,
-        d_g2_d_g2_m3 = -d_g2_d_g2_along*g3 + d_g2_d_g2_secant*mean3,
-        d_g2_V_5 = F_1*d_g2_d_g2_m1 + F_2*d_g2_d_g2_m2 + F_3*d_g2_d_g2_m3 + dF_1_5*d_g2_m1 + dF_2_5*d_g2_m2 + dF_3_5*d_g2_m3 + d_g2_d_g2_k1*n_k1 + d_g2_d_g2_k2*n_k2 + d_g2_d_g2_k3*n_k3,
-        d_g3_d_mean1_along = d_g3_inv_secant*g1,
-        d_g3_d_mean1_m1 = -d_g3_d_mean1_along*g1 + d_g3_secant,
-        d_g3_d_mean1_m2 = -(d_g3_d_mean1_along*g2),
-        d_g3_d_mean1_m3 = -d_g3_d_mean1_along*g3 - d_mean1_along,
-        d_g3_V_1 = F_1*d_g3_d_mean1_m1 + F_2*d_g3_d_mean1_m2 + F_3*d_g3_d_mean1_m3 + dF_1_6*d_mean1_m1 + dF_2_6*d_mean1_m2 + dF_3_6*d_mean1_m3,
-        d_g3_d_mean2_along = d_g3_inv_secant*g2,
-        d_g3_d_mean2_m1 = -(d_g3_d_mean2_along*g1),
-        d_g3_d_mean2_m2 = -d_g3_d_mean2_along*g2 + d_g3_secant,
-        d_g3_d_mean2_m3 = -d_g3_d_mean2_along*g3 - d_mean2_along,
-        d_g3_V_2 = F_1*d_g3_d_mean2_m1 + F_2*d_g3_d_mean2_m2 + F_3*d_g3_d_mean2_m3 + dF_1_6*d_mean2_m1 + dF_2_6*d_mean2_m2 + dF_3_6*d_mean2_m3,
-        d_g3_d_mean3_along = d_g3_inv_secant*g3 + inv_secant,
-        d_g3_d_mean3_m1 = -(d_g3_d_mean3_along*g1),
-        d_g3_d_mean3_m2 = -(d_g3_d_mean3_along*g2),
-        d_g3_d_mean3_m3 = -d_g3_d_mean3_along*g3 + d_g3_secant - d_mean3_along,
-        d_g3_V_3 = F_1*d_g3_d_mean3_m1 + F_2*d_g3_d_mean3_m2 + F_3*d_g3_d_mean3_m3 + dF_1_6*d_mean3_m1 + dF_2_6*d_mean3_m2 + dF_3_6*d_mean3_m3,
+        d_g2_d_g2_secant = -0.5*d_g2_gg*d_g2_secant/(secant*secant) + 1.0/secant;
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_3
+    const fu_real
         d_g3_d_g1_inv_arc = -450.0*d_g1_gg*d_g3_gg*inv_arc*inv_arc - 2.0*d_g1_gg*d_g3_inv_arc*inv_arc*(450.0*gg + 1050.0),
         d_g3_d_g1_arc = 2.0*d_g1_gg*d_g3_inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + d_g3_gg*(256.0*d_g1_gg*inv_arc*w + 2.0*d_g1_inv_arc*w*(128.0*gg + 735.0)),
-        d_g3_d_g1_k1 = d_g3_arc + d_g3_d_g1_arc*g1,
-        d_g3_d_g1_k2 = d_g3_d_g1_arc*g2,
-        d_g3_d_g1_k3 = d_g1_arc + d_g3_d_g1_arc*g3,
-        d_g3_d_g1_secant = -(0.5*d_g1_gg*d_g3_secant/(secant*secant)),
-        d_g3_d_g1_inv_secant = -2.0*d_g1_secant*d_g3_inv_secant*inv_secant - d_g3_d_g1_secant*inv_secant*inv_secant,
-        d_g3_d_g1_along = d_g1_inv_secant*mean3 + d_g3_d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + d_g3_inv_secant*mean1,
-        d_g3_d_g1_m1 = -d_g3_along - d_g3_d_g1_along*g1 + d_g3_d_g1_secant*mean1,
-        d_g3_d_g1_m2 = -d_g3_d_g1_along*g2 + d_g3_d_g1_secant*mean2,
-        d_g3_d_g1_m3 = -d_g1_along - d_g3_d_g1_along*g3 + d_g3_d_g1_secant*mean3,
-        d_g3_V_4 = F_1*d_g3_d_g1_m1 + F_2*d_g3_d_g1_m2 + F_3*d_g3_d_g1_m3 + dF_1_6*d_g1_m1 + dF_2_6*d_g1_m2 + dF_3_6*d_g1_m3 + d_g3_d_g1_k1*n_k1 + d_g3_d_g1_k2*n_k2 + d_g3_d_g1_k3*n_k3,
+        d_g3_d_g1_k1 = d_g3_arc + d_g3_d_g1_arc*g1;
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_4
+    const fu_real
         d_g3_d_g2_inv_arc = -450.0*d_g2_gg*d_g3_gg*inv_arc*inv_arc - 2.0*d_g2_gg*d_g3_inv_arc*inv_arc*(450.0*gg + 1050.0),
         d_g3_d_g2_arc = 2.0*d_g2_gg*d_g3_inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_d_g2_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + d_g3_gg*(256.0*d_g2_gg*inv_arc*w + 2.0*d_g2_inv_arc*w*(128.0*gg + 735.0)),
         d_g3_d_g2_k1 = d_g3_d_g2_arc*g1,
         d_g3_d_g2_k2 = d_g3_arc + d_g3_d_g2_arc*g2,
         d_g3_d_g2_k3 = d_g2_arc + d_g3_d_g2_arc*g3,
-        d_g3_d_g2_secant = -(0.5*d_g2_gg*d_g3_secant/(secant*secant)),
-        d_g3_d_g2_inv_secant = -2.0*d_g2_secant*d_g3_inv_secant*inv_secant - d_g3_d_g2_secant*inv_secant*inv_secant,
-        d_g3_d_g2_along = d_g2_inv_secant*mean3 + d_g3_d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + d_g3_inv_secant*mean2,
-        d_g3_d_g2_m1 = -d_g3_d_g2_along*g1 + d_g3_d_g2_secant*mean1,
-        d_g3_d_g2_m2 = -d_g3_along - d_g3_d_g2_along*g2 + d_g3_d_g2_secant*mean2,
-        d_g3_d_g2_m3 = -d_g2_along - d_g3_d_g2_along*g3 + d_g3_d_g2_secant*mean3,
-        d_g3_V_5 = F_1*d_g3_d_g2_m1 + F_2*d_g3_d_g2_m2 + F_3*d_g3_d_g2_m3 + dF_1_6*d_g2_m1 + dF_2_6*d_g2_m2 + dF_3_6*d_g2_m3 + d_g3_d_g2_k1*n_k1 + d_g3_d_g2_k2*n_k2 + d_g3_d_g2_k3*n_k3,
+        d_g3_d_g2_secant = -(0.5*d_g2_gg*d_g3_secant/(secant*secant));
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_5
+    const fu_real
         d_g3_d_g3_inv_arc = -450.0*d_g3_gg*d_g3_gg*inv_arc*inv_arc - 2.0*d_g3_gg*d_g3_inv_arc*inv_arc*(450.0*gg + 1050.0) - 2.0*inv_arc*inv_arc*(450.0*gg + 1050.0),
         d_g3_d_g3_arc = 2.0*d_g3_d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + 2.0*d_g3_gg*d_g3_inv_arc*w*(128.0*gg + 735.0) + d_g3_gg*(256.0*d_g3_gg*inv_arc*w + 2.0*d_g3_inv_arc*w*(128.0*gg + 735.0)) + 4.0*inv_arc*w*(128.0*gg + 735.0),
         d_g3_d_g3_k1 = d_g3_d_g3_arc*g1,
         d_g3_d_g3_k2 = d_g3_d_g3_arc*g2,
         d_g3_d_g3_k3 = 2.0*d_g3_arc + d_g3_d_g3_arc*g3,
-        d_g3_d_g3_secant = -0.5*d_g3_gg*d_g3_secant/(secant*secant) + 1.0/secant,
-        d_g3_d_g3_inv_secant = -d_g3_d_g3_secant*inv_secant*inv_secant - 2.0*d_g3_inv_secant*d_g3_secant*inv_secant,
-        d_g3_d_g3_along = d_g3_d_g3_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + 2.0*d_g3_inv_secant*mean3,
-        d_g3_d_g3_m1 = -d_g3_d_g3_along*g1 + d_g3_d_g3_secant*mean1,
-        d_g3_d_g3_m2 = -d_g3_d_g3_along*g2 + d_g3_d_g3_secant*mean2,
-        d_g3_d_g3_m3 = -2.0*d_g3_along - d_g3_d_g3_along*g3 + d_g3_d_g3_secant*mean3,
-        d_g3_V_6 = F_1*d_g3_d_g3_m1 + F_2*d_g3_d_g3_m2 + F_3*d_g3_d_g3_m3 + dF_1_6*d_g3_m1 + dF_2_6*d_g3_m2 + dF_3_6*d_g3_m3 + d_g3_d_g3_k1*n_k1 + d_g3_d_g3_k2*n_k2 + d_g3_d_g3_k3*n_k3,
-        moved = 0.5*t[0][0] + 0.5*t[3][0],
-        moved_2 = 0.5*t[1][0] + 0.5*t[4][0],
-        moved_3 = 0.5*t[2][0] + 0.5*t[5][0],
-        moved_4 = 0.5*t[0][1] + 0.5*t[3][1],
-        moved_5 = 0.5*t[1][1] + 0.5*t[4][1],
-        moved_6 = 0.5*t[2][1] + 0.5*t[5][1],
-        moved_7 = 0.5*t[0][2] + 0.5*t[3][2],
-        moved_8 = 0.5*t[1][2] + 0.5*t[4][2],
-        moved_9 = 0.5*t[2][2] + 0.5*t[5][2],
-        moved_10 = 0.5*p[2],
-        moved_11 = -(0.5*p[1]),
-        moved_12 = -(0.5*p[2]),
-        moved_13 = 0.5*p[0],
-        moved_14 = 0.5*p[1],
-        moved_15 = -(0.5*p[0]),
-        moved_16 = 0.5*p[5],
-        moved_17 = -(0.5*p[4]),
-        moved_18 = -(0.5*p[5]),
-        moved_19 = 0.5*p[3],
-        moved_20 = 0.5*p[4],
-        moved_21 = -(0.5*p[3]),
-        dV_mean1_3 = d_mean1_V_1*moved + d_mean2_V_1*moved_2 + d_mean3_V_1*moved_3,
-        dV_mean2_3 = d_mean2_V_1*moved + d_mean2_V_2*moved_2 + d_mean3_V_2*moved_3,
-        dV_mean3_3 = d_mean3_V_1*moved + d_mean3_V_2*moved_2 + d_mean3_V_3*moved_3,
-        turn3_f_xm_x = dV_mean1_3*(0.5*t[0][0] + 0.5*t[3][0]) + dV_mean2_3*(0.5*t[1][0] + 0.5*t[4][0]) + dV_mean3_3*(0.5*t[2][0] + 0.5*t[5][0]),
-        dV_mean1_4 = d_mean1_V_1*moved_4 + d_mean2_V_1*moved_5 + d_mean3_V_1*moved_6,
-        dV_mean2_4 = d_mean2_V_1*moved_4 + d_mean2_V_2*moved_5 + d_mean3_V_2*moved_6,
-        dV_mean3_4 = d_mean3_V_1*moved_4 + d_mean3_V_2*moved_5 + d_mean3_V_3*moved_6,
-        turn4_f_xm_x = dV_mean1_4*(0.5*t[0][0] + 0.5*t[3][0]) + dV_mean2_4*(0.5*t[1][0] + 0.5*t[4][0]) + dV_mean3_4*(0.5*t[2][0] + 0.5*t[5][0]),
-        turn4_f_xm_y = dV_mean1_4*(0.5*t[0][1] + 0.5*t[3][1]) + dV_mean2_4*(0.5*t[1][1] + 0.5*t[4][1]) + dV_mean3_4*(0.5*t[2][1] + 0.5*t[5][1]),
-        dV_mean1_5 = d_mean1_V_1*moved_7 + d_mean2_V_1*moved_8 + d_mean3_V_1*moved_9,
-        dV_mean2_5 = d_mean2_V_1*moved_7 + d_mean2_V_2*moved_8 + d_mean3_V_2*moved_9,
-        dV_mean3_5 = d_mean3_V_1*moved_7 + d_mean3_V_2*moved_8 + d_mean3_V_3*moved_9;
-    FU_EACH(i, 3, turn5_f_xm[i] = dV_mean1_5*(0.5*t[0][i] + 0.5*t[3][i]) + dV_mean2_5*(0.5*t[1][i] + 0.5*t[4][i]) + dV_mean3_5*(0.5*t[2][i] + 0.5*t[5][i]);)
+        d_g3_d_g3_secant = -0.5*d_g3_gg*d_g3_secant/(secant*secant) + 1.0/secant;
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_6
     const fu_real
         dV_mean1_9 = d_g1_V_1*dg1_11 + d_g2_V_1*dg2_11 + d_g3_V_1*dg3_11 + d_mean2_V_1*moved_10 + d_mean3_V_1*moved_11,
         dV_mean2_9 = d_g1_V_2*dg1_11 + d_g2_V_2*dg2_11 + d_g3_V_2*dg3_11 + d_mean2_V_2*moved_10 + d_mean3_V_2*moved_11,
@@ -1154,12 +1540,7 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
         turn14_moment2_3 = -0.5*V_1*p[3] - 0.5*V_2*p[4] + V_4*turn14_dg1_23 + V_5*turn14_dg2_23 + V_6*turn14_dg3_23 + dV_g1_14*dg1_23 + dV_g2_14*dg2_23 + dV_g3_14*dg3_23 + 0.5*dV_mean1_14*p[4] - 0.5*dV_mean2_14*p[3] - n_e1_2*q2_1 - n_e2_2*q2_2;
     /* strains by motions of the parts */
     fu_real B_0[2], B_1[2], B_2[2];
-    B_0[0] = d_1_1*moved + d_1_2*moved_2 + d_1_3*moved_3;
-    B_1[0] = d_1[0]*moved + d_2[0]*moved_2 + d_3[0]*moved_3;
-    B_2[0] = d_1[1]*moved + d_2[1]*moved_2 + d_3[1]*moved_3;
-    B_0[1] = d_1_1*moved_4 + d_1_2*moved_5 + d_1_3*moved_6;
-    B_1[1] = d_1[0]*moved_4 + d_2[0]*moved_5 + d_3[0]*moved_6;
-    B_2[1] = d_1[1]*moved_4 + d_2[1]*moved_5 + d_3[1]*moved_6;
+    BEAM24_STRUCTURAL_PART_OF_STRAINS_BY_MOTIONS_OF_THE_PARTS
     const fu_real
         B_0_5 = d_1_1*moved_7 + d_1_2*moved_8 + d_1_3*moved_9,
         B_1_5 = d_1[0]*moved_7 + d_2[0]*moved_8 + d_3[0]*moved_9,
@@ -1386,31 +1767,11 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
         K_5_11 = B_0_5*C_109 + B_1_5*C_110 + B_2_5*C_111,
         K_5_12 = B_0_5*C_121 + B_1_5*C_122 + B_2_5*C_123,
         K_5_13 = B_0_5*C_133 + B_1_5*C_134 + B_2_5*C_135,
-        K_5_14 = B_0_5*C_145 + B_1_5*C_146 + B_2_5*C_147,
-        K_6_6 = C_61*t[3][0] + C_62*t[4][0] + C_63*t[5][0],
-        K_6_7 = C_70*t[3][0] + C_71*t[4][0] + C_72*t[5][0],
-        K_6_8 = C_79*t[3][0] + C_80*t[4][0] + C_81*t[5][0],
-        K_6_9 = C_88*t[3][0] + C_89*t[4][0] + C_90*t[5][0],
-        K_6_10 = C_100*t[3][0] + C_101*t[4][0] + C_102*t[5][0],
-        K_6_11 = C_112*t[3][0] + C_113*t[4][0] + C_114*t[5][0],
-        K_6_12 = C_124*t[3][0] + C_125*t[4][0] + C_126*t[5][0],
-        K_6_13 = C_136*t[3][0] + C_137*t[4][0] + C_138*t[5][0],
-        K_6_14 = C_148*t[3][0] + C_149*t[4][0] + C_150*t[5][0],
-        K_7_7 = C_70*t[3][1] + C_71*t[4][1] + C_72*t[5][1],
-        K_7_8 = C_79*t[3][1] + C_80*t[4][1] + C_81*t[5][1],
-        K_7_9 = C_88*t[3][1] + C_89*t[4][1] + C_90*t[5][1],
-        K_7_10 = C_100*t[3][1] + C_101*t[4][1] + C_102*t[5][1],
-        K_7_11 = C_112*t[3][1] + C_113*t[4][1] + C_114*t[5][1],
-        K_7_12 = C_124*t[3][1] + C_125*t[4][1] + C_126*t[5][1],
-        K_7_13 = C_136*t[3][1] + C_137*t[4][1] + C_138*t[5][1],
-        K_7_14 = C_148*t[3][1] + C_149*t[4][1] + C_150*t[5][1],
-        K_8_8 = C_79*t[3][2] + C_80*t[4][2] + C_81*t[5][2],
-        K_8_9 = C_88*t[3][2] + C_89*t[4][2] + C_90*t[5][2],
-        K_8_10 = C_100*t[3][2] + C_101*t[4][2] + C_102*t[5][2],
-        K_8_11 = C_112*t[3][2] + C_113*t[4][2] + C_114*t[5][2],
-        K_8_12 = C_124*t[3][2] + C_125*t[4][2] + C_126*t[5][2],
-        K_8_13 = C_136*t[3][2] + C_137*t[4][2] + C_138*t[5][2],
-        K_8_14 = C_148*t[3][2] + C_149*t[4][2] + C_150*t[5][2],
+        K_5_14 = B_0_5*C_145 + B_1_5*C_146 + B_2_5*C_147;
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_2
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_3
+    const fu_real
         K_9_9 = B_0_9*C_85 + B_1_9*C_86 + B_2_9*C_87 + B_3_9*C_91 + B_4_9*C_92 + B_5_9*C_93 + C_83*q1_3 - C_84*q1_2,
         K_9_10 = B_0_9*C_97 + B_1_9*C_98 + B_2_9*C_99 + B_3_9*C_103 + B_4_9*C_104 + B_5_9*C_105 + C_95*q1_3 - C_96*q1_2,
         K_9_11 = B_0_9*C_109 + B_1_9*C_110 + B_2_9*C_111 + B_3_9*C_115 + B_4_9*C_116 + B_5_9*C_117 + C_107*q1_3 - C_108*q1_2,
@@ -1441,45 +1802,19 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
         sum_7 = K_2_9 + turn9_f_x1[2],
         sum_8 = K_2_10 + turn10_f_x1[2],
         sum_9 = K_2_11 + turn11_f_x1[2],
-        sum_10 = K_3_3 + turn3_f_xm_x,
-        sum_11 = K_4_at[0] + turn4_f_xm_x,
-        sum_12 = K_5_at[0] + turn5_f_xm[0],
-        sum_13 = K_9_at[0] + turn9_f_xm[0],
-        sum_14 = K_10_at[0] + turn10_f_xm[0],
-        sum_15 = K_11_at[0] + turn11_f_xm[0],
-        sum_16 = K_12_at[0] + turn12_f_xm[0];
-    sum_at[0] = K_13_at[0] + turn13_f_xm[0];
+        sum_10 = K_3_3 + turn3_f_xm_x;
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_4
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_5
     const fu_real
-        sum_18 = K_14_at[0] + turn14_f_xm[0],
-        sum_20 = K_4_at[1] + turn4_f_xm_y,
-        sum_21 = K_5_at[1] + turn5_f_xm[1],
-        sum_22 = K_9_at[1] + turn9_f_xm[1],
-        sum_23 = K_10_at[1] + turn10_f_xm[1],
-        sum_24 = K_11_at[1] + turn11_f_xm[1],
-        sum_25 = K_12_at[1] + turn12_f_xm[1];
-    sum_at[1] = K_13_at[1] + turn13_f_xm[1];
-    const fu_real
-        sum_27 = K_14_at[1] + turn14_f_xm[1],
         sum_30 = K_5_5 + turn5_f_xm[2],
         sum_31 = K_5_9 + turn9_f_xm[2],
         sum_32 = K_5_10 + turn10_f_xm[2],
         sum_33 = K_5_11 + turn11_f_xm[2],
         sum_34 = K_5_12 + turn12_f_xm[2];
     sum_at[2] = K_5_13 + turn13_f_xm[2];
+    const fu_real sum_36 = K_5_14 + turn14_f_xm[2];
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_6
     const fu_real
-        sum_36 = K_5_14 + turn14_f_xm[2],
-        sum_37 = K_6_12 + turn12_f_x2[0];
-    sum_at[3] = K_6_13 + turn13_f_x2[0];
-    const fu_real
-        sum_39 = K_6_14 + turn14_f_x2[0],
-        sum_40 = K_7_12 + turn12_f_x2[1];
-    sum_at[4] = K_7_13 + turn13_f_x2[1];
-    const fu_real
-        sum_42 = K_7_14 + turn14_f_x2[1],
-        sum_43 = K_8_12 + turn12_f_x2[2];
-    sum_at[5] = K_8_13 + turn13_f_x2[2];
-    const fu_real
-        sum_45 = K_8_14 + turn14_f_x2[2],
         sum_52 = K_9_9 + turn9_moment1_1,
         sum_53 = K_9_10 + turn10_moment1_1,
         sum_54 = K_9_11 + turn11_moment1_1,
@@ -1567,18 +1902,9 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
         change_39 = K_8_10*W2_y1[2] + K_8_11*W3_y1[2] + K_8_9*W1_y1[2],
         change_40 = W1_y1[2]*sum_52 + W2_y1[2]*sum_53 + W3_y1[2]*sum_54,
         change_41 = W1_y1[2]*sum_64 + W2_y1[2]*sum_65 + W3_y1[2]*sum_66,
-        change_42 = W1_y1[2]*sum_76 + W2_y1[2]*sum_77 + W3_y1[2]*sum_78,
-        by_y1_0_y1_1 = -change_11*inv_a[0]*slant[0] - change_12*inv_a[0] - inv_a[0]*inv_a[0]*t[1][0]*(-moment_2[0]*slant[0] - moment_3[0]) - inv_a[0]*inv_c[0]*moment_2[0]*(W1_y1[0]*b1*slant[0] + W1_y1[0]*c1),
-        by_y1_0_y3_1 = change_10*inv_a[0] - inv_a[0]*inv_a[0]*moment_1[0]*t[1][0],
-        by_y1_1_y1_1 = -change_26*inv_a[0]*slant[0] - change_27*inv_a[0] - inv_a[0]*inv_a[0]*t[1][1]*(-moment_2[0]*slant[0] - moment_3[0]) - inv_a[0]*inv_c[0]*moment_2[0]*(W1_y1[1]*b1*slant[0] + W1_y1[1]*c1),
-        by_y1_1_y3_1 = change_25*inv_a[0] - inv_a[0]*inv_a[0]*moment_1[0]*t[1][1],
-        by_y1_2_y1_1 = -change_41*inv_a[0]*slant[0] - change_42*inv_a[0] - inv_a[0]*inv_a[0]*t[1][2]*(-moment_2[0]*slant[0] - moment_3[0]) - inv_a[0]*inv_c[0]*moment_2[0]*(W1_y1[2]*b1*slant[0] + W1_y1[2]*c1),
-        by_y1_2_y3_1 = change_40*inv_a[0] - inv_a[0]*inv_a[0]*moment_1[0]*t[1][2];
-    K_y1_y1[0][0] = by_y1_0_y1_1*t[0][0] + by_y1_0_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_1[0] + e[9]*t_eyz_1_eyz_1[0] + n_eyy_1 + y1[0]*(-W2_y1[0]*t[2][0] + W3_y1[0]*t[1][0]) + y3[0]*(-W1_y1[0]*t[1][0] + W2_y1[0]*t[0][0]);
-    K_y1_y1[0][1] = by_y1_1_y1_1*t[0][0] + by_y1_1_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_1[1] + e[9]*t_eyz_1_eyz_1[1] + y1[0]*(-W2_y1[1]*t[2][0] + W3_y1[1]*t[1][0]) + y3[0]*(-W1_y1[1]*t[1][0] + W2_y1[1]*t[0][0]);
-    K_y1_y1[0][2] = by_y1_2_y1_1*t[0][0] + by_y1_2_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_1[2] + e[9]*t_eyz_1_eyz_1[2] + y1[0]*(-W2_y1[2]*t[2][0] + W3_y1[2]*t[1][0]) + y3[0]*(-W1_y1[2]*t[1][0] + W2_y1[2]*t[0][0]);
-    K_y1_y1[1][1] = by_y1_1_y1_1*t[0][1] + by_y1_1_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1[1] + e[7]*t_eyy_1_eyy_1[1] + n_eyy_1 + y1[0]*(-W2_y1[1]*t[2][1] + W3_y1[1]*t[1][1]) + y3[0]*(-W1_y1[1]*t[1][1] + W2_y1[1]*t[0][1]);
-    K_y1_y1[1][2] = by_y1_2_y1_1*t[0][1] + by_y1_2_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1[2] + e[7]*t_eyy_1_eyy_1[2] + y1[0]*(-W2_y1[2]*t[2][1] + W3_y1[2]*t[1][1]) + y3[0]*(-W1_y1[2]*t[1][1] + W2_y1[2]*t[0][1]);
+        change_42 = W1_y1[2]*sum_76 + W2_y1[2]*sum_77 + W3_y1[2]*sum_78;
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_2
     K_y1_y1[2][2] = by_y1_2_y1_1*t[0][2] + by_y1_2_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1[2] + e[8]*t_eyy_1_eyy_1[2] + n_eyy_1 + y1[0]*(-W2_y1[2]*t[2][2] + W3_y1[2]*t[1][2]) + y3[0]*(-W1_y1[2]*t[1][2] + W2_y1[2]*t[0][2]);
     FU_UPPER(i, j, 3, K_y1_y1[j][i] = K_y1_y1[i][j];)
     FU_EACH(i, 3, W2_z1[i] = inv_c[0]*t[0][i];)
@@ -1618,29 +1944,8 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
         change_84 = K_8_10*W2_z1[2],
         change_85 = W2_z1[2]*sum_53,
         change_86 = W2_z1[2]*sum_65,
-        change_87 = W2_z1[2]*sum_77,
-        by_z1_0_y1_1 = -change_56*inv_a[0]*slant[0] - change_57*inv_a[0] - inv_a[0]*inv_c[0]*moment_2[0]*(-slant[0]*t[2][0] + t[1][0]),
-        by_z1_0_y3_1 = change_55*inv_a[0],
-        by_z1_1_y1_1 = -change_71*inv_a[0]*slant[0] - change_72*inv_a[0] - inv_a[0]*inv_c[0]*moment_2[0]*(-slant[0]*t[2][1] + t[1][1]),
-        by_z1_1_y3_1 = change_70*inv_a[0],
-        by_z1_2_y1_1 = -change_86*inv_a[0]*slant[0] - change_87*inv_a[0] - inv_a[0]*inv_c[0]*moment_2[0]*(-slant[0]*t[2][2] + t[1][2]),
-        by_z1_2_y3_1 = change_85*inv_a[0];
-    K_y1_z1[0][0] = W2_z1[0]*t[0][0]*y3[0] - W2_z1[0]*t[2][0]*y1[0] + by_z1_0_y1_1*t[0][0] + by_z1_0_y3_1*t[2][0] + e[9]*t_eyz_1_eyz_1_2[0] + n_eyz_1;
-    K_y1_z1[0][1] = W2_z1[1]*t[0][0]*y3[0] - W2_z1[1]*t[2][0]*y1[0] + by_z1_1_y1_1*t[0][0] + by_z1_1_y3_1*t[2][0] + e[9]*t_eyz_1_eyz_1_2[1];
-    K_y1_z1[0][2] = W2_z1[2]*t[0][0]*y3[0] - W2_z1[2]*t[2][0]*y1[0] + by_z1_2_y1_1*t[0][0] + by_z1_2_y3_1*t[2][0] + e[9]*t_eyz_1_eyz_1_2[2];
-    K_y1_z1[1][0] = W2_z1[0]*t[0][1]*y3[0] - W2_z1[0]*t[2][1]*y1[0] + by_z1_0_y1_1*t[0][1] + by_z1_0_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1_2[0];
-    K_y1_z1[1][1] = W2_z1[1]*t[0][1]*y3[0] - W2_z1[1]*t[2][1]*y1[0] + by_z1_1_y1_1*t[0][1] + by_z1_1_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1_2[1] + n_eyz_1;
-    K_y1_z1[1][2] = W2_z1[2]*t[0][1]*y3[0] - W2_z1[2]*t[2][1]*y1[0] + by_z1_2_y1_1*t[0][1] + by_z1_2_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1_2[2];
-    K_y1_z1[2][0] = W2_z1[0]*t[0][2]*y3[0] - W2_z1[0]*t[2][2]*y1[0] + by_z1_0_y1_1*t[0][2] + by_z1_0_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1_2[0];
-    K_y1_z1[2][1] = W2_z1[1]*t[0][2]*y3[0] - W2_z1[1]*t[2][2]*y1[0] + by_z1_1_y1_1*t[0][2] + by_z1_1_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1_2[1];
-    K_y1_z1[2][2] = W2_z1[2]*t[0][2]*y3[0] - W2_z1[2]*t[2][2]*y1[0] + by_z1_2_y1_1*t[0][2] + by_z1_2_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1_2[2] + n_eyz_1;
-    const fu_real
-        by_z1_0_z1_1 = change_56*inv_c[0] - inv_c[0]*inv_c[0]*moment_2[0]*t[2][0],
-        by_z1_1_z1_1 = change_71*inv_c[0] - inv_c[0]*inv_c[0]*moment_2[0]*t[2][1],
-        by_z1_2_z1_1 = change_86*inv_c[0] - inv_c[0]*inv_c[0]*moment_2[0]*t[2][2];
-    K_z1_z1[0][0] = -W2_z1[0]*t[2][0]*z1[0] + by_z1_0_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_1_2[0] + e[9]*t_ezz_1_ezz_1[0] + n_ezz_1;
-    K_z1_z1[0][1] = -W2_z1[1]*t[2][0]*z1[0] + by_z1_1_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_1_2[1] + e[9]*t_ezz_1_ezz_1[1];
-    K_z1_z1[0][2] = -W2_z1[2]*t[2][0]*z1[0] + by_z1_2_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_1_2[2] + e[9]*t_ezz_1_ezz_1[2];
+        change_87 = W2_z1[2]*sum_77;
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_3
     K_z1_z1[1][1] = -W2_z1[1]*t[2][1]*z1[0] + by_z1_1_z1_1*t[0][1] + e[10]*t_ezz_1_ezz_1[1] + e[7]*t_eyz_1_eyz_1_2[1] + n_ezz_1;
     K_z1_z1[1][2] = -W2_z1[2]*t[2][1]*z1[0] + by_z1_2_z1_1*t[0][1] + e[10]*t_ezz_1_ezz_1[2] + e[7]*t_eyz_1_eyz_1_2[2];
     K_z1_z1[2][2] = -W2_z1[2]*t[2][2]*z1[0] + by_z1_2_z1_1*t[0][2] + e[11]*t_ezz_1_ezz_1[2] + e[8]*t_eyz_1_eyz_1_2[2] + n_ezz_1;
@@ -1693,40 +1998,9 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
         change_132 = W1_y2[2]*sum_79 + W2_y2[2]*sum_at[8] + W3_y2[2]*sum_81,
         change_133 = W1_y2[2]*sum_91 + W2_y2[2]*sum_at[9] + W3_y2[2]*sum_93,
         change_134 = W1_y2[2]*sum_103 + W2_y2[2]*sum_at[10] + W3_y2[2]*sum_105,
-        change_135 = W1_y2[2]*sum_115 + W2_y2[2]*sum_at[11] + W3_y2[2]*sum_117,
-        by_y2_0_y1_1 = -change_101*inv_a[0]*slant[0] - change_102*inv_a[0],
-        by_y2_0_y3_1 = change_100*inv_a[0],
-        by_y2_1_y1_1 = -change_116*inv_a[0]*slant[0] - change_117*inv_a[0],
-        by_y2_1_y3_1 = change_115*inv_a[0],
-        by_y2_2_y1_1 = -change_131*inv_a[0]*slant[0] - change_132*inv_a[0],
-        by_y2_2_y3_1 = change_130*inv_a[0];
-    K_y1_y2[0][0] = by_y2_0_y1_1*t[0][0] + by_y2_0_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_2[0] + e[9]*t_eyz_1_eyz_2[0];
-    K_y1_y2[0][1] = by_y2_1_y1_1*t[0][0] + by_y2_1_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_2[1] + e[9]*t_eyz_1_eyz_2[1];
-    K_y1_y2[0][2] = by_y2_2_y1_1*t[0][0] + by_y2_2_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_2[2] + e[9]*t_eyz_1_eyz_2[2];
-    FU_EACH(g, 2,
-        K_y1_y2[g + 1][0] = by_y2_0_y1_1*t[0][g + 1] + by_y2_0_y3_1*t[2][g + 1] + e[g + 10]*t_eyz_1_eyz_2[0] + e[g + 7]*t_eyy_1_eyy_2[0];
-        K_y1_y2[g + 1][1] = by_y2_1_y1_1*t[0][g + 1] + by_y2_1_y3_1*t[2][g + 1] + e[g + 10]*t_eyz_1_eyz_2[1] + e[g + 7]*t_eyy_1_eyy_2[1];
-        K_y1_y2[g + 1][2] = by_y2_2_y1_1*t[0][g + 1] + by_y2_2_y3_1*t[2][g + 1] + e[g + 10]*t_eyz_1_eyz_2[2] + e[g + 7]*t_eyy_1_eyy_2[2];)
-    const fu_real
-        by_y2_0_z1_1 = change_101*inv_c[0],
-        by_y2_1_z1_1 = change_116*inv_c[0],
-        by_y2_2_z1_1 = change_131*inv_c[0];
-    FU_EACH(g, 3,
-        K_z1_y2[g][0] = by_y2_0_z1_1*t[0][g] + e[g + 6]*t_eyz_1_eyz_2[0];
-        K_z1_y2[g][1] = by_y2_1_z1_1*t[0][g] + e[g + 6]*t_eyz_1_eyz_2[1];
-        K_z1_y2[g][2] = by_y2_2_z1_1*t[0][g] + e[g + 6]*t_eyz_1_eyz_2[2];)
-    const fu_real
-        by_y2_0_y1_2 = -change_104*inv_a[1]*slant[1] - change_105*inv_a[1] - inv_a[1]*inv_a[1]*t[4][0]*(-moment_2[1]*slant[1] - moment_3[1]) - inv_a[1]*inv_c[1]*moment_2[1]*(W1_y2[0]*b2*slant[1] + W1_y2[0]*c2),
-        by_y2_0_y3_2 = change_103*inv_a[1] - inv_a[1]*inv_a[1]*moment_1[1]*t[4][0],
-        by_y2_1_y1_2 = -change_119*inv_a[1]*slant[1] - change_120*inv_a[1] - inv_a[1]*inv_a[1]*t[4][1]*(-moment_2[1]*slant[1] - moment_3[1]) - inv_a[1]*inv_c[1]*moment_2[1]*(W1_y2[1]*b2*slant[1] + W1_y2[1]*c2),
-        by_y2_1_y3_2 = change_118*inv_a[1] - inv_a[1]*inv_a[1]*moment_1[1]*t[4][1],
-        by_y2_2_y1_2 = -change_134*inv_a[1]*slant[1] - change_135*inv_a[1] - inv_a[1]*inv_a[1]*t[4][2]*(-moment_2[1]*slant[1] - moment_3[1]) - inv_a[1]*inv_c[1]*moment_2[1]*(W1_y2[2]*b2*slant[1] + W1_y2[2]*c2),
-        by_y2_2_y3_2 = change_133*inv_a[1] - inv_a[1]*inv_a[1]*moment_1[1]*t[4][2];
-    K_y2_y2[0][0] = by_y2_0_y1_2*t[3][0] + by_y2_0_y3_2*t[5][0] + e[18]*t_eyy_2_eyy_2[0] + e[21]*t_eyz_2_eyz_2[0] + n_eyy_2 + y1[1]*(-W2_y2[0]*t[5][0] + W3_y2[0]*t[4][0]) + y3[1]*(-W1_y2[0]*t[4][0] + W2_y2[0]*t[3][0]);
-    K_y2_y2[0][1] = by_y2_1_y1_2*t[3][0] + by_y2_1_y3_2*t[5][0] + e[18]*t_eyy_2_eyy_2[1] + e[21]*t_eyz_2_eyz_2[1] + y1[1]*(-W2_y2[1]*t[5][0] + W3_y2[1]*t[4][0]) + y3[1]*(-W1_y2[1]*t[4][0] + W2_y2[1]*t[3][0]);
-    K_y2_y2[0][2] = by_y2_2_y1_2*t[3][0] + by_y2_2_y3_2*t[5][0] + e[18]*t_eyy_2_eyy_2[2] + e[21]*t_eyz_2_eyz_2[2] + y1[1]*(-W2_y2[2]*t[5][0] + W3_y2[2]*t[4][0]) + y3[1]*(-W1_y2[2]*t[4][0] + W2_y2[2]*t[3][0]);
-    K_y2_y2[1][1] = by_y2_1_y1_2*t[3][1] + by_y2_1_y3_2*t[5][1] + e[19]*t_eyy_2_eyy_2[1] + e[22]*t_eyz_2_eyz_2[1] + n_eyy_2 + y1[1]*(-W2_y2[1]*t[5][1] + W3_y2[1]*t[4][1]) + y3[1]*(-W1_y2[1]*t[4][1] + W2_y2[1]*t[3][1]);
-    K_y2_y2[1][2] = by_y2_2_y1_2*t[3][1] + by_y2_2_y3_2*t[5][1] + e[19]*t_eyy_2_eyy_2[2] + e[22]*t_eyz_2_eyz_2[2] + y1[1]*(-W2_y2[2]*t[5][1] + W3_y2[2]*t[4][1]) + y3[1]*(-W1_y2[2]*t[4][1] + W2_y2[2]*t[3][1]);
+        change_135 = W1_y2[2]*sum_115 + W2_y2[2]*sum_at[11] + W3_y2[2]*sum_117;
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_4
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_5
     K_y2_y2[2][2] = by_y2_2_y1_2*t[3][2] + by_y2_2_y3_2*t[5][2] + e[20]*t_eyy_2_eyy_2[2] + e[23]*t_eyz_2_eyz_2[2] + n_eyy_2 + y1[1]*(-W2_y2[2]*t[5][2] + W3_y2[2]*t[4][2]) + y3[1]*(-W1_y2[2]*t[4][2] + W2_y2[2]*t[3][2]);
     FU_UPPER(i, j, 3, K_y2_y2[j][i] = K_y2_y2[i][j];)
     FU_EACH(i, 3, W2_z2[i] = inv_c[1]*t[3][i];)
@@ -1766,51 +2040,8 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
         change_177 = W2_z2[2]*sum_at[8],
         change_178 = W2_z2[2]*sum_at[9],
         change_179 = W2_z2[2]*sum_at[10],
-        change_180 = W2_z2[2]*sum_at[11],
-        by_z2_0_y1_1 = -change_at[7]*inv_a[0]*slant[0] - change_at[8]*inv_a[0],
-        by_z2_0_y3_1 = change_at[6]*inv_a[0],
-        by_z2_1_y1_1 = -change_161*inv_a[0]*slant[0] - change_162*inv_a[0],
-        by_z2_1_y3_1 = change_160*inv_a[0],
-        by_z2_2_y1_1 = -change_176*inv_a[0]*slant[0] - change_177*inv_a[0],
-        by_z2_2_y3_1 = change_175*inv_a[0];
-    FU_EACH(g, 3,
-        K_y1_z2[g][0] = by_z2_0_y1_1*t[0][g] + by_z2_0_y3_1*t[2][g] + e[g + 9]*t_eyz_1_eyz_2_2[0];
-        K_y1_z2[g][1] = by_z2_1_y1_1*t[0][g] + by_z2_1_y3_1*t[2][g] + e[g + 9]*t_eyz_1_eyz_2_2[1];
-        K_y1_z2[g][2] = by_z2_2_y1_1*t[0][g] + by_z2_2_y3_1*t[2][g] + e[g + 9]*t_eyz_1_eyz_2_2[2];)
-    const fu_real
-        by_z2_0_z1_1 = change_at[7]*inv_c[0],
-        by_z2_1_z1_1 = change_161*inv_c[0],
-        by_z2_2_z1_1 = change_176*inv_c[0];
-    K_z1_z2[0][0] = by_z2_0_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_2_2[0] + e[9]*t_ezz_1_ezz_2[0];
-    K_z1_z2[0][1] = by_z2_1_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_2_2[1] + e[9]*t_ezz_1_ezz_2[1];
-    K_z1_z2[0][2] = by_z2_2_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_2_2[2] + e[9]*t_ezz_1_ezz_2[2];
-    FU_EACH(g, 2,
-        K_z1_z2[g + 1][0] = by_z2_0_z1_1*t[0][g + 1] + e[g + 10]*t_ezz_1_ezz_2[0] + e[g + 7]*t_eyz_1_eyz_2_2[0];
-        K_z1_z2[g + 1][1] = by_z2_1_z1_1*t[0][g + 1] + e[g + 10]*t_ezz_1_ezz_2[1] + e[g + 7]*t_eyz_1_eyz_2_2[1];
-        K_z1_z2[g + 1][2] = by_z2_2_z1_1*t[0][g + 1] + e[g + 10]*t_ezz_1_ezz_2[2] + e[g + 7]*t_eyz_1_eyz_2_2[2];)
-    const fu_real
-        by_z2_0_y1_2 = -change_at[10]*inv_a[1]*slant[1] - change_at[11]*inv_a[1] - inv_a[1]*inv_c[1]*moment_2[1]*(-slant[1]*t[5][0] + t[4][0]),
-        by_z2_0_y3_2 = change_at[9]*inv_a[1],
-        by_z2_1_y1_2 = -change_164*inv_a[1]*slant[1] - change_165*inv_a[1] - inv_a[1]*inv_c[1]*moment_2[1]*(-slant[1]*t[5][1] + t[4][1]),
-        by_z2_1_y3_2 = change_163*inv_a[1],
-        by_z2_2_y1_2 = -change_179*inv_a[1]*slant[1] - change_180*inv_a[1] - inv_a[1]*inv_c[1]*moment_2[1]*(-slant[1]*t[5][2] + t[4][2]),
-        by_z2_2_y3_2 = change_178*inv_a[1];
-    K_y2_z2[0][0] = W2_z2[0]*t[3][0]*y3[1] - W2_z2[0]*t[5][0]*y1[1] + by_z2_0_y1_2*t[3][0] + by_z2_0_y3_2*t[5][0] + e[21]*t_eyz_2_eyz_2_2[0] + n_eyz_2;
-    K_y2_z2[0][1] = W2_z2[1]*t[3][0]*y3[1] - W2_z2[1]*t[5][0]*y1[1] + by_z2_1_y1_2*t[3][0] + by_z2_1_y3_2*t[5][0] + e[21]*t_eyz_2_eyz_2_2[1];
-    K_y2_z2[0][2] = W2_z2[2]*t[3][0]*y3[1] - W2_z2[2]*t[5][0]*y1[1] + by_z2_2_y1_2*t[3][0] + by_z2_2_y3_2*t[5][0] + e[21]*t_eyz_2_eyz_2_2[2];
-    K_y2_z2[1][0] = W2_z2[0]*t[3][1]*y3[1] - W2_z2[0]*t[5][1]*y1[1] + by_z2_0_y1_2*t[3][1] + by_z2_0_y3_2*t[5][1] + e[22]*t_eyz_2_eyz_2_2[0];
-    K_y2_z2[1][1] = W2_z2[1]*t[3][1]*y3[1] - W2_z2[1]*t[5][1]*y1[1] + by_z2_1_y1_2*t[3][1] + by_z2_1_y3_2*t[5][1] + e[22]*t_eyz_2_eyz_2_2[1] + n_eyz_2;
-    K_y2_z2[1][2] = W2_z2[2]*t[3][1]*y3[1] - W2_z2[2]*t[5][1]*y1[1] + by_z2_2_y1_2*t[3][1] + by_z2_2_y3_2*t[5][1] + e[22]*t_eyz_2_eyz_2_2[2];
-    K_y2_z2[2][0] = W2_z2[0]*t[3][2]*y3[1] - W2_z2[0]*t[5][2]*y1[1] + by_z2_0_y1_2*t[3][2] + by_z2_0_y3_2*t[5][2] + e[23]*t_eyz_2_eyz_2_2[0];
-    K_y2_z2[2][1] = W2_z2[1]*t[3][2]*y3[1] - W2_z2[1]*t[5][2]*y1[1] + by_z2_1_y1_2*t[3][2] + by_z2_1_y3_2*t[5][2] + e[23]*t_eyz_2_eyz_2_2[1];
-    K_y2_z2[2][2] = W2_z2[2]*t[3][2]*y3[1] - W2_z2[2]*t[5][2]*y1[1] + by_z2_2_y1_2*t[3][2] + by_z2_2_y3_2*t[5][2] + e[23]*t_eyz_2_eyz_2_2[2] + n_eyz_2;
-    const fu_real
-        by_z2_0_z1_2 = change_at[10]*inv_c[1] - inv_c[1]*inv_c[1]*moment_2[1]*t[5][0],
-        by_z2_1_z1_2 = change_164*inv_c[1] - inv_c[1]*inv_c[1]*moment_2[1]*t[5][1],
-        by_z2_2_z1_2 = change_179*inv_c[1] - inv_c[1]*inv_c[1]*moment_2[1]*t[5][2];
-    K_z2_z2[0][0] = -W2_z2[0]*t[5][0]*z1[1] + by_z2_0_z1_2*t[3][0] + e[18]*t_eyz_2_eyz_2_2[0] + e[21]*t_ezz_2_ezz_2[0] + n_ezz_2;
-    K_z2_z2[0][1] = -W2_z2[1]*t[5][0]*z1[1] + by_z2_1_z1_2*t[3][0] + e[18]*t_eyz_2_eyz_2_2[1] + e[21]*t_ezz_2_ezz_2[1];
-    K_z2_z2[0][2] = -W2_z2[2]*t[5][0]*z1[1] + by_z2_2_z1_2*t[3][0] + e[18]*t_eyz_2_eyz_2_2[2] + e[21]*t_ezz_2_ezz_2[2];
+        change_180 = W2_z2[2]*sum_at[11];
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_6
     K_z2_z2[1][1] = -W2_z2[1]*t[5][1]*z1[1] + by_z2_1_z1_2*t[3][1] + e[19]*t_eyz_2_eyz_2_2[1] + e[22]*t_ezz_2_ezz_2[1] + n_ezz_2;
     K_z2_z2[1][2] = -W2_z2[2]*t[5][1]*z1[1] + by_z2_2_z1_2*t[3][1] + e[19]*t_eyz_2_eyz_2_2[2] + e[22]*t_ezz_2_ezz_2[2];
     K_z2_z2[2][2] = -W2_z2[2]*t[5][2]*z1[1] + by_z2_2_z1_2*t[3][2] + e[20]*t_eyz_2_eyz_2_2[2] + e[23]*t_ezz_2_ezz_2[2] + n_ezz_2;
@@ -1827,27 +2058,7 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
     K_r_x1_r_x1[1][2] = K_2[1] - 0.25*K_5[1] - 0.25*K_2_4 + (1.0/16.0)*sum_21;
     K_r_x1_r_x1[2][2] = K_2_2 - 0.5*K_2_5 + (1.0/16.0)*sum_30;
     FU_UPPER(i, j, 3, K_r_x1_r_x1[j][i] = K_r_x1_r_x1[i][j];)
-    K_r_x1_r_y1[0][0] = change - 0.25*change_4;
-    K_r_x1_r_y1[0][1] = change_16 - 0.25*change_19;
-    K_r_x1_r_y1[0][2] = change_31 - 0.25*change_34;
-    K_r_x1_r_y1[1][0] = change_2 - 0.25*change_5;
-    K_r_x1_r_y1[1][1] = change_17 - 0.25*change_20;
-    K_r_x1_r_y1[1][2] = change_32 - 0.25*change_35;
-    K_r_x1_r_y1[2][0] = change_3 - 0.25*change_6;
-    K_r_x1_r_y1[2][1] = change_18 - 0.25*change_21;
-    K_r_x1_r_y1[2][2] = change_33 - 0.25*change_36;
-    K_r_x1_r_z1[0][0] = change_46 - 0.25*change_49;
-    K_r_x1_r_z1[0][1] = change_61 - 0.25*change_64;
-    K_r_x1_r_z1[0][2] = change_76 - 0.25*change_79;
-    K_r_x1_r_z1[1][0] = change_47 - 0.25*change_50;
-    K_r_x1_r_z1[1][1] = change_62 - 0.25*change_65;
-    K_r_x1_r_z1[1][2] = change_77 - 0.25*change_80;
-    K_r_x1_r_z1[2][0] = change_48 - 0.25*change_51;
-    K_r_x1_r_z1[2][1] = change_63 - 0.25*change_66;
-    K_r_x1_r_z1[2][2] = change_78 - 0.25*change_81;
-    K_r_x1_r_2[0][0] = 1.5*K_3[0]*w - 0.375*sum_10*w;
-    K_r_x1_r_2[0][1] = 1.5*K_4[0]*w - 0.375*sum_11*w;
-    K_r_x1_r_2[0][2] = 1.5*K_5[0]*w - 0.375*sum_12*w;
+    BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS
     K_r_x1_r_2[1][0] = 1.5*K_3[1]*w - 0.375*sum_11*w;
     K_r_x1_r_2[1][1] = 1.5*K_4[1]*w - 0.375*sum_20*w;
     K_r_x1_r_2[1][2] = 1.5*K_5[1]*w - 0.375*sum_21*w;
@@ -1863,24 +2074,7 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
     K_r_x1_r_x2[2][0] = -0.25*K_2_3 + K_2_6 - 0.25*K_5_6 + (1.0/16.0)*sum_12;
     K_r_x1_r_x2[2][1] = -0.25*K_2_4 + K_2_7 - 0.25*K_5_7 + (1.0/16.0)*sum_21;
     K_r_x1_r_x2[2][2] = -0.25*K_2_5 + K_2_8 - 0.25*K_5_8 + (1.0/16.0)*sum_30;
-    K_r_x1_r_y2[0][0] = change_91 - 0.25*change_94;
-    K_r_x1_r_y2[0][1] = change_106 - 0.25*change_109;
-    K_r_x1_r_y2[0][2] = change_121 - 0.25*change_124;
-    K_r_x1_r_y2[1][0] = change_92 - 0.25*change_95;
-    K_r_x1_r_y2[1][1] = change_107 - 0.25*change_110;
-    K_r_x1_r_y2[1][2] = change_122 - 0.25*change_125;
-    K_r_x1_r_y2[2][0] = change_93 - 0.25*change_96;
-    K_r_x1_r_y2[2][1] = change_108 - 0.25*change_111;
-    K_r_x1_r_y2[2][2] = change_123 - 0.25*change_126;
-    K_r_x1_r_z2[0][0] = change_136 - 0.25*change_at[0];
-    K_r_x1_r_z2[0][1] = change_151 - 0.25*change_154;
-    K_r_x1_r_z2[0][2] = change_166 - 0.25*change_169;
-    K_r_x1_r_z2[1][0] = change_137 - 0.25*change_at[1];
-    K_r_x1_r_z2[1][1] = change_152 - 0.25*change_155;
-    K_r_x1_r_z2[1][2] = change_167 - 0.25*change_170;
-    K_r_x1_r_z2[2][0] = change_138 - 0.25*change_at[2];
-    K_r_x1_r_z2[2][1] = change_153 - 0.25*change_156;
-    K_r_x1_r_z2[2][2] = change_168 - 0.25*change_171;
+    BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS_2
     K_r_y1_r_2[0][0] = 1.5*change_4*w;
     K_r_y1_r_2[0][1] = 1.5*change_5*w;
     K_r_y1_r_2[0][2] = 1.5*change_6*w;
@@ -1933,24 +2127,7 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
     K_r_2_r_x2[2][0] = 1.5*K_5_6*w - 0.375*sum_12*w;
     K_r_2_r_x2[2][1] = 1.5*K_5_7*w - 0.375*sum_21*w;
     K_r_2_r_x2[2][2] = 1.5*K_5_8*w - 0.375*sum_30*w;
-    K_r_2_r_y2[0][0] = 1.5*change_94*w;
-    K_r_2_r_y2[0][1] = 1.5*change_109*w;
-    K_r_2_r_y2[0][2] = 1.5*change_124*w;
-    K_r_2_r_y2[1][0] = 1.5*change_95*w;
-    K_r_2_r_y2[1][1] = 1.5*change_110*w;
-    K_r_2_r_y2[1][2] = 1.5*change_125*w;
-    K_r_2_r_y2[2][0] = 1.5*change_96*w;
-    K_r_2_r_y2[2][1] = 1.5*change_111*w;
-    K_r_2_r_y2[2][2] = 1.5*change_126*w;
-    K_r_2_r_z2[0][0] = 1.5*change_at[0]*w;
-    K_r_2_r_z2[0][1] = 1.5*change_154*w;
-    K_r_2_r_z2[0][2] = 1.5*change_169*w;
-    K_r_2_r_z2[1][0] = 1.5*change_at[1]*w;
-    K_r_2_r_z2[1][1] = 1.5*change_155*w;
-    K_r_2_r_z2[1][2] = 1.5*change_170*w;
-    K_r_2_r_z2[2][0] = 1.5*change_at[2]*w;
-    K_r_2_r_z2[2][1] = 1.5*change_156*w;
-    K_r_2_r_z2[2][2] = 1.5*change_171*w;
+    BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS_3
     K_r_x2_r_x2[0][0] = -0.5*K_6_at[0] + K_6_6 + (1.0/16.0)*sum_10;
     K_r_x2_r_x2[0][1] = -0.25*K_7_at[0] - 0.25*K_6_at[1] + K_6_7 + (1.0/16.0)*sum_11;
     K_r_x2_r_x2[0][2] = -0.25*K_8_at[0] - 0.25*K_5_6 + K_6_8 + (1.0/16.0)*sum_12;
@@ -1958,34 +2135,11 @@ void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
     K_r_x2_r_x2[1][2] = -0.25*K_8_at[1] - 0.25*K_5_7 + K_7_8 + (1.0/16.0)*sum_21;
     K_r_x2_r_x2[2][2] = -0.5*K_5_8 + K_8_8 + (1.0/16.0)*sum_30;
     FU_UPPER(i, j, 3, K_r_x2_r_x2[j][i] = K_r_x2_r_x2[i][j];)
-    K_r_x2_r_y2[0][0] = -0.25*change_94 + change_97;
-    K_r_x2_r_y2[0][1] = -0.25*change_109 + change_112;
-    K_r_x2_r_y2[0][2] = -0.25*change_124 + change_127;
-    K_r_x2_r_y2[1][0] = -0.25*change_95 + change_98;
-    K_r_x2_r_y2[1][1] = -0.25*change_110 + change_113;
-    K_r_x2_r_y2[1][2] = -0.25*change_125 + change_128;
-    K_r_x2_r_y2[2][0] = -0.25*change_96 + change_99;
-    K_r_x2_r_y2[2][1] = -0.25*change_111 + change_114;
-    K_r_x2_r_y2[2][2] = -0.25*change_126 + change_129;
-    K_r_x2_r_z2[0][0] = -0.25*change_at[0] + change_at[3];
-    K_r_x2_r_z2[0][1] = -0.25*change_154 + change_157;
-    K_r_x2_r_z2[0][2] = -0.25*change_169 + change_172;
-    K_r_x2_r_z2[1][0] = -0.25*change_at[1] + change_at[4];
-    K_r_x2_r_z2[1][1] = -0.25*change_155 + change_158;
-    K_r_x2_r_z2[1][2] = -0.25*change_170 + change_173;
-    K_r_x2_r_z2[2][0] = -0.25*change_at[2] + change_at[5];
-    K_r_x2_r_z2[2][1] = -0.25*change_156 + change_159;
-    K_r_x2_r_z2[2][2] = -0.25*change_171 + change_174;
+    BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS_4
     BEAM24_THE_FIRST_POSITION_RIGID_TRANSLATION_MAKES_NO_FORCE
     /* outputs */
     FU_PAIRS(i, j, 3, K[24*i + j] = -K_r_1_r_2[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 75] = K_r_x1_r_x1[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 78] = K_r_x1_r_y1[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 81] = K_r_x1_r_z1[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 84] = K_r_x1_r_2[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 87] = K_r_x1_r_x2[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 90] = K_r_x1_r_y2[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 93] = K_r_x1_r_z2[i][j];)
+    BEAM24_STRUCTURAL_PART_OF_OUTPUTS
     FU_PAIRS(i, j, 3, K[24*i + j + 147] = K_r_x1_r_y1[j][i];)
     FU_PAIRS(i, j, 3, K[24*i + j + 150] = K_y1_y1[i][j];)
     FU_PAIRS(i, j, 3, K[24*i + j + 153] = K_y1_z1[i][j];)
@@ -2082,32 +2236,13 @@ FU_KERNEL void beam24_structural_damping_force(fu_real l, const fu_real *e, cons
     t_y[3] = -t_x[4]*t_z[5] + t_z[4]*t_x[5];
     t_z[3] = t_x[4]*t_y[5] - t_y[4]*t_x[5];
     slant[1] = b2*inv_c[1];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS
     const fu_real
-        q1_1 = e[3]*t_x[0] + e[4]*t_y[0] + e[5]*t_z[0],
-        q1_2 = e[3]*t_x[1] + e[4]*t_y[1] + e[5]*t_z[1],
-        q1_3 = e[3]*t_x[2] + e[4]*t_y[2] + e[5]*t_z[2],
-        q2_1 = e[15]*t_x[3] + e[16]*t_y[3] + e[17]*t_z[3],
-        q2_2 = e[15]*t_x[4] + e[16]*t_y[4] + e[17]*t_z[4],
-        q2_3 = e[15]*t_x[5] + e[16]*t_y[5] + e[17]*t_z[5];
-    FU_EACH(g, 6,
-        p[g] = t_x[g]*xm_x + t_y[g]*xm_y + t_z[g]*xm_z;)
-    const fu_real
-        inv_turn = 1.0/(t_x[0]*t_x[3] + t_y[0]*t_y[3] + t_z[0]*t_z[3] + t_x[1]*t_x[4] + t_y[1]*t_y[4] + t_z[1]*t_z[4] + t_x[2]*t_x[5] + t_y[2]*t_y[5] + t_z[2]*t_z[5] + 1.0),
-        g1 = inv_turn*(-t_x[1]*t_x[5] - t_y[1]*t_y[5] - t_z[1]*t_z[5] + t_x[4]*t_x[2] + t_y[4]*t_y[2] + t_z[4]*t_z[2]),
-        g2 = inv_turn*(t_x[0]*t_x[5] + t_y[0]*t_y[5] + t_z[0]*t_z[5] - t_x[3]*t_x[2] - t_y[3]*t_y[2] - t_z[3]*t_z[2]),
-        g3 = inv_turn*(-t_x[0]*t_x[4] - t_y[0]*t_y[4] - t_z[0]*t_z[4] + t_x[3]*t_x[1] + t_y[3]*t_y[1] + t_z[3]*t_z[1]),
         mean1 = 0.5*p[0] + 0.5*p[3],
         mean2 = 0.5*p[1] + 0.5*p[4],
-        mean3 = 0.5*p[2] + 0.5*p[5],
-        gg = g1*g1 + g2*g2 + g3*g3,
-        secant = FU_SQRT(gg + 1.0),
-        inv_secant = 1.0/(secant + 1.0),
-        along = inv_secant*(g1*mean1 + g2*mean2 + g3*mean3),
-        inv_arc = 1.0/(gg*(225.0*gg + 1050.0) + 945.0),
-        arc = 2.0*inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        m1 = -along*g1 + mean1*secant,
-        m2 = -along*g2 + mean2*secant,
-        m3 = -along*g3 + mean3*secant,
+        mean3 = 0.5*p[2] + 0.5*p[5];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_2
+    const fu_real
         shared2 = A[11]*m2,
         shared3 = A[12]*m3,
         stretch = FU_SQRT(m1*m1 + shared2*shared2 + shared3*shared3),
@@ -2116,79 +2251,15 @@ FU_KERNEL void beam24_structural_damping_force(fu_real l, const fu_real *e, cons
         larger = 1.0/(0.5*cosine + 0.5);
     /* spins of the frames, rates of the strains */
     fu_real rate_eyy[2], rate_ezz[2], rate_eyz[2];
+    BEAM24_STRUCTURAL_PART_OF_SPINS_OF_THE_FRAMES_RATES_OF_THE_STRAINS
     const fu_real
-        chord_rate4_x = w*(-v[0] + v[12]),
-        chord_rate4_y = w*(v[13] - v[1]),
-        chord_rate4_z = w*(v[14] - v[2]),
-        xm_rate_x = 1.5*chord_rate4_x - 0.25*v[15] - 0.25*v[3],
-        xm_rate_y = 1.5*chord_rate4_y - 0.25*v[16] - 0.25*v[4],
-        xm_rate_z = 1.5*chord_rate4_z - 0.25*v[17] - 0.25*v[5],
         spin1_1 = inv_a[0]*(t_x[2]*v[6] + t_y[2]*v[7] + t_z[2]*v[8]),
         spin1_2 = -inv_a[0]*slant[0]*(t_x[0]*v[6] + t_y[0]*v[7] + t_z[0]*v[8]) + inv_c[0]*(t_x[0]*v[9] + t_y[0]*v[10] + t_z[0]*v[11]),
         spin1_3 = -(inv_a[0]*(t_x[0]*v[6] + t_y[0]*v[7] + t_z[0]*v[8])),
         spin2_1 = inv_a[1]*(t_x[5]*v[18] + t_y[5]*v[19] + t_z[5]*v[20]),
         spin2_2 = -inv_a[1]*slant[1]*(t_x[3]*v[18] + t_y[3]*v[19] + t_z[3]*v[20]) + inv_c[1]*(t_x[3]*v[21] + t_y[3]*v[22] + t_z[3]*v[23]),
-        spin2_3 = -(inv_a[1]*(t_x[3]*v[18] + t_y[3]*v[19] + t_z[3]*v[20])),
-        dg1_11 = -0.5*g1*g1 - 0.5,
-        dg2_11 = -0.5*g1*g2 + 0.5*g3,
-        dg3_11 = -0.5*g1*g3 - 0.5*g2,
-        dg1_12 = -0.5*g1*g2 - 0.5*g3,
-        dg2_12 = -0.5*g2*g2 - 0.5,
-        dg3_12 = 0.5*g1 - 0.5*g2*g3,
-        dg1_13 = -0.5*g1*g3 + 0.5*g2,
-        dg2_13 = -0.5*g1 - 0.5*g2*g3,
-        dg3_13 = -0.5*g3*g3 - 0.5,
-        dg1_21 = 0.5*g1*g1 + 0.5,
-        dg2_21 = 0.5*g1*g2 + 0.5*g3,
-        dg3_21 = 0.5*g1*g3 - 0.5*g2,
-        dg1_22 = 0.5*g1*g2 - 0.5*g3,
-        dg2_22 = 0.5*g2*g2 + 0.5,
-        dg3_22 = 0.5*g1 + 0.5*g2*g3,
-        dg1_23 = 0.5*g1*g3 + 0.5*g2,
-        dg2_23 = -0.5*g1 + 0.5*g2*g3,
-        dg3_23 = 0.5*g3*g3 + 0.5,
-        v_q1_1 = q1_2*spin1_3 - q1_3*spin1_2 + t_x[0]*v[3] + t_y[0]*v[4] + t_z[0]*v[5],
-        v_q1_2 = -q1_1*spin1_3 + q1_3*spin1_1 + t_x[1]*v[3] + t_y[1]*v[4] + t_z[1]*v[5],
-        v_q1_3 = q1_1*spin1_2 - q1_2*spin1_1 + t_x[2]*v[3] + t_y[2]*v[4] + t_z[2]*v[5],
-        v_q2_1 = q2_2*spin2_3 - q2_3*spin2_2 + t_x[3]*v[15] + t_y[3]*v[16] + t_z[3]*v[17],
-        v_q2_2 = -q2_1*spin2_3 + q2_3*spin2_1 + t_x[4]*v[15] + t_y[4]*v[16] + t_z[4]*v[17],
-        v_q2_3 = q2_1*spin2_2 - q2_2*spin2_1 + t_x[5]*v[15] + t_y[5]*v[16] + t_z[5]*v[17],
-        v_p1_1 = p[1]*spin1_3 - p[2]*spin1_2 + t_x[0]*xm_rate_x + t_y[0]*xm_rate_y + t_z[0]*xm_rate_z,
-        v_p1_2 = -p[0]*spin1_3 + p[2]*spin1_1 + t_x[1]*xm_rate_x + t_y[1]*xm_rate_y + t_z[1]*xm_rate_z,
-        v_p1_3 = p[0]*spin1_2 - p[1]*spin1_1 + t_x[2]*xm_rate_x + t_y[2]*xm_rate_y + t_z[2]*xm_rate_z,
-        v_p2_1 = p[4]*spin2_3 - p[5]*spin2_2 + t_x[3]*xm_rate_x + t_y[3]*xm_rate_y + t_z[3]*xm_rate_z,
-        v_p2_2 = -p[3]*spin2_3 + p[5]*spin2_1 + t_x[4]*xm_rate_x + t_y[4]*xm_rate_y + t_z[4]*xm_rate_z,
-        v_p2_3 = p[3]*spin2_2 - p[4]*spin2_1 + t_x[5]*xm_rate_x + t_y[5]*xm_rate_y + t_z[5]*xm_rate_z,
-        v_g1 = dg1_11*spin1_1 + dg1_12*spin1_2 + dg1_13*spin1_3 + dg1_21*spin2_1 + dg1_22*spin2_2 + dg1_23*spin2_3,
-        v_g2 = dg2_11*spin1_1 + dg2_12*spin1_2 + dg2_13*spin1_3 + dg2_21*spin2_1 + dg2_22*spin2_2 + dg2_23*spin2_3,
-        v_g3 = dg3_11*spin1_1 + dg3_12*spin1_2 + dg3_13*spin1_3 + dg3_21*spin2_1 + dg3_22*spin2_2 + dg3_23*spin2_3,
-        v_gg = 2.0*g1*v_g1 + 2.0*g2*v_g2 + 2.0*g3*v_g3,
-        v_secant = 0.5*v_gg/secant,
-        v_inv_secant = -(inv_secant*inv_secant*v_secant),
-        v_mean1 = 0.5*v_p1_1 + 0.5*v_p2_1,
-        v_mean2 = 0.5*v_p1_2 + 0.5*v_p2_2,
-        v_mean3 = 0.5*v_p1_3 + 0.5*v_p2_3,
-        v_along = g1*inv_secant*v_mean1 + g2*inv_secant*v_mean2 + g3*inv_secant*v_mean3 + inv_secant*mean1*v_g1 + inv_secant*mean2*v_g2 + inv_secant*mean3*v_g3 + v_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3),
-        v_m1 = -along*v_g1 - g1*v_along + mean1*v_secant + secant*v_mean1,
-        v_m2 = -along*v_g2 - g2*v_along + mean2*v_secant + secant*v_mean2,
-        v_shared2 = A[11]*v_m2,
-        v_m3 = -along*v_g3 - g3*v_along + mean3*v_secant + secant*v_mean3,
-        v_shared3 = A[12]*v_m3,
-        v_stretch = inv_stretch*(m1*v_m1 + shared2*v_shared2 + shared3*v_shared3),
-        v_inv_stretch = -(inv_stretch*inv_stretch*v_stretch),
-        v_cosine = inv_stretch*v_m1 + m1*v_inv_stretch,
-        v_larger = -(0.5*larger*larger*v_cosine),
-        v_shear2 = larger*v_m2 + m2*v_larger,
-        v_shear3 = larger*v_m3 + m3*v_larger,
-        v_inv_arc = -(inv_arc*inv_arc*v_gg*(450.0*gg + 1050.0)),
-        v_arc = 2.0*inv_arc*v_gg*w*(128.0*gg + 735.0) + 2.0*v_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        v_k1 = arc*v_g1 + g1*v_arc,
-        v_k2 = arc*v_g2 + g2*v_arc,
-        v_k3 = arc*v_g3 + g3*v_arc;
-    FU_EACH(g, 2,
-        rate_eyy[g] = e[12*g + 6]*v[12*g + 6] + e[12*g + 7]*v[12*g + 7] + e[12*g + 8]*v[12*g + 8];
-        rate_ezz[g] = e[11*g + 10]*v[11*g + 10] + e[11*g + 11]*v[11*g + 11] + e[14*g + 9]*v[14*g + 9];
-        rate_eyz[g] = e[8*g + 10]*v[14*g + 7] + e[8*g + 11]*v[14*g + 8] + e[14*g + 6]*v[14*g + 9] + e[14*g + 7]*v[8*g + 10] + e[14*g + 8]*v[8*g + 11] + e[14*g + 9]*v[14*g + 6];)
+        spin2_3 = -(inv_a[1]*(t_x[3]*v[18] + t_y[3]*v[19] + t_z[3]*v[20]));
+    BEAM24_STRUCTURAL_PART_OF_SPINS_OF_THE_FRAMES_RATES_OF_THE_STRAINS_2
     /* stiffness of the element */
     fu_real S[11];
     FU_EACH(g, 11,
@@ -2214,79 +2285,24 @@ FU_KERNEL void beam24_structural_damping_force(fu_real l, const fu_real *e, cons
         d_m3_cosine = d_m3_inv_stretch*m1,
         d_m3_larger = -(0.5*d_m3_cosine*larger*larger),
         d_m3_shear2 = d_m3_larger*m2,
-        d_m3_shear3 = d_m3_larger*m3 + larger,
-        d_mean1_along = g1*inv_secant,
-        d_mean1_m1 = -d_mean1_along*g1 + secant,
-        d_mean1_m2 = -(d_mean1_along*g2),
-        d_mean1_m3 = -(d_mean1_along*g3),
-        d_mean2_along = g2*inv_secant,
-        d_mean2_m1 = -(d_mean2_along*g1),
-        d_mean2_m2 = -d_mean2_along*g2 + secant,
-        d_mean2_m3 = -(d_mean2_along*g3),
-        d_mean3_along = g3*inv_secant,
-        d_mean3_m1 = -(d_mean3_along*g1),
-        d_mean3_m2 = -(d_mean3_along*g2),
-        d_mean3_m3 = -d_mean3_along*g3 + secant,
-        d_g1_gg = 2.0*g1,
-        d_g1_secant = 0.5*d_g1_gg/secant,
-        d_g1_inv_secant = -(d_g1_secant*inv_secant*inv_secant),
-        d_g1_along = d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean1,
-        d_g1_m1 = -along - d_g1_along*g1 + d_g1_secant*mean1,
-        d_g1_m2 = -d_g1_along*g2 + d_g1_secant*mean2,
-        d_g1_m3 = -d_g1_along*g3 + d_g1_secant*mean3,
+        d_m3_shear3 = d_m3_larger*m3 + larger;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS
+    const fu_real
         d_g2_gg = 2.0*g2,
-        d_g2_secant = 0.5*d_g2_gg/secant,
-        d_g2_inv_secant = -(d_g2_secant*inv_secant*inv_secant),
-        d_g2_along = d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean2,
-        d_g2_m1 = -d_g2_along*g1 + d_g2_secant*mean1,
-        d_g2_m2 = -along - d_g2_along*g2 + d_g2_secant*mean2,
-        d_g2_m3 = -d_g2_along*g3 + d_g2_secant*mean3,
+        d_g2_secant = 0.5*d_g2_gg/secant;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_2
+    const fu_real
         d_g3_gg = 2.0*g3,
-        d_g3_secant = 0.5*d_g3_gg/secant,
-        d_g3_inv_secant = -(d_g3_secant*inv_secant*inv_secant),
-        d_g3_along = d_g3_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean3,
-        d_g3_m1 = -d_g3_along*g1 + d_g3_secant*mean1,
-        d_g3_m2 = -d_g3_along*g2 + d_g3_secant*mean2,
-        d_g3_m3 = -along - d_g3_along*g3 + d_g3_secant*mean3,
-        d_g1_inv_arc = -(d_g1_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g1_arc = 2.0*d_g1_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g1_k1 = arc + d_g1_arc*g1,
-        d_g1_k2 = d_g1_arc*g2,
-        d_g1_k3 = d_g1_arc*g3,
-        d_g2_inv_arc = -(d_g2_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g2_arc = 2.0*d_g2_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g2_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g2_k1 = d_g2_arc*g1,
-        d_g2_k2 = arc + d_g2_arc*g2,
-        d_g2_k3 = d_g2_arc*g3,
-        d_g3_inv_arc = -(d_g3_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g3_arc = 2.0*d_g3_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g3_k1 = d_g3_arc*g1,
-        d_g3_k2 = d_g3_arc*g2,
-        d_g3_k3 = arc + d_g3_arc*g3,
+        d_g3_secant = 0.5*d_g3_gg/secant;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_3
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_4
+    const fu_real
         F_1 = d_m1_shear2*n_e2_m + d_m1_shear3*n_e3_m + d_m1_stretch*n_e1_m,
         F_2 = d_m2_shear2*n_e2_m + d_m2_shear3*n_e3_m + d_m2_stretch*n_e1_m,
-        F_3 = d_m3_shear2*n_e2_m + d_m3_shear3*n_e3_m + d_m3_stretch*n_e1_m,
-        V_1 = F_1*d_mean1_m1 + F_2*d_mean1_m2 + F_3*d_mean1_m3,
-        V_2 = F_1*d_mean2_m1 + F_2*d_mean2_m2 + F_3*d_mean2_m3,
-        V_3 = F_1*d_mean3_m1 + F_2*d_mean3_m2 + F_3*d_mean3_m3,
-        V_4 = F_1*d_g1_m1 + F_2*d_g1_m2 + F_3*d_g1_m3 + d_g1_k1*n_k1 + d_g1_k2*n_k2 + d_g1_k3*n_k3,
-        V_5 = F_1*d_g2_m1 + F_2*d_g2_m2 + F_3*d_g2_m3 + d_g2_k1*n_k1 + d_g2_k2*n_k2 + d_g2_k3*n_k3,
-        V_6 = F_1*d_g3_m1 + F_2*d_g3_m2 + F_3*d_g3_m3 + d_g3_k1*n_k1 + d_g3_k2*n_k2 + d_g3_k3*n_k3,
-        f_x1_x = n_e1_1*t_x[0] + n_e2_1*t_x[1] + n_e3_1*t_x[2],
-        f_x1_y = n_e1_1*t_y[0] + n_e2_1*t_y[1] + n_e3_1*t_y[2],
-        f_x1_z = n_e1_1*t_z[0] + n_e2_1*t_z[1] + n_e3_1*t_z[2],
-        f_xm_x = 0.5*V_1*t_x[0] + 0.5*V_1*t_x[3] + 0.5*V_2*t_x[1] + 0.5*V_2*t_x[4] + 0.5*V_3*t_x[2] + 0.5*V_3*t_x[5],
-        f_xm_y = 0.5*V_1*t_y[0] + 0.5*V_1*t_y[3] + 0.5*V_2*t_y[1] + 0.5*V_2*t_y[4] + 0.5*V_3*t_y[2] + 0.5*V_3*t_y[5],
-        f_xm_z = 0.5*V_1*t_z[0] + 0.5*V_1*t_z[3] + 0.5*V_2*t_z[1] + 0.5*V_2*t_z[4] + 0.5*V_3*t_z[2] + 0.5*V_3*t_z[5],
-        f_x2_x = n_e1_2*t_x[3] + n_e2_2*t_x[4] + n_e3_2*t_x[5],
-        f_x2_y = n_e1_2*t_y[3] + n_e2_2*t_y[4] + n_e3_2*t_y[5],
-        f_x2_z = n_e1_2*t_z[3] + n_e2_2*t_z[4] + n_e3_2*t_z[5];
-    moment_1[0] = 0.5*V_2*p[2] - 0.5*V_3*p[1] + V_4*dg1_11 + V_5*dg2_11 + V_6*dg3_11 + n_e2_1*q1_3 - n_e3_1*q1_2;
-    moment_2[0] = -0.5*V_1*p[2] + 0.5*V_3*p[0] + V_4*dg1_12 + V_5*dg2_12 + V_6*dg3_12 - n_e1_1*q1_3 + n_e3_1*q1_1;
-    moment_3[0] = 0.5*V_1*p[1] - 0.5*V_2*p[0] + V_4*dg1_13 + V_5*dg2_13 + V_6*dg3_13 + n_e1_1*q1_2 - n_e2_1*q1_1;
-    moment_1[1] = 0.5*V_2*p[5] - 0.5*V_3*p[4] + V_4*dg1_21 + V_5*dg2_21 + V_6*dg3_21 + n_e2_2*q2_3 - n_e3_2*q2_2;
-    moment_2[1] = -0.5*V_1*p[5] + 0.5*V_3*p[3] + V_4*dg1_22 + V_5*dg2_22 + V_6*dg3_22 - n_e1_2*q2_3 + n_e3_2*q2_1;
-    moment_3[1] = 0.5*V_1*p[4] - 0.5*V_2*p[3] + V_4*dg1_23 + V_5*dg2_23 + V_6*dg3_23 + n_e1_2*q2_2 - n_e2_2*q2_1;
+        F_3 = d_m3_shear2*n_e2_m + d_m3_shear3*n_e3_m + d_m3_stretch*n_e1_m;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_5
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_7
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_8
     FU_EACH(g, 2,
         y1[g] = -(inv_a[g]*(moment_2[g]*slant[g] + moment_3[g]));
         y3[g] = inv_a[g]*moment_1[g];
@@ -2328,32 +2344,13 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
     t[3][1] = -t[4][0]*t[5][2] + t[4][2]*t[5][0];
     t[3][2] = t[4][0]*t[5][1] - t[4][1]*t[5][0];
     slant[1] = b2*inv_c[1];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_4
     const fu_real
-        q1_1 = e[3]*t[0][0] + e[4]*t[0][1] + e[5]*t[0][2],
-        q1_2 = e[3]*t[1][0] + e[4]*t[1][1] + e[5]*t[1][2],
-        q1_3 = e[3]*t[2][0] + e[4]*t[2][1] + e[5]*t[2][2],
-        q2_1 = e[15]*t[3][0] + e[16]*t[3][1] + e[17]*t[3][2],
-        q2_2 = e[15]*t[4][0] + e[16]*t[4][1] + e[17]*t[4][2],
-        q2_3 = e[15]*t[5][0] + e[16]*t[5][1] + e[17]*t[5][2];
-    FU_EACH(g, 6,
-        p[g] = t[g][0]*xm[0] + t[g][1]*xm[1] + t[g][2]*xm[2];)
-    const fu_real
-        inv_turn = 1.0/(t[0][0]*t[3][0] + t[0][1]*t[3][1] + t[0][2]*t[3][2] + t[1][0]*t[4][0] + t[1][1]*t[4][1] + t[1][2]*t[4][2] + t[2][0]*t[5][0] + t[2][1]*t[5][1] + t[2][2]*t[5][2] + 1.0),
-        g1 = inv_turn*(-t[1][0]*t[5][0] - t[1][1]*t[5][1] - t[1][2]*t[5][2] + t[4][0]*t[2][0] + t[4][1]*t[2][1] + t[4][2]*t[2][2]),
-        g2 = inv_turn*(t[0][0]*t[5][0] + t[0][1]*t[5][1] + t[0][2]*t[5][2] - t[3][0]*t[2][0] - t[3][1]*t[2][1] - t[3][2]*t[2][2]),
-        g3 = inv_turn*(-t[0][0]*t[4][0] - t[0][1]*t[4][1] - t[0][2]*t[4][2] + t[3][0]*t[1][0] + t[3][1]*t[1][1] + t[3][2]*t[1][2]),
         mean1 = 0.5*p[0] + 0.5*p[3],
         mean2 = 0.5*p[1] + 0.5*p[4],
-        mean3 = 0.5*p[2] + 0.5*p[5],
-        gg = g1*g1 + g2*g2 + g3*g3,
-        secant = FU_SQRT(gg + 1.0),
-        inv_secant = 1.0/(secant + 1.0),
-        along = inv_secant*(g1*mean1 + g2*mean2 + g3*mean3),
-        inv_arc = 1.0/(gg*(225.0*gg + 1050.0) + 945.0),
-        arc = 2.0*inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        m1 = -along*g1 + mean1*secant,
-        m2 = -along*g2 + mean2*secant,
-        m3 = -along*g3 + mean3*secant,
+        mean3 = 0.5*p[2] + 0.5*p[5];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_2
+    const fu_real
         shared2 = A[11]*m2,
         shared3 = A[12]*m3,
         stretch = FU_SQRT(m1*m1 + shared2*shared2 + shared3*shared3),
@@ -2475,47 +2472,13 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
         d_m3_larger = -(0.5*d_m3_cosine*larger*larger);
     d_m3_shear[0] = d_m3_larger*m2;
     d_m3_shear[1] = d_m3_larger*m3 + larger;
-    const fu_real
-        d_mean1_along = g1*inv_secant,
-        d_mean1_m1 = -d_mean1_along*g1 + secant,
-        d_mean1_m2 = -(d_mean1_along*g2),
-        d_mean1_m3 = -(d_mean1_along*g3),
-        d_mean2_along = g2*inv_secant,
-        d_mean2_m1 = -(d_mean2_along*g1),
-        d_mean2_m2 = -d_mean2_along*g2 + secant,
-        d_mean2_m3 = -(d_mean2_along*g3),
-        d_mean3_along = g3*inv_secant,
-        d_mean3_m1 = -(d_mean3_along*g1),
-        d_mean3_m2 = -(d_mean3_along*g2),
-        d_mean3_m3 = -d_mean3_along*g3 + secant,
-        d_g1_gg = 2.0*g1,
-        d_g1_secant = 0.5*d_g1_gg/secant,
-        d_g1_inv_secant = -(d_g1_secant*inv_secant*inv_secant),
-        d_g1_along = d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean1,
-        d_g1_m1 = -along - d_g1_along*g1 + d_g1_secant*mean1,
-        d_g1_m2 = -d_g1_along*g2 + d_g1_secant*mean2,
-        d_g1_m3 = -d_g1_along*g3 + d_g1_secant*mean3;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS
     d_g_gg[0] = 2.0*g2;
-    const fu_real
-        d_g2_secant = 0.5*d_g_gg[0]/secant,
-        d_g2_inv_secant = -(d_g2_secant*inv_secant*inv_secant),
-        d_g2_along = d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean2,
-        d_g2_m1 = -d_g2_along*g1 + d_g2_secant*mean1,
-        d_g2_m2 = -along - d_g2_along*g2 + d_g2_secant*mean2,
-        d_g2_m3 = -d_g2_along*g3 + d_g2_secant*mean3;
+    const fu_real d_g2_secant = 0.5*d_g_gg[0]/secant;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_2
     d_g_gg[1] = 2.0*g3;
-    const fu_real
-        d_g3_secant = 0.5*d_g_gg[1]/secant,
-        d_g3_inv_secant = -(d_g3_secant*inv_secant*inv_secant),
-        d_g3_along = d_g3_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + inv_secant*mean3,
-        d_g3_m1 = -d_g3_along*g1 + d_g3_secant*mean1,
-        d_g3_m2 = -d_g3_along*g2 + d_g3_secant*mean2,
-        d_g3_m3 = -along - d_g3_along*g3 + d_g3_secant*mean3,
-        d_g1_inv_arc = -(d_g1_gg*inv_arc*inv_arc*(450.0*gg + 1050.0)),
-        d_g1_arc = 2.0*d_g1_gg*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        d_g1_k1 = arc + d_g1_arc*g1,
-        d_g1_k2 = d_g1_arc*g2,
-        d_g1_k3 = d_g1_arc*g3;
+    const fu_real d_g3_secant = 0.5*d_g_gg[1]/secant;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_3
     d_g_inv_arc[0] = -(d_g_gg[0]*inv_arc*inv_arc*(450.0*gg + 1050.0));
     d_g_arc[0] = 2.0*d_g_gg[0]*inv_arc*w*(128.0*gg + 735.0) + 2.0*d_g_inv_arc[0]*w*(gg*(64.0*gg + 735.0) + 945.0);
     const fu_real
@@ -2527,30 +2490,9 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
     const fu_real
         d_g3_k1 = d_g_arc[1]*g1,
         d_g3_k2 = d_g_arc[1]*g2,
-        d_g3_k3 = arc + d_g_arc[1]*g3,
-        d_1_1 = d_m1_stretch*d_mean1_m1 + d_m2_stretch*d_mean1_m2 + d_m3_stretch*d_mean1_m3,
-        d_1_2 = d_m1_stretch*d_mean2_m1 + d_m2_stretch*d_mean2_m2 + d_m3_stretch*d_mean2_m3,
-        d_1_3 = d_m1_stretch*d_mean3_m1 + d_m2_stretch*d_mean3_m2 + d_m3_stretch*d_mean3_m3,
-        d_1_4 = d_g1_m1*d_m1_stretch + d_g1_m2*d_m2_stretch + d_g1_m3*d_m3_stretch,
-        d_1_5 = d_g2_m1*d_m1_stretch + d_g2_m2*d_m2_stretch + d_g2_m3*d_m3_stretch,
-        d_1_6 = d_g3_m1*d_m1_stretch + d_g3_m2*d_m2_stretch + d_g3_m3*d_m3_stretch;
-    FU_EACH(g, 2,
-        d_1[g] = d_m1_shear[g]*d_mean1_m1 + d_m2_shear[g]*d_mean1_m2 + d_m3_shear[g]*d_mean1_m3;
-        d_2[g] = d_m1_shear[g]*d_mean2_m1 + d_m2_shear[g]*d_mean2_m2 + d_m3_shear[g]*d_mean2_m3;
-        d_3[g] = d_m1_shear[g]*d_mean3_m1 + d_m2_shear[g]*d_mean3_m2 + d_m3_shear[g]*d_mean3_m3;
-        d_4[g] = d_g1_m1*d_m1_shear[g] + d_g1_m2*d_m2_shear[g] + d_g1_m3*d_m3_shear[g];
-        d_5[g] = d_g2_m1*d_m1_shear[g] + d_g2_m2*d_m2_shear[g] + d_g2_m3*d_m3_shear[g];
-        d_6[g] = d_g3_m1*d_m1_shear[g] + d_g3_m2*d_m2_shear[g] + d_g3_m3*d_m3_shear[g];)
-    const fu_real
-        F_1 = d_m1_shear[0]*n_e2_m + d_m1_shear[1]*n_e3_m + d_m1_stretch*n_e1_m,
-        F_2 = d_m2_shear[0]*n_e2_m + d_m2_shear[1]*n_e3_m + d_m2_stretch*n_e1_m,
-        F_3 = d_m3_shear[0]*n_e2_m + d_m3_shear[1]*n_e3_m + d_m3_stretch*n_e1_m,
-        V_1 = F_1*d_mean1_m1 + F_2*d_mean1_m2 + F_3*d_mean1_m3,
-        V_2 = F_1*d_mean2_m1 + F_2*d_mean2_m2 + F_3*d_mean2_m3,
-        V_3 = F_1*d_mean3_m1 + F_2*d_mean3_m2 + F_3*d_mean3_m3,
-        V_4 = F_1*d_g1_m1 + F_2*d_g1_m2 + F_3*d_g1_m3 + d_g1_k1*n_k1 + d_g1_k2*n_k2 + d_g1_k3*n_k3,
-        V_5 = F_1*d_g2_m1 + F_2*d_g2_m2 + F_3*d_g2_m3 + d_g2_k1*n_k1 + d_g2_k2*n_k2 + d_g2_k3*n_k3,
-        V_6 = F_1*d_g3_m1 + F_2*d_g3_m2 + F_3*d_g3_m3 + d_g3_k1*n_k1 + d_g3_k2*n_k2 + d_g3_k3*n_k3;
+        d_g3_k3 = arc + d_g_arc[1]*g3;
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_9
+    BEAM24_STRUCTURAL_PART_OF_FORCES_ON_THE_PARTS_5
     moment_1[0] = 0.5*V_2*p[2] - 0.5*V_3*p[1] + V_4*dg1[0] + V_5*dg2[0] + V_6*dg3[0] + n_e2_1*q1_3 - n_e3_1*q1_2;
     moment_2[0] = -0.5*V_1*p[2] + 0.5*V_3*p[0] + V_4*dg1[1] + V_5*dg2[1] + V_6*dg3[1] - n_e1_1*q1_3 + n_e3_1*q1_1;
     moment_3[0] = 0.5*V_1*p[1] - 0.5*V_2*p[0] + V_4*dg1[2] + V_5*dg2[2] + V_6*dg3[2] + n_e1_1*q1_2 - n_e2_1*q1_1;
@@ -2564,224 +2506,41 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
     /* derivatives at constant resultants, over motions of the parts */
     fu_real turn5_f_xm[3], turn9_f_x1[3], turn9_f_xm[3], turn10_f_x1[3], turn10_f_xm[3], turn11_f_x1[3], turn11_f_xm[3],
         turn12_f_xm[3], turn12_f_x2[3], turn13_f_xm[3], turn13_f_x2[3], turn14_f_xm[3], turn14_f_x2[3];
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS
     const fu_real
-        d_m1_d_m1_stretch = d_m1_inv_stretch*m1 + inv_stretch,
-        d_m1_d_m1_inv_stretch = -d_m1_d_m1_stretch*inv_stretch*inv_stretch - 2.0*d_m1_inv_stretch*d_m1_stretch*inv_stretch,
-        d_m1_d_m1_cosine = d_m1_d_m1_inv_stretch*m1 + 2.0*d_m1_inv_stretch,
-        d_m1_d_m1_larger = -d_m1_cosine*d_m1_larger*larger - 0.5*d_m1_d_m1_cosine*larger*larger,
-        d_m1_d_m1_shear2 = d_m1_d_m1_larger*m2,
-        d_m1_d_m1_shear3 = d_m1_d_m1_larger*m3,
-        d_m1_F_1 = d_m1_d_m1_shear2*n_e2_m + d_m1_d_m1_shear3*n_e3_m + d_m1_d_m1_stretch*n_e1_m,
-        d_m2_d_m1_stretch = d_m2_inv_stretch*m1,
-        d_m2_d_m1_inv_stretch = -2.0*d_m1_stretch*d_m2_inv_stretch*inv_stretch - d_m2_d_m1_stretch*inv_stretch*inv_stretch,
-        d_m2_d_m1_cosine = d_m2_d_m1_inv_stretch*m1 + d_m2_inv_stretch,
-        d_m2_d_m1_larger = -d_m1_cosine*d_m2_larger*larger - 0.5*d_m2_d_m1_cosine*larger*larger,
-        d_m2_d_m1_shear2 = d_m1_larger + d_m2_d_m1_larger*m2,
-        d_m2_d_m1_shear3 = d_m2_d_m1_larger*m3,
-        d_m2_F_1 = d_m2_d_m1_shear2*n_e2_m + d_m2_d_m1_shear3*n_e3_m + d_m2_d_m1_stretch*n_e1_m,
-        d_m2_d_m2_stretch = A[11]*A[11]*inv_stretch + A[11]*d_m2_inv_stretch*shared2,
-        d_m2_d_m2_inv_stretch = -d_m2_d_m2_stretch*inv_stretch*inv_stretch - 2.0*d_m2_inv_stretch*d_m2_stretch*inv_stretch,
-        d_m2_d_m2_cosine = d_m2_d_m2_inv_stretch*m1,
-        d_m2_d_m2_larger = -d_m2_cosine*d_m2_larger*larger - 0.5*d_m2_d_m2_cosine*larger*larger,
-        d_m2_d_m2_shear2 = d_m2_d_m2_larger*m2 + 2.0*d_m2_larger,
-        d_m2_d_m2_shear3 = d_m2_d_m2_larger*m3,
-        d_m2_F_2 = d_m2_d_m2_shear2*n_e2_m + d_m2_d_m2_shear3*n_e3_m + d_m2_d_m2_stretch*n_e1_m,
-        d_m3_d_m1_stretch = d_m3_inv_stretch*m1,
-        d_m3_d_m1_inv_stretch = -2.0*d_m1_stretch*d_m3_inv_stretch*inv_stretch - d_m3_d_m1_stretch*inv_stretch*inv_stretch,
-        d_m3_d_m1_cosine = d_m3_d_m1_inv_stretch*m1 + d_m3_inv_stretch,
-        d_m3_d_m1_larger = -d_m1_cosine*d_m3_larger*larger - 0.5*d_m3_d_m1_cosine*larger*larger,
-        d_m3_d_m1_shear2 = d_m3_d_m1_larger*m2,
-        d_m3_d_m1_shear3 = d_m1_larger + d_m3_d_m1_larger*m3,
-        d_m3_F_1 = d_m3_d_m1_shear2*n_e2_m + d_m3_d_m1_shear3*n_e3_m + d_m3_d_m1_stretch*n_e1_m,
-        d_m3_d_m2_stretch = A[11]*d_m3_inv_stretch*shared2,
-        d_m3_d_m2_inv_stretch = -2.0*d_m2_stretch*d_m3_inv_stretch*inv_stretch - d_m3_d_m2_stretch*inv_stretch*inv_stretch,
-        d_m3_d_m2_cosine = d_m3_d_m2_inv_stretch*m1,
-        d_m3_d_m2_larger = -d_m2_cosine*d_m3_larger*larger - 0.5*d_m3_d_m2_cosine*larger*larger,
-        d_m3_d_m2_shear2 = d_m3_d_m2_larger*m2 + d_m3_larger,
-        d_m3_d_m2_shear3 = d_m2_larger + d_m3_d_m2_larger*m3,
-        d_m3_F_2 = d_m3_d_m2_shear2*n_e2_m + d_m3_d_m2_shear3*n_e3_m + d_m3_d_m2_stretch*n_e1_m,
-        d_m3_d_m3_stretch = A[12]*A[12]*inv_stretch + A[12]*d_m3_inv_stretch*shared3,
-        d_m3_d_m3_inv_stretch = -d_m3_d_m3_stretch*inv_stretch*inv_stretch - 2.0*d_m3_inv_stretch*d_m3_stretch*inv_stretch,
-        d_m3_d_m3_cosine = d_m3_d_m3_inv_stretch*m1,
-        d_m3_d_m3_larger = -d_m3_cosine*d_m3_larger*larger - 0.5*d_m3_d_m3_cosine*larger*larger,
-        d_m3_d_m3_shear2 = d_m3_d_m3_larger*m2,
-        d_m3_d_m3_shear3 = d_m3_d_m3_larger*m3 + 2.0*d_m3_larger,
-        d_m3_F_3 = d_m3_d_m3_shear2*n_e2_m + d_m3_d_m3_shear3*n_e3_m + d_m3_d_m3_stretch*n_e1_m,
-        dF_1_1 = d_m1_F_1*d_mean1_m1 + d_m2_F_1*d_mean1_m2 + d_m3_F_1*d_mean1_m3,
-        dF_1_2 = d_m1_F_1*d_mean2_m1 + d_m2_F_1*d_mean2_m2 + d_m3_F_1*d_mean2_m3,
-        dF_1_3 = d_m1_F_1*d_mean3_m1 + d_m2_F_1*d_mean3_m2 + d_m3_F_1*d_mean3_m3,
-        dF_1_4 = d_g1_m1*d_m1_F_1 + d_g1_m2*d_m2_F_1 + d_g1_m3*d_m3_F_1,
-        dF_1_5 = d_g2_m1*d_m1_F_1 + d_g2_m2*d_m2_F_1 + d_g2_m3*d_m3_F_1,
-        dF_1_6 = d_g3_m1*d_m1_F_1 + d_g3_m2*d_m2_F_1 + d_g3_m3*d_m3_F_1,
-        dF_2_1 = d_m2_F_1*d_mean1_m1 + d_m2_F_2*d_mean1_m2 + d_m3_F_2*d_mean1_m3,
-        dF_2_2 = d_m2_F_1*d_mean2_m1 + d_m2_F_2*d_mean2_m2 + d_m3_F_2*d_mean2_m3,
-        dF_2_3 = d_m2_F_1*d_mean3_m1 + d_m2_F_2*d_mean3_m2 + d_m3_F_2*d_mean3_m3,
-        dF_2_4 = d_g1_m1*d_m2_F_1 + d_g1_m2*d_m2_F_2 + d_g1_m3*d_m3_F_2,
-        dF_2_5 = d_g2_m1*d_m2_F_1 + d_g2_m2*d_m2_F_2 + d_g2_m3*d_m3_F_2,
-        dF_2_6 = d_g3_m1*d_m2_F_1 + d_g3_m2*d_m2_F_2 + d_g3_m3*d_m3_F_2,
-        dF_3_1 = d_m3_F_1*d_mean1_m1 + d_m3_F_2*d_mean1_m2 + d_m3_F_3*d_mean1_m3,
-        dF_3_2 = d_m3_F_1*d_mean2_m1 + d_m3_F_2*d_mean2_m2 + d_m3_F_3*d_mean2_m3,
-        dF_3_3 = d_m3_F_1*d_mean3_m1 + d_m3_F_2*d_mean3_m2 + d_m3_F_3*d_mean3_m3,
-        dF_3_4 = d_g1_m1*d_m3_F_1 + d_g1_m2*d_m3_F_2 + d_g1_m3*d_m3_F_3,
-        dF_3_5 = d_g2_m1*d_m3_F_1 + d_g2_m2*d_m3_F_2 + d_g2_m3*d_m3_F_3,
-        dF_3_6 = d_g3_m1*d_m3_F_1 + d_g3_m2*d_m3_F_2 + d_g3_m3*d_m3_F_3,
-        d_mean1_V_1 = dF_1_1*d_mean1_m1 + dF_2_1*d_mean1_m2 + dF_3_1*d_mean1_m3,
-        d_mean2_V_1 = dF_1_2*d_mean1_m1 + dF_2_2*d_mean1_m2 + dF_3_2*d_mean1_m3,
-        d_mean2_V_2 = dF_1_2*d_mean2_m1 + dF_2_2*d_mean2_m2 + dF_3_2*d_mean2_m3,
-        d_mean3_V_1 = dF_1_3*d_mean1_m1 + dF_2_3*d_mean1_m2 + dF_3_3*d_mean1_m3,
-        d_mean3_V_2 = dF_1_3*d_mean2_m1 + dF_2_3*d_mean2_m2 + dF_3_3*d_mean2_m3,
-        d_mean3_V_3 = dF_1_3*d_mean3_m1 + dF_2_3*d_mean3_m2 + dF_3_3*d_mean3_m3,
-        d_g1_d_mean1_along = d_g1_inv_secant*g1 + inv_secant,
-        d_g1_d_mean1_m1 = -d_g1_d_mean1_along*g1 + d_g1_secant - d_mean1_along,
-        d_g1_d_mean1_m2 = -(d_g1_d_mean1_along*g2),
-        d_g1_d_mean1_m3 = -(d_g1_d_mean1_along*g3),
-        d_g1_V_1 = F_1*d_g1_d_mean1_m1 + F_2*d_g1_d_mean1_m2 + F_3*d_g1_d_mean1_m3 + dF_1_4*d_mean1_m1 + dF_2_4*d_mean1_m2 + dF_3_4*d_mean1_m3,
-        d_g1_d_mean2_along = d_g1_inv_secant*g2,
-        d_g1_d_mean2_m1 = -d_g1_d_mean2_along*g1 - d_mean2_along,
-        d_g1_d_mean2_m2 = -d_g1_d_mean2_along*g2 + d_g1_secant,
-        d_g1_d_mean2_m3 = -(d_g1_d_mean2_along*g3),
-        d_g1_V_2 = F_1*d_g1_d_mean2_m1 + F_2*d_g1_d_mean2_m2 + F_3*d_g1_d_mean2_m3 + dF_1_4*d_mean2_m1 + dF_2_4*d_mean2_m2 + dF_3_4*d_mean2_m3,
-        d_g1_d_mean3_along = d_g1_inv_secant*g3,
-        d_g1_d_mean3_m1 = -d_g1_d_mean3_along*g1 - d_mean3_along,
-        d_g1_d_mean3_m2 = -(d_g1_d_mean3_along*g2),
-        d_g1_d_mean3_m3 = -d_g1_d_mean3_along*g3 + d_g1_secant,
-        d_g1_V_3 = F_1*d_g1_d_mean3_m1 + F_2*d_g1_d_mean3_m2 + F_3*d_g1_d_mean3_m3 + dF_1_4*d_mean3_m1 + dF_2_4*d_mean3_m2 + dF_3_4*d_mean3_m3,
-        d_g1_d_g1_inv_arc = -450.0*d_g1_gg*d_g1_gg*inv_arc*inv_arc - 2.0*d_g1_gg*d_g1_inv_arc*inv_arc*(450.0*gg + 1050.0) - 2.0*inv_arc*inv_arc*(450.0*gg + 1050.0),
-        d_g1_d_g1_arc = 2.0*d_g1_d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + 2.0*d_g1_gg*d_g1_inv_arc*w*(128.0*gg + 735.0) + d_g1_gg*(256.0*d_g1_gg*inv_arc*w + 2.0*d_g1_inv_arc*w*(128.0*gg + 735.0)) + 4.0*inv_arc*w*(128.0*gg + 735.0),
-        d_g1_d_g1_k1 = 2.0*d_g1_arc + d_g1_d_g1_arc*g1,
-        d_g1_d_g1_k2 = d_g1_d_g1_arc*g2,
-        d_g1_d_g1_k3 = d_g1_d_g1_arc*g3,
-        d_g1_d_g1_secant = -0.5*d_g1_gg*d_g1_secant/(secant*secant) + 1.0/secant,
-        d_g1_d_g1_inv_secant = -d_g1_d_g1_secant*inv_secant*inv_secant - 2.0*d_g1_inv_secant*d_g1_secant*inv_secant,
-        d_g1_d_g1_along = d_g1_d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + 2.0*d_g1_inv_secant*mean1,
-        d_g1_d_g1_m1 = -2.0*d_g1_along - d_g1_d_g1_along*g1 + d_g1_d_g1_secant*mean1,
-        d_g1_d_g1_m2 = -d_g1_d_g1_along*g2 + d_g1_d_g1_secant*mean2,
-        d_g1_d_g1_m3 = -d_g1_d_g1_along*g3 + d_g1_d_g1_secant*mean3,
-        d_g1_V_4 = F_1*d_g1_d_g1_m1 + F_2*d_g1_d_g1_m2 + F_3*d_g1_d_g1_m3 + dF_1_4*d_g1_m1 + dF_2_4*d_g1_m2 + dF_3_4*d_g1_m3 + d_g1_d_g1_k1*n_k1 + d_g1_d_g1_k2*n_k2 + d_g1_d_g1_k3*n_k3,
-        d_g2_d_mean1_along = d_g2_inv_secant*g1,
-        d_g2_d_mean1_m1 = -d_g2_d_mean1_along*g1 + d_g2_secant,
-        d_g2_d_mean1_m2 = -d_g2_d_mean1_along*g2 - d_mean1_along,
-        d_g2_d_mean1_m3 = -(d_g2_d_mean1_along*g3),
-        d_g2_V_1 = F_1*d_g2_d_mean1_m1 + F_2*d_g2_d_mean1_m2 + F_3*d_g2_d_mean1_m3 + dF_1_5*d_mean1_m1 + dF_2_5*d_mean1_m2 + dF_3_5*d_mean1_m3,
-        d_g2_d_mean2_along = d_g2_inv_secant*g2 + inv_secant,
-        d_g2_d_mean2_m1 = -(d_g2_d_mean2_along*g1),
-        d_g2_d_mean2_m2 = -d_g2_d_mean2_along*g2 + d_g2_secant - d_mean2_along,
-        d_g2_d_mean2_m3 = -(d_g2_d_mean2_along*g3),
-        d_g2_V_2 = F_1*d_g2_d_mean2_m1 + F_2*d_g2_d_mean2_m2 + F_3*d_g2_d_mean2_m3 + dF_1_5*d_mean2_m1 + dF_2_5*d_mean2_m2 + dF_3_5*d_mean2_m3,
-        d_g2_d_mean3_along = d_g2_inv_secant*g3,
-        d_g2_d_mean3_m1 = -(d_g2_d_mean3_along*g1),
-        d_g2_d_mean3_m2 = -d_g2_d_mean3_along*g2 - d_mean3_along,
-        d_g2_d_mean3_m3 = -d_g2_d_mean3_along*g3 + d_g2_secant,
-        d_g2_V_3 = F_1*d_g2_d_mean3_m1 + F_2*d_g2_d_mean3_m2 + F_3*d_g2_d_mean3_m3 + dF_1_5*d_mean3_m1 + dF_2_5*d_mean3_m2 + dF_3_5*d_mean3_m3,
         d_g2_d_g1_inv_arc = -450.0*d_g1_gg*d_g_gg[0]*inv_arc*inv_arc - 2.0*d_g1_gg*d_g_inv_arc[0]*inv_arc*(450.0*gg + 1050.0),
         d_g2_d_g1_arc = 2.0*d_g1_gg*d_g_inv_arc[0]*w*(128.0*gg + 735.0) + 2.0*d_g2_d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + d_g_gg[0]*(256.0*d_g1_gg*inv_arc*w + 2.0*d_g1_inv_arc*w*(128.0*gg + 735.0)),
-        d_g2_d_g1_k1 = d_g_arc[0] + d_g2_d_g1_arc*g1,
-        d_g2_d_g1_k2 = d_g1_arc + d_g2_d_g1_arc*g2,
-        d_g2_d_g1_k3 = d_g2_d_g1_arc*g3,
-        d_g2_d_g1_secant = -(0.5*d_g1_gg*d_g2_secant/(secant*secant)),
-        d_g2_d_g1_inv_secant = -2.0*d_g1_secant*d_g2_inv_secant*inv_secant - d_g2_d_g1_secant*inv_secant*inv_secant,
-        d_g2_d_g1_along = d_g1_inv_secant*mean2 + d_g2_d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + d_g2_inv_secant*mean1,
-        d_g2_d_g1_m1 = -d_g2_along - d_g2_d_g1_along*g1 + d_g2_d_g1_secant*mean1,
-        d_g2_d_g1_m2 = -d_g1_along - d_g2_d_g1_along*g2 + d_g2_d_g1_secant*mean2,
-        d_g2_d_g1_m3 = -d_g2_d_g1_along*g3 + d_g2_d_g1_secant*mean3,
-        d_g2_V_4 = F_1*d_g2_d_g1_m1 + F_2*d_g2_d_g1_m2 + F_3*d_g2_d_g1_m3 + dF_1_5*d_g1_m1 + dF_2_5*d_g1_m2 + dF_3_5*d_g1_m3 + d_g2_d_g1_k1*n_k1 + d_g2_d_g1_k2*n_k2 + d_g2_d_g1_k3*n_k3,
+        d_g2_d_g1_k1 = d_g_arc[0] + d_g2_d_g1_arc*g1;
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_2
+    const fu_real
         d_g2_d_g2_inv_arc = -450.0*d_g_gg[0]*d_g_gg[0]*inv_arc*inv_arc - 2.0*d_g_gg[0]*d_g_inv_arc[0]*inv_arc*(450.0*gg + 1050.0) - 2.0*inv_arc*inv_arc*(450.0*gg + 1050.0),
         d_g2_d_g2_arc = 2.0*d_g2_d_g2_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + 2.0*d_g_gg[0]*d_g_inv_arc[0]*w*(128.0*gg + 735.0) + d_g_gg[0]*(256.0*d_g_gg[0]*inv_arc*w + 2.0*d_g_inv_arc[0]*w*(128.0*gg + 735.0)) + 4.0*inv_arc*w*(128.0*gg + 735.0),
         d_g2_d_g2_k1 = d_g2_d_g2_arc*g1,
         d_g2_d_g2_k2 = 2.0*d_g_arc[0] + d_g2_d_g2_arc*g2,
         d_g2_d_g2_k3 = d_g2_d_g2_arc*g3,
-        d_g2_d_g2_secant = -0.5*d_g_gg[0]*d_g2_secant/(secant*secant) + 1.0/secant,
-        d_g2_d_g2_inv_secant = -d_g2_d_g2_secant*inv_secant*inv_secant - 2.0*d_g2_inv_secant*d_g2_secant*inv_secant,
-        d_g2_d_g2_along = d_g2_d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + 2.0*d_g2_inv_secant*mean2,
-        d_g2_d_g2_m1 = -d_g2_d_g2_along*g1 + d_g2_d_g2_secant*mean1,
-        d_g2_d_g2_m2 = -2.0*d_g2_along - d_g2_d_g2_along*g2 + d_g2_d_g2_secant*mean2,
-        d_g2_d_g2_m3 = -d_g2_d_g2_along*g3 + d_g2_d_g2_secant*mean3,
-        d_g2_V_5 = F_1*d_g2_d_g2_m1 + F_2*d_g2_d_g2_m2 + F_3*d_g2_d_g2_m3 + dF_1_5*d_g2_m1 + dF_2_5*d_g2_m2 + dF_3_5*d_g2_m3 + d_g2_d_g2_k1*n_k1 + d_g2_d_g2_k2*n_k2 + d_g2_d_g2_k3*n_k3,
-        d_g3_d_mean1_along = d_g3_inv_secant*g1,
-        d_g3_d_mean1_m1 = -d_g3_d_mean1_along*g1 + d_g3_secant,
-        d_g3_d_mean1_m2 = -(d_g3_d_mean1_along*g2),
-        d_g3_d_mean1_m3 = -d_g3_d_mean1_along*g3 - d_mean1_along,
-        d_g3_V_1 = F_1*d_g3_d_mean1_m1 + F_2*d_g3_d_mean1_m2 + F_3*d_g3_d_mean1_m3 + dF_1_6*d_mean1_m1 + dF_2_6*d_mean1_m2 + dF_3_6*d_mean1_m3,
-        d_g3_d_mean2_along = d_g3_inv_secant*g2,
-        d_g3_d_mean2_m1 = -(d_g3_d_mean2_along*g1),
-        d_g3_d_mean2_m2 = -d_g3_d_mean2_along*g2 + d_g3_secant,
-        d_g3_d_mean2_m3 = -d_g3_d_mean2_along*g3 - d_mean2_along,
-        d_g3_V_2 = F_1*d_g3_d_mean2_m1 + F_2*d_g3_d_mean2_m2 + F_3*d_g3_d_mean2_m3 + dF_1_6*d_mean2_m1 + dF_2_6*d_mean2_m2 + dF_3_6*d_mean2_m3,
-        d_g3_d_mean3_along = d_g3_inv_secant*g3 + inv_secant,
-        d_g3_d_mean3_m1 = -(d_g3_d_mean3_along*g1),
-        d_g3_d_mean3_m2 = -(d_g3_d_mean3_along*g2),
-        d_g3_d_mean3_m3 = -d_g3_d_mean3_along*g3 + d_g3_secant - d_mean3_along,
-        d_g3_V_3 = F_1*d_g3_d_mean3_m1 + F_2*d_g3_d_mean3_m2 + F_3*d_g3_d_mean3_m3 + dF_1_6*d_mean3_m1 + dF_2_6*d_mean3_m2 + dF_3_6*d_mean3_m3,
+        d_g2_d_g2_secant = -0.5*d_g_gg[0]*d_g2_secant/(secant*secant) + 1.0/secant;
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_3
+    const fu_real
         d_g3_d_g1_inv_arc = -450.0*d_g1_gg*d_g_gg[1]*inv_arc*inv_arc - 2.0*d_g1_gg*d_g_inv_arc[1]*inv_arc*(450.0*gg + 1050.0),
         d_g3_d_g1_arc = 2.0*d_g1_gg*d_g_inv_arc[1]*w*(128.0*gg + 735.0) + 2.0*d_g3_d_g1_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + d_g_gg[1]*(256.0*d_g1_gg*inv_arc*w + 2.0*d_g1_inv_arc*w*(128.0*gg + 735.0)),
-        d_g3_d_g1_k1 = d_g_arc[1] + d_g3_d_g1_arc*g1,
-        d_g3_d_g1_k2 = d_g3_d_g1_arc*g2,
-        d_g3_d_g1_k3 = d_g1_arc + d_g3_d_g1_arc*g3,
-        d_g3_d_g1_secant = -(0.5*d_g1_gg*d_g3_secant/(secant*secant)),
-        d_g3_d_g1_inv_secant = -2.0*d_g1_secant*d_g3_inv_secant*inv_secant - d_g3_d_g1_secant*inv_secant*inv_secant,
-        d_g3_d_g1_along = d_g1_inv_secant*mean3 + d_g3_d_g1_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + d_g3_inv_secant*mean1,
-        d_g3_d_g1_m1 = -d_g3_along - d_g3_d_g1_along*g1 + d_g3_d_g1_secant*mean1,
-        d_g3_d_g1_m2 = -d_g3_d_g1_along*g2 + d_g3_d_g1_secant*mean2,
-        d_g3_d_g1_m3 = -d_g1_along - d_g3_d_g1_along*g3 + d_g3_d_g1_secant*mean3,
-        d_g3_V_4 = F_1*d_g3_d_g1_m1 + F_2*d_g3_d_g1_m2 + F_3*d_g3_d_g1_m3 + dF_1_6*d_g1_m1 + dF_2_6*d_g1_m2 + dF_3_6*d_g1_m3 + d_g3_d_g1_k1*n_k1 + d_g3_d_g1_k2*n_k2 + d_g3_d_g1_k3*n_k3,
+        d_g3_d_g1_k1 = d_g_arc[1] + d_g3_d_g1_arc*g1;
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_4
+    const fu_real
         d_g3_d_g2_inv_arc = -450.0*d_g_gg[0]*d_g_gg[1]*inv_arc*inv_arc - 2.0*d_g_gg[0]*d_g_inv_arc[1]*inv_arc*(450.0*gg + 1050.0),
         d_g3_d_g2_arc = 2.0*d_g_gg[0]*d_g_inv_arc[1]*w*(128.0*gg + 735.0) + 2.0*d_g3_d_g2_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + d_g_gg[1]*(256.0*d_g_gg[0]*inv_arc*w + 2.0*d_g_inv_arc[0]*w*(128.0*gg + 735.0)),
         d_g3_d_g2_k1 = d_g3_d_g2_arc*g1,
         d_g3_d_g2_k2 = d_g_arc[1] + d_g3_d_g2_arc*g2,
         d_g3_d_g2_k3 = d_g_arc[0] + d_g3_d_g2_arc*g3,
-        d_g3_d_g2_secant = -(0.5*d_g_gg[0]*d_g3_secant/(secant*secant)),
-        d_g3_d_g2_inv_secant = -2.0*d_g2_secant*d_g3_inv_secant*inv_secant - d_g3_d_g2_secant*inv_secant*inv_secant,
-        d_g3_d_g2_along = d_g2_inv_secant*mean3 + d_g3_d_g2_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + d_g3_inv_secant*mean2,
-        d_g3_d_g2_m1 = -d_g3_d_g2_along*g1 + d_g3_d_g2_secant*mean1,
-        d_g3_d_g2_m2 = -d_g3_along - d_g3_d_g2_along*g2 + d_g3_d_g2_secant*mean2,
-        d_g3_d_g2_m3 = -d_g2_along - d_g3_d_g2_along*g3 + d_g3_d_g2_secant*mean3,
-        d_g3_V_5 = F_1*d_g3_d_g2_m1 + F_2*d_g3_d_g2_m2 + F_3*d_g3_d_g2_m3 + dF_1_6*d_g2_m1 + dF_2_6*d_g2_m2 + dF_3_6*d_g2_m3 + d_g3_d_g2_k1*n_k1 + d_g3_d_g2_k2*n_k2 + d_g3_d_g2_k3*n_k3,
+        d_g3_d_g2_secant = -(0.5*d_g_gg[0]*d_g3_secant/(secant*secant));
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_5
+    const fu_real
         d_g3_d_g3_inv_arc = -450.0*d_g_gg[1]*d_g_gg[1]*inv_arc*inv_arc - 2.0*d_g_gg[1]*d_g_inv_arc[1]*inv_arc*(450.0*gg + 1050.0) - 2.0*inv_arc*inv_arc*(450.0*gg + 1050.0),
         d_g3_d_g3_arc = 2.0*d_g3_d_g3_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0) + 2.0*d_g_gg[1]*d_g_inv_arc[1]*w*(128.0*gg + 735.0) + d_g_gg[1]*(256.0*d_g_gg[1]*inv_arc*w + 2.0*d_g_inv_arc[1]*w*(128.0*gg + 735.0)) + 4.0*inv_arc*w*(128.0*gg + 735.0),
         d_g3_d_g3_k1 = d_g3_d_g3_arc*g1,
         d_g3_d_g3_k2 = d_g3_d_g3_arc*g2,
         d_g3_d_g3_k3 = 2.0*d_g_arc[1] + d_g3_d_g3_arc*g3,
-        d_g3_d_g3_secant = -0.5*d_g_gg[1]*d_g3_secant/(secant*secant) + 1.0/secant,
-        d_g3_d_g3_inv_secant = -d_g3_d_g3_secant*inv_secant*inv_secant - 2.0*d_g3_inv_secant*d_g3_secant*inv_secant,
-        d_g3_d_g3_along = d_g3_d_g3_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3) + 2.0*d_g3_inv_secant*mean3,
-        d_g3_d_g3_m1 = -d_g3_d_g3_along*g1 + d_g3_d_g3_secant*mean1,
-        d_g3_d_g3_m2 = -d_g3_d_g3_along*g2 + d_g3_d_g3_secant*mean2,
-        d_g3_d_g3_m3 = -2.0*d_g3_along - d_g3_d_g3_along*g3 + d_g3_d_g3_secant*mean3,
-        d_g3_V_6 = F_1*d_g3_d_g3_m1 + F_2*d_g3_d_g3_m2 + F_3*d_g3_d_g3_m3 + dF_1_6*d_g3_m1 + dF_2_6*d_g3_m2 + dF_3_6*d_g3_m3 + d_g3_d_g3_k1*n_k1 + d_g3_d_g3_k2*n_k2 + d_g3_d_g3_k3*n_k3,
-        moved = 0.5*t[0][0] + 0.5*t[3][0],
-        moved_2 = 0.5*t[1][0] + 0.5*t[4][0],
-        moved_3 = 0.5*t[2][0] + 0.5*t[5][0],
-        moved_4 = 0.5*t[0][1] + 0.5*t[3][1],
-        moved_5 = 0.5*t[1][1] + 0.5*t[4][1],
-        moved_6 = 0.5*t[2][1] + 0.5*t[5][1],
-        moved_7 = 0.5*t[0][2] + 0.5*t[3][2],
-        moved_8 = 0.5*t[1][2] + 0.5*t[4][2],
-        moved_9 = 0.5*t[2][2] + 0.5*t[5][2],
-        moved_10 = 0.5*p[2],
-        moved_11 = -(0.5*p[1]),
-        moved_12 = -(0.5*p[2]),
-        moved_13 = 0.5*p[0],
-        moved_14 = 0.5*p[1],
-        moved_15 = -(0.5*p[0]),
-        moved_16 = 0.5*p[5],
-        moved_17 = -(0.5*p[4]),
-        moved_18 = -(0.5*p[5]),
-        moved_19 = 0.5*p[3],
-        moved_20 = 0.5*p[4],
-        moved_21 = -(0.5*p[3]),
-        dV_mean1_3 = d_mean1_V_1*moved + d_mean2_V_1*moved_2 + d_mean3_V_1*moved_3,
-        dV_mean2_3 = d_mean2_V_1*moved + d_mean2_V_2*moved_2 + d_mean3_V_2*moved_3,
-        dV_mean3_3 = d_mean3_V_1*moved + d_mean3_V_2*moved_2 + d_mean3_V_3*moved_3,
-        turn3_f_xm_x = dV_mean1_3*(0.5*t[0][0] + 0.5*t[3][0]) + dV_mean2_3*(0.5*t[1][0] + 0.5*t[4][0]) + dV_mean3_3*(0.5*t[2][0] + 0.5*t[5][0]),
-        dV_mean1_4 = d_mean1_V_1*moved_4 + d_mean2_V_1*moved_5 + d_mean3_V_1*moved_6,
-        dV_mean2_4 = d_mean2_V_1*moved_4 + d_mean2_V_2*moved_5 + d_mean3_V_2*moved_6,
-        dV_mean3_4 = d_mean3_V_1*moved_4 + d_mean3_V_2*moved_5 + d_mean3_V_3*moved_6,
-        turn4_f_xm_x = dV_mean1_4*(0.5*t[0][0] + 0.5*t[3][0]) + dV_mean2_4*(0.5*t[1][0] + 0.5*t[4][0]) + dV_mean3_4*(0.5*t[2][0] + 0.5*t[5][0]),
-        turn4_f_xm_y = dV_mean1_4*(0.5*t[0][1] + 0.5*t[3][1]) + dV_mean2_4*(0.5*t[1][1] + 0.5*t[4][1]) + dV_mean3_4*(0.5*t[2][1] + 0.5*t[5][1]),
-        dV_mean1_5 = d_mean1_V_1*moved_7 + d_mean2_V_1*moved_8 + d_mean3_V_1*moved_9,
-        dV_mean2_5 = d_mean2_V_1*moved_7 + d_mean2_V_2*moved_8 + d_mean3_V_2*moved_9,
-        dV_mean3_5 = d_mean3_V_1*moved_7 + d_mean3_V_2*moved_8 + d_mean3_V_3*moved_9;
-    FU_EACH(i, 3, turn5_f_xm[i] = dV_mean1_5*(0.5*t[0][i] + 0.5*t[3][i]) + dV_mean2_5*(0.5*t[1][i] + 0.5*t[4][i]) + dV_mean3_5*(0.5*t[2][i] + 0.5*t[5][i]);)
+        d_g3_d_g3_secant = -0.5*d_g_gg[1]*d_g3_secant/(secant*secant) + 1.0/secant;
+    BEAM24_STRUCTURAL_PART_OF_DERIVATIVES_AT_CONSTANT_RESULTANTS_OVER_MOTIONS_OF_THE_PARTS_6
     const fu_real
         dV_mean1_9 = d_g1_V_1*dg1[0] + d_g2_V_1*dg2[0] + d_g3_V_1*dg3[0] + d_mean2_V_1*moved_10 + d_mean3_V_1*moved_11,
         dV_mean2_9 = d_g1_V_2*dg1[0] + d_g2_V_2*dg2[0] + d_g3_V_2*dg3[0] + d_mean2_V_2*moved_10 + d_mean3_V_2*moved_11,
@@ -2924,12 +2683,7 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
     /* strains by motions of the parts */
     fu_real B_0[3], B_1[3], B_2[3], B_3[6], v_d_g_gg[2], v_dg1[6], v_dg2[6], v_dg3[6], v_d_g_inv_arc[2], v_d_g_arc[2],
         v_d_g_k1[2], v_B_3[6], Bv_at[6];
-    B_0[0] = d_1_1*moved + d_1_2*moved_2 + d_1_3*moved_3;
-    B_1[0] = d_1[0]*moved + d_2[0]*moved_2 + d_3[0]*moved_3;
-    B_2[0] = d_1[1]*moved + d_2[1]*moved_2 + d_3[1]*moved_3;
-    B_0[1] = d_1_1*moved_4 + d_1_2*moved_5 + d_1_3*moved_6;
-    B_1[1] = d_1[0]*moved_4 + d_2[0]*moved_5 + d_3[0]*moved_6;
-    B_2[1] = d_1[1]*moved_4 + d_2[1]*moved_5 + d_3[1]*moved_6;
+    BEAM24_STRUCTURAL_PART_OF_STRAINS_BY_MOTIONS_OF_THE_PARTS
     B_0[2] = d_1_1*moved_7 + d_1_2*moved_8 + d_1_3*moved_9;
     B_1[2] = d_1[0]*moved_7 + d_2[0]*moved_8 + d_3[0]*moved_9;
     B_2[2] = d_1[1]*moved_7 + d_2[1]*moved_8 + d_3[1]*moved_9;
@@ -3417,31 +3171,18 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
         K_6_2 = C_25*t[3][0] + C_26*t[4][0] + C_27*t[5][0],
         K_6_3 = C_34*t[3][0] + C_35*t[4][0] + C_36*t[5][0],
         K_6_4 = C_43*t[3][0] + C_44*t[4][0] + C_45*t[5][0],
-        K_6_5 = C_52*t[3][0] + C_53*t[4][0] + C_54*t[5][0],
-        K_6_6 = C_61*t[3][0] + C_62*t[4][0] + C_63*t[5][0],
-        K_6_7 = C_70*t[3][0] + C_71*t[4][0] + C_72*t[5][0],
-        K_6_8 = C_79*t[3][0] + C_80*t[4][0] + C_81*t[5][0],
-        K_6_9 = C_88*t[3][0] + C_89*t[4][0] + C_90*t[5][0],
-        K_6_10 = C_100*t[3][0] + C_101*t[4][0] + C_102*t[5][0],
-        K_6_11 = C_112*t[3][0] + C_113*t[4][0] + C_114*t[5][0],
-        K_6_12 = C_124*t[3][0] + C_125*t[4][0] + C_126*t[5][0],
-        K_6_13 = C_136*t[3][0] + C_137*t[4][0] + C_138*t[5][0],
-        K_6_14 = C_148*t[3][0] + C_149*t[4][0] + C_150*t[5][0],
+        K_6_5 = C_52*t[3][0] + C_53*t[4][0] + C_54*t[5][0];
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS
+    const fu_real
         K_7_0 = C_7*t[3][1] + C_8*t[4][1] + C_9*t[5][1],
         K_7_1 = C_16*t[3][1] + C_17*t[4][1] + C_18*t[5][1],
         K_7_2 = C_25*t[3][1] + C_26*t[4][1] + C_27*t[5][1],
         K_7_3 = C_34*t[3][1] + C_35*t[4][1] + C_36*t[5][1],
         K_7_4 = C_43*t[3][1] + C_44*t[4][1] + C_45*t[5][1],
         K_7_5 = C_52*t[3][1] + C_53*t[4][1] + C_54*t[5][1],
-        K_7_6 = C_61*t[3][1] + C_62*t[4][1] + C_63*t[5][1],
-        K_7_7 = C_70*t[3][1] + C_71*t[4][1] + C_72*t[5][1],
-        K_7_8 = C_79*t[3][1] + C_80*t[4][1] + C_81*t[5][1],
-        K_7_9 = C_88*t[3][1] + C_89*t[4][1] + C_90*t[5][1],
-        K_7_10 = C_100*t[3][1] + C_101*t[4][1] + C_102*t[5][1],
-        K_7_11 = C_112*t[3][1] + C_113*t[4][1] + C_114*t[5][1],
-        K_7_12 = C_124*t[3][1] + C_125*t[4][1] + C_126*t[5][1],
-        K_7_13 = C_136*t[3][1] + C_137*t[4][1] + C_138*t[5][1],
-        K_7_14 = C_148*t[3][1] + C_149*t[4][1] + C_150*t[5][1],
+        K_7_6 = C_61*t[3][1] + C_62*t[4][1] + C_63*t[5][1];
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_2
+    const fu_real
         K_8_0 = C_7*t[3][2] + C_8*t[4][2] + C_9*t[5][2],
         K_8_1 = C_16*t[3][2] + C_17*t[4][2] + C_18*t[5][2],
         K_8_2 = C_25*t[3][2] + C_26*t[4][2] + C_27*t[5][2],
@@ -3449,14 +3190,9 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
         K_8_4 = C_43*t[3][2] + C_44*t[4][2] + C_45*t[5][2],
         K_8_5 = C_52*t[3][2] + C_53*t[4][2] + C_54*t[5][2],
         K_8_6 = C_61*t[3][2] + C_62*t[4][2] + C_63*t[5][2],
-        K_8_7 = C_70*t[3][2] + C_71*t[4][2] + C_72*t[5][2],
-        K_8_8 = C_79*t[3][2] + C_80*t[4][2] + C_81*t[5][2],
-        K_8_9 = C_88*t[3][2] + C_89*t[4][2] + C_90*t[5][2],
-        K_8_10 = C_100*t[3][2] + C_101*t[4][2] + C_102*t[5][2],
-        K_8_11 = C_112*t[3][2] + C_113*t[4][2] + C_114*t[5][2],
-        K_8_12 = C_124*t[3][2] + C_125*t[4][2] + C_126*t[5][2],
-        K_8_13 = C_136*t[3][2] + C_137*t[4][2] + C_138*t[5][2],
-        K_8_14 = C_148*t[3][2] + C_149*t[4][2] + C_150*t[5][2],
+        K_8_7 = C_70*t[3][2] + C_71*t[4][2] + C_72*t[5][2];
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_3
+    const fu_real
         K_9_0 = B_0_9*C_4 + B_1_9*C_5 + B_2_9*C_6 + C_2*q1_3 - C_3*q1_2,
         K_9_1 = B_0_9*C_13 + B_1_9*C_14 + B_2_9*C_15 + C_11*q1_3 - C_12*q1_2,
         K_9_2 = B_0_9*C_22 + B_1_9*C_23 + B_2_9*C_24 + C_20*q1_3 - C_21*q1_2,
@@ -3556,26 +3292,11 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
         sum_7 = K_9[2] + turn9_f_x1[2],
         sum_8 = K_10[2] + turn10_f_x1[2],
         sum_9 = K_11[2] + turn11_f_x1[2],
-        sum_10 = K_3_at[0] + turn3_f_xm_x,
-        sum_11 = K_4_at[0] + turn4_f_xm_x,
-        sum_12 = K_5_at[0] + turn5_f_xm[0],
-        sum_13 = K_9_at[0] + turn9_f_xm[0],
-        sum_14 = K_10_at[0] + turn10_f_xm[0],
-        sum_15 = K_11_at[0] + turn11_f_xm[0],
-        sum_16 = K_12_at[0] + turn12_f_xm[0];
-    sum_at[0] = K_13_at[0] + turn13_f_xm[0];
+        sum_10 = K_3_at[0] + turn3_f_xm_x;
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_4
+    const fu_real sum_19 = K_3_at[1] + turn4_f_xm_x;
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_5
     const fu_real
-        sum_18 = K_14_at[0] + turn14_f_xm[0],
-        sum_19 = K_3_at[1] + turn4_f_xm_x,
-        sum_20 = K_4_at[1] + turn4_f_xm_y,
-        sum_21 = K_5_at[1] + turn5_f_xm[1],
-        sum_22 = K_9_at[1] + turn9_f_xm[1],
-        sum_23 = K_10_at[1] + turn10_f_xm[1],
-        sum_24 = K_11_at[1] + turn11_f_xm[1],
-        sum_25 = K_12_at[1] + turn12_f_xm[1];
-    sum_at[1] = K_13_at[1] + turn13_f_xm[1];
-    const fu_real
-        sum_27 = K_14_at[1] + turn14_f_xm[1],
         sum_28 = K_3_at[2] + turn5_f_xm[0],
         sum_29 = K_4_at[2] + turn5_f_xm[1],
         sum_30 = K_5_at[2] + turn5_f_xm[2],
@@ -3584,20 +3305,9 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
         sum_33 = K_11_at[2] + turn11_f_xm[2],
         sum_34 = K_12_at[2] + turn12_f_xm[2];
     sum_at[2] = K_13_at[2] + turn13_f_xm[2];
+    const fu_real sum_36 = K_14_at[2] + turn14_f_xm[2];
+    BEAM24_STRUCTURAL_PART_OF_RESULTANTS_BY_MOTIONS_OF_THE_PARTS_6
     const fu_real
-        sum_36 = K_14_at[2] + turn14_f_xm[2],
-        sum_37 = K_6_12 + turn12_f_x2[0];
-    sum_at[3] = K_6_13 + turn13_f_x2[0];
-    const fu_real
-        sum_39 = K_6_14 + turn14_f_x2[0],
-        sum_40 = K_7_12 + turn12_f_x2[1];
-    sum_at[4] = K_7_13 + turn13_f_x2[1];
-    const fu_real
-        sum_42 = K_7_14 + turn14_f_x2[1],
-        sum_43 = K_8_12 + turn12_f_x2[2];
-    sum_at[5] = K_8_13 + turn13_f_x2[2];
-    const fu_real
-        sum_45 = K_8_14 + turn14_f_x2[2],
         sum_46 = K_9_0 + turn9_f_x1[0],
         sum_47 = K_9_1 + turn9_f_x1[1],
         sum_48 = K_9_2 + turn9_f_x1[2],
@@ -4013,19 +3723,10 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
         change_42 = L_11_0*v_W1_y1[2] + L_11_1*v_W2_y1[2] + L_11_2*v_W3_y1[2] + W1_y1[2]*sum_76 + W2_y1[2]*sum_77 + W3_y1[2]*sum_78,
         change_43 = L_12_0*v_W1_y1[2] + L_12_1*v_W2_y1[2] + L_12_2*v_W3_y1[2] + W1_y1[2]*sum_88 + W2_y1[2]*sum_89 + W3_y1[2]*sum_90,
         change_44 = L_13_0*v_W1_y1[2] + L_13_1*v_W2_y1[2] + L_13_2*v_W3_y1[2] + W1_y1[2]*sum_100 + W2_y1[2]*sum_101 + W3_y1[2]*sum_102,
-        change_45 = L_14_0*v_W1_y1[2] + L_14_1*v_W2_y1[2] + L_14_2*v_W3_y1[2] + W1_y1[2]*sum_112 + W2_y1[2]*sum_113 + W3_y1[2]*sum_114,
-        by_y1_0_y1_1 = -change_11*inv_a[0]*slant[0] - change_12*inv_a[0] - inv_a[0]*inv_a[0]*t[1][0]*(-moment_2[0]*slant[0] - moment_3[0]) - inv_a[0]*inv_c[0]*moment_2[0]*(W1_y1[0]*b1*slant[0] + W1_y1[0]*c1),
-        by_y1_0_y3_1 = change_10*inv_a[0] - inv_a[0]*inv_a[0]*moment_1[0]*t[1][0],
-        by_y1_1_y1_1 = -change_26*inv_a[0]*slant[0] - change_27*inv_a[0] - inv_a[0]*inv_a[0]*t[1][1]*(-moment_2[0]*slant[0] - moment_3[0]) - inv_a[0]*inv_c[0]*moment_2[0]*(W1_y1[1]*b1*slant[0] + W1_y1[1]*c1),
-        by_y1_1_y3_1 = change_25*inv_a[0] - inv_a[0]*inv_a[0]*moment_1[0]*t[1][1],
-        by_y1_2_y1_1 = -change_41*inv_a[0]*slant[0] - change_42*inv_a[0] - inv_a[0]*inv_a[0]*t[1][2]*(-moment_2[0]*slant[0] - moment_3[0]) - inv_a[0]*inv_c[0]*moment_2[0]*(W1_y1[2]*b1*slant[0] + W1_y1[2]*c1),
-        by_y1_2_y3_1 = change_40*inv_a[0] - inv_a[0]*inv_a[0]*moment_1[0]*t[1][2];
-    K_y1_y1[0][0] = by_y1_0_y1_1*t[0][0] + by_y1_0_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_1[0] + e[9]*t_eyz_1_eyz_1[0] + n_eyy_1 + y1[0]*(-W2_y1[0]*t[2][0] + W3_y1[0]*t[1][0]) + y3[0]*(-W1_y1[0]*t[1][0] + W2_y1[0]*t[0][0]);
-    K_y1_y1[0][1] = by_y1_1_y1_1*t[0][0] + by_y1_1_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_1[1] + e[9]*t_eyz_1_eyz_1[1] + y1[0]*(-W2_y1[1]*t[2][0] + W3_y1[1]*t[1][0]) + y3[0]*(-W1_y1[1]*t[1][0] + W2_y1[1]*t[0][0]);
-    K_y1_y1[0][2] = by_y1_2_y1_1*t[0][0] + by_y1_2_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_1[2] + e[9]*t_eyz_1_eyz_1[2] + y1[0]*(-W2_y1[2]*t[2][0] + W3_y1[2]*t[1][0]) + y3[0]*(-W1_y1[2]*t[1][0] + W2_y1[2]*t[0][0]);
+        change_45 = L_14_0*v_W1_y1[2] + L_14_1*v_W2_y1[2] + L_14_2*v_W3_y1[2] + W1_y1[2]*sum_112 + W2_y1[2]*sum_113 + W3_y1[2]*sum_114;
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS
     K_y1_y1[1][0] = by_y1_0_y1_1*t[0][1] + by_y1_0_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1[0] + e[7]*t_eyy_1_eyy_1[0] + y1[0]*(-W2_y1[0]*t[2][1] + W3_y1[0]*t[1][1]) + y3[0]*(-W1_y1[0]*t[1][1] + W2_y1[0]*t[0][1]);
-    K_y1_y1[1][1] = by_y1_1_y1_1*t[0][1] + by_y1_1_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1[1] + e[7]*t_eyy_1_eyy_1[1] + n_eyy_1 + y1[0]*(-W2_y1[1]*t[2][1] + W3_y1[1]*t[1][1]) + y3[0]*(-W1_y1[1]*t[1][1] + W2_y1[1]*t[0][1]);
-    K_y1_y1[1][2] = by_y1_2_y1_1*t[0][1] + by_y1_2_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1[2] + e[7]*t_eyy_1_eyy_1[2] + y1[0]*(-W2_y1[2]*t[2][1] + W3_y1[2]*t[1][1]) + y3[0]*(-W1_y1[2]*t[1][1] + W2_y1[2]*t[0][1]);
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_2
     K_y1_y1[2][0] = by_y1_0_y1_1*t[0][2] + by_y1_0_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1[0] + e[8]*t_eyy_1_eyy_1[0] + y1[0]*(-W2_y1[0]*t[2][2] + W3_y1[0]*t[1][2]) + y3[0]*(-W1_y1[0]*t[1][2] + W2_y1[0]*t[0][2]);
     K_y1_y1[2][1] = by_y1_1_y1_1*t[0][2] + by_y1_1_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1[1] + e[8]*t_eyy_1_eyy_1[1] + y1[0]*(-W2_y1[1]*t[2][2] + W3_y1[1]*t[1][2]) + y3[0]*(-W1_y1[1]*t[1][2] + W2_y1[1]*t[0][2]);
     K_y1_y1[2][2] = by_y1_2_y1_1*t[0][2] + by_y1_2_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1[2] + e[8]*t_eyy_1_eyy_1[2] + n_eyy_1 + y1[0]*(-W2_y1[2]*t[2][2] + W3_y1[2]*t[1][2]) + y3[0]*(-W1_y1[2]*t[1][2] + W2_y1[2]*t[0][2]);
@@ -4108,29 +3809,8 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
         change_87 = L_11_1*v_W2_z1[2] + W2_z1[2]*sum_77,
         change_88 = L_12_1*v_W2_z1[2] + W2_z1[2]*sum_89,
         change_89 = L_13_1*v_W2_z1[2] + W2_z1[2]*sum_101,
-        change_90 = L_14_1*v_W2_z1[2] + W2_z1[2]*sum_113,
-        by_z1_0_y1_1 = -change_56*inv_a[0]*slant[0] - change_57*inv_a[0] - inv_a[0]*inv_c[0]*moment_2[0]*(-slant[0]*t[2][0] + t[1][0]),
-        by_z1_0_y3_1 = change_55*inv_a[0],
-        by_z1_1_y1_1 = -change_71*inv_a[0]*slant[0] - change_72*inv_a[0] - inv_a[0]*inv_c[0]*moment_2[0]*(-slant[0]*t[2][1] + t[1][1]),
-        by_z1_1_y3_1 = change_70*inv_a[0],
-        by_z1_2_y1_1 = -change_86*inv_a[0]*slant[0] - change_87*inv_a[0] - inv_a[0]*inv_c[0]*moment_2[0]*(-slant[0]*t[2][2] + t[1][2]),
-        by_z1_2_y3_1 = change_85*inv_a[0];
-    K_y1_z1[0][0] = W2_z1[0]*t[0][0]*y3[0] - W2_z1[0]*t[2][0]*y1[0] + by_z1_0_y1_1*t[0][0] + by_z1_0_y3_1*t[2][0] + e[9]*t_eyz_1_eyz_1_2[0] + n_eyz_1;
-    K_y1_z1[0][1] = W2_z1[1]*t[0][0]*y3[0] - W2_z1[1]*t[2][0]*y1[0] + by_z1_1_y1_1*t[0][0] + by_z1_1_y3_1*t[2][0] + e[9]*t_eyz_1_eyz_1_2[1];
-    K_y1_z1[0][2] = W2_z1[2]*t[0][0]*y3[0] - W2_z1[2]*t[2][0]*y1[0] + by_z1_2_y1_1*t[0][0] + by_z1_2_y3_1*t[2][0] + e[9]*t_eyz_1_eyz_1_2[2];
-    K_y1_z1[1][0] = W2_z1[0]*t[0][1]*y3[0] - W2_z1[0]*t[2][1]*y1[0] + by_z1_0_y1_1*t[0][1] + by_z1_0_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1_2[0];
-    K_y1_z1[1][1] = W2_z1[1]*t[0][1]*y3[0] - W2_z1[1]*t[2][1]*y1[0] + by_z1_1_y1_1*t[0][1] + by_z1_1_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1_2[1] + n_eyz_1;
-    K_y1_z1[1][2] = W2_z1[2]*t[0][1]*y3[0] - W2_z1[2]*t[2][1]*y1[0] + by_z1_2_y1_1*t[0][1] + by_z1_2_y3_1*t[2][1] + e[10]*t_eyz_1_eyz_1_2[2];
-    K_y1_z1[2][0] = W2_z1[0]*t[0][2]*y3[0] - W2_z1[0]*t[2][2]*y1[0] + by_z1_0_y1_1*t[0][2] + by_z1_0_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1_2[0];
-    K_y1_z1[2][1] = W2_z1[1]*t[0][2]*y3[0] - W2_z1[1]*t[2][2]*y1[0] + by_z1_1_y1_1*t[0][2] + by_z1_1_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1_2[1];
-    K_y1_z1[2][2] = W2_z1[2]*t[0][2]*y3[0] - W2_z1[2]*t[2][2]*y1[0] + by_z1_2_y1_1*t[0][2] + by_z1_2_y3_1*t[2][2] + e[11]*t_eyz_1_eyz_1_2[2] + n_eyz_1;
-    const fu_real
-        by_z1_0_z1_1 = change_56*inv_c[0] - inv_c[0]*inv_c[0]*moment_2[0]*t[2][0],
-        by_z1_1_z1_1 = change_71*inv_c[0] - inv_c[0]*inv_c[0]*moment_2[0]*t[2][1],
-        by_z1_2_z1_1 = change_86*inv_c[0] - inv_c[0]*inv_c[0]*moment_2[0]*t[2][2];
-    K_z1_z1[0][0] = -W2_z1[0]*t[2][0]*z1[0] + by_z1_0_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_1_2[0] + e[9]*t_ezz_1_ezz_1[0] + n_ezz_1;
-    K_z1_z1[0][1] = -W2_z1[1]*t[2][0]*z1[0] + by_z1_1_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_1_2[1] + e[9]*t_ezz_1_ezz_1[1];
-    K_z1_z1[0][2] = -W2_z1[2]*t[2][0]*z1[0] + by_z1_2_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_1_2[2] + e[9]*t_ezz_1_ezz_1[2];
+        change_90 = L_14_1*v_W2_z1[2] + W2_z1[2]*sum_113;
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_3
     K_z1_z1[1][0] = -W2_z1[0]*t[2][1]*z1[0] + by_z1_0_z1_1*t[0][1] + e[10]*t_ezz_1_ezz_1[0] + e[7]*t_eyz_1_eyz_1_2[0];
     K_z1_z1[1][1] = -W2_z1[1]*t[2][1]*z1[0] + by_z1_1_z1_1*t[0][1] + e[10]*t_ezz_1_ezz_1[1] + e[7]*t_eyz_1_eyz_1_2[1] + n_ezz_1;
     K_z1_z1[1][2] = -W2_z1[2]*t[2][1]*z1[0] + by_z1_2_z1_1*t[0][1] + e[10]*t_ezz_1_ezz_1[2] + e[7]*t_eyz_1_eyz_1_2[2];
@@ -4207,41 +3887,10 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
         change_132 = L_11_3*v_W1_y2[2] + L_4[8]*v_W2_y2[2] + L_11_5*v_W3_y2[2] + W1_y2[2]*sum_79 + W2_y2[2]*sum_at[8] + W3_y2[2]*sum_81,
         change_133 = L_12_3*v_W1_y2[2] + L_4[9]*v_W2_y2[2] + L_12_5*v_W3_y2[2] + W1_y2[2]*sum_91 + W2_y2[2]*sum_at[9] + W3_y2[2]*sum_93,
         change_134 = L_13_3*v_W1_y2[2] + L_4[10]*v_W2_y2[2] + L_13_5*v_W3_y2[2] + W1_y2[2]*sum_103 + W2_y2[2]*sum_at[10] + W3_y2[2]*sum_105,
-        change_135 = L_14_3*v_W1_y2[2] + L_4[11]*v_W2_y2[2] + L_14_5*v_W3_y2[2] + W1_y2[2]*sum_115 + W2_y2[2]*sum_at[11] + W3_y2[2]*sum_117,
-        by_y2_0_y1_1 = -change_101*inv_a[0]*slant[0] - change_102*inv_a[0],
-        by_y2_0_y3_1 = change_100*inv_a[0],
-        by_y2_1_y1_1 = -change_116*inv_a[0]*slant[0] - change_117*inv_a[0],
-        by_y2_1_y3_1 = change_115*inv_a[0],
-        by_y2_2_y1_1 = -change_131*inv_a[0]*slant[0] - change_132*inv_a[0],
-        by_y2_2_y3_1 = change_130*inv_a[0];
-    K_y1_y2[0][0] = by_y2_0_y1_1*t[0][0] + by_y2_0_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_2[0] + e[9]*t_eyz_1_eyz_2[0];
-    K_y1_y2[0][1] = by_y2_1_y1_1*t[0][0] + by_y2_1_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_2[1] + e[9]*t_eyz_1_eyz_2[1];
-    K_y1_y2[0][2] = by_y2_2_y1_1*t[0][0] + by_y2_2_y3_1*t[2][0] + e[6]*t_eyy_1_eyy_2[2] + e[9]*t_eyz_1_eyz_2[2];
-    FU_EACH(g, 2,
-        K_y1_y2[g + 1][0] = by_y2_0_y1_1*t[0][g + 1] + by_y2_0_y3_1*t[2][g + 1] + e[g + 10]*t_eyz_1_eyz_2[0] + e[g + 7]*t_eyy_1_eyy_2[0];
-        K_y1_y2[g + 1][1] = by_y2_1_y1_1*t[0][g + 1] + by_y2_1_y3_1*t[2][g + 1] + e[g + 10]*t_eyz_1_eyz_2[1] + e[g + 7]*t_eyy_1_eyy_2[1];
-        K_y1_y2[g + 1][2] = by_y2_2_y1_1*t[0][g + 1] + by_y2_2_y3_1*t[2][g + 1] + e[g + 10]*t_eyz_1_eyz_2[2] + e[g + 7]*t_eyy_1_eyy_2[2];)
-    const fu_real
-        by_y2_0_z1_1 = change_101*inv_c[0],
-        by_y2_1_z1_1 = change_116*inv_c[0],
-        by_y2_2_z1_1 = change_131*inv_c[0];
-    FU_EACH(g, 3,
-        K_z1_y2[g][0] = by_y2_0_z1_1*t[0][g] + e[g + 6]*t_eyz_1_eyz_2[0];
-        K_z1_y2[g][1] = by_y2_1_z1_1*t[0][g] + e[g + 6]*t_eyz_1_eyz_2[1];
-        K_z1_y2[g][2] = by_y2_2_z1_1*t[0][g] + e[g + 6]*t_eyz_1_eyz_2[2];)
-    const fu_real
-        by_y2_0_y1_2 = -change_104*inv_a[1]*slant[1] - change_105*inv_a[1] - inv_a[1]*inv_a[1]*t[4][0]*(-moment_2[1]*slant[1] - moment_3[1]) - inv_a[1]*inv_c[1]*moment_2[1]*(W1_y2[0]*b2*slant[1] + W1_y2[0]*c2),
-        by_y2_0_y3_2 = change_103*inv_a[1] - inv_a[1]*inv_a[1]*moment_1[1]*t[4][0],
-        by_y2_1_y1_2 = -change_119*inv_a[1]*slant[1] - change_120*inv_a[1] - inv_a[1]*inv_a[1]*t[4][1]*(-moment_2[1]*slant[1] - moment_3[1]) - inv_a[1]*inv_c[1]*moment_2[1]*(W1_y2[1]*b2*slant[1] + W1_y2[1]*c2),
-        by_y2_1_y3_2 = change_118*inv_a[1] - inv_a[1]*inv_a[1]*moment_1[1]*t[4][1],
-        by_y2_2_y1_2 = -change_134*inv_a[1]*slant[1] - change_135*inv_a[1] - inv_a[1]*inv_a[1]*t[4][2]*(-moment_2[1]*slant[1] - moment_3[1]) - inv_a[1]*inv_c[1]*moment_2[1]*(W1_y2[2]*b2*slant[1] + W1_y2[2]*c2),
-        by_y2_2_y3_2 = change_133*inv_a[1] - inv_a[1]*inv_a[1]*moment_1[1]*t[4][2];
-    K_y2_y2[0][0] = by_y2_0_y1_2*t[3][0] + by_y2_0_y3_2*t[5][0] + e[18]*t_eyy_2_eyy_2[0] + e[21]*t_eyz_2_eyz_2[0] + n_eyy_2 + y1[1]*(-W2_y2[0]*t[5][0] + W3_y2[0]*t[4][0]) + y3[1]*(-W1_y2[0]*t[4][0] + W2_y2[0]*t[3][0]);
-    K_y2_y2[0][1] = by_y2_1_y1_2*t[3][0] + by_y2_1_y3_2*t[5][0] + e[18]*t_eyy_2_eyy_2[1] + e[21]*t_eyz_2_eyz_2[1] + y1[1]*(-W2_y2[1]*t[5][0] + W3_y2[1]*t[4][0]) + y3[1]*(-W1_y2[1]*t[4][0] + W2_y2[1]*t[3][0]);
-    K_y2_y2[0][2] = by_y2_2_y1_2*t[3][0] + by_y2_2_y3_2*t[5][0] + e[18]*t_eyy_2_eyy_2[2] + e[21]*t_eyz_2_eyz_2[2] + y1[1]*(-W2_y2[2]*t[5][0] + W3_y2[2]*t[4][0]) + y3[1]*(-W1_y2[2]*t[4][0] + W2_y2[2]*t[3][0]);
+        change_135 = L_14_3*v_W1_y2[2] + L_4[11]*v_W2_y2[2] + L_14_5*v_W3_y2[2] + W1_y2[2]*sum_115 + W2_y2[2]*sum_at[11] + W3_y2[2]*sum_117;
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_4
     K_y2_y2[1][0] = by_y2_0_y1_2*t[3][1] + by_y2_0_y3_2*t[5][1] + e[19]*t_eyy_2_eyy_2[0] + e[22]*t_eyz_2_eyz_2[0] + y1[1]*(-W2_y2[0]*t[5][1] + W3_y2[0]*t[4][1]) + y3[1]*(-W1_y2[0]*t[4][1] + W2_y2[0]*t[3][1]);
-    K_y2_y2[1][1] = by_y2_1_y1_2*t[3][1] + by_y2_1_y3_2*t[5][1] + e[19]*t_eyy_2_eyy_2[1] + e[22]*t_eyz_2_eyz_2[1] + n_eyy_2 + y1[1]*(-W2_y2[1]*t[5][1] + W3_y2[1]*t[4][1]) + y3[1]*(-W1_y2[1]*t[4][1] + W2_y2[1]*t[3][1]);
-    K_y2_y2[1][2] = by_y2_2_y1_2*t[3][1] + by_y2_2_y3_2*t[5][1] + e[19]*t_eyy_2_eyy_2[2] + e[22]*t_eyz_2_eyz_2[2] + y1[1]*(-W2_y2[2]*t[5][1] + W3_y2[2]*t[4][1]) + y3[1]*(-W1_y2[2]*t[4][1] + W2_y2[2]*t[3][1]);
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_5
     K_y2_y2[2][0] = by_y2_0_y1_2*t[3][2] + by_y2_0_y3_2*t[5][2] + e[20]*t_eyy_2_eyy_2[0] + e[23]*t_eyz_2_eyz_2[0] + y1[1]*(-W2_y2[0]*t[5][2] + W3_y2[0]*t[4][2]) + y3[1]*(-W1_y2[0]*t[4][2] + W2_y2[0]*t[3][2]);
     K_y2_y2[2][1] = by_y2_1_y1_2*t[3][2] + by_y2_1_y3_2*t[5][2] + e[20]*t_eyy_2_eyy_2[1] + e[23]*t_eyz_2_eyz_2[1] + y1[1]*(-W2_y2[1]*t[5][2] + W3_y2[1]*t[4][2]) + y3[1]*(-W1_y2[1]*t[4][2] + W2_y2[1]*t[3][2]);
     K_y2_y2[2][2] = by_y2_2_y1_2*t[3][2] + by_y2_2_y3_2*t[5][2] + e[20]*t_eyy_2_eyy_2[2] + e[23]*t_eyz_2_eyz_2[2] + n_eyy_2 + y1[1]*(-W2_y2[2]*t[5][2] + W3_y2[2]*t[4][2]) + y3[1]*(-W1_y2[2]*t[4][2] + W2_y2[2]*t[3][2]);
@@ -4296,51 +3945,8 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
         change_177 = L_4[8]*v_W2_z2[2] + W2_z2[2]*sum_at[8],
         change_178 = L_4[9]*v_W2_z2[2] + W2_z2[2]*sum_at[9],
         change_179 = L_4[10]*v_W2_z2[2] + W2_z2[2]*sum_at[10],
-        change_180 = L_4[11]*v_W2_z2[2] + W2_z2[2]*sum_at[11],
-        by_z2_0_y1_1 = -change_at[7]*inv_a[0]*slant[0] - change_at[8]*inv_a[0],
-        by_z2_0_y3_1 = change_at[6]*inv_a[0],
-        by_z2_1_y1_1 = -change_161*inv_a[0]*slant[0] - change_162*inv_a[0],
-        by_z2_1_y3_1 = change_160*inv_a[0],
-        by_z2_2_y1_1 = -change_176*inv_a[0]*slant[0] - change_177*inv_a[0],
-        by_z2_2_y3_1 = change_175*inv_a[0];
-    FU_EACH(g, 3,
-        K_y1_z2[g][0] = by_z2_0_y1_1*t[0][g] + by_z2_0_y3_1*t[2][g] + e[g + 9]*t_eyz_1_eyz_2_2[0];
-        K_y1_z2[g][1] = by_z2_1_y1_1*t[0][g] + by_z2_1_y3_1*t[2][g] + e[g + 9]*t_eyz_1_eyz_2_2[1];
-        K_y1_z2[g][2] = by_z2_2_y1_1*t[0][g] + by_z2_2_y3_1*t[2][g] + e[g + 9]*t_eyz_1_eyz_2_2[2];)
-    const fu_real
-        by_z2_0_z1_1 = change_at[7]*inv_c[0],
-        by_z2_1_z1_1 = change_161*inv_c[0],
-        by_z2_2_z1_1 = change_176*inv_c[0];
-    K_z1_z2[0][0] = by_z2_0_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_2_2[0] + e[9]*t_ezz_1_ezz_2[0];
-    K_z1_z2[0][1] = by_z2_1_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_2_2[1] + e[9]*t_ezz_1_ezz_2[1];
-    K_z1_z2[0][2] = by_z2_2_z1_1*t[0][0] + e[6]*t_eyz_1_eyz_2_2[2] + e[9]*t_ezz_1_ezz_2[2];
-    FU_EACH(g, 2,
-        K_z1_z2[g + 1][0] = by_z2_0_z1_1*t[0][g + 1] + e[g + 10]*t_ezz_1_ezz_2[0] + e[g + 7]*t_eyz_1_eyz_2_2[0];
-        K_z1_z2[g + 1][1] = by_z2_1_z1_1*t[0][g + 1] + e[g + 10]*t_ezz_1_ezz_2[1] + e[g + 7]*t_eyz_1_eyz_2_2[1];
-        K_z1_z2[g + 1][2] = by_z2_2_z1_1*t[0][g + 1] + e[g + 10]*t_ezz_1_ezz_2[2] + e[g + 7]*t_eyz_1_eyz_2_2[2];)
-    const fu_real
-        by_z2_0_y1_2 = -change_at[10]*inv_a[1]*slant[1] - change_at[11]*inv_a[1] - inv_a[1]*inv_c[1]*moment_2[1]*(-slant[1]*t[5][0] + t[4][0]),
-        by_z2_0_y3_2 = change_at[9]*inv_a[1],
-        by_z2_1_y1_2 = -change_164*inv_a[1]*slant[1] - change_165*inv_a[1] - inv_a[1]*inv_c[1]*moment_2[1]*(-slant[1]*t[5][1] + t[4][1]),
-        by_z2_1_y3_2 = change_163*inv_a[1],
-        by_z2_2_y1_2 = -change_179*inv_a[1]*slant[1] - change_180*inv_a[1] - inv_a[1]*inv_c[1]*moment_2[1]*(-slant[1]*t[5][2] + t[4][2]),
-        by_z2_2_y3_2 = change_178*inv_a[1];
-    K_y2_z2[0][0] = W2_z2[0]*t[3][0]*y3[1] - W2_z2[0]*t[5][0]*y1[1] + by_z2_0_y1_2*t[3][0] + by_z2_0_y3_2*t[5][0] + e[21]*t_eyz_2_eyz_2_2[0] + n_eyz_2;
-    K_y2_z2[0][1] = W2_z2[1]*t[3][0]*y3[1] - W2_z2[1]*t[5][0]*y1[1] + by_z2_1_y1_2*t[3][0] + by_z2_1_y3_2*t[5][0] + e[21]*t_eyz_2_eyz_2_2[1];
-    K_y2_z2[0][2] = W2_z2[2]*t[3][0]*y3[1] - W2_z2[2]*t[5][0]*y1[1] + by_z2_2_y1_2*t[3][0] + by_z2_2_y3_2*t[5][0] + e[21]*t_eyz_2_eyz_2_2[2];
-    K_y2_z2[1][0] = W2_z2[0]*t[3][1]*y3[1] - W2_z2[0]*t[5][1]*y1[1] + by_z2_0_y1_2*t[3][1] + by_z2_0_y3_2*t[5][1] + e[22]*t_eyz_2_eyz_2_2[0];
-    K_y2_z2[1][1] = W2_z2[1]*t[3][1]*y3[1] - W2_z2[1]*t[5][1]*y1[1] + by_z2_1_y1_2*t[3][1] + by_z2_1_y3_2*t[5][1] + e[22]*t_eyz_2_eyz_2_2[1] + n_eyz_2;
-    K_y2_z2[1][2] = W2_z2[2]*t[3][1]*y3[1] - W2_z2[2]*t[5][1]*y1[1] + by_z2_2_y1_2*t[3][1] + by_z2_2_y3_2*t[5][1] + e[22]*t_eyz_2_eyz_2_2[2];
-    K_y2_z2[2][0] = W2_z2[0]*t[3][2]*y3[1] - W2_z2[0]*t[5][2]*y1[1] + by_z2_0_y1_2*t[3][2] + by_z2_0_y3_2*t[5][2] + e[23]*t_eyz_2_eyz_2_2[0];
-    K_y2_z2[2][1] = W2_z2[1]*t[3][2]*y3[1] - W2_z2[1]*t[5][2]*y1[1] + by_z2_1_y1_2*t[3][2] + by_z2_1_y3_2*t[5][2] + e[23]*t_eyz_2_eyz_2_2[1];
-    K_y2_z2[2][2] = W2_z2[2]*t[3][2]*y3[1] - W2_z2[2]*t[5][2]*y1[1] + by_z2_2_y1_2*t[3][2] + by_z2_2_y3_2*t[5][2] + e[23]*t_eyz_2_eyz_2_2[2] + n_eyz_2;
-    const fu_real
-        by_z2_0_z1_2 = change_at[10]*inv_c[1] - inv_c[1]*inv_c[1]*moment_2[1]*t[5][0],
-        by_z2_1_z1_2 = change_164*inv_c[1] - inv_c[1]*inv_c[1]*moment_2[1]*t[5][1],
-        by_z2_2_z1_2 = change_179*inv_c[1] - inv_c[1]*inv_c[1]*moment_2[1]*t[5][2];
-    K_z2_z2[0][0] = -W2_z2[0]*t[5][0]*z1[1] + by_z2_0_z1_2*t[3][0] + e[18]*t_eyz_2_eyz_2_2[0] + e[21]*t_ezz_2_ezz_2[0] + n_ezz_2;
-    K_z2_z2[0][1] = -W2_z2[1]*t[5][0]*z1[1] + by_z2_1_z1_2*t[3][0] + e[18]*t_eyz_2_eyz_2_2[1] + e[21]*t_ezz_2_ezz_2[1];
-    K_z2_z2[0][2] = -W2_z2[2]*t[5][0]*z1[1] + by_z2_2_z1_2*t[3][0] + e[18]*t_eyz_2_eyz_2_2[2] + e[21]*t_ezz_2_ezz_2[2];
+        change_180 = L_4[11]*v_W2_z2[2] + W2_z2[2]*sum_at[11];
+    BEAM24_STRUCTURAL_PART_OF_OVER_R_X_AT_THE_THREE_PLACES_AND_DIRECTORS_6
     K_z2_z2[1][0] = -W2_z2[0]*t[5][1]*z1[1] + by_z2_0_z1_2*t[3][1] + e[19]*t_eyz_2_eyz_2_2[0] + e[22]*t_ezz_2_ezz_2[0];
     K_z2_z2[1][1] = -W2_z2[1]*t[5][1]*z1[1] + by_z2_1_z1_2*t[3][1] + e[19]*t_eyz_2_eyz_2_2[1] + e[22]*t_ezz_2_ezz_2[1] + n_ezz_2;
     K_z2_z2[1][2] = -W2_z2[2]*t[5][1]*z1[1] + by_z2_2_z1_2*t[3][1] + e[19]*t_eyz_2_eyz_2_2[2] + e[22]*t_ezz_2_ezz_2[2];
@@ -4362,27 +3968,7 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
     K_r_x1_r_x1[2][0] = K_0[2] - 0.25*K_3[2] - 0.25*K_0_at[2] + (1.0/16.0)*sum_28;
     K_r_x1_r_x1[2][1] = K_1[2] - 0.25*K_4[2] - 0.25*K_1_at[2] + (1.0/16.0)*sum_29;
     K_r_x1_r_x1[2][2] = K_2[2] - 0.25*K_5[2] - 0.25*K_2_at[2] + (1.0/16.0)*sum_30;
-    K_r_x1_r_y1[0][0] = change - 0.25*change_4;
-    K_r_x1_r_y1[0][1] = change_16 - 0.25*change_19;
-    K_r_x1_r_y1[0][2] = change_31 - 0.25*change_34;
-    K_r_x1_r_y1[1][0] = change_2 - 0.25*change_5;
-    K_r_x1_r_y1[1][1] = change_17 - 0.25*change_20;
-    K_r_x1_r_y1[1][2] = change_32 - 0.25*change_35;
-    K_r_x1_r_y1[2][0] = change_3 - 0.25*change_6;
-    K_r_x1_r_y1[2][1] = change_18 - 0.25*change_21;
-    K_r_x1_r_y1[2][2] = change_33 - 0.25*change_36;
-    K_r_x1_r_z1[0][0] = change_46 - 0.25*change_49;
-    K_r_x1_r_z1[0][1] = change_61 - 0.25*change_64;
-    K_r_x1_r_z1[0][2] = change_76 - 0.25*change_79;
-    K_r_x1_r_z1[1][0] = change_47 - 0.25*change_50;
-    K_r_x1_r_z1[1][1] = change_62 - 0.25*change_65;
-    K_r_x1_r_z1[1][2] = change_77 - 0.25*change_80;
-    K_r_x1_r_z1[2][0] = change_48 - 0.25*change_51;
-    K_r_x1_r_z1[2][1] = change_63 - 0.25*change_66;
-    K_r_x1_r_z1[2][2] = change_78 - 0.25*change_81;
-    K_r_x1_r_2[0][0] = 1.5*K_3[0]*w - 0.375*sum_10*w;
-    K_r_x1_r_2[0][1] = 1.5*K_4[0]*w - 0.375*sum_11*w;
-    K_r_x1_r_2[0][2] = 1.5*K_5[0]*w - 0.375*sum_12*w;
+    BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS
     K_r_x1_r_2[1][0] = 1.5*K_3[1]*w - 0.375*sum_19*w;
     K_r_x1_r_2[1][1] = 1.5*K_4[1]*w - 0.375*sum_20*w;
     K_r_x1_r_2[1][2] = 1.5*K_5[1]*w - 0.375*sum_21*w;
@@ -4398,24 +3984,7 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
     K_r_x1_r_x2[2][0] = -0.25*K_3[2] + K_6[2] - 0.25*K_6_at[2] + (1.0/16.0)*sum_28;
     K_r_x1_r_x2[2][1] = -0.25*K_4[2] + K_7[2] - 0.25*K_7_at[2] + (1.0/16.0)*sum_29;
     K_r_x1_r_x2[2][2] = -0.25*K_5[2] + K_8[2] - 0.25*K_8_at[2] + (1.0/16.0)*sum_30;
-    K_r_x1_r_y2[0][0] = change_91 - 0.25*change_94;
-    K_r_x1_r_y2[0][1] = change_106 - 0.25*change_109;
-    K_r_x1_r_y2[0][2] = change_121 - 0.25*change_124;
-    K_r_x1_r_y2[1][0] = change_92 - 0.25*change_95;
-    K_r_x1_r_y2[1][1] = change_107 - 0.25*change_110;
-    K_r_x1_r_y2[1][2] = change_122 - 0.25*change_125;
-    K_r_x1_r_y2[2][0] = change_93 - 0.25*change_96;
-    K_r_x1_r_y2[2][1] = change_108 - 0.25*change_111;
-    K_r_x1_r_y2[2][2] = change_123 - 0.25*change_126;
-    K_r_x1_r_z2[0][0] = change_136 - 0.25*change_at[0];
-    K_r_x1_r_z2[0][1] = change_151 - 0.25*change_154;
-    K_r_x1_r_z2[0][2] = change_166 - 0.25*change_169;
-    K_r_x1_r_z2[1][0] = change_137 - 0.25*change_at[1];
-    K_r_x1_r_z2[1][1] = change_152 - 0.25*change_155;
-    K_r_x1_r_z2[1][2] = change_167 - 0.25*change_170;
-    K_r_x1_r_z2[2][0] = change_138 - 0.25*change_at[2];
-    K_r_x1_r_z2[2][1] = change_153 - 0.25*change_156;
-    K_r_x1_r_z2[2][2] = change_168 - 0.25*change_171;
+    BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS_2
     FU_PAIRS(i, j, 3, K[24*i + j + 147] = K_y1_x1[i][j] - 0.25*K_y1_x2[i][j];)
     FU_PAIRS(i, j, 3, K_r_y1_r_2[i][j] = K[24*i + j + 156] = 1.5*K_y1_x2[i][j]*w;)
     FU_PAIRS(i, j, 3, K[24*i + j + 159] = -0.25*K_y1_x2[i][j] + K_y1_x3[i][j];)
@@ -4467,24 +4036,7 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
     K_r_2_r_x2[2][0] = 1.5*K_6_at[2]*w - 0.375*sum_28*w;
     K_r_2_r_x2[2][1] = 1.5*K_7_at[2]*w - 0.375*sum_29*w;
     K_r_2_r_x2[2][2] = 1.5*K_8_at[2]*w - 0.375*sum_30*w;
-    K_r_2_r_y2[0][0] = 1.5*change_94*w;
-    K_r_2_r_y2[0][1] = 1.5*change_109*w;
-    K_r_2_r_y2[0][2] = 1.5*change_124*w;
-    K_r_2_r_y2[1][0] = 1.5*change_95*w;
-    K_r_2_r_y2[1][1] = 1.5*change_110*w;
-    K_r_2_r_y2[1][2] = 1.5*change_125*w;
-    K_r_2_r_y2[2][0] = 1.5*change_96*w;
-    K_r_2_r_y2[2][1] = 1.5*change_111*w;
-    K_r_2_r_y2[2][2] = 1.5*change_126*w;
-    K_r_2_r_z2[0][0] = 1.5*change_at[0]*w;
-    K_r_2_r_z2[0][1] = 1.5*change_154*w;
-    K_r_2_r_z2[0][2] = 1.5*change_169*w;
-    K_r_2_r_z2[1][0] = 1.5*change_at[1]*w;
-    K_r_2_r_z2[1][1] = 1.5*change_155*w;
-    K_r_2_r_z2[1][2] = 1.5*change_170*w;
-    K_r_2_r_z2[2][0] = 1.5*change_at[2]*w;
-    K_r_2_r_z2[2][1] = 1.5*change_156*w;
-    K_r_2_r_z2[2][2] = 1.5*change_171*w;
+    BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS_3
     K_r_x2_r_x1[0][0] = -0.25*K_0_at[0] + K_6_0 - 0.25*K_6_3 + (1.0/16.0)*sum_10;
     K_r_x2_r_x1[0][1] = -0.25*K_1_at[0] + K_6_1 - 0.25*K_6_4 + (1.0/16.0)*sum_11;
     K_r_x2_r_x1[0][2] = -0.25*K_2_at[0] + K_6_2 - 0.25*K_6_5 + (1.0/16.0)*sum_12;
@@ -4530,24 +4082,7 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
     K_r_x2_r_x2[2][0] = -0.25*K_6_at[2] - 0.25*K_8_3 + K_8_6 + (1.0/16.0)*sum_28;
     K_r_x2_r_x2[2][1] = -0.25*K_7_at[2] - 0.25*K_8_4 + K_8_7 + (1.0/16.0)*sum_29;
     K_r_x2_r_x2[2][2] = -0.25*K_8_at[2] - 0.25*K_8_5 + K_8_8 + (1.0/16.0)*sum_30;
-    K_r_x2_r_y2[0][0] = -0.25*change_94 + change_97;
-    K_r_x2_r_y2[0][1] = -0.25*change_109 + change_112;
-    K_r_x2_r_y2[0][2] = -0.25*change_124 + change_127;
-    K_r_x2_r_y2[1][0] = -0.25*change_95 + change_98;
-    K_r_x2_r_y2[1][1] = -0.25*change_110 + change_113;
-    K_r_x2_r_y2[1][2] = -0.25*change_125 + change_128;
-    K_r_x2_r_y2[2][0] = -0.25*change_96 + change_99;
-    K_r_x2_r_y2[2][1] = -0.25*change_111 + change_114;
-    K_r_x2_r_y2[2][2] = -0.25*change_126 + change_129;
-    K_r_x2_r_z2[0][0] = -0.25*change_at[0] + change_at[3];
-    K_r_x2_r_z2[0][1] = -0.25*change_154 + change_157;
-    K_r_x2_r_z2[0][2] = -0.25*change_169 + change_172;
-    K_r_x2_r_z2[1][0] = -0.25*change_at[1] + change_at[4];
-    K_r_x2_r_z2[1][1] = -0.25*change_155 + change_158;
-    K_r_x2_r_z2[1][2] = -0.25*change_170 + change_173;
-    K_r_x2_r_z2[2][0] = -0.25*change_at[2] + change_at[5];
-    K_r_x2_r_z2[2][1] = -0.25*change_156 + change_159;
-    K_r_x2_r_z2[2][2] = -0.25*change_171 + change_174;
+    BEAM24_STRUCTURAL_PART_OF_OVER_THE_NODAL_VECTORS_4
     FU_PAIRS(i, j, 3, K[24*i + j + 435] = K_y2_x1[i][j] - 0.25*K_y2_x2[i][j];)
     FU_PAIRS(i, j, 3, K_r_y2_r_2[i][j] = K[24*i + j + 444] = 1.5*K_y2_x2[i][j]*w;)
     FU_PAIRS(i, j, 3, K[24*i + j + 447] = -0.25*K_y2_x2[i][j] + K_y2_x3[i][j];)
@@ -4558,13 +4093,7 @@ void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_rea
     /* outputs */
     FU_PAIRS(i, j, 3, K[24*i + j] = -K_r_1_r_2[i][j];)
     FU_PAIRS(i, j, 3, K[24*i + j + 72] = -K_r_x1_r_2[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 75] = K_r_x1_r_x1[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 78] = K_r_x1_r_y1[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 81] = K_r_x1_r_z1[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 84] = K_r_x1_r_2[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 87] = K_r_x1_r_x2[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 90] = K_r_x1_r_y2[i][j];)
-    FU_PAIRS(i, j, 3, K[24*i + j + 93] = K_r_x1_r_z2[i][j];)
+    BEAM24_STRUCTURAL_PART_OF_OUTPUTS
     FU_PAIRS(i, j, 3, K[24*i + j + 144] = -K_r_y1_r_2[i][j];)
     FU_PAIRS(i, j, 3, K[24*i + j + 150] = K_y1_y1[i][j];)
     FU_PAIRS(i, j, 3, K[24*i + j + 153] = K_y1_z1[i][j];)
@@ -4655,33 +4184,14 @@ FU_KERNEL void beam24_structural_dissipation(fu_real l, const fu_real *e, const 
     t_x[3] = t_y[4]*t_z[5] - t_z[4]*t_y[5];
     t_y[3] = -t_x[4]*t_z[5] + t_z[4]*t_x[5];
     t_z[3] = t_x[4]*t_y[5] - t_y[4]*t_x[5];
+    const fu_real slant2 = b2*inv_c2;
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS
     const fu_real
-        slant2 = b2*inv_c2,
-        q1_1 = e[3]*t_x[0] + e[4]*t_y[0] + e[5]*t_z[0],
-        q1_2 = e[3]*t_x[1] + e[4]*t_y[1] + e[5]*t_z[1],
-        q1_3 = e[3]*t_x[2] + e[4]*t_y[2] + e[5]*t_z[2],
-        q2_1 = e[15]*t_x[3] + e[16]*t_y[3] + e[17]*t_z[3],
-        q2_2 = e[15]*t_x[4] + e[16]*t_y[4] + e[17]*t_z[4],
-        q2_3 = e[15]*t_x[5] + e[16]*t_y[5] + e[17]*t_z[5];
-    FU_EACH(g, 6,
-        p[g] = t_x[g]*xm_x + t_y[g]*xm_y + t_z[g]*xm_z;)
-    const fu_real
-        inv_turn = 1.0/(t_x[0]*t_x[3] + t_y[0]*t_y[3] + t_z[0]*t_z[3] + t_x[1]*t_x[4] + t_y[1]*t_y[4] + t_z[1]*t_z[4] + t_x[2]*t_x[5] + t_y[2]*t_y[5] + t_z[2]*t_z[5] + 1.0),
-        g1 = inv_turn*(-t_x[1]*t_x[5] - t_y[1]*t_y[5] - t_z[1]*t_z[5] + t_x[4]*t_x[2] + t_y[4]*t_y[2] + t_z[4]*t_z[2]),
-        g2 = inv_turn*(t_x[0]*t_x[5] + t_y[0]*t_y[5] + t_z[0]*t_z[5] - t_x[3]*t_x[2] - t_y[3]*t_y[2] - t_z[3]*t_z[2]),
-        g3 = inv_turn*(-t_x[0]*t_x[4] - t_y[0]*t_y[4] - t_z[0]*t_z[4] + t_x[3]*t_x[1] + t_y[3]*t_y[1] + t_z[3]*t_z[1]),
         mean1 = 0.5*p[0] + 0.5*p[3],
         mean2 = 0.5*p[1] + 0.5*p[4],
-        mean3 = 0.5*p[2] + 0.5*p[5],
-        gg = g1*g1 + g2*g2 + g3*g3,
-        secant = FU_SQRT(gg + 1.0),
-        inv_secant = 1.0/(secant + 1.0),
-        along = inv_secant*(g1*mean1 + g2*mean2 + g3*mean3),
-        inv_arc = 1.0/(gg*(225.0*gg + 1050.0) + 945.0),
-        arc = 2.0*inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        m1 = -along*g1 + mean1*secant,
-        m2 = -along*g2 + mean2*secant,
-        m3 = -along*g3 + mean3*secant,
+        mean3 = 0.5*p[2] + 0.5*p[5];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_2
+    const fu_real
         shared2 = A[11]*m2,
         shared3 = A[12]*m3,
         stretch = FU_SQRT(m1*m1 + shared2*shared2 + shared3*shared3),
@@ -4690,79 +4200,15 @@ FU_KERNEL void beam24_structural_dissipation(fu_real l, const fu_real *e, const 
         larger = 1.0/(0.5*cosine + 0.5);
     /* spins of the frames, rates of the strains */
     fu_real rate_eyy[2], rate_ezz[2], rate_eyz[2];
+    BEAM24_STRUCTURAL_PART_OF_SPINS_OF_THE_FRAMES_RATES_OF_THE_STRAINS
     const fu_real
-        chord_rate4_x = w*(-v[0] + v[12]),
-        chord_rate4_y = w*(v[13] - v[1]),
-        chord_rate4_z = w*(v[14] - v[2]),
-        xm_rate_x = 1.5*chord_rate4_x - 0.25*v[15] - 0.25*v[3],
-        xm_rate_y = 1.5*chord_rate4_y - 0.25*v[16] - 0.25*v[4],
-        xm_rate_z = 1.5*chord_rate4_z - 0.25*v[17] - 0.25*v[5],
         spin1_1 = inv_a1*(t_x[2]*v[6] + t_y[2]*v[7] + t_z[2]*v[8]),
         spin1_2 = -inv_a1*slant1*(t_x[0]*v[6] + t_y[0]*v[7] + t_z[0]*v[8]) + inv_c1*(t_x[0]*v[9] + t_y[0]*v[10] + t_z[0]*v[11]),
         spin1_3 = -(inv_a1*(t_x[0]*v[6] + t_y[0]*v[7] + t_z[0]*v[8])),
         spin2_1 = inv_a2*(t_x[5]*v[18] + t_y[5]*v[19] + t_z[5]*v[20]),
         spin2_2 = -inv_a2*slant2*(t_x[3]*v[18] + t_y[3]*v[19] + t_z[3]*v[20]) + inv_c2*(t_x[3]*v[21] + t_y[3]*v[22] + t_z[3]*v[23]),
-        spin2_3 = -(inv_a2*(t_x[3]*v[18] + t_y[3]*v[19] + t_z[3]*v[20])),
-        dg1_11 = -0.5*g1*g1 - 0.5,
-        dg2_11 = -0.5*g1*g2 + 0.5*g3,
-        dg3_11 = -0.5*g1*g3 - 0.5*g2,
-        dg1_12 = -0.5*g1*g2 - 0.5*g3,
-        dg2_12 = -0.5*g2*g2 - 0.5,
-        dg3_12 = 0.5*g1 - 0.5*g2*g3,
-        dg1_13 = -0.5*g1*g3 + 0.5*g2,
-        dg2_13 = -0.5*g1 - 0.5*g2*g3,
-        dg3_13 = -0.5*g3*g3 - 0.5,
-        dg1_21 = 0.5*g1*g1 + 0.5,
-        dg2_21 = 0.5*g1*g2 + 0.5*g3,
-        dg3_21 = 0.5*g1*g3 - 0.5*g2,
-        dg1_22 = 0.5*g1*g2 - 0.5*g3,
-        dg2_22 = 0.5*g2*g2 + 0.5,
-        dg3_22 = 0.5*g1 + 0.5*g2*g3,
-        dg1_23 = 0.5*g1*g3 + 0.5*g2,
-        dg2_23 = -0.5*g1 + 0.5*g2*g3,
-        dg3_23 = 0.5*g3*g3 + 0.5,
-        v_q1_1 = q1_2*spin1_3 - q1_3*spin1_2 + t_x[0]*v[3] + t_y[0]*v[4] + t_z[0]*v[5],
-        v_q1_2 = -q1_1*spin1_3 + q1_3*spin1_1 + t_x[1]*v[3] + t_y[1]*v[4] + t_z[1]*v[5],
-        v_q1_3 = q1_1*spin1_2 - q1_2*spin1_1 + t_x[2]*v[3] + t_y[2]*v[4] + t_z[2]*v[5],
-        v_q2_1 = q2_2*spin2_3 - q2_3*spin2_2 + t_x[3]*v[15] + t_y[3]*v[16] + t_z[3]*v[17],
-        v_q2_2 = -q2_1*spin2_3 + q2_3*spin2_1 + t_x[4]*v[15] + t_y[4]*v[16] + t_z[4]*v[17],
-        v_q2_3 = q2_1*spin2_2 - q2_2*spin2_1 + t_x[5]*v[15] + t_y[5]*v[16] + t_z[5]*v[17],
-        v_p1_1 = p[1]*spin1_3 - p[2]*spin1_2 + t_x[0]*xm_rate_x + t_y[0]*xm_rate_y + t_z[0]*xm_rate_z,
-        v_p1_2 = -p[0]*spin1_3 + p[2]*spin1_1 + t_x[1]*xm_rate_x + t_y[1]*xm_rate_y + t_z[1]*xm_rate_z,
-        v_p1_3 = p[0]*spin1_2 - p[1]*spin1_1 + t_x[2]*xm_rate_x + t_y[2]*xm_rate_y + t_z[2]*xm_rate_z,
-        v_p2_1 = p[4]*spin2_3 - p[5]*spin2_2 + t_x[3]*xm_rate_x + t_y[3]*xm_rate_y + t_z[3]*xm_rate_z,
-        v_p2_2 = -p[3]*spin2_3 + p[5]*spin2_1 + t_x[4]*xm_rate_x + t_y[4]*xm_rate_y + t_z[4]*xm_rate_z,
-        v_p2_3 = p[3]*spin2_2 - p[4]*spin2_1 + t_x[5]*xm_rate_x + t_y[5]*xm_rate_y + t_z[5]*xm_rate_z,
-        v_g1 = dg1_11*spin1_1 + dg1_12*spin1_2 + dg1_13*spin1_3 + dg1_21*spin2_1 + dg1_22*spin2_2 + dg1_23*spin2_3,
-        v_g2 = dg2_11*spin1_1 + dg2_12*spin1_2 + dg2_13*spin1_3 + dg2_21*spin2_1 + dg2_22*spin2_2 + dg2_23*spin2_3,
-        v_g3 = dg3_11*spin1_1 + dg3_12*spin1_2 + dg3_13*spin1_3 + dg3_21*spin2_1 + dg3_22*spin2_2 + dg3_23*spin2_3,
-        v_gg = 2.0*g1*v_g1 + 2.0*g2*v_g2 + 2.0*g3*v_g3,
-        v_secant = 0.5*v_gg/secant,
-        v_inv_secant = -(inv_secant*inv_secant*v_secant),
-        v_mean1 = 0.5*v_p1_1 + 0.5*v_p2_1,
-        v_mean2 = 0.5*v_p1_2 + 0.5*v_p2_2,
-        v_mean3 = 0.5*v_p1_3 + 0.5*v_p2_3,
-        v_along = g1*inv_secant*v_mean1 + g2*inv_secant*v_mean2 + g3*inv_secant*v_mean3 + inv_secant*mean1*v_g1 + inv_secant*mean2*v_g2 + inv_secant*mean3*v_g3 + v_inv_secant*(g1*mean1 + g2*mean2 + g3*mean3),
-        v_m1 = -along*v_g1 - g1*v_along + mean1*v_secant + secant*v_mean1,
-        v_m2 = -along*v_g2 - g2*v_along + mean2*v_secant + secant*v_mean2,
-        v_shared2 = A[11]*v_m2,
-        v_m3 = -along*v_g3 - g3*v_along + mean3*v_secant + secant*v_mean3,
-        v_shared3 = A[12]*v_m3,
-        v_stretch = inv_stretch*(m1*v_m1 + shared2*v_shared2 + shared3*v_shared3),
-        v_inv_stretch = -(inv_stretch*inv_stretch*v_stretch),
-        v_cosine = inv_stretch*v_m1 + m1*v_inv_stretch,
-        v_larger = -(0.5*larger*larger*v_cosine),
-        v_shear2 = larger*v_m2 + m2*v_larger,
-        v_shear3 = larger*v_m3 + m3*v_larger,
-        v_inv_arc = -(inv_arc*inv_arc*v_gg*(450.0*gg + 1050.0)),
-        v_arc = 2.0*inv_arc*v_gg*w*(128.0*gg + 735.0) + 2.0*v_inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        v_k1 = arc*v_g1 + g1*v_arc,
-        v_k2 = arc*v_g2 + g2*v_arc,
-        v_k3 = arc*v_g3 + g3*v_arc;
-    FU_EACH(g, 2,
-        rate_eyy[g] = e[12*g + 6]*v[12*g + 6] + e[12*g + 7]*v[12*g + 7] + e[12*g + 8]*v[12*g + 8];
-        rate_ezz[g] = e[11*g + 10]*v[11*g + 10] + e[11*g + 11]*v[11*g + 11] + e[14*g + 9]*v[14*g + 9];
-        rate_eyz[g] = e[8*g + 10]*v[14*g + 7] + e[8*g + 11]*v[14*g + 8] + e[14*g + 6]*v[14*g + 9] + e[14*g + 7]*v[8*g + 10] + e[14*g + 8]*v[8*g + 11] + e[14*g + 9]*v[14*g + 6];)
+        spin2_3 = -(inv_a2*(t_x[3]*v[18] + t_y[3]*v[19] + t_z[3]*v[20]));
+    BEAM24_STRUCTURAL_PART_OF_SPINS_OF_THE_FRAMES_RATES_OF_THE_STRAINS_2
     /* stiffness of the element */
     fu_real S[11];
     FU_EACH(g, 11,
@@ -4829,16 +4275,9 @@ void beam24_structural_section_forces(fu_real l, fu_real x, const fu_real *e, co
         g3 = inv_turn*(-t1_x[0]*t2_at[1][0] - t1_y[0]*t2_at[1][1] - t1_z[0]*t2_at[1][2] + t1_x[1]*t2_at[0][0] + t1_y[1]*t2_at[0][1] + t1_z[1]*t2_at[0][2]),
         mean1 = 0.5*p_1[0] + 0.5*p_1[1],
         mean2 = 0.5*p_2[0] + 0.5*p_2[1],
-        mean3 = 0.5*p_3[0] + 0.5*p_3[1],
-        gg = g1*g1 + g2*g2 + g3*g3,
-        secant = FU_SQRT(gg + 1.0),
-        inv_secant = 1.0/(secant + 1.0),
-        along = inv_secant*(g1*mean1 + g2*mean2 + g3*mean3),
-        inv_arc = 1.0/(gg*(225.0*gg + 1050.0) + 945.0),
-        arc = 2.0*inv_arc*w*(gg*(64.0*gg + 735.0) + 945.0),
-        m1 = -along*g1 + mean1*secant,
-        m2 = -along*g2 + mean2*secant,
-        m3 = -along*g3 + mean3*secant,
+        mean3 = 0.5*p_3[0] + 0.5*p_3[1];
+    BEAM24_STRUCTURAL_PART_OF_FRAMES_STRAINS_2
+    const fu_real
         shared2 = m2*share_1,
         shared3 = m3*share_2,
         stretch = FU_SQRT(m1*m1 + shared2*shared2 + shared3*shared3),

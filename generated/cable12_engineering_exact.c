@@ -31,17 +31,7 @@
     FU_EACH(i, 3, r1[3][i] = r1_even1[i] - r1_odd1[i];) \
     FU_EACH(i, 3, r1[1][i] = r1_even1[i] + r1_odd1[i];) \
     FU_EACH(i, 3, r1[2][i] = chord2[i] - 0.5*t2[i];) \
-    FU_EACH(i, 3, r2_odd0[i] = -(2.718539537815992*t2[i]);) \
-    FU_EACH(i, 3, r2[4][i] = -r2_odd0[i] + t1[i];) \
-    FU_EACH(i, 3, r2[0][i] = r2_odd0[i] + t1[i];) \
-    FU_EACH(i, 3, r2_odd1[i] = -(1.6154079303170494*t2[i]);) \
-    FU_EACH(i, 3, r2[3][i] = -r2_odd1[i] + t1[i];) \
-    FU_EACH(i, 3, r2[1][i] = r2_odd1[i] + t1[i];) \
-    FU_EACH(i, 3, r2[2][i] = t1[i];) \
-    FU_EACH(g, 5, \
-        a1[g] = r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2] - 1.0; \
-        b[g] = r1[g][0]*r2[g][0] + r1[g][1]*r2[g][1] + r1[g][2]*r2[g][2]; \
-        c[g] = r2[g][0]*r2[g][0] + r2[g][1]*r2[g][1] + r2[g][2]*r2[g][2];) \
+    CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_8 \
     EA5[0] = 0.23692688505618928*EA_l; \
     EI5[0] = 0.23692688505618928*EI_l; \
     EA5[1] = 0.4786286704993663*EA_l; \
@@ -101,62 +91,19 @@ void cable12_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real
         a[5], inv_a[5], scale[5], cross2[5];
     const fu_real
         EA_l = 0.5*A[0]/w,
-        EI_l = 2.0*A[1]*w,
-        r1_even0_x = chord2_x + 0.7317428697781312*t2_x,
-        r1_even0_y = chord2_y + 0.7317428697781312*t2_y,
-        r1_even0_z = chord2_z + 0.7317428697781312*t2_z,
-        r1_odd0_x = -(0.906179845938664*t1_x),
-        r1_odd0_y = -(0.906179845938664*t1_y),
-        r1_odd0_z = -(0.906179845938664*t1_z);
-    r1_x[4] = r1_even0_x - r1_odd0_x;
-    r1_y[4] = r1_even0_y - r1_odd0_y;
-    r1_z[4] = r1_even0_z - r1_odd0_z;
+        EI_l = 2.0*A[1]*w;
+    CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS
     r1_x[0] = r1_even0_x + r1_odd0_x;
     r1_y[0] = r1_even0_y + r1_odd0_y;
     r1_z[0] = r1_even0_z + r1_odd0_z;
-    const fu_real
-        r1_even1_x = chord2_x - 0.06507620311146456*t2_x,
-        r1_even1_y = chord2_y - 0.06507620311146456*t2_y,
-        r1_even1_z = chord2_z - 0.06507620311146456*t2_z,
-        r1_odd1_x = -(0.5384693101056831*t1_x),
-        r1_odd1_y = -(0.5384693101056831*t1_y),
-        r1_odd1_z = -(0.5384693101056831*t1_z);
-    r1_x[3] = r1_even1_x - r1_odd1_x;
-    r1_y[3] = r1_even1_y - r1_odd1_y;
-    r1_z[3] = r1_even1_z - r1_odd1_z;
+    CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_2
     r1_x[1] = r1_even1_x + r1_odd1_x;
     r1_y[1] = r1_even1_y + r1_odd1_y;
     r1_z[1] = r1_even1_z + r1_odd1_z;
     r1_x[2] = chord2_x - 0.5*t2_x;
     r1_y[2] = chord2_y - 0.5*t2_y;
     r1_z[2] = chord2_z - 0.5*t2_z;
-    const fu_real
-        r2_odd0_x = -(2.718539537815992*t2_x),
-        r2_odd0_y = -(2.718539537815992*t2_y),
-        r2_odd0_z = -(2.718539537815992*t2_z);
-    r2_x[4] = -r2_odd0_x + t1_x;
-    r2_y[4] = -r2_odd0_y + t1_y;
-    r2_z[4] = -r2_odd0_z + t1_z;
-    r2_x[0] = r2_odd0_x + t1_x;
-    r2_y[0] = r2_odd0_y + t1_y;
-    r2_z[0] = r2_odd0_z + t1_z;
-    const fu_real
-        r2_odd1_x = -(1.6154079303170494*t2_x),
-        r2_odd1_y = -(1.6154079303170494*t2_y),
-        r2_odd1_z = -(1.6154079303170494*t2_z);
-    r2_x[3] = -r2_odd1_x + t1_x;
-    r2_y[3] = -r2_odd1_y + t1_y;
-    r2_z[3] = -r2_odd1_z + t1_z;
-    r2_x[1] = r2_odd1_x + t1_x;
-    r2_y[1] = r2_odd1_y + t1_y;
-    r2_z[1] = r2_odd1_z + t1_z;
-    r2_x[2] = t1_x;
-    r2_y[2] = t1_y;
-    r2_z[2] = t1_z;
-    FU_EACH(g, 5,
-        a1[g] = r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g] + r1_z[g]*r1_z[g] - 1.0;
-        b[g] = r1_x[g]*r2_x[g] + r1_y[g]*r2_y[g] + r1_z[g]*r2_z[g];
-        c[g] = r2_x[g]*r2_x[g] + r2_y[g]*r2_y[g] + r2_z[g]*r2_z[g];)
+    CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_3
     const fu_real EA5_0 = 0.23692688505618928*EA_l;
     EI5[0] = 0.23692688505618928*EI_l;
     const fu_real EA5_1 = 0.4786286704993663*EA_l;
@@ -201,14 +148,7 @@ FU_KERNEL void cable12_engineering_exact_elastic_force(fu_real l, const fu_real 
         half_abc[g] = 0.5*D_b[g];
         FU_EACH(i, 3, F1_abc[g][i] = D_a1[g]*r1[g][i] + half_abc[g]*r2[g][i];)
         FU_EACH(i, 3, F2_abc[g][i] = D_c[g]*r2[g][i] + half_abc[g]*r1[g][i];))
-    FU_EACH(i, 3, sum_abc1_0[i] = F1_abc[0][i] + F1_abc[4][i];)
-    FU_EACH(i, 3, difference_abc1_0[i] = F1_abc[0][i] - F1_abc[4][i];)
-    FU_EACH(i, 3, sum_abc1_1[i] = F1_abc[1][i] + F1_abc[3][i];)
-    FU_EACH(i, 3, difference_abc1_1[i] = F1_abc[1][i] - F1_abc[3][i];)
-    FU_EACH(i, 3, sum_abc2_0[i] = F2_abc[0][i] + F2_abc[4][i];)
-    FU_EACH(i, 3, difference_abc2_0[i] = F2_abc[0][i] - F2_abc[4][i];)
-    FU_EACH(i, 3, sum_abc2_1[i] = F2_abc[1][i] + F2_abc[3][i];)
-    FU_EACH(i, 3, difference_abc2_1[i] = F2_abc[1][i] - F2_abc[3][i];)
+    CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS
     CABLE12_FORCES_ON_STRAIN_VECTORS
     /* forces on nodal vectors */
     fu_real f_r_2[3];
@@ -273,18 +213,7 @@ FU_KERNEL void cable12_engineering_exact_elastic_tangent(fu_real l, const fu_rea
         FU_UPPER(i, j, 3, K22_abc[g][i][j] = b2_abc[g][j]*r1[g][i];)
         FU_EACH(i, 3, K22_abc[g][i][i] += D_c[g];)
         FU_UPPER(i, j, 3, K22_abc[g][j][i] = K22_abc[g][i][j];))
-    FU_UPPER(i, j, 3, sum11_abc0[i][j] = K11_abc[0][i][j] + K11_abc[4][i][j]; sum11_abc0[j][i] = sum11_abc0[i][j];)
-    FU_UPPER(i, j, 3, sum11_abc1[i][j] = K11_abc[1][i][j] + K11_abc[3][i][j]; sum11_abc1[j][i] = sum11_abc1[i][j];)
-    FU_UPPER(i, j, 3, difference11_abc0[i][j] = K11_abc[0][i][j] - K11_abc[4][i][j]; difference11_abc0[j][i] = difference11_abc0[i][j];)
-    FU_PAIRS(i, j, 3, sum12_abc0[i][j] = K12_abc[0][i][j] + K12_abc[4][i][j];)
-    FU_UPPER(i, j, 3, difference11_abc1[i][j] = K11_abc[1][i][j] - K11_abc[3][i][j]; difference11_abc1[j][i] = difference11_abc1[i][j];)
-    FU_PAIRS(i, j, 3, sum12_abc1[i][j] = K12_abc[1][i][j] + K12_abc[3][i][j];)
-    FU_PAIRS(i, j, 3, difference12_abc0[i][j] = K12_abc[0][i][j] - K12_abc[4][i][j];)
-    FU_PAIRS(i, j, 3, difference12_abc1[i][j] = K12_abc[1][i][j] - K12_abc[3][i][j];)
-    FU_UPPER(i, j, 3, sum22_abc0[i][j] = K22_abc[0][i][j] + K22_abc[4][i][j]; sum22_abc0[j][i] = sum22_abc0[i][j];)
-    FU_UPPER(i, j, 3, sum22_abc1[i][j] = K22_abc[1][i][j] + K22_abc[3][i][j]; sum22_abc1[j][i] = sum22_abc1[i][j];)
-    FU_UPPER(i, j, 3, difference22_abc0[i][j] = K22_abc[0][i][j] - K22_abc[4][i][j]; difference22_abc0[j][i] = difference22_abc0[i][j];)
-    FU_UPPER(i, j, 3, difference22_abc1[i][j] = K22_abc[1][i][j] - K22_abc[3][i][j]; difference22_abc1[j][i] = difference22_abc1[i][j];)
+    CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE12_BLOCKS_OVER_STRAIN_VECTORS
     CABLE12_OVER_NODAL_VECTORS_K_T
     CABLE12_OVER_NODAL_VECTORS_T_K_T
@@ -338,51 +267,14 @@ void cable12_engineering_exact_discrete_force(fu_real l, const fu_real *e, const
     FU_EACH(i, 3, next_r2[0][i] = next_r2_odd0[i] + next_t1[i];)
     FU_EACH(i, 3, now_r2_odd1[i] = -(1.6154079303170494*now_t2[i]);)
     FU_EACH(i, 3, next_r2_odd1[i] = -(1.6154079303170494*next_t2[i]);)
-    FU_EACH(i, 3, now_r2_at[0][i] = -now_r2_odd1[i] + now_t1[i];)
-    FU_EACH(i, 3, next_r2_at[0][i] = -next_r2_odd1[i] + next_t1[i];)
-    FU_EACH(i, 3, now_r2[1][i] = now_r2_odd1[i] + now_t1[i];)
-    FU_EACH(i, 3, next_r2[1][i] = next_r2_odd1[i] + next_t1[i];)
-    FU_EACH(g, 2,
-        now_a1[g] = now_r1[g][0]*now_r1[g][0] + now_r1[g][1]*now_r1[g][1] + now_r1[g][2]*now_r1[g][2] - 1.0;
-        next_a1[g] = next_r1[g][0]*next_r1[g][0] + next_r1[g][1]*next_r1[g][1] + next_r1[g][2]*next_r1[g][2] - 1.0;
-        now_b[g] = now_r1[g][0]*now_r2[g][0] + now_r1[g][1]*now_r2[g][1] + now_r1[g][2]*now_r2[g][2];
-        next_b[g] = next_r1[g][0]*next_r2[g][0] + next_r1[g][1]*next_r2[g][1] + next_r1[g][2]*next_r2[g][2];
-        now_c[g] = now_r2[g][0]*now_r2[g][0] + now_r2[g][1]*now_r2[g][1] + now_r2[g][2]*now_r2[g][2];
-        next_c[g] = next_r2[g][0]*next_r2[g][0] + next_r2[g][1]*next_r2[g][1] + next_r2[g][2]*next_r2[g][2];)
-    now_a1[2] = now_r1_2[0]*now_r1_2[0] + now_r1_2[1]*now_r1_2[1] + now_r1_2[2]*now_r1_2[2] - 1.0;
-    next_a1[2] = next_r1_2[0]*next_r1_2[0] + next_r1_2[1]*next_r1_2[1] + next_r1_2[2]*next_r1_2[2] - 1.0;
-    now_b[2] = now_r1_2[0]*now_t1[0] + now_r1_2[1]*now_t1[1] + now_r1_2[2]*now_t1[2];
-    next_b[2] = next_r1_2[0]*next_t1[0] + next_r1_2[1]*next_t1[1] + next_r1_2[2]*next_t1[2];
-    now_c[2] = now_t1[0]*now_t1[0] + now_t1[1]*now_t1[1] + now_t1[2]*now_t1[2];
-    next_c[2] = next_t1[0]*next_t1[0] + next_t1[1]*next_t1[1] + next_t1[2]*next_t1[2];
-    FU_EACH(g, 2,
-        now_a1[g + 3] = now_r1_at[g][0]*now_r1_at[g][0] + now_r1_at[g][1]*now_r1_at[g][1] + now_r1_at[g][2]*now_r1_at[g][2] - 1.0;
-        next_a1[g + 3] = next_r1_at[g][0]*next_r1_at[g][0] + next_r1_at[g][1]*next_r1_at[g][1] + next_r1_at[g][2]*next_r1_at[g][2] - 1.0;
-        now_b[g + 3] = now_r1_at[g][0]*now_r2_at[g][0] + now_r1_at[g][1]*now_r2_at[g][1] + now_r1_at[g][2]*now_r2_at[g][2];
-        next_b[g + 3] = next_r1_at[g][0]*next_r2_at[g][0] + next_r1_at[g][1]*next_r2_at[g][1] + next_r1_at[g][2]*next_r2_at[g][2];
-        now_c[g + 3] = now_r2_at[g][0]*now_r2_at[g][0] + now_r2_at[g][1]*now_r2_at[g][1] + now_r2_at[g][2]*now_r2_at[g][2];
-        next_c[g + 3] = next_r2_at[g][0]*next_r2_at[g][0] + next_r2_at[g][1]*next_r2_at[g][1] + next_r2_at[g][2]*next_r2_at[g][2];)
+    CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_4
     EA5[0] = 0.23692688505618928*EA_l;
     EI5[0] = 0.23692688505618928*EI_l;
     EA5[1] = 0.4786286704993663*EA_l;
     EI5[1] = 0.4786286704993663*EI_l;
     const fu_real EA5_2 = 0.5688888888888887*EA_l;
     EI5[2] = 0.5688888888888887*EI_l;
-    FU_EACH(g, 5,
-        now_len[g] = FU_SQRT(now_a1[g] + 1.0);
-        next_len[g] = FU_SQRT(next_a1[g] + 1.0);
-        now_inv_len[g] = 1.0/now_len[g];
-        next_inv_len[g] = 1.0/next_len[g];
-        now_eps[g] = now_a1[g]/(now_len[g] + 1.0);
-        next_eps[g] = next_a1[g]/(next_len[g] + 1.0);
-        now_a[g] = now_a1[g] + 1.0;
-        next_a[g] = next_a1[g] + 1.0;
-        now_inv_a[g] = now_inv_len[g]*now_inv_len[g];
-        next_inv_a[g] = next_inv_len[g]*next_inv_len[g];
-        now_scale[g] = EI5[g < 2 ? g : 4 - g]*now_inv_a[g]*now_inv_a[g];
-        next_scale[g] = EI5[g < 2 ? g : 4 - g]*next_inv_a[g]*next_inv_a[g];
-        now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g];
-        next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
+    CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_7
     /* forces at the quadrature points */
     fu_real D_len_a1[2], D_cross2_a1[2], D_inv_a_a1[2], D_scale_a1[2], D_cross2_b[2], D_cross2_c[2], D_a1[2], D_b[2],
         D_c[2], mean1_abc[2][3], mean2_abc[2][3], half_abc[2], F_abc[4][3], mean1_abc2[3], mean2_abc2[3], F1_abc2[3],
@@ -462,36 +354,20 @@ FU_KERNEL void cable12_engineering_exact_damping_force(fu_real l, const fu_real 
     FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.7320508075688772*t2[i];)
     FU_EACH(i, 3, d2_b0[i] = dt1[i] - 1.7320508075688772*dt2[i];)
     const fu_real len_b0 = FU_SQRT(r1_b0[0]*r1_b0[0] + r1_b0[1]*r1_b0[1] + r1_b0[2]*r1_b0[2]);
-    inv_b[0] = 1.0/len_b0;
-    FU_EACH(i, 3, i_b[0][i] = inv_b[0]*r1_b0[i];)
-    const fu_real stretch_b0 = d1_b0[0]*i_b[0][0] + d1_b0[1]*i_b[0][1] + d1_b0[2]*i_b[0][2];
-    FU_EACH(i, 3, di_b0[i] = inv_b[0]*(d1_b0[i] - i_b[0][i]*stretch_b0);)
-    along_b[0] = i_b[0][0]*r2_b[0][0] + i_b[0][1]*r2_b[0][1] + i_b[0][2]*r2_b[0][2];
-    const fu_real across_b0 = di_b0[0]*r2_b[0][0] + di_b0[1]*r2_b[0][1] + di_b0[2]*r2_b[0][2];
-    FU_EACH(i, 3, rate_b[0][i] = across_b0*i_b[0][i] - along_b[0]*di_b0[i] + d2_b0[i];)
+    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     FU_EACH(i, 3, r1_b1[i] = chord2[i] + 0.5773502691896257*t1[i];)
     FU_EACH(i, 3, d1_b1[i] = chordd2[i] + 0.5773502691896257*dt1[i];)
     FU_EACH(i, 3, r2_b[1][i] = t1[i] + 1.7320508075688772*t2[i];)
     FU_EACH(i, 3, d2_b1[i] = dt1[i] + 1.7320508075688772*dt2[i];)
     const fu_real len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]);
-    inv_b[1] = 1.0/len_b1;
-    FU_EACH(i, 3, i_b[1][i] = inv_b[1]*r1_b1[i];)
-    const fu_real stretch_b1 = d1_b1[0]*i_b[1][0] + d1_b1[1]*i_b[1][1] + d1_b1[2]*i_b[1][2];
-    FU_EACH(i, 3, di_b1[i] = inv_b[1]*(d1_b1[i] - i_b[1][i]*stretch_b1);)
-    along_b[1] = i_b[1][0]*r2_b[1][0] + i_b[1][1]*r2_b[1][1] + i_b[1][2]*r2_b[1][2];
-    const fu_real across_b1 = di_b1[0]*r2_b[1][0] + di_b1[1]*r2_b[1][1] + di_b1[2]*r2_b[1][2];
-    FU_EACH(i, 3, rate_b[1][i] = across_b1*i_b[1][i] - along_b[1]*di_b1[i] + d2_b1[i];)
+    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     const fu_real N_0 = 0.5555555555555557*EA_tau*deps_0*inv_0;
     FU_EACH(i, 3, F_0[i] = N_0*r1_0[i];)
     const fu_real N_1 = 0.8888888888888888*EA_tau*deps_1*inv_1;
     FU_EACH(i, 3, F_1[i] = N_1*r1_1[i];)
     const fu_real N_2 = 0.5555555555555557*EA_tau*deps_2*inv_2;
     FU_EACH(i, 3, F_2[i] = N_2*r1_2[i];)
-    FU_EACH(g, 2,
-        inward_b[g] = EI_tau*inv_b[g]*(i_b[g][0]*rate_b[g][0] + i_b[g][1]*rate_b[g][1] + i_b[g][2]*rate_b[g][2]);
-        lever_b[g] = EI_tau*along_b[g]*inv_b[g];
-        FU_EACH(i, 3, F1_b[g][i] = inward_b[g]*r2_b[g][i] - lever_b[g]*rate_b[g][i];)
-        FU_EACH(i, 3, F2_b[g][i] = EI_tau*rate_b[g][i];))
+    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
     CABLE12_FORCES_ON_STRAIN_VECTORS_3
     /* forces on nodal vectors */
     fu_real f_r_2[3];
@@ -531,70 +407,7 @@ void cable12_engineering_exact_damping_tangent(fu_real l, const fu_real *e, cons
     FU_EACH(i, 3, di_2[i] = inv_2*(d1_2[i] - deps_2*i_2[i]);)
     FU_EACH(i, 3, by_2[i] = 0.5555555555555557*EA_tau*(di_2[i] + i_2[i]*rate) - N_2*i_2[i];)
     FU_PAIRS(i, j, 3, K_2[i][j] = by_2[j]*i_2[i];)
-    FU_EACH(i, 3, K_2[i][i] += N_2;)
-    FU_PAIRS(i, j, 3, sum11_d10[i][j] = K_0[i][j] + K_2[i][j];)
-    FU_PAIRS(i, j, 3, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];)
-    const fu_real
-        k_b0 = inv_b0*(-inv_b0*stretch_b0 + rate),
-        level_b0 = across_b0*inv_b0 - along_b0*k_b0;
-    FU_EACH(i, 3, p_b0[i] = -along_b0*i_b0[i] + r2_b0[i];)
-    FU_EACH(i, 3, by_turn_b0[i] = inv_b0*(along_b0*i_b0[i] - p_b0[i]);)
-    const fu_real by_i_i_b0 = across_b0*inv_b0 + level_b0;
-    FU_EACH(i, 3, by_i_b0[i] = -by_i_i_b0*i_b0[i] + k_b0*p_b0[i];)
-    K_b0[2][0][0] = EI_tau*(by_i_b0[0]*i_b0[0] + by_turn_b0[0]*di_b0[0] + level_b0);
-    K_b0[2][0][1] = EI_tau*(by_i_b0[1]*i_b0[0] + by_turn_b0[1]*di_b0[0]);
-    K_b0[2][0][2] = EI_tau*(by_i_b0[2]*i_b0[0] + by_turn_b0[2]*di_b0[0]);
-    K_b0[2][1][0] = EI_tau*(by_i_b0[0]*i_b0[1] + by_turn_b0[0]*di_b0[1]);
-    K_b0[2][1][1] = EI_tau*(by_i_b0[1]*i_b0[1] + by_turn_b0[1]*di_b0[1] + level_b0);
-    K_b0[2][1][2] = EI_tau*(by_i_b0[2]*i_b0[1] + by_turn_b0[2]*di_b0[1]);
-    K_b0[2][2][0] = EI_tau*(by_i_b0[0]*i_b0[2] + by_turn_b0[0]*di_b0[2]);
-    K_b0[2][2][1] = EI_tau*(by_i_b0[1]*i_b0[2] + by_turn_b0[1]*di_b0[2]);
-    K_b0[2][2][2] = EI_tau*(by_i_b0[2]*i_b0[2] + by_turn_b0[2]*di_b0[2] + level_b0);
-    FU_PAIRS(i, j, 3, K_b0[3][i][j] = EI_tau*(-di_b0[i]*i_b0[j] + di_b0[j]*i_b0[i]);)
-    FU_EACH(i, 3, K_b0[3][i][i] += EI_tau*rate;)
-    const fu_real
-        stiff_b0 = EI_tau*inv_b0,
-        lever_b0 = along_b0*inv_b0,
-        growth_b0 = i_b0[0]*rate_b0[0] + i_b0[1]*rate_b0[1] + i_b0[2]*rate_b0[2];
-    FU_EACH(i, 3, pushed_b0[i] = stiff_b0*(-along_b0*di_b0[i]*inv_b0 + d2_b0[i]*inv_b0 - 2.0*growth_b0*i_b0[i]*inv_b0 + k_b0*p_b0[i]);)
-    FU_EACH(i, 3, turned_b0[i] = by_turn_b0[i]*stiff_b0;)
-    FU_EACH(i, 3, follows_b0[i] = stiff_b0*(di_b0[i] + i_b0[i]*rate);)
-    FU_EACH(i, 3, stiff_i_b0[i] = i_b0[i]*stiff_b0;)
-    FU_PAIRS(i, j, 3, K_b0[0][i][j] = -K_b0[2][i][j]*lever_b0 + pushed_b0[j]*r2_b0[i] + rate_b0[i]*turned_b0[j];)
-    FU_PAIRS(i, j, 3, K_b0[1][i][j] = -K_b0[3][i][j]*lever_b0 + follows_b0[j]*r2_b0[i] - rate_b0[i]*stiff_i_b0[j];)
-    FU_EACH(i, 3, K_b0[1][i][i] += growth_b0*stiff_b0;)
-    const fu_real
-        k_b1 = inv_b1*(-inv_b1*stretch_b1 + rate),
-        level_b1 = across_b1*inv_b1 - along_b1*k_b1;
-    FU_EACH(i, 3, p_b1[i] = -along_b1*i_b1[i] + r2_b1[i];)
-    FU_EACH(i, 3, by_turn_b1[i] = inv_b1*(along_b1*i_b1[i] - p_b1[i]);)
-    const fu_real by_i_i_b1 = across_b1*inv_b1 + level_b1;
-    FU_EACH(i, 3, by_i_b1[i] = -by_i_i_b1*i_b1[i] + k_b1*p_b1[i];)
-    K_b1[2][0][0] = EI_tau*(by_i_b1[0]*i_b1[0] + by_turn_b1[0]*di_b1[0] + level_b1);
-    K_b1[2][0][1] = EI_tau*(by_i_b1[1]*i_b1[0] + by_turn_b1[1]*di_b1[0]);
-    K_b1[2][0][2] = EI_tau*(by_i_b1[2]*i_b1[0] + by_turn_b1[2]*di_b1[0]);
-    K_b1[2][1][0] = EI_tau*(by_i_b1[0]*i_b1[1] + by_turn_b1[0]*di_b1[1]);
-    K_b1[2][1][1] = EI_tau*(by_i_b1[1]*i_b1[1] + by_turn_b1[1]*di_b1[1] + level_b1);
-    K_b1[2][1][2] = EI_tau*(by_i_b1[2]*i_b1[1] + by_turn_b1[2]*di_b1[1]);
-    K_b1[2][2][0] = EI_tau*(by_i_b1[0]*i_b1[2] + by_turn_b1[0]*di_b1[2]);
-    K_b1[2][2][1] = EI_tau*(by_i_b1[1]*i_b1[2] + by_turn_b1[1]*di_b1[2]);
-    K_b1[2][2][2] = EI_tau*(by_i_b1[2]*i_b1[2] + by_turn_b1[2]*di_b1[2] + level_b1);
-    FU_PAIRS(i, j, 3, K_b1[3][i][j] = EI_tau*(-di_b1[i]*i_b1[j] + di_b1[j]*i_b1[i]);)
-    FU_EACH(i, 3, K_b1[3][i][i] += EI_tau*rate;)
-    const fu_real
-        stiff_b1 = EI_tau*inv_b1,
-        lever_b1 = along_b1*inv_b1,
-        growth_b1 = i_b1[0]*rate_b1[0] + i_b1[1]*rate_b1[1] + i_b1[2]*rate_b1[2];
-    FU_EACH(i, 3, pushed_b1[i] = stiff_b1*(-along_b1*di_b1[i]*inv_b1 + d2_b1[i]*inv_b1 - 2.0*growth_b1*i_b1[i]*inv_b1 + k_b1*p_b1[i]);)
-    FU_EACH(i, 3, turned_b1[i] = by_turn_b1[i]*stiff_b1;)
-    FU_EACH(i, 3, follows_b1[i] = stiff_b1*(di_b1[i] + i_b1[i]*rate);)
-    FU_EACH(i, 3, stiff_i_b1[i] = i_b1[i]*stiff_b1;)
-    FU_PAIRS(i, j, 3, K_b1[0][i][j] = -K_b1[2][i][j]*lever_b1 + pushed_b1[j]*r2_b1[i] + rate_b1[i]*turned_b1[j];)
-    FU_PAIRS(i, j, 3, K_b1[1][i][j] = -K_b1[3][i][j]*lever_b1 + follows_b1[j]*r2_b1[i] - rate_b1[i]*stiff_i_b1[j];)
-    FU_EACH(i, 3, K_b1[1][i][i] += growth_b1*stiff_b1;)
-    FU_EACH(g, 4,
-        FU_PAIRS(i, j, 3, sum_d20[g][i][j] = K_b0[g][i][j] + K_b1[g][i][j];)
-        FU_PAIRS(i, j, 3, difference_d20[g][i][j] = K_b0[g][i][j] - K_b1[g][i][j];))
+    CABLE12_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE12_BLOCKS_OVER_STRAIN_VECTORS_2
     CABLE12_OVER_NODAL_VECTORS_K_T_3
     CABLE12_OVER_NODAL_VECTORS_T_K_T_3
@@ -661,15 +474,7 @@ void cable12_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, co
     const fu_real
         excess_deps_2 = deps_2*weight - relaxed_strain[2],
         N_2 = 0.5555555555555557*EA_tau*excess_deps_2*inv_2;
-    FU_EACH(i, 3, F_2[i] = N_2*r1_2[i];)
-    FU_EACH(g, 2,
-        excess_rate_b[g][0] = rate_b[g][0]*weight - relaxed_strain[3*g + 3];
-        excess_rate_b[g][1] = rate_b[g][1]*weight - relaxed_strain[3*g + 4];
-        excess_rate_b[g][2] = rate_b[g][2]*weight - relaxed_strain[3*g + 5];
-        inward_b[g] = EI_tau*inv_b[g]*(excess_rate_b[g][0]*i_b[g][0] + excess_rate_b[g][1]*i_b[g][1] + excess_rate_b[g][2]*i_b[g][2]);
-        lever_b[g] = EI_tau*along_b[g]*inv_b[g];
-        FU_EACH(i, 3, F1_b[g][i] = -excess_rate_b[g][i]*lever_b[g] + inward_b[g]*r2_b[g][i];)
-        FU_EACH(i, 3, F2_b[g][i] = EI_tau*excess_rate_b[g][i];))
+    CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2
     CABLE12_FORCES_ON_STRAIN_VECTORS_3
     /* forces on nodal vectors */
     fu_real f_r_2[3];

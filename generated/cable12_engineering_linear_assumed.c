@@ -50,30 +50,12 @@ void cable12_engineering_linear_assumed_energy(fu_real l, const fu_real *e, cons
     CABLE12_STRAIN_VECTORS
     /* strain at the quadrature points */
     fu_real r1_x[5], r1_y[5], r1_z[5], a1[5], len[5], eps[5];
-    const fu_real
-        EI_l = 2.0*A[1]*w,
-        r1_even0_x = chord2_x + 0.7317428697781312*t2_x,
-        r1_even0_y = chord2_y + 0.7317428697781312*t2_y,
-        r1_even0_z = chord2_z + 0.7317428697781312*t2_z,
-        r1_odd0_x = -(0.906179845938664*t1_x),
-        r1_odd0_y = -(0.906179845938664*t1_y),
-        r1_odd0_z = -(0.906179845938664*t1_z);
-    r1_x[4] = r1_even0_x - r1_odd0_x;
-    r1_y[4] = r1_even0_y - r1_odd0_y;
-    r1_z[4] = r1_even0_z - r1_odd0_z;
+    const fu_real EI_l = 2.0*A[1]*w;
+    CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS
     r1_x[0] = r1_even0_x + r1_odd0_x;
     r1_y[0] = r1_even0_y + r1_odd0_y;
     r1_z[0] = r1_even0_z + r1_odd0_z;
-    const fu_real
-        r1_even1_x = chord2_x - 0.06507620311146456*t2_x,
-        r1_even1_y = chord2_y - 0.06507620311146456*t2_y,
-        r1_even1_z = chord2_z - 0.06507620311146456*t2_z,
-        r1_odd1_x = -(0.5384693101056831*t1_x),
-        r1_odd1_y = -(0.5384693101056831*t1_y),
-        r1_odd1_z = -(0.5384693101056831*t1_z);
-    r1_x[3] = r1_even1_x - r1_odd1_x;
-    r1_y[3] = r1_even1_y - r1_odd1_y;
-    r1_z[3] = r1_even1_z - r1_odd1_z;
+    CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_2
     r1_x[1] = r1_even1_x + r1_odd1_x;
     r1_y[1] = r1_even1_y + r1_odd1_y;
     r1_z[1] = r1_even1_z + r1_odd1_z;
@@ -163,10 +145,7 @@ FU_KERNEL void cable12_engineering_linear_assumed_elastic_tangent(fu_real l, con
         FU_UPPER(i, j, 3, K_a[g][i][j] = a1_a[g][j]*r1[g][i];)
         FU_EACH(i, 3, K_a[g][i][i] += D_a1[g];)
         FU_UPPER(i, j, 3, K_a[g][j][i] = K_a[g][i][j];))
-    FU_UPPER(i, j, 3, sum11_a0[i][j] = K_a[0][i][j] + K_a[4][i][j]; sum11_a0[j][i] = sum11_a0[i][j];)
-    FU_UPPER(i, j, 3, sum11_a1[i][j] = K_a[1][i][j] + K_a[3][i][j]; sum11_a1[j][i] = sum11_a1[i][j];)
-    FU_UPPER(i, j, 3, difference11_a0[i][j] = K_a[0][i][j] - K_a[4][i][j]; difference11_a0[j][i] = difference11_a0[i][j];)
-    FU_UPPER(i, j, 3, difference11_a1[i][j] = K_a[1][i][j] - K_a[3][i][j]; difference11_a1[j][i] = difference11_a1[i][j];)
+    CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_2
     /* second derivatives at the quadrature points */
     const fu_real
         sum11_c0_xx = 2.0*EI_l,
@@ -227,11 +206,7 @@ void cable12_engineering_linear_assumed_discrete_force(fu_real l, const fu_real 
     FU_EACH(i, 3, next_r1[3][i] = next_r1_even1[i] - next_r1_odd1[i];)
     FU_EACH(i, 3, now_r1[1][i] = now_r1_even1[i] + now_r1_odd1[i];)
     FU_EACH(i, 3, next_r1[1][i] = next_r1_even1[i] + next_r1_odd1[i];)
-    FU_EACH(i, 3, now_r1[2][i] = chordnow_2[i] - 0.5*now_t2[i];)
-    FU_EACH(i, 3, next_r1[2][i] = chordnext_2[i] - 0.5*next_t2[i];)
-    FU_EACH(g, 5,
-        now_a1[g] = now_r1[g][0]*now_r1[g][0] + now_r1[g][1]*now_r1[g][1] + now_r1[g][2]*now_r1[g][2] - 1.0;
-        next_a1[g] = next_r1[g][0]*next_r1[g][0] + next_r1[g][1]*next_r1[g][1] + next_r1[g][2]*next_r1[g][2] - 1.0;)
+    CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_6
     FU_EACH(g, 5,
         now_len[g] = FU_SQRT(now_a1[g] + 1.0);
         next_len[g] = FU_SQRT(next_a1[g] + 1.0);

@@ -151,10 +151,7 @@ void cable12_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_
         FU_UPPER(i, j, 3, K_a[g][i][j] = a1_a[g][j]*r1[g][i];)
         FU_EACH(i, 3, K_a[g][i][i] += D_a1[g];)
         FU_UPPER(i, j, 3, K_a[g][j][i] = K_a[g][i][j];))
-    FU_UPPER(i, j, 3, sum11_a0[i][j] = K_a[0][i][j] + K_a[4][i][j]; sum11_a0[j][i] = sum11_a0[i][j];)
-    FU_UPPER(i, j, 3, sum11_a1[i][j] = K_a[1][i][j] + K_a[3][i][j]; sum11_a1[j][i] = sum11_a1[i][j];)
-    FU_UPPER(i, j, 3, difference11_a0[i][j] = K_a[0][i][j] - K_a[4][i][j]; difference11_a0[j][i] = difference11_a0[i][j];)
-    FU_UPPER(i, j, 3, difference11_a1[i][j] = K_a[1][i][j] - K_a[3][i][j]; difference11_a1[j][i] = difference11_a1[i][j];)
+    CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_2
     /* second derivatives at the quadrature points */
     const fu_real
         sum11_c0_xx = 2.0*EI_l,
@@ -201,11 +198,7 @@ void cable12_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_r
     FU_EACH(i, 3, next_r1[3][i] = next_r1_even1[i] - next_r1_odd1[i];)
     FU_EACH(i, 3, now_r1[1][i] = now_r1_even1[i] + now_r1_odd1[i];)
     FU_EACH(i, 3, next_r1[1][i] = next_r1_even1[i] + next_r1_odd1[i];)
-    FU_EACH(i, 3, now_r1[2][i] = chordnow_2[i] - 0.5*now_t2[i];)
-    FU_EACH(i, 3, next_r1[2][i] = chordnext_2[i] - 0.5*next_t2[i];)
-    FU_EACH(g, 5,
-        now_a1[g] = now_r1[g][0]*now_r1[g][0] + now_r1[g][1]*now_r1[g][1] + now_r1[g][2]*now_r1[g][2] - 1.0;
-        next_a1[g] = next_r1[g][0]*next_r1[g][0] + next_r1[g][1]*next_r1[g][1] + next_r1[g][2]*next_r1[g][2] - 1.0;)
+    CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_6
     now_eps[0] = 0.5*now_a1[0];
     next_eps[0] = 0.5*next_a1[0];
     EA5[0] = 0.23692688505618928*EA_l;

@@ -5,10 +5,749 @@
 #ifndef FUNICULAR_CABLE12_STAGES_H
 #define FUNICULAR_CABLE12_STAGES_H
 
-/* strain vectors: of cable12_green_exact_energy and 8 more */
-#define CABLE12_STRAIN_VECTORS \
+/* part of strain at the quadrature points: of cable12_green_exact_energy and 7 more */
+#define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS \
     const fu_real \
-        w = 1.0/l, \
+        r1_even0_x = chord2_x + 0.7317428697781312*t2_x, \
+        r1_even0_y = chord2_y + 0.7317428697781312*t2_y, \
+        r1_even0_z = chord2_z + 0.7317428697781312*t2_z, \
+        r1_odd0_x = -(0.906179845938664*t1_x), \
+        r1_odd0_y = -(0.906179845938664*t1_y), \
+        r1_odd0_z = -(0.906179845938664*t1_z); \
+    r1_x[4] = r1_even0_x - r1_odd0_x; \
+    r1_y[4] = r1_even0_y - r1_odd0_y; \
+    r1_z[4] = r1_even0_z - r1_odd0_z;
+
+/* part of strain at the quadrature points: of cable12_green_exact_energy and 7 more */
+#define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_2 \
+    const fu_real \
+        r1_even1_x = chord2_x - 0.06507620311146456*t2_x, \
+        r1_even1_y = chord2_y - 0.06507620311146456*t2_y, \
+        r1_even1_z = chord2_z - 0.06507620311146456*t2_z, \
+        r1_odd1_x = -(0.5384693101056831*t1_x), \
+        r1_odd1_y = -(0.5384693101056831*t1_y), \
+        r1_odd1_z = -(0.5384693101056831*t1_z); \
+    r1_x[3] = r1_even1_x - r1_odd1_x; \
+    r1_y[3] = r1_even1_y - r1_odd1_y; \
+    r1_z[3] = r1_even1_z - r1_odd1_z;
+
+/* part of strain at the quadrature points: of cable12_green_exact_energy and 6 more */
+#define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_3 \
+    const fu_real \
+        r2_odd0_x = -(2.718539537815992*t2_x), \
+        r2_odd0_y = -(2.718539537815992*t2_y), \
+        r2_odd0_z = -(2.718539537815992*t2_z); \
+    r2_x[4] = -r2_odd0_x + t1_x; \
+    r2_y[4] = -r2_odd0_y + t1_y; \
+    r2_z[4] = -r2_odd0_z + t1_z; \
+    r2_x[0] = r2_odd0_x + t1_x; \
+    r2_y[0] = r2_odd0_y + t1_y; \
+    r2_z[0] = r2_odd0_z + t1_z; \
+    const fu_real \
+        r2_odd1_x = -(1.6154079303170494*t2_x), \
+        r2_odd1_y = -(1.6154079303170494*t2_y), \
+        r2_odd1_z = -(1.6154079303170494*t2_z); \
+    r2_x[3] = -r2_odd1_x + t1_x; \
+    r2_y[3] = -r2_odd1_y + t1_y; \
+    r2_z[3] = -r2_odd1_z + t1_z; \
+    r2_x[1] = r2_odd1_x + t1_x; \
+    r2_y[1] = r2_odd1_y + t1_y; \
+    r2_z[1] = r2_odd1_z + t1_z; \
+    r2_x[2] = t1_x; \
+    r2_y[2] = t1_y; \
+    r2_z[2] = t1_z; \
+    FU_EACH(g, 5, \
+        a1[g] = r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g] + r1_z[g]*r1_z[g] - 1.0; \
+        b[g] = r1_x[g]*r2_x[g] + r1_y[g]*r2_y[g] + r1_z[g]*r2_z[g]; \
+        c[g] = r2_x[g]*r2_x[g] + r2_y[g]*r2_y[g] + r2_z[g]*r2_z[g];)
+
+/* part of forces at the quadrature points: of cable12_green_exact_elastic_force and 4 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS \
+    FU_EACH(i, 3, sum_abc1_0[i] = F1_abc[0][i] + F1_abc[4][i];) \
+    FU_EACH(i, 3, difference_abc1_0[i] = F1_abc[0][i] - F1_abc[4][i];) \
+    FU_EACH(i, 3, sum_abc1_1[i] = F1_abc[1][i] + F1_abc[3][i];) \
+    FU_EACH(i, 3, difference_abc1_1[i] = F1_abc[1][i] - F1_abc[3][i];) \
+    FU_EACH(i, 3, sum_abc2_0[i] = F2_abc[0][i] + F2_abc[4][i];) \
+    FU_EACH(i, 3, difference_abc2_0[i] = F2_abc[0][i] - F2_abc[4][i];) \
+    FU_EACH(i, 3, sum_abc2_1[i] = F2_abc[1][i] + F2_abc[3][i];) \
+    FU_EACH(i, 3, difference_abc2_1[i] = F2_abc[1][i] - F2_abc[3][i];)
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_elastic_tangent and 4 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS \
+    FU_UPPER(i, j, 3, sum11_abc0[i][j] = K11_abc[0][i][j] + K11_abc[4][i][j]; sum11_abc0[j][i] = sum11_abc0[i][j];) \
+    FU_UPPER(i, j, 3, sum11_abc1[i][j] = K11_abc[1][i][j] + K11_abc[3][i][j]; sum11_abc1[j][i] = sum11_abc1[i][j];) \
+    FU_UPPER(i, j, 3, difference11_abc0[i][j] = K11_abc[0][i][j] - K11_abc[4][i][j]; difference11_abc0[j][i] = difference11_abc0[i][j];) \
+    FU_PAIRS(i, j, 3, sum12_abc0[i][j] = K12_abc[0][i][j] + K12_abc[4][i][j];) \
+    FU_UPPER(i, j, 3, difference11_abc1[i][j] = K11_abc[1][i][j] - K11_abc[3][i][j]; difference11_abc1[j][i] = difference11_abc1[i][j];) \
+    FU_PAIRS(i, j, 3, sum12_abc1[i][j] = K12_abc[1][i][j] + K12_abc[3][i][j];) \
+    FU_PAIRS(i, j, 3, difference12_abc0[i][j] = K12_abc[0][i][j] - K12_abc[4][i][j];) \
+    FU_PAIRS(i, j, 3, difference12_abc1[i][j] = K12_abc[1][i][j] - K12_abc[3][i][j];) \
+    FU_UPPER(i, j, 3, sum22_abc0[i][j] = K22_abc[0][i][j] + K22_abc[4][i][j]; sum22_abc0[j][i] = sum22_abc0[i][j];) \
+    FU_UPPER(i, j, 3, sum22_abc1[i][j] = K22_abc[1][i][j] + K22_abc[3][i][j]; sum22_abc1[j][i] = sum22_abc1[i][j];) \
+    FU_UPPER(i, j, 3, difference22_abc0[i][j] = K22_abc[0][i][j] - K22_abc[4][i][j]; difference22_abc0[j][i] = difference22_abc0[i][j];) \
+    FU_UPPER(i, j, 3, difference22_abc1[i][j] = K22_abc[1][i][j] - K22_abc[3][i][j]; difference22_abc1[j][i] = difference22_abc1[i][j];)
+
+/* part of strain at the quadrature points: of cable12_green_exact_discrete_force and 5 more */
+#define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_4 \
+    FU_EACH(i, 3, now_r2_at[0][i] = -now_r2_odd1[i] + now_t1[i];) \
+    FU_EACH(i, 3, next_r2_at[0][i] = -next_r2_odd1[i] + next_t1[i];) \
+    FU_EACH(i, 3, now_r2[1][i] = now_r2_odd1[i] + now_t1[i];) \
+    FU_EACH(i, 3, next_r2[1][i] = next_r2_odd1[i] + next_t1[i];) \
+    FU_EACH(g, 2, \
+        now_a1[g] = now_r1[g][0]*now_r1[g][0] + now_r1[g][1]*now_r1[g][1] + now_r1[g][2]*now_r1[g][2] - 1.0; \
+        next_a1[g] = next_r1[g][0]*next_r1[g][0] + next_r1[g][1]*next_r1[g][1] + next_r1[g][2]*next_r1[g][2] - 1.0; \
+        now_b[g] = now_r1[g][0]*now_r2[g][0] + now_r1[g][1]*now_r2[g][1] + now_r1[g][2]*now_r2[g][2]; \
+        next_b[g] = next_r1[g][0]*next_r2[g][0] + next_r1[g][1]*next_r2[g][1] + next_r1[g][2]*next_r2[g][2]; \
+        now_c[g] = now_r2[g][0]*now_r2[g][0] + now_r2[g][1]*now_r2[g][1] + now_r2[g][2]*now_r2[g][2]; \
+        next_c[g] = next_r2[g][0]*next_r2[g][0] + next_r2[g][1]*next_r2[g][1] + next_r2[g][2]*next_r2[g][2];) \
+    now_a1[2] = now_r1_2[0]*now_r1_2[0] + now_r1_2[1]*now_r1_2[1] + now_r1_2[2]*now_r1_2[2] - 1.0; \
+    next_a1[2] = next_r1_2[0]*next_r1_2[0] + next_r1_2[1]*next_r1_2[1] + next_r1_2[2]*next_r1_2[2] - 1.0; \
+    now_b[2] = now_r1_2[0]*now_t1[0] + now_r1_2[1]*now_t1[1] + now_r1_2[2]*now_t1[2]; \
+    next_b[2] = next_r1_2[0]*next_t1[0] + next_r1_2[1]*next_t1[1] + next_r1_2[2]*next_t1[2]; \
+    now_c[2] = now_t1[0]*now_t1[0] + now_t1[1]*now_t1[1] + now_t1[2]*now_t1[2]; \
+    next_c[2] = next_t1[0]*next_t1[0] + next_t1[1]*next_t1[1] + next_t1[2]*next_t1[2]; \
+    FU_EACH(g, 2, \
+        now_a1[g + 3] = now_r1_at[g][0]*now_r1_at[g][0] + now_r1_at[g][1]*now_r1_at[g][1] + now_r1_at[g][2]*now_r1_at[g][2] - 1.0; \
+        next_a1[g + 3] = next_r1_at[g][0]*next_r1_at[g][0] + next_r1_at[g][1]*next_r1_at[g][1] + next_r1_at[g][2]*next_r1_at[g][2] - 1.0; \
+        now_b[g + 3] = now_r1_at[g][0]*now_r2_at[g][0] + now_r1_at[g][1]*now_r2_at[g][1] + now_r1_at[g][2]*now_r2_at[g][2]; \
+        next_b[g + 3] = next_r1_at[g][0]*next_r2_at[g][0] + next_r1_at[g][1]*next_r2_at[g][1] + next_r1_at[g][2]*next_r2_at[g][2]; \
+        now_c[g + 3] = now_r2_at[g][0]*now_r2_at[g][0] + now_r2_at[g][1]*now_r2_at[g][1] + now_r2_at[g][2]*now_r2_at[g][2]; \
+        next_c[g + 3] = next_r2_at[g][0]*next_r2_at[g][0] + next_r2_at[g][1]*next_r2_at[g][1] + next_r2_at[g][2]*next_r2_at[g][2];)
+
+/* part of strain at the quadrature points: of cable12_green_exact_discrete_force and 1 more */
+#define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_5 \
+    FU_EACH(g, 5, \
+        now_eps[g] = 0.5*now_a1[g]; \
+        next_eps[g] = 0.5*next_a1[g]; \
+        now_a[g] = now_a1[g] + 1.0; \
+        next_a[g] = next_a1[g] + 1.0; \
+        now_inv_a[g] = 1.0/now_a[g]; \
+        next_inv_a[g] = 1.0/next_a[g]; \
+        now_scale[g] = EI5[g < 2 ? g : 4 - g]*now_inv_a[g]*now_inv_a[g]*now_inv_a[g]; \
+        next_scale[g] = EI5[g < 2 ? g : 4 - g]*next_inv_a[g]*next_inv_a[g]*next_inv_a[g]; \
+        now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g]; \
+        next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
+
+/* part of rate of curvature at the quadrature points: of cable12_green_exact_damping_force and 4 more */
+#define CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
+    inv_b[0] = 1.0/len_b0; \
+    FU_EACH(i, 3, i_b[0][i] = inv_b[0]*r1_b0[i];) \
+    const fu_real stretch_b0 = d1_b0[0]*i_b[0][0] + d1_b0[1]*i_b[0][1] + d1_b0[2]*i_b[0][2]; \
+    FU_EACH(i, 3, di_b0[i] = inv_b[0]*(d1_b0[i] - i_b[0][i]*stretch_b0);) \
+    along_b[0] = i_b[0][0]*r2_b[0][0] + i_b[0][1]*r2_b[0][1] + i_b[0][2]*r2_b[0][2]; \
+    const fu_real across_b0 = di_b0[0]*r2_b[0][0] + di_b0[1]*r2_b[0][1] + di_b0[2]*r2_b[0][2]; \
+    FU_EACH(i, 3, rate_b[0][i] = across_b0*i_b[0][i] - along_b[0]*di_b0[i] + d2_b0[i];)
+
+/* part of rate of curvature at the quadrature points: of cable12_green_exact_damping_force and 4 more */
+#define CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
+    inv_b[1] = 1.0/len_b1; \
+    FU_EACH(i, 3, i_b[1][i] = inv_b[1]*r1_b1[i];) \
+    const fu_real stretch_b1 = d1_b1[0]*i_b[1][0] + d1_b1[1]*i_b[1][1] + d1_b1[2]*i_b[1][2]; \
+    FU_EACH(i, 3, di_b1[i] = inv_b[1]*(d1_b1[i] - i_b[1][i]*stretch_b1);) \
+    along_b[1] = i_b[1][0]*r2_b[1][0] + i_b[1][1]*r2_b[1][1] + i_b[1][2]*r2_b[1][2]; \
+    const fu_real across_b1 = di_b1[0]*r2_b[1][0] + di_b1[1]*r2_b[1][1] + di_b1[2]*r2_b[1][2]; \
+    FU_EACH(i, 3, rate_b[1][i] = across_b1*i_b[1][i] - along_b[1]*di_b1[i] + d2_b1[i];)
+
+/* part of rate of curvature at the quadrature points: of cable12_green_exact_damping_force and 2 more */
+#define CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3 \
+    FU_EACH(g, 2, \
+        inward_b[g] = EI_tau*inv_b[g]*(i_b[g][0]*rate_b[g][0] + i_b[g][1]*rate_b[g][1] + i_b[g][2]*rate_b[g][2]); \
+        lever_b[g] = EI_tau*along_b[g]*inv_b[g]; \
+        FU_EACH(i, 3, F1_b[g][i] = inward_b[g]*r2_b[g][i] - lever_b[g]*rate_b[g][i];) \
+        FU_EACH(i, 3, F2_b[g][i] = EI_tau*rate_b[g][i];))
+
+/* part of derivatives at the quadrature points: of cable12_green_exact_damping_tangent and 2 more */
+#define CABLE12_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS \
+    FU_EACH(i, 3, K_2[i][i] += N_2;) \
+    FU_PAIRS(i, j, 3, sum11_d10[i][j] = K_0[i][j] + K_2[i][j];) \
+    FU_PAIRS(i, j, 3, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];) \
+    const fu_real \
+        k_b0 = inv_b0*(-inv_b0*stretch_b0 + rate), \
+        level_b0 = across_b0*inv_b0 - along_b0*k_b0; \
+    FU_EACH(i, 3, p_b0[i] = -along_b0*i_b0[i] + r2_b0[i];) \
+    FU_EACH(i, 3, by_turn_b0[i] = inv_b0*(along_b0*i_b0[i] - p_b0[i]);) \
+    const fu_real by_i_i_b0 = across_b0*inv_b0 + level_b0; \
+    FU_EACH(i, 3, by_i_b0[i] = -by_i_i_b0*i_b0[i] + k_b0*p_b0[i];) \
+    K_b0[2][0][0] = EI_tau*(by_i_b0[0]*i_b0[0] + by_turn_b0[0]*di_b0[0] + level_b0); \
+    K_b0[2][0][1] = EI_tau*(by_i_b0[1]*i_b0[0] + by_turn_b0[1]*di_b0[0]); \
+    K_b0[2][0][2] = EI_tau*(by_i_b0[2]*i_b0[0] + by_turn_b0[2]*di_b0[0]); \
+    K_b0[2][1][0] = EI_tau*(by_i_b0[0]*i_b0[1] + by_turn_b0[0]*di_b0[1]); \
+    K_b0[2][1][1] = EI_tau*(by_i_b0[1]*i_b0[1] + by_turn_b0[1]*di_b0[1] + level_b0); \
+    K_b0[2][1][2] = EI_tau*(by_i_b0[2]*i_b0[1] + by_turn_b0[2]*di_b0[1]); \
+    K_b0[2][2][0] = EI_tau*(by_i_b0[0]*i_b0[2] + by_turn_b0[0]*di_b0[2]); \
+    K_b0[2][2][1] = EI_tau*(by_i_b0[1]*i_b0[2] + by_turn_b0[1]*di_b0[2]); \
+    K_b0[2][2][2] = EI_tau*(by_i_b0[2]*i_b0[2] + by_turn_b0[2]*di_b0[2] + level_b0); \
+    FU_PAIRS(i, j, 3, K_b0[3][i][j] = EI_tau*(-di_b0[i]*i_b0[j] + di_b0[j]*i_b0[i]);) \
+    FU_EACH(i, 3, K_b0[3][i][i] += EI_tau*rate;) \
+    const fu_real \
+        stiff_b0 = EI_tau*inv_b0, \
+        lever_b0 = along_b0*inv_b0, \
+        growth_b0 = i_b0[0]*rate_b0[0] + i_b0[1]*rate_b0[1] + i_b0[2]*rate_b0[2]; \
+    FU_EACH(i, 3, pushed_b0[i] = stiff_b0*(-along_b0*di_b0[i]*inv_b0 + d2_b0[i]*inv_b0 - 2.0*growth_b0*i_b0[i]*inv_b0 + k_b0*p_b0[i]);) \
+    FU_EACH(i, 3, turned_b0[i] = by_turn_b0[i]*stiff_b0;) \
+    FU_EACH(i, 3, follows_b0[i] = stiff_b0*(di_b0[i] + i_b0[i]*rate);) \
+    FU_EACH(i, 3, stiff_i_b0[i] = i_b0[i]*stiff_b0;) \
+    FU_PAIRS(i, j, 3, K_b0[0][i][j] = -K_b0[2][i][j]*lever_b0 + pushed_b0[j]*r2_b0[i] + rate_b0[i]*turned_b0[j];) \
+    FU_PAIRS(i, j, 3, K_b0[1][i][j] = -K_b0[3][i][j]*lever_b0 + follows_b0[j]*r2_b0[i] - rate_b0[i]*stiff_i_b0[j];) \
+    FU_EACH(i, 3, K_b0[1][i][i] += growth_b0*stiff_b0;) \
+    const fu_real \
+        k_b1 = inv_b1*(-inv_b1*stretch_b1 + rate), \
+        level_b1 = across_b1*inv_b1 - along_b1*k_b1; \
+    FU_EACH(i, 3, p_b1[i] = -along_b1*i_b1[i] + r2_b1[i];) \
+    FU_EACH(i, 3, by_turn_b1[i] = inv_b1*(along_b1*i_b1[i] - p_b1[i]);) \
+    const fu_real by_i_i_b1 = across_b1*inv_b1 + level_b1; \
+    FU_EACH(i, 3, by_i_b1[i] = -by_i_i_b1*i_b1[i] + k_b1*p_b1[i];) \
+    K_b1[2][0][0] = EI_tau*(by_i_b1[0]*i_b1[0] + by_turn_b1[0]*di_b1[0] + level_b1); \
+    K_b1[2][0][1] = EI_tau*(by_i_b1[1]*i_b1[0] + by_turn_b1[1]*di_b1[0]); \
+    K_b1[2][0][2] = EI_tau*(by_i_b1[2]*i_b1[0] + by_turn_b1[2]*di_b1[0]); \
+    K_b1[2][1][0] = EI_tau*(by_i_b1[0]*i_b1[1] + by_turn_b1[0]*di_b1[1]); \
+    K_b1[2][1][1] = EI_tau*(by_i_b1[1]*i_b1[1] + by_turn_b1[1]*di_b1[1] + level_b1); \
+    K_b1[2][1][2] = EI_tau*(by_i_b1[2]*i_b1[1] + by_turn_b1[2]*di_b1[1]); \
+    K_b1[2][2][0] = EI_tau*(by_i_b1[0]*i_b1[2] + by_turn_b1[0]*di_b1[2]); \
+    K_b1[2][2][1] = EI_tau*(by_i_b1[1]*i_b1[2] + by_turn_b1[1]*di_b1[2]); \
+    K_b1[2][2][2] = EI_tau*(by_i_b1[2]*i_b1[2] + by_turn_b1[2]*di_b1[2] + level_b1); \
+    FU_PAIRS(i, j, 3, K_b1[3][i][j] = EI_tau*(-di_b1[i]*i_b1[j] + di_b1[j]*i_b1[i]);) \
+    FU_EACH(i, 3, K_b1[3][i][i] += EI_tau*rate;) \
+    const fu_real \
+        stiff_b1 = EI_tau*inv_b1, \
+        lever_b1 = along_b1*inv_b1, \
+        growth_b1 = i_b1[0]*rate_b1[0] + i_b1[1]*rate_b1[1] + i_b1[2]*rate_b1[2]; \
+    FU_EACH(i, 3, pushed_b1[i] = stiff_b1*(-along_b1*di_b1[i]*inv_b1 + d2_b1[i]*inv_b1 - 2.0*growth_b1*i_b1[i]*inv_b1 + k_b1*p_b1[i]);) \
+    FU_EACH(i, 3, turned_b1[i] = by_turn_b1[i]*stiff_b1;) \
+    FU_EACH(i, 3, follows_b1[i] = stiff_b1*(di_b1[i] + i_b1[i]*rate);) \
+    FU_EACH(i, 3, stiff_i_b1[i] = i_b1[i]*stiff_b1;) \
+    FU_PAIRS(i, j, 3, K_b1[0][i][j] = -K_b1[2][i][j]*lever_b1 + pushed_b1[j]*r2_b1[i] + rate_b1[i]*turned_b1[j];) \
+    FU_PAIRS(i, j, 3, K_b1[1][i][j] = -K_b1[3][i][j]*lever_b1 + follows_b1[j]*r2_b1[i] - rate_b1[i]*stiff_i_b1[j];) \
+    FU_EACH(i, 3, K_b1[1][i][i] += growth_b1*stiff_b1;) \
+    FU_EACH(g, 4, \
+        FU_PAIRS(i, j, 3, sum_d20[g][i][j] = K_b0[g][i][j] + K_b1[g][i][j];) \
+        FU_PAIRS(i, j, 3, difference_d20[g][i][j] = K_b0[g][i][j] - K_b1[g][i][j];))
+
+/* part of forces at the quadrature points: of cable12_green_exact_algorithmic_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2 \
+    FU_EACH(i, 3, F_2[i] = N_2*r1_2[i];) \
+    FU_EACH(g, 2, \
+        excess_rate_b[g][0] = rate_b[g][0]*weight - relaxed_strain[3*g + 3]; \
+        excess_rate_b[g][1] = rate_b[g][1]*weight - relaxed_strain[3*g + 4]; \
+        excess_rate_b[g][2] = rate_b[g][2]*weight - relaxed_strain[3*g + 5]; \
+        inward_b[g] = EI_tau*inv_b[g]*(excess_rate_b[g][0]*i_b[g][0] + excess_rate_b[g][1]*i_b[g][1] + excess_rate_b[g][2]*i_b[g][2]); \
+        lever_b[g] = EI_tau*along_b[g]*inv_b[g]; \
+        FU_EACH(i, 3, F1_b[g][i] = -excess_rate_b[g][i]*lever_b[g] + inward_b[g]*r2_b[g][i];) \
+        FU_EACH(i, 3, F2_b[g][i] = EI_tau*excess_rate_b[g][i];))
+
+/* part of second derivatives at the quadrature points: of cable12_green_linear_elastic_tangent and 2 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_2 \
+    FU_UPPER(i, j, 3, sum11_a0[i][j] = K_a[0][i][j] + K_a[4][i][j]; sum11_a0[j][i] = sum11_a0[i][j];) \
+    FU_UPPER(i, j, 3, sum11_a1[i][j] = K_a[1][i][j] + K_a[3][i][j]; sum11_a1[j][i] = sum11_a1[i][j];) \
+    FU_UPPER(i, j, 3, difference11_a0[i][j] = K_a[0][i][j] - K_a[4][i][j]; difference11_a0[j][i] = difference11_a0[i][j];) \
+    FU_UPPER(i, j, 3, difference11_a1[i][j] = K_a[1][i][j] - K_a[3][i][j]; difference11_a1[j][i] = difference11_a1[i][j];)
+
+/* part of strain at the quadrature points: of cable12_green_linear_discrete_force and 2 more */
+#define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_6 \
+    FU_EACH(i, 3, now_r1[2][i] = chordnow_2[i] - 0.5*now_t2[i];) \
+    FU_EACH(i, 3, next_r1[2][i] = chordnext_2[i] - 0.5*next_t2[i];) \
+    FU_EACH(g, 5, \
+        now_a1[g] = now_r1[g][0]*now_r1[g][0] + now_r1[g][1]*now_r1[g][1] + now_r1[g][2]*now_r1[g][2] - 1.0; \
+        next_a1[g] = next_r1[g][0]*next_r1[g][0] + next_r1[g][1]*next_r1[g][1] + next_r1[g][2]*next_r1[g][2] - 1.0;)
+
+/* part of strain at the quadrature points: of cable12_engineering_exact_discrete_force and 1 more */
+#define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_7 \
+    FU_EACH(g, 5, \
+        now_len[g] = FU_SQRT(now_a1[g] + 1.0); \
+        next_len[g] = FU_SQRT(next_a1[g] + 1.0); \
+        now_inv_len[g] = 1.0/now_len[g]; \
+        next_inv_len[g] = 1.0/next_len[g]; \
+        now_eps[g] = now_a1[g]/(now_len[g] + 1.0); \
+        next_eps[g] = next_a1[g]/(next_len[g] + 1.0); \
+        now_a[g] = now_a1[g] + 1.0; \
+        next_a[g] = next_a1[g] + 1.0; \
+        now_inv_a[g] = now_inv_len[g]*now_inv_len[g]; \
+        next_inv_a[g] = next_inv_len[g]*next_inv_len[g]; \
+        now_scale[g] = EI5[g < 2 ? g : 4 - g]*now_inv_a[g]*now_inv_a[g]; \
+        next_scale[g] = EI5[g < 2 ? g : 4 - g]*next_inv_a[g]*next_inv_a[g]; \
+        now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g]; \
+        next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
+
+/* part of blocks over strain vectors: of cable12_green_exact_assumed_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_BLOCKS_OVER_STRAIN_VECTORS \
+    FU_UPPER(i, j, 3, K_t1_t1[i][j] = K22_abc[2][i][j] + dN_m0_t1[j]*eps_m0_t1[i] + dN_m1_t1[j]*eps_m1_t1[i] + dN_m2_t1[j]*eps_m2_t1[i] - 0.906179845938664*difference12_abc0[i][j] - 0.906179845938664*difference12_abc0[j][i] - 0.5384693101056831*difference12_abc1[i][j] - 0.5384693101056831*difference12_abc1[j][i] + 0.8211619131854208*sum11_abc0[i][j] + 0.2899491979256903*sum11_abc1[i][j] + sum22_abc0[i][j] + sum22_abc1[i][j]; K_t1_t1[j][i] = K_t1_t1[i][j];) \
+    FU_PAIRS(i, j, 3, K_t1_t2[i][j] = -0.5*K12_abc[2][j][i] + dN_m0_t2[j]*eps_m0_t1[i] + dN_m1_t2[j]*eps_m1_t1[i] + dN_m2_t2[j]*eps_m2_t1[i] - 0.6630906410022628*difference11_abc0[i][j] + 0.03504153819372763*difference11_abc1[i][j] - 2.718539537815992*difference22_abc0[i][j] - 1.6154079303170494*difference22_abc1[i][j] + 2.4634857395562624*sum12_abc0[i][j] + 0.7317428697781312*sum12_abc0[j][i] + 0.869847593777071*sum12_abc1[i][j] - 0.06507620311146456*sum12_abc1[j][i];) \
+    FU_UPPER(i, j, 3, K_t2_t2[i][j] = 0.25*K11_abc[2][i][j] + dN_m0_t2[j]*eps_m0_t2[i] + dN_m1_t2[j]*eps_m1_t2[i] + dN_m2_t2[j]*eps_m2_t2[i] - 1.9892719230067883*difference12_abc0[i][j] - 1.9892719230067883*difference12_abc0[j][i] + 0.1051246145811829*difference12_abc1[i][j] + 0.1051246145811829*difference12_abc1[j][i] + 0.5354476274711351*sum11_abc0[i][j] + 0.0042349122114045895*sum11_abc1[i][j] + 7.390457218668788*sum22_abc0[i][j] + 2.6095427813312133*sum22_abc1[i][j]; K_t2_t2[j][i] = K_t2_t2[i][j];)
+
+/* part of energy per length through its invariants: of cable12_green_exact_assumed_section_forces and 1 more */
+#define CABLE12_PART_OF_ENERGY_PER_LENGTH_THROUGH_ITS_INVARIANTS \
+    const fu_real \
+        r1_even0_x = chord2_x + 0.7317428697781312*t2_x, \
+        r1_even0_y = chord2_y + 0.7317428697781312*t2_y, \
+        r1_even0_z = chord2_z + 0.7317428697781312*t2_z, \
+        r1_odd0_x = -(0.906179845938664*t1_x), \
+        r1_odd0_y = -(0.906179845938664*t1_y), \
+        r1_odd0_z = -(0.906179845938664*t1_z); \
+    r1_x_at[4] = r1_even0_x - r1_odd0_x; \
+    r1_y_at[4] = r1_even0_y - r1_odd0_y; \
+    r1_z_at[4] = r1_even0_z - r1_odd0_z; \
+    r1_x_at[0] = r1_even0_x + r1_odd0_x; \
+    r1_y_at[0] = r1_even0_y + r1_odd0_y; \
+    r1_z_at[0] = r1_even0_z + r1_odd0_z; \
+    const fu_real \
+        r1_even1_x = chord2_x - 0.06507620311146456*t2_x, \
+        r1_even1_y = chord2_y - 0.06507620311146456*t2_y, \
+        r1_even1_z = chord2_z - 0.06507620311146456*t2_z, \
+        r1_odd1_x = -(0.5384693101056831*t1_x), \
+        r1_odd1_y = -(0.5384693101056831*t1_y), \
+        r1_odd1_z = -(0.5384693101056831*t1_z); \
+    r1_x_at[3] = r1_even1_x - r1_odd1_x; \
+    r1_y_at[3] = r1_even1_y - r1_odd1_y; \
+    r1_z_at[3] = r1_even1_z - r1_odd1_z; \
+    r1_x_at[1] = r1_even1_x + r1_odd1_x; \
+    r1_y_at[1] = r1_even1_y + r1_odd1_y; \
+    r1_z_at[1] = r1_even1_z + r1_odd1_z; \
+    r1_x_at[2] = chord2_x - 0.5*t2_x; \
+    r1_y_at[2] = chord2_y - 0.5*t2_y; \
+    r1_z_at[2] = chord2_z - 0.5*t2_z; \
+    FU_EACH(g, 5, \
+        a1_at[g] = r1_x_at[g]*r1_x_at[g] + r1_y_at[g]*r1_y_at[g] + r1_z_at[g]*r1_z_at[g] - 1.0;)
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_3 \
+    const fu_real \
+        D_b_0 = 0.47385377011237856*A[2]*d_b_0_kappa_0*(0.5*EI_l*dk[0] + EI_l*(A[7] + 0.5*dk[0])), \
+        D_c_0 = 0.47385377011237856*A[2]*d_c_0_kappa_0*(0.5*EI_l*dk[0] + EI_l*(A[7] + 0.5*dk[0])), \
+        d_a1_0_d_a1_0_inv_a_0 = 2.0*A[3]*A[3]*A[3]/((a1r[0] + 1.0)*(a1r[0] + 1.0)*(a1r[0] + 1.0)), \
+        d_a1_0_inv_a_0_2 = -(A[3]*A[3]/((a1r[0] + 1.0)*(a1r[0] + 1.0)));
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_4 \
+    const fu_real \
+        d_a1_0_d_a1_0_k2_0 = c[0]*d_a1_0_scale_0 + c[0]*d_a1_0_scale_0_2 + d_a1_0_d_a1_0_scale_0*(-b[0]*b[0] + c[0]*(a1[0] + 1.0)), \
+        d_a1_0_k2_0_2 = c[0]*scale[0] + d_a1_0_scale_0_2*(-b[0]*b[0] + c[0]*(a1[0] + 1.0)), \
+        d_a1_0_kappa_0_2 = 0.5*d_a1_0_k2_0_2/kappa[0], \
+        d_a1_0_d_a1_0_kappa_0 = 0.5*d_a1_0_d_a1_0_k2_0/kappa[0] - 0.5*d_a1_0_k2_0*d_a1_0_kappa_0_2/(kappa[0]*kappa[0]);
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_5 \
+    const fu_real \
+        d_b_0_d_a1_0_k2_0 = -(2.0*b[0]*d_a1_0_scale_0), \
+        d_b_0_k2_0_2 = -(2.0*b[0]*scale[0]), \
+        d_b_0_kappa_0_2 = 0.5*d_b_0_k2_0_2/kappa[0], \
+        d_b_0_d_a1_0_kappa_0 = -0.5*d_a1_0_k2_0*d_b_0_kappa_0_2/(kappa[0]*kappa[0]) + 0.5*d_b_0_d_a1_0_k2_0/kappa[0], \
+        d_b_0_D_a1_0 = 0.47385377011237856*A[2]*EI_l*d_a1_0_kappa_0*d_b_0_kappa_0_2 + 0.47385377011237856*A[2]*d_b_0_d_a1_0_kappa_0*(0.5*EI_l*dk[0] + EI_l*(A[7] + 0.5*dk[0])), \
+        d_b_0_d_b_0_k2_0 = -(2.0*scale[0]), \
+        d_b_0_d_b_0_kappa_0 = 0.5*d_b_0_d_b_0_k2_0/kappa[0] - 0.5*d_b_0_k2_0*d_b_0_kappa_0_2/(kappa[0]*kappa[0]), \
+        d_b_0_D_b_0 = 0.47385377011237856*A[2]*EI_l*d_b_0_kappa_0*d_b_0_kappa_0_2 + 0.47385377011237856*A[2]*d_b_0_d_b_0_kappa_0*(0.5*EI_l*dk[0] + EI_l*(A[7] + 0.5*dk[0])), \
+        d_c_0_d_a1_0_k2_0 = d_a1_0_scale_0*(a1[0] + 1.0) + scale[0], \
+        d_c_0_k2_0_2 = scale[0]*(a1[0] + 1.0), \
+        d_c_0_kappa_0_2 = 0.5*d_c_0_k2_0_2/kappa[0], \
+        d_c_0_d_a1_0_kappa_0 = -0.5*d_a1_0_k2_0*d_c_0_kappa_0_2/(kappa[0]*kappa[0]) + 0.5*d_c_0_d_a1_0_k2_0/kappa[0], \
+        d_c_0_D_a1_0 = 0.47385377011237856*A[2]*EI_l*d_a1_0_kappa_0*d_c_0_kappa_0_2 + 0.47385377011237856*A[2]*d_c_0_d_a1_0_kappa_0*(0.5*EI_l*dk[0] + EI_l*(A[7] + 0.5*dk[0])), \
+        d_c_0_d_b_0_kappa_0 = -(0.5*d_b_0_k2_0*d_c_0_kappa_0_2/(kappa[0]*kappa[0])), \
+        d_c_0_D_b_0 = 0.47385377011237856*A[2]*EI_l*d_b_0_kappa_0*d_c_0_kappa_0_2 + 0.47385377011237856*A[2]*d_c_0_d_b_0_kappa_0*(0.5*EI_l*dk[0] + EI_l*(A[7] + 0.5*dk[0])), \
+        d_c_0_d_c_0_kappa_0 = -(0.5*d_c_0_k2_0*d_c_0_kappa_0_2/(kappa[0]*kappa[0])), \
+        d_c_0_D_c_0 = 0.47385377011237856*A[2]*EI_l*d_c_0_kappa_0*d_c_0_kappa_0_2 + 0.47385377011237856*A[2]*d_c_0_d_c_0_kappa_0*(0.5*EI_l*dk[0] + EI_l*(A[7] + 0.5*dk[0])), \
+        half_abc0 = 0.5*D_b_0, \
+        H_aa_abc0 = 2.0*d_a1_0_D_a1_0, \
+        H_ac_abc0 = 2.0*d_c_0_D_a1_0, \
+        H_bb_abc0 = 0.5*d_b_0_D_b_0, \
+        H_cc_abc0 = 2.0*d_c_0_D_c_0; \
+    FU_EACH(i, 3, a1_abc0[i] = H_aa_abc0*r1[0][i] + d_b_0_D_a1_0*r2[0][i];) \
+    FU_EACH(i, 3, b1_abc0[i] = H_bb_abc0*r2[0][i] + d_b_0_D_a1_0*r1[0][i];) \
+    FU_EACH(i, 3, c1_abc0[i] = H_ac_abc0*r1[0][i] + d_c_0_D_b_0*r2[0][i];) \
+    FU_EACH(i, 3, b2_abc0[i] = H_bb_abc0*r1[0][i] + d_c_0_D_b_0*r2[0][i];) \
+    FU_EACH(i, 3, c2_abc0[i] = H_cc_abc0*r2[0][i] + d_c_0_D_b_0*r1[0][i];) \
+    FU_UPPER(i, j, 3, K11_abc0[i][j] = a1_abc0[j]*r1[0][i] + b1_abc0[j]*r2[0][i];) \
+    FU_EACH(i, 3, K11_abc0[i][i] += D_a1_0;) \
+    FU_UPPER(i, j, 3, K11_abc0[j][i] = K11_abc0[i][j];) \
+    FU_PAIRS(i, j, 3, K12_abc0[i][j] = b1_abc0[i]*r1[0][j] + c1_abc0[i]*r2[0][j];) \
+    FU_EACH(i, 3, K12_abc0[i][i] += half_abc0;) \
+    FU_UPPER(i, j, 3, K22_abc0[i][j] = b2_abc0[j]*r1[0][i] + c2_abc0[j]*r2[0][i];) \
+    FU_EACH(i, 3, K22_abc0[i][i] += D_c_0;) \
+    FU_UPPER(i, j, 3, K22_abc0[j][i] = K22_abc0[i][j];) \
+    const fu_real d_a1_1_inv_a_1 = -(A[9]*A[9]/((a1r[1] + 1.0)*(a1r[1] + 1.0)));
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_6 \
+    const fu_real \
+        D_b_1 = 0.9572573409987326*A[8]*d_b_1_kappa_1*(0.5*EI_l*dk[1] + EI_l*(A[13] + 0.5*dk[1])), \
+        D_c_1 = 0.9572573409987326*A[8]*d_c_1_kappa_1*(0.5*EI_l*dk[1] + EI_l*(A[13] + 0.5*dk[1])), \
+        d_a1_1_d_a1_1_inv_a_1 = 2.0*A[9]*A[9]*A[9]/((a1r[1] + 1.0)*(a1r[1] + 1.0)*(a1r[1] + 1.0)), \
+        d_a1_1_inv_a_1_2 = -(A[9]*A[9]/((a1r[1] + 1.0)*(a1r[1] + 1.0)));
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_7 \
+    const fu_real \
+        d_a1_1_d_a1_1_k2_1 = c[1]*d_a1_1_scale_1 + c[1]*d_a1_1_scale_1_2 + d_a1_1_d_a1_1_scale_1*(-b[1]*b[1] + c[1]*(a1[1] + 1.0)), \
+        d_a1_1_k2_1_2 = c[1]*scale[1] + d_a1_1_scale_1_2*(-b[1]*b[1] + c[1]*(a1[1] + 1.0)), \
+        d_a1_1_kappa_1_2 = 0.5*d_a1_1_k2_1_2/kappa[1], \
+        d_a1_1_d_a1_1_kappa_1 = 0.5*d_a1_1_d_a1_1_k2_1/kappa[1] - 0.5*d_a1_1_k2_1*d_a1_1_kappa_1_2/(kappa[1]*kappa[1]);
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_8 \
+    const fu_real \
+        d_b_1_d_a1_1_k2_1 = -(2.0*b[1]*d_a1_1_scale_1), \
+        d_b_1_k2_1_2 = -(2.0*b[1]*scale[1]), \
+        d_b_1_kappa_1_2 = 0.5*d_b_1_k2_1_2/kappa[1], \
+        d_b_1_d_a1_1_kappa_1 = -0.5*d_a1_1_k2_1*d_b_1_kappa_1_2/(kappa[1]*kappa[1]) + 0.5*d_b_1_d_a1_1_k2_1/kappa[1], \
+        d_b_1_D_a1_1 = 0.9572573409987326*A[8]*EI_l*d_a1_1_kappa_1*d_b_1_kappa_1_2 + 0.9572573409987326*A[8]*d_b_1_d_a1_1_kappa_1*(0.5*EI_l*dk[1] + EI_l*(A[13] + 0.5*dk[1])), \
+        d_b_1_d_b_1_k2_1 = -(2.0*scale[1]), \
+        d_b_1_d_b_1_kappa_1 = 0.5*d_b_1_d_b_1_k2_1/kappa[1] - 0.5*d_b_1_k2_1*d_b_1_kappa_1_2/(kappa[1]*kappa[1]), \
+        d_b_1_D_b_1 = 0.9572573409987326*A[8]*EI_l*d_b_1_kappa_1*d_b_1_kappa_1_2 + 0.9572573409987326*A[8]*d_b_1_d_b_1_kappa_1*(0.5*EI_l*dk[1] + EI_l*(A[13] + 0.5*dk[1])), \
+        d_c_1_d_a1_1_k2_1 = d_a1_1_scale_1*(a1[1] + 1.0) + scale[1], \
+        d_c_1_k2_1_2 = scale[1]*(a1[1] + 1.0), \
+        d_c_1_kappa_1_2 = 0.5*d_c_1_k2_1_2/kappa[1], \
+        d_c_1_d_a1_1_kappa_1 = -0.5*d_a1_1_k2_1*d_c_1_kappa_1_2/(kappa[1]*kappa[1]) + 0.5*d_c_1_d_a1_1_k2_1/kappa[1], \
+        d_c_1_D_a1_1 = 0.9572573409987326*A[8]*EI_l*d_a1_1_kappa_1*d_c_1_kappa_1_2 + 0.9572573409987326*A[8]*d_c_1_d_a1_1_kappa_1*(0.5*EI_l*dk[1] + EI_l*(A[13] + 0.5*dk[1])), \
+        d_c_1_d_b_1_kappa_1 = -(0.5*d_b_1_k2_1*d_c_1_kappa_1_2/(kappa[1]*kappa[1])), \
+        d_c_1_D_b_1 = 0.9572573409987326*A[8]*EI_l*d_b_1_kappa_1*d_c_1_kappa_1_2 + 0.9572573409987326*A[8]*d_c_1_d_b_1_kappa_1*(0.5*EI_l*dk[1] + EI_l*(A[13] + 0.5*dk[1])), \
+        d_c_1_d_c_1_kappa_1 = -(0.5*d_c_1_k2_1*d_c_1_kappa_1_2/(kappa[1]*kappa[1])), \
+        d_c_1_D_c_1 = 0.9572573409987326*A[8]*EI_l*d_c_1_kappa_1*d_c_1_kappa_1_2 + 0.9572573409987326*A[8]*d_c_1_d_c_1_kappa_1*(0.5*EI_l*dk[1] + EI_l*(A[13] + 0.5*dk[1])), \
+        half_abc1 = 0.5*D_b_1, \
+        H_aa_abc1 = 2.0*d_a1_1_D_a1_1, \
+        H_ac_abc1 = 2.0*d_c_1_D_a1_1, \
+        H_bb_abc1 = 0.5*d_b_1_D_b_1, \
+        H_cc_abc1 = 2.0*d_c_1_D_c_1; \
+    FU_EACH(i, 3, a1_abc1[i] = H_aa_abc1*r1[1][i] + d_b_1_D_a1_1*r2[1][i];) \
+    FU_EACH(i, 3, b1_abc1[i] = H_bb_abc1*r2[1][i] + d_b_1_D_a1_1*r1[1][i];) \
+    FU_EACH(i, 3, c1_abc1[i] = H_ac_abc1*r1[1][i] + d_c_1_D_b_1*r2[1][i];) \
+    FU_EACH(i, 3, b2_abc1[i] = H_bb_abc1*r1[1][i] + d_c_1_D_b_1*r2[1][i];) \
+    FU_EACH(i, 3, c2_abc1[i] = H_cc_abc1*r2[1][i] + d_c_1_D_b_1*r1[1][i];) \
+    FU_UPPER(i, j, 3, K11_abc1[i][j] = a1_abc1[j]*r1[1][i] + b1_abc1[j]*r2[1][i];) \
+    FU_EACH(i, 3, K11_abc1[i][i] += D_a1_1;) \
+    FU_UPPER(i, j, 3, K11_abc1[j][i] = K11_abc1[i][j];) \
+    FU_PAIRS(i, j, 3, K12_abc1[i][j] = b1_abc1[i]*r1[1][j] + c1_abc1[i]*r2[1][j];) \
+    FU_EACH(i, 3, K12_abc1[i][i] += half_abc1;) \
+    FU_UPPER(i, j, 3, K22_abc1[i][j] = b2_abc1[j]*r1[1][i] + c2_abc1[j]*r2[1][i];) \
+    FU_EACH(i, 3, K22_abc1[i][i] += D_c_1;) \
+    FU_UPPER(i, j, 3, K22_abc1[j][i] = K22_abc1[i][j];) \
+    const fu_real d_a1_2_inv_a_2 = -(A[15]*A[15]/((a1r[2] + 1.0)*(a1r[2] + 1.0)));
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_9 \
+    const fu_real \
+        D_b_2 = 1.1377777777777773*A[14]*d_b_2_kappa_2*(0.5*EI_l*dk[2] + EI_l*(A[19] + 0.5*dk[2])), \
+        D_c_2 = 1.1377777777777773*A[14]*d_c_2_kappa_2*(0.5*EI_l*dk[2] + EI_l*(A[19] + 0.5*dk[2])), \
+        d_a1_2_d_a1_2_inv_a_2 = 2.0*A[15]*A[15]*A[15]/((a1r[2] + 1.0)*(a1r[2] + 1.0)*(a1r[2] + 1.0)), \
+        d_a1_2_inv_a_2_2 = -(A[15]*A[15]/((a1r[2] + 1.0)*(a1r[2] + 1.0)));
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_10 \
+    const fu_real \
+        d_a1_2_d_a1_2_k2_2 = c[2]*d_a1_2_scale_2 + c[2]*d_a1_2_scale_2_2 + d_a1_2_d_a1_2_scale_2*(-b[2]*b[2] + c[2]*(a1[2] + 1.0)), \
+        d_a1_2_k2_2_2 = c[2]*scale[2] + d_a1_2_scale_2_2*(-b[2]*b[2] + c[2]*(a1[2] + 1.0)), \
+        d_a1_2_kappa_2_2 = 0.5*d_a1_2_k2_2_2/kappa[2], \
+        d_a1_2_d_a1_2_kappa_2 = 0.5*d_a1_2_d_a1_2_k2_2/kappa[2] - 0.5*d_a1_2_k2_2*d_a1_2_kappa_2_2/(kappa[2]*kappa[2]);
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_11 \
+    const fu_real \
+        d_b_2_d_a1_2_k2_2 = -(2.0*b[2]*d_a1_2_scale_2), \
+        d_b_2_k2_2_2 = -(2.0*b[2]*scale[2]), \
+        d_b_2_kappa_2_2 = 0.5*d_b_2_k2_2_2/kappa[2], \
+        d_b_2_d_a1_2_kappa_2 = -0.5*d_a1_2_k2_2*d_b_2_kappa_2_2/(kappa[2]*kappa[2]) + 0.5*d_b_2_d_a1_2_k2_2/kappa[2], \
+        d_b_2_D_a1_2 = 1.1377777777777773*A[14]*EI_l*d_a1_2_kappa_2*d_b_2_kappa_2_2 + 1.1377777777777773*A[14]*d_b_2_d_a1_2_kappa_2*(0.5*EI_l*dk[2] + EI_l*(A[19] + 0.5*dk[2])), \
+        d_b_2_d_b_2_k2_2 = -(2.0*scale[2]), \
+        d_b_2_d_b_2_kappa_2 = 0.5*d_b_2_d_b_2_k2_2/kappa[2] - 0.5*d_b_2_k2_2*d_b_2_kappa_2_2/(kappa[2]*kappa[2]), \
+        d_b_2_D_b_2 = 1.1377777777777773*A[14]*EI_l*d_b_2_kappa_2*d_b_2_kappa_2_2 + 1.1377777777777773*A[14]*d_b_2_d_b_2_kappa_2*(0.5*EI_l*dk[2] + EI_l*(A[19] + 0.5*dk[2])), \
+        d_c_2_d_a1_2_k2_2 = d_a1_2_scale_2*(a1[2] + 1.0) + scale[2], \
+        d_c_2_k2_2_2 = scale[2]*(a1[2] + 1.0), \
+        d_c_2_kappa_2_2 = 0.5*d_c_2_k2_2_2/kappa[2], \
+        d_c_2_d_a1_2_kappa_2 = -0.5*d_a1_2_k2_2*d_c_2_kappa_2_2/(kappa[2]*kappa[2]) + 0.5*d_c_2_d_a1_2_k2_2/kappa[2], \
+        d_c_2_D_a1_2 = 1.1377777777777773*A[14]*EI_l*d_a1_2_kappa_2*d_c_2_kappa_2_2 + 1.1377777777777773*A[14]*d_c_2_d_a1_2_kappa_2*(0.5*EI_l*dk[2] + EI_l*(A[19] + 0.5*dk[2])), \
+        d_c_2_d_b_2_kappa_2 = -(0.5*d_b_2_k2_2*d_c_2_kappa_2_2/(kappa[2]*kappa[2])), \
+        d_c_2_D_b_2 = 1.1377777777777773*A[14]*EI_l*d_b_2_kappa_2*d_c_2_kappa_2_2 + 1.1377777777777773*A[14]*d_c_2_d_b_2_kappa_2*(0.5*EI_l*dk[2] + EI_l*(A[19] + 0.5*dk[2])), \
+        d_c_2_d_c_2_kappa_2 = -(0.5*d_c_2_k2_2*d_c_2_kappa_2_2/(kappa[2]*kappa[2])), \
+        d_c_2_D_c_2 = 1.1377777777777773*A[14]*EI_l*d_c_2_kappa_2*d_c_2_kappa_2_2 + 1.1377777777777773*A[14]*d_c_2_d_c_2_kappa_2*(0.5*EI_l*dk[2] + EI_l*(A[19] + 0.5*dk[2])), \
+        half_abc2 = 0.5*D_b_2, \
+        H_aa_abc2 = 2.0*d_a1_2_D_a1_2, \
+        H_ac_abc2 = 2.0*d_c_2_D_a1_2, \
+        H_bb_abc2 = 0.5*d_b_2_D_b_2, \
+        H_cc_abc2 = 2.0*d_c_2_D_c_2; \
+    FU_EACH(i, 3, a1_abc2[i] = H_aa_abc2*r1[2][i] + d_b_2_D_a1_2*r2[2][i];) \
+    FU_EACH(i, 3, b1_abc2[i] = H_bb_abc2*r2[2][i] + d_b_2_D_a1_2*r1[2][i];) \
+    FU_EACH(i, 3, c1_abc2[i] = H_ac_abc2*r1[2][i] + d_c_2_D_b_2*r2[2][i];) \
+    FU_EACH(i, 3, b2_abc2[i] = H_bb_abc2*r1[2][i] + d_c_2_D_b_2*r2[2][i];) \
+    FU_EACH(i, 3, c2_abc2[i] = H_cc_abc2*r2[2][i] + d_c_2_D_b_2*r1[2][i];) \
+    FU_UPPER(i, j, 3, K11_abc2[i][j] = a1_abc2[j]*r1[2][i] + b1_abc2[j]*r2[2][i];) \
+    FU_EACH(i, 3, K11_abc2[i][i] += D_a1_2;) \
+    FU_UPPER(i, j, 3, K11_abc2[j][i] = K11_abc2[i][j];) \
+    FU_PAIRS(i, j, 3, K12_abc2[i][j] = b1_abc2[i]*r1[2][j] + c1_abc2[i]*r2[2][j];) \
+    FU_EACH(i, 3, K12_abc2[i][i] += half_abc2;) \
+    FU_UPPER(i, j, 3, K22_abc2[i][j] = b2_abc2[j]*r1[2][i] + c2_abc2[j]*r2[2][i];) \
+    FU_EACH(i, 3, K22_abc2[i][i] += D_c_2;) \
+    FU_UPPER(i, j, 3, K22_abc2[j][i] = K22_abc2[i][j];) \
+    const fu_real d_a1_3_inv_a_3 = -(A[21]*A[21]/((a1r[3] + 1.0)*(a1r[3] + 1.0)));
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_12 \
+    const fu_real \
+        D_b_3 = 0.9572573409987326*A[20]*d_b_3_kappa_3*(0.5*EI_l*dk[3] + EI_l*(A[25] + 0.5*dk[3])), \
+        D_c_3 = 0.9572573409987326*A[20]*d_c_3_kappa_3*(0.5*EI_l*dk[3] + EI_l*(A[25] + 0.5*dk[3])), \
+        d_a1_3_d_a1_3_inv_a_3 = 2.0*A[21]*A[21]*A[21]/((a1r[3] + 1.0)*(a1r[3] + 1.0)*(a1r[3] + 1.0)), \
+        d_a1_3_inv_a_3_2 = -(A[21]*A[21]/((a1r[3] + 1.0)*(a1r[3] + 1.0)));
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_13 \
+    const fu_real \
+        d_a1_3_d_a1_3_k2_3 = c[3]*d_a1_3_scale_3 + c[3]*d_a1_3_scale_3_2 + d_a1_3_d_a1_3_scale_3*(-b[3]*b[3] + c[3]*(a1[3] + 1.0)), \
+        d_a1_3_k2_3_2 = c[3]*scale[3] + d_a1_3_scale_3_2*(-b[3]*b[3] + c[3]*(a1[3] + 1.0)), \
+        d_a1_3_kappa_3_2 = 0.5*d_a1_3_k2_3_2/kappa[3], \
+        d_a1_3_d_a1_3_kappa_3 = 0.5*d_a1_3_d_a1_3_k2_3/kappa[3] - 0.5*d_a1_3_k2_3*d_a1_3_kappa_3_2/(kappa[3]*kappa[3]);
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_14 \
+    const fu_real \
+        d_b_3_d_a1_3_k2_3 = -(2.0*b[3]*d_a1_3_scale_3), \
+        d_b_3_k2_3_2 = -(2.0*b[3]*scale[3]), \
+        d_b_3_kappa_3_2 = 0.5*d_b_3_k2_3_2/kappa[3], \
+        d_b_3_d_a1_3_kappa_3 = -0.5*d_a1_3_k2_3*d_b_3_kappa_3_2/(kappa[3]*kappa[3]) + 0.5*d_b_3_d_a1_3_k2_3/kappa[3], \
+        d_b_3_D_a1_3 = 0.9572573409987326*A[20]*EI_l*d_a1_3_kappa_3*d_b_3_kappa_3_2 + 0.9572573409987326*A[20]*d_b_3_d_a1_3_kappa_3*(0.5*EI_l*dk[3] + EI_l*(A[25] + 0.5*dk[3])), \
+        d_b_3_d_b_3_k2_3 = -(2.0*scale[3]), \
+        d_b_3_d_b_3_kappa_3 = 0.5*d_b_3_d_b_3_k2_3/kappa[3] - 0.5*d_b_3_k2_3*d_b_3_kappa_3_2/(kappa[3]*kappa[3]), \
+        d_b_3_D_b_3 = 0.9572573409987326*A[20]*EI_l*d_b_3_kappa_3*d_b_3_kappa_3_2 + 0.9572573409987326*A[20]*d_b_3_d_b_3_kappa_3*(0.5*EI_l*dk[3] + EI_l*(A[25] + 0.5*dk[3])), \
+        d_c_3_d_a1_3_k2_3 = d_a1_3_scale_3*(a1[3] + 1.0) + scale[3], \
+        d_c_3_k2_3_2 = scale[3]*(a1[3] + 1.0), \
+        d_c_3_kappa_3_2 = 0.5*d_c_3_k2_3_2/kappa[3], \
+        d_c_3_d_a1_3_kappa_3 = -0.5*d_a1_3_k2_3*d_c_3_kappa_3_2/(kappa[3]*kappa[3]) + 0.5*d_c_3_d_a1_3_k2_3/kappa[3], \
+        d_c_3_D_a1_3 = 0.9572573409987326*A[20]*EI_l*d_a1_3_kappa_3*d_c_3_kappa_3_2 + 0.9572573409987326*A[20]*d_c_3_d_a1_3_kappa_3*(0.5*EI_l*dk[3] + EI_l*(A[25] + 0.5*dk[3])), \
+        d_c_3_d_b_3_kappa_3 = -(0.5*d_b_3_k2_3*d_c_3_kappa_3_2/(kappa[3]*kappa[3])), \
+        d_c_3_D_b_3 = 0.9572573409987326*A[20]*EI_l*d_b_3_kappa_3*d_c_3_kappa_3_2 + 0.9572573409987326*A[20]*d_c_3_d_b_3_kappa_3*(0.5*EI_l*dk[3] + EI_l*(A[25] + 0.5*dk[3])), \
+        d_c_3_d_c_3_kappa_3 = -(0.5*d_c_3_k2_3*d_c_3_kappa_3_2/(kappa[3]*kappa[3])), \
+        d_c_3_D_c_3 = 0.9572573409987326*A[20]*EI_l*d_c_3_kappa_3*d_c_3_kappa_3_2 + 0.9572573409987326*A[20]*d_c_3_d_c_3_kappa_3*(0.5*EI_l*dk[3] + EI_l*(A[25] + 0.5*dk[3])), \
+        half_abc3 = 0.5*D_b_3, \
+        H_aa_abc3 = 2.0*d_a1_3_D_a1_3, \
+        H_ac_abc3 = 2.0*d_c_3_D_a1_3, \
+        H_bb_abc3 = 0.5*d_b_3_D_b_3, \
+        H_cc_abc3 = 2.0*d_c_3_D_c_3; \
+    FU_EACH(i, 3, a1_abc3[i] = H_aa_abc3*r1[3][i] + d_b_3_D_a1_3*r2[3][i];) \
+    FU_EACH(i, 3, b1_abc3[i] = H_bb_abc3*r2[3][i] + d_b_3_D_a1_3*r1[3][i];) \
+    FU_EACH(i, 3, c1_abc3[i] = H_ac_abc3*r1[3][i] + d_c_3_D_b_3*r2[3][i];) \
+    FU_EACH(i, 3, b2_abc3[i] = H_bb_abc3*r1[3][i] + d_c_3_D_b_3*r2[3][i];) \
+    FU_EACH(i, 3, c2_abc3[i] = H_cc_abc3*r2[3][i] + d_c_3_D_b_3*r1[3][i];) \
+    FU_UPPER(i, j, 3, K11_abc3[i][j] = a1_abc3[j]*r1[3][i] + b1_abc3[j]*r2[3][i];) \
+    FU_EACH(i, 3, K11_abc3[i][i] += D_a1_3;) \
+    FU_UPPER(i, j, 3, K11_abc3[j][i] = K11_abc3[i][j];) \
+    FU_PAIRS(i, j, 3, K12_abc3[i][j] = b1_abc3[i]*r1[3][j] + c1_abc3[i]*r2[3][j];) \
+    FU_EACH(i, 3, K12_abc3[i][i] += half_abc3;) \
+    FU_UPPER(i, j, 3, K22_abc3[i][j] = b2_abc3[j]*r1[3][i] + c2_abc3[j]*r2[3][i];) \
+    FU_EACH(i, 3, K22_abc3[i][i] += D_c_3;) \
+    FU_UPPER(i, j, 3, K22_abc3[j][i] = K22_abc3[i][j];) \
+    const fu_real d_a1_4_inv_a_4 = -(A[27]*A[27]/((a1r[4] + 1.0)*(a1r[4] + 1.0)));
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_15 \
+    const fu_real \
+        D_b_4 = 0.47385377011237856*A[26]*d_b_4_kappa_4*(0.5*EI_l*dk[4] + EI_l*(A[31] + 0.5*dk[4])), \
+        D_c_4 = 0.47385377011237856*A[26]*d_c_4_kappa_4*(0.5*EI_l*dk[4] + EI_l*(A[31] + 0.5*dk[4])), \
+        d_a1_4_d_a1_4_inv_a_4 = 2.0*A[27]*A[27]*A[27]/((a1r[4] + 1.0)*(a1r[4] + 1.0)*(a1r[4] + 1.0)), \
+        d_a1_4_inv_a_4_2 = -(A[27]*A[27]/((a1r[4] + 1.0)*(a1r[4] + 1.0)));
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_16 \
+    const fu_real \
+        d_a1_4_d_a1_4_k2_4 = c[4]*d_a1_4_scale_4 + c[4]*d_a1_4_scale_4_2 + d_a1_4_d_a1_4_scale_4*(-b[4]*b[4] + c[4]*(a1[4] + 1.0)), \
+        d_a1_4_k2_4_2 = c[4]*scale[4] + d_a1_4_scale_4_2*(-b[4]*b[4] + c[4]*(a1[4] + 1.0)), \
+        d_a1_4_kappa_4_2 = 0.5*d_a1_4_k2_4_2/kappa[4], \
+        d_a1_4_d_a1_4_kappa_4 = 0.5*d_a1_4_d_a1_4_k2_4/kappa[4] - 0.5*d_a1_4_k2_4*d_a1_4_kappa_4_2/(kappa[4]*kappa[4]);
+
+/* part of second derivatives at the quadrature points: of cable12_green_exact_curved_elastic_tangent and 1 more */
+#define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_17 \
+    const fu_real \
+        d_b_4_d_a1_4_k2_4 = -(2.0*b[4]*d_a1_4_scale_4), \
+        d_b_4_k2_4_2 = -(2.0*b[4]*scale[4]), \
+        d_b_4_kappa_4_2 = 0.5*d_b_4_k2_4_2/kappa[4], \
+        d_b_4_d_a1_4_kappa_4 = -0.5*d_a1_4_k2_4*d_b_4_kappa_4_2/(kappa[4]*kappa[4]) + 0.5*d_b_4_d_a1_4_k2_4/kappa[4], \
+        d_b_4_D_a1_4 = 0.47385377011237856*A[26]*EI_l*d_a1_4_kappa_4*d_b_4_kappa_4_2 + 0.47385377011237856*A[26]*d_b_4_d_a1_4_kappa_4*(0.5*EI_l*dk[4] + EI_l*(A[31] + 0.5*dk[4])), \
+        d_b_4_d_b_4_k2_4 = -(2.0*scale[4]), \
+        d_b_4_d_b_4_kappa_4 = 0.5*d_b_4_d_b_4_k2_4/kappa[4] - 0.5*d_b_4_k2_4*d_b_4_kappa_4_2/(kappa[4]*kappa[4]), \
+        d_b_4_D_b_4 = 0.47385377011237856*A[26]*EI_l*d_b_4_kappa_4*d_b_4_kappa_4_2 + 0.47385377011237856*A[26]*d_b_4_d_b_4_kappa_4*(0.5*EI_l*dk[4] + EI_l*(A[31] + 0.5*dk[4])), \
+        d_c_4_d_a1_4_k2_4 = d_a1_4_scale_4*(a1[4] + 1.0) + scale[4], \
+        d_c_4_k2_4_2 = scale[4]*(a1[4] + 1.0), \
+        d_c_4_kappa_4_2 = 0.5*d_c_4_k2_4_2/kappa[4], \
+        d_c_4_d_a1_4_kappa_4 = -0.5*d_a1_4_k2_4*d_c_4_kappa_4_2/(kappa[4]*kappa[4]) + 0.5*d_c_4_d_a1_4_k2_4/kappa[4], \
+        d_c_4_D_a1_4 = 0.47385377011237856*A[26]*EI_l*d_a1_4_kappa_4*d_c_4_kappa_4_2 + 0.47385377011237856*A[26]*d_c_4_d_a1_4_kappa_4*(0.5*EI_l*dk[4] + EI_l*(A[31] + 0.5*dk[4])), \
+        d_c_4_d_b_4_kappa_4 = -(0.5*d_b_4_k2_4*d_c_4_kappa_4_2/(kappa[4]*kappa[4])), \
+        d_c_4_D_b_4 = 0.47385377011237856*A[26]*EI_l*d_b_4_kappa_4*d_c_4_kappa_4_2 + 0.47385377011237856*A[26]*d_c_4_d_b_4_kappa_4*(0.5*EI_l*dk[4] + EI_l*(A[31] + 0.5*dk[4])), \
+        d_c_4_d_c_4_kappa_4 = -(0.5*d_c_4_k2_4*d_c_4_kappa_4_2/(kappa[4]*kappa[4])), \
+        d_c_4_D_c_4 = 0.47385377011237856*A[26]*EI_l*d_c_4_kappa_4*d_c_4_kappa_4_2 + 0.47385377011237856*A[26]*d_c_4_d_c_4_kappa_4*(0.5*EI_l*dk[4] + EI_l*(A[31] + 0.5*dk[4])), \
+        half_abc4 = 0.5*D_b_4, \
+        H_aa_abc4 = 2.0*d_a1_4_D_a1_4, \
+        H_ac_abc4 = 2.0*d_c_4_D_a1_4, \
+        H_bb_abc4 = 0.5*d_b_4_D_b_4, \
+        H_cc_abc4 = 2.0*d_c_4_D_c_4; \
+    FU_EACH(i, 3, a1_abc4[i] = H_aa_abc4*r1[4][i] + d_b_4_D_a1_4*r2[4][i];) \
+    FU_EACH(i, 3, b1_abc4[i] = H_bb_abc4*r2[4][i] + d_b_4_D_a1_4*r1[4][i];) \
+    FU_EACH(i, 3, c1_abc4[i] = H_ac_abc4*r1[4][i] + d_c_4_D_b_4*r2[4][i];) \
+    FU_EACH(i, 3, b2_abc4[i] = H_bb_abc4*r1[4][i] + d_c_4_D_b_4*r2[4][i];) \
+    FU_EACH(i, 3, c2_abc4[i] = H_cc_abc4*r2[4][i] + d_c_4_D_b_4*r1[4][i];) \
+    FU_UPPER(i, j, 3, K11_abc4[i][j] = a1_abc4[j]*r1[4][i] + b1_abc4[j]*r2[4][i];) \
+    FU_EACH(i, 3, K11_abc4[i][i] += D_a1_4;) \
+    FU_UPPER(i, j, 3, K11_abc4[j][i] = K11_abc4[i][j];) \
+    FU_PAIRS(i, j, 3, K12_abc4[i][j] = b1_abc4[i]*r1[4][j] + c1_abc4[i]*r2[4][j];) \
+    FU_EACH(i, 3, K12_abc4[i][i] += half_abc4;) \
+    FU_UPPER(i, j, 3, K22_abc4[i][j] = b2_abc4[j]*r1[4][i] + c2_abc4[j]*r2[4][i];) \
+    FU_EACH(i, 3, K22_abc4[i][i] += D_c_4;) \
+    FU_UPPER(i, j, 3, K22_abc4[j][i] = K22_abc4[i][j];) \
+    FU_UPPER(i, j, 3, sum11_abc0[i][j] = K11_abc0[i][j] + K11_abc4[i][j]; sum11_abc0[j][i] = sum11_abc0[i][j];) \
+    FU_UPPER(i, j, 3, sum11_abc1[i][j] = K11_abc1[i][j] + K11_abc3[i][j]; sum11_abc1[j][i] = sum11_abc1[i][j];) \
+    FU_UPPER(i, j, 3, difference11_abc0[i][j] = K11_abc0[i][j] - K11_abc4[i][j]; difference11_abc0[j][i] = difference11_abc0[i][j];) \
+    FU_PAIRS(i, j, 3, sum12_abc0[i][j] = K12_abc0[i][j] + K12_abc4[i][j];) \
+    FU_UPPER(i, j, 3, difference11_abc1[i][j] = K11_abc1[i][j] - K11_abc3[i][j]; difference11_abc1[j][i] = difference11_abc1[i][j];) \
+    FU_PAIRS(i, j, 3, sum12_abc1[i][j] = K12_abc1[i][j] + K12_abc3[i][j];) \
+    FU_PAIRS(i, j, 3, difference12_abc0[i][j] = K12_abc0[i][j] - K12_abc4[i][j];) \
+    FU_PAIRS(i, j, 3, difference12_abc1[i][j] = K12_abc1[i][j] - K12_abc3[i][j];) \
+    FU_UPPER(i, j, 3, sum22_abc0[i][j] = K22_abc0[i][j] + K22_abc4[i][j]; sum22_abc0[j][i] = sum22_abc0[i][j];) \
+    FU_UPPER(i, j, 3, sum22_abc1[i][j] = K22_abc1[i][j] + K22_abc3[i][j]; sum22_abc1[j][i] = sum22_abc1[i][j];) \
+    FU_UPPER(i, j, 3, difference22_abc0[i][j] = K22_abc0[i][j] - K22_abc4[i][j]; difference22_abc0[j][i] = difference22_abc0[i][j];) \
+    FU_UPPER(i, j, 3, difference22_abc1[i][j] = K22_abc1[i][j] - K22_abc3[i][j]; difference22_abc1[j][i] = difference22_abc1[i][j];)
+
+/* part of forces at the quadrature points: of cable12_green_exact_curved_discrete_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_3 \
+    const fu_real \
+        D_k2_0_a1_0 = D_scale_0_a1_0*(-0.5*next_b[0]*next_b[0] + 0.5*next_c[0]*(next_a1[0] + 1.0) - 0.5*now_b[0]*now_b[0] + 0.5*now_c[0]*(now_a1[0] + 1.0)) + (0.5*next_c[0] + 0.5*now_c[0])*(0.5*next_scale[0] + 0.5*now_scale[0]), \
+        D_kappa_0_a1_0 = D_k2_0_a1_0/(next_kappa[0] + now_kappa[0]), \
+        D_k2_0_b_0 = (-next_b[0] - now_b[0])*(0.5*next_scale[0] + 0.5*now_scale[0]), \
+        D_kappa_0_b_0 = D_k2_0_b_0/(next_kappa[0] + now_kappa[0]), \
+        D_k2_0_c_0 = (0.5*next_scale[0] + 0.5*now_scale[0])*(0.5*next_a1[0] + 0.5*now_a1[0] + 1.0), \
+        D_kappa_0_c_0 = D_k2_0_c_0/(next_kappa[0] + now_kappa[0]);
+
+/* part of forces at the quadrature points: of cable12_green_exact_curved_discrete_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_4 \
+    const fu_real \
+        D_b_0 = 0.47385377011237856*A[2]*(D_kappa_0_b_0*EI_l*(A[7] + 0.25*next_dk[0] + 0.25*now_dk[0]) + 0.5*D_kappa_0_b_0*(0.5*EI_l*next_dk[0] + 0.5*EI_l*now_dk[0])), \
+        D_c_0 = 0.47385377011237856*A[2]*(D_kappa_0_c_0*EI_l*(A[7] + 0.25*next_dk[0] + 0.25*now_dk[0]) + 0.5*D_kappa_0_c_0*(0.5*EI_l*next_dk[0] + 0.5*EI_l*now_dk[0])); \
+    FU_EACH(i, 3, mean1_abc0[i] = 0.5*next_r1[0][i] + 0.5*now_r1[0][i];) \
+    FU_EACH(i, 3, mean2_abc0[i] = 0.5*next_r2[0][i] + 0.5*now_r2[0][i];)
+
+/* part of forces at the quadrature points: of cable12_green_exact_curved_discrete_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_5 \
+    const fu_real \
+        D_k2_1_a1_1 = D_scale_1_a1_1*(-0.5*next_b[1]*next_b[1] + 0.5*next_c[1]*(next_a1[1] + 1.0) - 0.5*now_b[1]*now_b[1] + 0.5*now_c[1]*(now_a1[1] + 1.0)) + (0.5*next_c[1] + 0.5*now_c[1])*(0.5*next_scale[1] + 0.5*now_scale[1]), \
+        D_kappa_1_a1_1 = D_k2_1_a1_1/(next_kappa[1] + now_kappa[1]), \
+        D_k2_1_b_1 = (-next_b[1] - now_b[1])*(0.5*next_scale[1] + 0.5*now_scale[1]), \
+        D_kappa_1_b_1 = D_k2_1_b_1/(next_kappa[1] + now_kappa[1]), \
+        D_k2_1_c_1 = (0.5*next_scale[1] + 0.5*now_scale[1])*(0.5*next_a1[1] + 0.5*now_a1[1] + 1.0), \
+        D_kappa_1_c_1 = D_k2_1_c_1/(next_kappa[1] + now_kappa[1]);
+
+/* part of forces at the quadrature points: of cable12_green_exact_curved_discrete_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_6 \
+    const fu_real \
+        D_b_1 = 0.9572573409987326*A[8]*(D_kappa_1_b_1*EI_l*(A[13] + 0.25*next_dk[1] + 0.25*now_dk[1]) + 0.5*D_kappa_1_b_1*(0.5*EI_l*next_dk[1] + 0.5*EI_l*now_dk[1])), \
+        D_c_1 = 0.9572573409987326*A[8]*(D_kappa_1_c_1*EI_l*(A[13] + 0.25*next_dk[1] + 0.25*now_dk[1]) + 0.5*D_kappa_1_c_1*(0.5*EI_l*next_dk[1] + 0.5*EI_l*now_dk[1])); \
+    FU_EACH(i, 3, mean1_abc1[i] = 0.5*next_r1[1][i] + 0.5*now_r1[1][i];) \
+    FU_EACH(i, 3, mean2_abc1[i] = 0.5*next_r2[1][i] + 0.5*now_r2[1][i];)
+
+/* part of forces at the quadrature points: of cable12_green_exact_curved_discrete_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_7 \
+    const fu_real \
+        D_k2_2_a1_2 = D_scale_2_a1_2*(-0.5*next_b[2]*next_b[2] + 0.5*next_c[2]*(next_a1[2] + 1.0) - 0.5*now_b[2]*now_b[2] + 0.5*now_c[2]*(now_a1[2] + 1.0)) + (0.5*next_c[2] + 0.5*now_c[2])*(0.5*next_scale[2] + 0.5*now_scale[2]), \
+        D_kappa_2_a1_2 = D_k2_2_a1_2/(next_kappa[2] + now_kappa[2]), \
+        D_k2_2_b_2 = (-next_b[2] - now_b[2])*(0.5*next_scale[2] + 0.5*now_scale[2]), \
+        D_kappa_2_b_2 = D_k2_2_b_2/(next_kappa[2] + now_kappa[2]), \
+        D_k2_2_c_2 = (0.5*next_scale[2] + 0.5*now_scale[2])*(0.5*next_a1[2] + 0.5*now_a1[2] + 1.0), \
+        D_kappa_2_c_2 = D_k2_2_c_2/(next_kappa[2] + now_kappa[2]);
+
+/* part of forces at the quadrature points: of cable12_green_exact_curved_discrete_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_8 \
+    const fu_real \
+        D_b_2 = 1.1377777777777773*A[14]*(D_kappa_2_b_2*EI_l*(A[19] + 0.25*next_dk[2] + 0.25*now_dk[2]) + 0.5*D_kappa_2_b_2*(0.5*EI_l*next_dk[2] + 0.5*EI_l*now_dk[2])), \
+        D_c_2 = 1.1377777777777773*A[14]*(D_kappa_2_c_2*EI_l*(A[19] + 0.25*next_dk[2] + 0.25*now_dk[2]) + 0.5*D_kappa_2_c_2*(0.5*EI_l*next_dk[2] + 0.5*EI_l*now_dk[2]));
+
+/* part of forces at the quadrature points: of cable12_green_exact_curved_discrete_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_9 \
+    const fu_real \
+        D_k2_3_a1_3 = D_scale_3_a1_3*(-0.5*next_b[3]*next_b[3] + 0.5*next_c[3]*(next_a1[3] + 1.0) - 0.5*now_b[3]*now_b[3] + 0.5*now_c[3]*(now_a1[3] + 1.0)) + (0.5*next_c[3] + 0.5*now_c[3])*(0.5*next_scale[3] + 0.5*now_scale[3]), \
+        D_kappa_3_a1_3 = D_k2_3_a1_3/(next_kappa[3] + now_kappa[3]), \
+        D_k2_3_b_3 = (-next_b[3] - now_b[3])*(0.5*next_scale[3] + 0.5*now_scale[3]), \
+        D_kappa_3_b_3 = D_k2_3_b_3/(next_kappa[3] + now_kappa[3]), \
+        D_k2_3_c_3 = (0.5*next_scale[3] + 0.5*now_scale[3])*(0.5*next_a1[3] + 0.5*now_a1[3] + 1.0), \
+        D_kappa_3_c_3 = D_k2_3_c_3/(next_kappa[3] + now_kappa[3]);
+
+/* part of forces at the quadrature points: of cable12_green_exact_curved_discrete_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_10 \
+    const fu_real \
+        D_b_3 = 0.9572573409987326*A[20]*(D_kappa_3_b_3*EI_l*(A[25] + 0.25*next_dk[3] + 0.25*now_dk[3]) + 0.5*D_kappa_3_b_3*(0.5*EI_l*next_dk[3] + 0.5*EI_l*now_dk[3])), \
+        D_c_3 = 0.9572573409987326*A[20]*(D_kappa_3_c_3*EI_l*(A[25] + 0.25*next_dk[3] + 0.25*now_dk[3]) + 0.5*D_kappa_3_c_3*(0.5*EI_l*next_dk[3] + 0.5*EI_l*now_dk[3])); \
+    FU_EACH(i, 3, mean1_abc3[i] = 0.5*next_r1_at[0][i] + 0.5*now_r1_at[0][i];) \
+    FU_EACH(i, 3, mean2_abc3[i] = 0.5*next_r2_at[0][i] + 0.5*now_r2_at[0][i];)
+
+/* part of forces at the quadrature points: of cable12_green_exact_curved_discrete_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_11 \
+    const fu_real \
+        D_k2_4_a1_4 = D_scale_4_a1_4*(-0.5*next_b[4]*next_b[4] + 0.5*next_c[4]*(next_a1[4] + 1.0) - 0.5*now_b[4]*now_b[4] + 0.5*now_c[4]*(now_a1[4] + 1.0)) + (0.5*next_c[4] + 0.5*now_c[4])*(0.5*next_scale[4] + 0.5*now_scale[4]), \
+        D_kappa_4_a1_4 = D_k2_4_a1_4/(next_kappa[4] + now_kappa[4]), \
+        D_k2_4_b_4 = (-next_b[4] - now_b[4])*(0.5*next_scale[4] + 0.5*now_scale[4]), \
+        D_kappa_4_b_4 = D_k2_4_b_4/(next_kappa[4] + now_kappa[4]), \
+        D_k2_4_c_4 = (0.5*next_scale[4] + 0.5*now_scale[4])*(0.5*next_a1[4] + 0.5*now_a1[4] + 1.0), \
+        D_kappa_4_c_4 = D_k2_4_c_4/(next_kappa[4] + now_kappa[4]);
+
+/* part of forces at the quadrature points: of cable12_green_exact_curved_discrete_force and 1 more */
+#define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_12 \
+    const fu_real \
+        D_b_4 = 0.47385377011237856*A[26]*(D_kappa_4_b_4*EI_l*(A[31] + 0.25*next_dk[4] + 0.25*now_dk[4]) + 0.5*D_kappa_4_b_4*(0.5*EI_l*next_dk[4] + 0.5*EI_l*now_dk[4])), \
+        D_c_4 = 0.47385377011237856*A[26]*(D_kappa_4_c_4*EI_l*(A[31] + 0.25*next_dk[4] + 0.25*now_dk[4]) + 0.5*D_kappa_4_c_4*(0.5*EI_l*next_dk[4] + 0.5*EI_l*now_dk[4])); \
+    FU_EACH(i, 3, mean1_abc4[i] = 0.5*next_r1_at[1][i] + 0.5*now_r1_at[1][i];) \
+    FU_EACH(i, 3, mean2_abc4[i] = 0.5*next_r2_at[1][i] + 0.5*now_r2_at[1][i];)
+
+/* part of energy per length through its invariants: of cable12_green_exact_curved_section_forces and 1 more */
+#define CABLE12_PART_OF_ENERGY_PER_LENGTH_THROUGH_ITS_INVARIANTS_2 \
+    const fu_real \
+        r01_x = X*r0_t1_x + chordr0_2_x + r0_t2_x*(1.5*X*X - 0.5), \
+        r01_y = X*r0_t1_y + chordr0_2_y + r0_t2_y*(1.5*X*X - 0.5), \
+        r01_z = X*r0_t1_z + chordr0_2_z + r0_t2_z*(1.5*X*X - 0.5), \
+        r02_x = 6.0*X*r0_t2_x*w + 2.0*r0_t1_x*w, \
+        r02_y = 6.0*X*r0_t2_y*w + 2.0*r0_t1_y*w, \
+        r02_z = 6.0*X*r0_t2_z*w + 2.0*r0_t1_z*w, \
+        r03_x = 12.0*r0_t2_x*w*w, \
+        r03_y = 12.0*r0_t2_y*w*w, \
+        r03_z = 12.0*r0_t2_z*w*w, \
+        a0 = r01_x*r01_x + r01_y*r01_y + r01_z*r01_z, \
+        b0 = r01_x*r02_x + r01_y*r02_y + r01_z*r02_z, \
+        c0 = r02_x*r02_x + r02_y*r02_y + r02_z*r02_z, \
+        inv_a0 = 1.0/a0, \
+        k02 = inv_a0*inv_a0*inv_a0*(a0*c0 - b0*b0), \
+        round = (1.0/1000000.0)*k02 + (1.0/250000000000.0)*w*w, \
+        k0 = FU_SQRT(k02 + round), \
+        none = 1.0/(k02*k02 + (1.0/62500000000000000000000.0)*w*w*w*w), \
+        j0 = FU_SQRT(a0), \
+        k0_none = (1.0/62500000000000000000000.0)*k0*none*w*w*w*w, \
+        a1r = a1*inv_a0 + inv_a0 - 1.0;
+
+/* part of energy per length through its invariants: of cable12_green_exact_curved_section_forces and 1 more */
+#define CABLE12_PART_OF_ENERGY_PER_LENGTH_THROUGH_ITS_INVARIANTS_3 \
+    const fu_real \
+        k2 = scale*(-b*b + c*(a1 + 1.0)), \
+        kappa = FU_SQRT(k2 + round), \
+        dk = (-k02 + k2)/(k0 + kappa), \
+        n0_x = r01_y*r02_z - r01_z*r02_y, \
+        n0_y = -r01_x*r02_z + r01_z*r02_x, \
+        n0_z = r01_x*r02_y - r01_y*r02_x, \
+        size20 = inv_a0*inv_a0*inv_a0*(n0_x*n0_x + n0_y*n0_y + n0_z*n0_z), \
+        d_a1_inv_a = -(inv_a0*inv_a0/((a1r + 1.0)*(a1r + 1.0)));
+
+/* part of forces on r' and r'': of cable12_green_exact_curved_section_forces and 1 more */
+#define CABLE12_PART_OF_FORCES_ON_R_AND_R \
+    const fu_real \
+        dx_d_b_k2 = -2.0*b*dx_scale - 2.0*dx_b*scale, \
+        dx_c = 2.0*r2_x*r3_x + 2.0*r2_y*r3_y + 2.0*r2_z*r3_z, \
+        dx_k2 = -2.0*b*dx_b*scale + c*dx_a1*scale + dx_c*scale*(a1 + 1.0) + dx_scale*(-b*b + c*(a1 + 1.0)), \
+        dx_b0 = r01_x*r03_x + r01_y*r03_y + r01_z*r03_z + r02_x*r02_x + r02_y*r02_y + r02_z*r02_z, \
+        dx_c0 = 2.0*r02_x*r03_x + 2.0*r02_y*r03_y + 2.0*r02_z*r03_z, \
+        dx_k02 = a0*dx_c0*inv_a0*inv_a0*inv_a0 - 2.0*b0*dx_b0*inv_a0*inv_a0*inv_a0 + c0*dx_a0*inv_a0*inv_a0*inv_a0 + 3.0*dx_inv_a0*inv_a0*inv_a0*(a0*c0 - b0*b0), \
+        dx_round = (1.0/1000000.0)*dx_k02, \
+        dx_kappa = (0.5*dx_k2 + 0.5*dx_round)/kappa, \
+        dx_d_b_kappa = -0.5*d_b_k2*dx_kappa/(kappa*kappa) + 0.5*dx_d_b_k2/kappa, \
+        dx_k0 = (0.5*dx_k02 + 0.5*dx_round)/k0, \
+        dx_dk = -dx_k0 + dx_kappa, \
+        dx_j0 = 0.5*dx_a0/j0, \
+        dx_none = -(2.0*dx_k02*k02*none*none), \
+        dx_k0_none = (1.0/62500000000000000000000.0)*dx_k0*none*w*w*w*w + (1.0/62500000000000000000000.0)*dx_none*k0*w*w*w*w, \
+        dx_W_b = S[1]*d_b_kappa*dx_dk*j0 + S[1]*d_b_kappa*dx_k0_none*j0 + d_b_kappa*dx_j0*(0.5*S[1]*dk + S[1]*(0.5*dk + k0_none)) + dx_d_b_kappa*j0*(0.5*S[1]*dk + S[1]*(0.5*dk + k0_none)), \
+        dx_d_c_k2 = dx_a1*scale + dx_scale*(a1 + 1.0), \
+        dx_d_c_kappa = -0.5*d_c_k2*dx_kappa/(kappa*kappa) + 0.5*dx_d_c_k2/kappa, \
+        dx_W_c = S[1]*d_c_kappa*dx_dk*j0 + S[1]*d_c_kappa*dx_k0_none*j0 + d_c_kappa*dx_j0*(0.5*S[1]*dk + S[1]*(0.5*dk + k0_none)) + dx_d_c_kappa*j0*(0.5*S[1]*dk + S[1]*(0.5*dk + k0_none));
+
+/* part of strain vectors: of cable12_green_exact_energy and 15 more */
+#define CABLE12_PART_OF_STRAIN_VECTORS \
+    const fu_real \
         chord2_x = w*(-e[0] + e[6]), \
         chord2_y = w*(-e[1] + e[7]), \
         chord2_z = w*(-e[2] + e[8]), \
@@ -18,6 +757,25 @@
         t2_x = -chord2_x + 0.5*e[3] + 0.5*e[9], \
         t2_y = -chord2_y + 0.5*e[10] + 0.5*e[4], \
         t2_z = -chord2_z + 0.5*e[11] + 0.5*e[5];
+
+/* part of strain at the quadrature points: of cable12_green_exact_elastic_force and 13 more */
+#define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_8 \
+    FU_EACH(i, 3, r2_odd0[i] = -(2.718539537815992*t2[i]);) \
+    FU_EACH(i, 3, r2[4][i] = -r2_odd0[i] + t1[i];) \
+    FU_EACH(i, 3, r2[0][i] = r2_odd0[i] + t1[i];) \
+    FU_EACH(i, 3, r2_odd1[i] = -(1.6154079303170494*t2[i]);) \
+    FU_EACH(i, 3, r2[3][i] = -r2_odd1[i] + t1[i];) \
+    FU_EACH(i, 3, r2[1][i] = r2_odd1[i] + t1[i];) \
+    FU_EACH(i, 3, r2[2][i] = t1[i];) \
+    FU_EACH(g, 5, \
+        a1[g] = r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2] - 1.0; \
+        b[g] = r1[g][0]*r2[g][0] + r1[g][1]*r2[g][1] + r1[g][2]*r2[g][2]; \
+        c[g] = r2[g][0]*r2[g][0] + r2[g][1]*r2[g][1] + r2[g][2]*r2[g][2];)
+
+/* strain vectors: of cable12_green_exact_energy and 8 more */
+#define CABLE12_STRAIN_VECTORS \
+    const fu_real w = 1.0/l; \
+    CABLE12_PART_OF_STRAIN_VECTORS
 
 /* forces on strain vectors: of cable12_green_exact_elastic_force and 4 more */
 #define CABLE12_FORCES_ON_STRAIN_VECTORS \
@@ -271,40 +1029,20 @@
     FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.7320508075688772*t2[i];) \
     FU_EACH(i, 3, d2_b0[i] = dt1[i] - 1.7320508075688772*dt2[i];) \
     const fu_real len_b0 = FU_SQRT(r1_b0[0]*r1_b0[0] + r1_b0[1]*r1_b0[1] + r1_b0[2]*r1_b0[2]); \
-    inv_b[0] = 1.0/len_b0; \
-    FU_EACH(i, 3, i_b[0][i] = inv_b[0]*r1_b0[i];) \
-    const fu_real stretch_b0 = d1_b0[0]*i_b[0][0] + d1_b0[1]*i_b[0][1] + d1_b0[2]*i_b[0][2]; \
-    FU_EACH(i, 3, di_b0[i] = inv_b[0]*(d1_b0[i] - i_b[0][i]*stretch_b0);) \
-    along_b[0] = i_b[0][0]*r2_b[0][0] + i_b[0][1]*r2_b[0][1] + i_b[0][2]*r2_b[0][2]; \
-    const fu_real across_b0 = di_b0[0]*r2_b[0][0] + di_b0[1]*r2_b[0][1] + di_b0[2]*r2_b[0][2]; \
-    FU_EACH(i, 3, rate_b[0][i] = across_b0*i_b[0][i] - along_b[0]*di_b0[i] + d2_b0[i];) \
+    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
     FU_EACH(i, 3, r1_b1[i] = chord2[i] + 0.5773502691896257*t1[i];) \
     FU_EACH(i, 3, d1_b1[i] = chordd2[i] + 0.5773502691896257*dt1[i];) \
     FU_EACH(i, 3, r2_b[1][i] = t1[i] + 1.7320508075688772*t2[i];) \
     FU_EACH(i, 3, d2_b1[i] = dt1[i] + 1.7320508075688772*dt2[i];) \
     const fu_real len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]); \
-    inv_b[1] = 1.0/len_b1; \
-    FU_EACH(i, 3, i_b[1][i] = inv_b[1]*r1_b1[i];) \
-    const fu_real stretch_b1 = d1_b1[0]*i_b[1][0] + d1_b1[1]*i_b[1][1] + d1_b1[2]*i_b[1][2]; \
-    FU_EACH(i, 3, di_b1[i] = inv_b[1]*(d1_b1[i] - i_b[1][i]*stretch_b1);) \
-    along_b[1] = i_b[1][0]*r2_b[1][0] + i_b[1][1]*r2_b[1][1] + i_b[1][2]*r2_b[1][2]; \
-    const fu_real across_b1 = di_b1[0]*r2_b[1][0] + di_b1[1]*r2_b[1][1] + di_b1[2]*r2_b[1][2]; \
-    FU_EACH(i, 3, rate_b[1][i] = across_b1*i_b[1][i] - along_b[1]*di_b1[i] + d2_b1[i];)
+    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
 
 /* strain vectors: of cable12_green_exact_section_forces and 4 more */
 #define CABLE12_STRAIN_VECTORS_2 \
     const fu_real \
         w = 1.0/l, \
-        X = 2.0*w*x - 1.0, \
-        chord2_x = w*(-e[0] + e[6]), \
-        chord2_y = w*(-e[1] + e[7]), \
-        chord2_z = w*(-e[2] + e[8]), \
-        t1_x = -0.5*e[3] + 0.5*e[9], \
-        t1_y = 0.5*e[10] - 0.5*e[4], \
-        t1_z = 0.5*e[11] - 0.5*e[5], \
-        t2_x = -chord2_x + 0.5*e[3] + 0.5*e[9], \
-        t2_y = -chord2_y + 0.5*e[10] + 0.5*e[4], \
-        t2_z = -chord2_z + 0.5*e[11] + 0.5*e[5];
+        X = 2.0*w*x - 1.0; \
+    CABLE12_PART_OF_STRAIN_VECTORS
 
 /* derivatives of the axis by x: of cable12_green_exact_section_forces and 6 more */
 #define CABLE12_DERIVATIVES_OF_THE_AXIS_BY_X \
@@ -761,16 +1499,9 @@
 #define CABLE12_STRAIN_VECTORS_3 \
     const fu_real \
         w = 1.0/l, \
-        X = 2.0*w*x - 1.0, \
-        chord2_x = w*(-e[0] + e[6]), \
-        chord2_y = w*(-e[1] + e[7]), \
-        chord2_z = w*(-e[2] + e[8]), \
-        t1_x = -0.5*e[3] + 0.5*e[9], \
-        t1_y = 0.5*e[10] - 0.5*e[4], \
-        t1_z = 0.5*e[11] - 0.5*e[5], \
-        t2_x = -chord2_x + 0.5*e[3] + 0.5*e[9], \
-        t2_y = -chord2_y + 0.5*e[10] + 0.5*e[4], \
-        t2_z = -chord2_z + 0.5*e[11] + 0.5*e[5], \
+        X = 2.0*w*x - 1.0; \
+    CABLE12_PART_OF_STRAIN_VECTORS \
+    const fu_real \
         chordr0_2_x = w*(-e0[0] + e0[6]), \
         chordr0_2_y = w*(-e0[1] + e0[7]), \
         chordr0_2_z = w*(-e0[2] + e0[8]), \

@@ -22,28 +22,7 @@
     const fu_real \
         EA_l = 0.5*A[0]/w, \
         EI_l = 2.0*A[1]*w; \
-    FU_EACH(i, 3, r1_even0[i] = chord3[i] + 0.7317428697781312*t2[i] + 0.24573545909491168*t4[i];) \
-    FU_EACH(i, 3, r1_odd0[i] = -0.906179845938664*t1[i] - 0.501031171044662*t3[i];) \
-    FU_EACH(i, 3, r1[4][i] = r1_even0[i] - r1_odd0[i];) \
-    FU_EACH(i, 3, r1[0][i] = r1_even0[i] + r1_odd0[i];) \
-    FU_EACH(i, 3, r1_even1[i] = chord3[i] - 0.06507620311146456*t2[i] - 0.34450089119367744*t4[i];) \
-    FU_EACH(i, 3, r1_odd1[i] = -0.5384693101056831*t1[i] + 0.4173821037266682*t3[i];) \
-    FU_EACH(i, 3, r1[3][i] = r1_even1[i] - r1_odd1[i];) \
-    FU_EACH(i, 3, r1[1][i] = r1_even1[i] + r1_odd1[i];) \
-    FU_EACH(i, 3, r1[2][i] = chord3[i] - 0.5*t2[i] + 0.375*t4[i];) \
-    FU_EACH(i, 3, r2_even0[i] = t1[i] + 4.658714348890656*t3[i];) \
-    FU_EACH(i, 3, r2_odd0[i] = -2.718539537815992*t2[i] - 6.225757735128626*t4[i];) \
-    FU_EACH(i, 3, r2[4][i] = r2_even0[i] - r2_odd0[i];) \
-    FU_EACH(i, 3, r2[0][i] = r2_even0[i] + r2_odd0[i];) \
-    FU_EACH(i, 3, r2_even1[i] = t1[i] + 0.6746189844426773*t3[i];) \
-    FU_EACH(i, 3, r2_odd1[i] = -1.6154079303170494*t2[i] + 1.306266795769628*t4[i];) \
-    FU_EACH(i, 3, r2[3][i] = r2_even1[i] - r2_odd1[i];) \
-    FU_EACH(i, 3, r2[1][i] = r2_even1[i] + r2_odd1[i];) \
-    FU_EACH(i, 3, r2[2][i] = t1[i] - 1.5*t3[i];) \
-    FU_EACH(g, 5, \
-        a1[g] = r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2] - 1.0; \
-        b[g] = r1[g][0]*r2[g][0] + r1[g][1]*r2[g][1] + r1[g][2]*r2[g][2]; \
-        c[g] = r2[g][0]*r2[g][0] + r2[g][1]*r2[g][1] + r2[g][2]*r2[g][2];) \
+    CABLE18_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_5 \
     EA5[0] = 0.23692688505618928*EA_l; \
     EI5[0] = 0.23692688505618928*EI_l; \
     EA5[1] = 0.4786286704993663*EA_l; \
@@ -115,68 +94,8 @@ void cable18_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real
         a[5], inv_a[5], scale[5], cross2[5];
     const fu_real
         EA_l = 0.5*A[0]/w,
-        EI_l = 2.0*A[1]*w,
-        r1_even0_x = chord3_x + 0.7317428697781312*t2_x + 0.24573545909491168*t4_x,
-        r1_even0_y = chord3_y + 0.7317428697781312*t2_y + 0.24573545909491168*t4_y,
-        r1_even0_z = chord3_z + 0.7317428697781312*t2_z + 0.24573545909491168*t4_z,
-        r1_odd0_x = -0.906179845938664*t1_x - 0.501031171044662*t3_x,
-        r1_odd0_y = -0.906179845938664*t1_y - 0.501031171044662*t3_y,
-        r1_odd0_z = -0.906179845938664*t1_z - 0.501031171044662*t3_z;
-    r1_x[4] = r1_even0_x - r1_odd0_x;
-    r1_y[4] = r1_even0_y - r1_odd0_y;
-    r1_z[4] = r1_even0_z - r1_odd0_z;
-    r1_x[0] = r1_even0_x + r1_odd0_x;
-    r1_y[0] = r1_even0_y + r1_odd0_y;
-    r1_z[0] = r1_even0_z + r1_odd0_z;
-    const fu_real
-        r1_even1_x = chord3_x - 0.06507620311146456*t2_x - 0.34450089119367744*t4_x,
-        r1_even1_y = chord3_y - 0.06507620311146456*t2_y - 0.34450089119367744*t4_y,
-        r1_even1_z = chord3_z - 0.06507620311146456*t2_z - 0.34450089119367744*t4_z,
-        r1_odd1_x = -0.5384693101056831*t1_x + 0.4173821037266682*t3_x,
-        r1_odd1_y = -0.5384693101056831*t1_y + 0.4173821037266682*t3_y,
-        r1_odd1_z = -0.5384693101056831*t1_z + 0.4173821037266682*t3_z;
-    r1_x[3] = r1_even1_x - r1_odd1_x;
-    r1_y[3] = r1_even1_y - r1_odd1_y;
-    r1_z[3] = r1_even1_z - r1_odd1_z;
-    r1_x[1] = r1_even1_x + r1_odd1_x;
-    r1_y[1] = r1_even1_y + r1_odd1_y;
-    r1_z[1] = r1_even1_z + r1_odd1_z;
-    r1_x[2] = chord3_x - 0.5*t2_x + 0.375*t4_x;
-    r1_y[2] = chord3_y - 0.5*t2_y + 0.375*t4_y;
-    r1_z[2] = chord3_z - 0.5*t2_z + 0.375*t4_z;
-    const fu_real
-        r2_even0_x = t1_x + 4.658714348890656*t3_x,
-        r2_even0_y = t1_y + 4.658714348890656*t3_y,
-        r2_even0_z = t1_z + 4.658714348890656*t3_z,
-        r2_odd0_x = -2.718539537815992*t2_x - 6.225757735128626*t4_x,
-        r2_odd0_y = -2.718539537815992*t2_y - 6.225757735128626*t4_y,
-        r2_odd0_z = -2.718539537815992*t2_z - 6.225757735128626*t4_z;
-    r2_x[4] = r2_even0_x - r2_odd0_x;
-    r2_y[4] = r2_even0_y - r2_odd0_y;
-    r2_z[4] = r2_even0_z - r2_odd0_z;
-    r2_x[0] = r2_even0_x + r2_odd0_x;
-    r2_y[0] = r2_even0_y + r2_odd0_y;
-    r2_z[0] = r2_even0_z + r2_odd0_z;
-    const fu_real
-        r2_even1_x = t1_x + 0.6746189844426773*t3_x,
-        r2_even1_y = t1_y + 0.6746189844426773*t3_y,
-        r2_even1_z = t1_z + 0.6746189844426773*t3_z,
-        r2_odd1_x = -1.6154079303170494*t2_x + 1.306266795769628*t4_x,
-        r2_odd1_y = -1.6154079303170494*t2_y + 1.306266795769628*t4_y,
-        r2_odd1_z = -1.6154079303170494*t2_z + 1.306266795769628*t4_z;
-    r2_x[3] = r2_even1_x - r2_odd1_x;
-    r2_y[3] = r2_even1_y - r2_odd1_y;
-    r2_z[3] = r2_even1_z - r2_odd1_z;
-    r2_x[1] = r2_even1_x + r2_odd1_x;
-    r2_y[1] = r2_even1_y + r2_odd1_y;
-    r2_z[1] = r2_even1_z + r2_odd1_z;
-    r2_x[2] = t1_x - 1.5*t3_x;
-    r2_y[2] = t1_y - 1.5*t3_y;
-    r2_z[2] = t1_z - 1.5*t3_z;
-    FU_EACH(g, 5,
-        a1[g] = r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g] + r1_z[g]*r1_z[g] - 1.0;
-        b[g] = r1_x[g]*r2_x[g] + r1_y[g]*r2_y[g] + r1_z[g]*r2_z[g];
-        c[g] = r2_x[g]*r2_x[g] + r2_y[g]*r2_y[g] + r2_z[g]*r2_z[g];)
+        EI_l = 2.0*A[1]*w;
+    CABLE18_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS
     const fu_real EA5_0 = 0.23692688505618928*EA_l;
     EI5[0] = 0.23692688505618928*EI_l;
     const fu_real EA5_1 = 0.4786286704993663*EA_l;
@@ -216,14 +135,7 @@ FU_KERNEL void cable18_engineering_exact_elastic_force(fu_real l, const fu_real 
         half_abc[g] = 0.5*D_b[g];
         FU_EACH(i, 3, F1_abc[g][i] = D_a1[g]*r1[g][i] + half_abc[g]*r2[g][i];)
         FU_EACH(i, 3, F2_abc[g][i] = D_c[g]*r2[g][i] + half_abc[g]*r1[g][i];))
-    FU_EACH(i, 3, sum_abc1_0[i] = F1_abc[0][i] + F1_abc[4][i];)
-    FU_EACH(i, 3, difference_abc1_0[i] = F1_abc[0][i] - F1_abc[4][i];)
-    FU_EACH(i, 3, sum_abc1_1[i] = F1_abc[1][i] + F1_abc[3][i];)
-    FU_EACH(i, 3, difference_abc1_1[i] = F1_abc[1][i] - F1_abc[3][i];)
-    FU_EACH(i, 3, sum_abc2_0[i] = F2_abc[0][i] + F2_abc[4][i];)
-    FU_EACH(i, 3, difference_abc2_0[i] = F2_abc[0][i] - F2_abc[4][i];)
-    FU_EACH(i, 3, sum_abc2_1[i] = F2_abc[1][i] + F2_abc[3][i];)
-    FU_EACH(i, 3, difference_abc2_1[i] = F2_abc[1][i] - F2_abc[3][i];)
+    CABLE18_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS
     CABLE18_FORCES_ON_STRAIN_VECTORS
     CABLE18_FORCES_ON_NODAL_VECTORS
     /* outputs */
@@ -280,18 +192,7 @@ void cable18_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, cons
         FU_UPPER(i, j, 3, K22_abc[g][i][j] = b2_abc[g][j]*r1[g][i];)
         FU_EACH(i, 3, K22_abc[g][i][i] += D_c[g];)
         FU_UPPER(i, j, 3, K22_abc[g][j][i] = K22_abc[g][i][j];))
-    FU_UPPER(i, j, 3, sum11_abc0[i][j] = K11_abc[0][i][j] + K11_abc[4][i][j]; sum11_abc0[j][i] = sum11_abc0[i][j];)
-    FU_UPPER(i, j, 3, sum11_abc1[i][j] = K11_abc[1][i][j] + K11_abc[3][i][j]; sum11_abc1[j][i] = sum11_abc1[i][j];)
-    FU_UPPER(i, j, 3, difference11_abc0[i][j] = K11_abc[0][i][j] - K11_abc[4][i][j]; difference11_abc0[j][i] = difference11_abc0[i][j];)
-    FU_PAIRS(i, j, 3, sum12_abc0[i][j] = K12_abc[0][i][j] + K12_abc[4][i][j];)
-    FU_UPPER(i, j, 3, difference11_abc1[i][j] = K11_abc[1][i][j] - K11_abc[3][i][j]; difference11_abc1[j][i] = difference11_abc1[i][j];)
-    FU_PAIRS(i, j, 3, sum12_abc1[i][j] = K12_abc[1][i][j] + K12_abc[3][i][j];)
-    FU_PAIRS(i, j, 3, difference12_abc0[i][j] = K12_abc[0][i][j] - K12_abc[4][i][j];)
-    FU_PAIRS(i, j, 3, difference12_abc1[i][j] = K12_abc[1][i][j] - K12_abc[3][i][j];)
-    FU_UPPER(i, j, 3, sum22_abc0[i][j] = K22_abc[0][i][j] + K22_abc[4][i][j]; sum22_abc0[j][i] = sum22_abc0[i][j];)
-    FU_UPPER(i, j, 3, sum22_abc1[i][j] = K22_abc[1][i][j] + K22_abc[3][i][j]; sum22_abc1[j][i] = sum22_abc1[i][j];)
-    FU_UPPER(i, j, 3, difference22_abc0[i][j] = K22_abc[0][i][j] - K22_abc[4][i][j]; difference22_abc0[j][i] = difference22_abc0[i][j];)
-    FU_UPPER(i, j, 3, difference22_abc1[i][j] = K22_abc[1][i][j] - K22_abc[3][i][j]; difference22_abc1[j][i] = difference22_abc1[i][j];)
+    CABLE18_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE18_BLOCKS_OVER_STRAIN_VECTORS
     CABLE18_OVER_NODAL_VECTORS_K_T
     CABLE18_OVER_NODAL_VECTORS_T_K_T
@@ -316,70 +217,14 @@ void cable18_engineering_exact_discrete_force(fu_real l, const fu_real *e, const
     const fu_real
         EA_l = 0.5*A[0]/w,
         EI_l = 2.0*A[1]*w;
-    FU_EACH(i, 3, now_r1_even0[i] = chordnow_3[i] + 0.7317428697781312*now_t2[i] + 0.24573545909491168*now_t4[i];)
-    FU_EACH(i, 3, next_r1_even0[i] = chordnext_3[i] + 0.7317428697781312*next_t2[i] + 0.24573545909491168*next_t4[i];)
-    FU_EACH(i, 3, now_r1_odd0[i] = -0.906179845938664*now_t1[i] - 0.501031171044662*now_t3[i];)
-    FU_EACH(i, 3, next_r1_odd0[i] = -0.906179845938664*next_t1[i] - 0.501031171044662*next_t3[i];)
-    FU_EACH(i, 3, now_r1[4][i] = now_r1_even0[i] - now_r1_odd0[i];)
-    FU_EACH(i, 3, next_r1[4][i] = next_r1_even0[i] - next_r1_odd0[i];)
-    FU_EACH(i, 3, now_r1[0][i] = now_r1_even0[i] + now_r1_odd0[i];)
-    FU_EACH(i, 3, next_r1[0][i] = next_r1_even0[i] + next_r1_odd0[i];)
-    FU_EACH(i, 3, now_r1_even1[i] = chordnow_3[i] - 0.06507620311146456*now_t2[i] - 0.34450089119367744*now_t4[i];)
-    FU_EACH(i, 3, next_r1_even1[i] = chordnext_3[i] - 0.06507620311146456*next_t2[i] - 0.34450089119367744*next_t4[i];)
-    FU_EACH(i, 3, now_r1_odd1[i] = -0.5384693101056831*now_t1[i] + 0.4173821037266682*now_t3[i];)
-    FU_EACH(i, 3, next_r1_odd1[i] = -0.5384693101056831*next_t1[i] + 0.4173821037266682*next_t3[i];)
-    FU_EACH(i, 3, now_r1[3][i] = now_r1_even1[i] - now_r1_odd1[i];)
-    FU_EACH(i, 3, next_r1[3][i] = next_r1_even1[i] - next_r1_odd1[i];)
-    FU_EACH(i, 3, now_r1[1][i] = now_r1_even1[i] + now_r1_odd1[i];)
-    FU_EACH(i, 3, next_r1[1][i] = next_r1_even1[i] + next_r1_odd1[i];)
-    FU_EACH(i, 3, now_r1[2][i] = chordnow_3[i] - 0.5*now_t2[i] + 0.375*now_t4[i];)
-    FU_EACH(i, 3, next_r1[2][i] = chordnext_3[i] - 0.5*next_t2[i] + 0.375*next_t4[i];)
-    FU_EACH(i, 3, now_r2_even0[i] = now_t1[i] + 4.658714348890656*now_t3[i];)
-    FU_EACH(i, 3, next_r2_even0[i] = next_t1[i] + 4.658714348890656*next_t3[i];)
-    FU_EACH(i, 3, now_r2_odd0[i] = -2.718539537815992*now_t2[i] - 6.225757735128626*now_t4[i];)
-    FU_EACH(i, 3, next_r2_odd0[i] = -2.718539537815992*next_t2[i] - 6.225757735128626*next_t4[i];)
-    FU_EACH(i, 3, now_r2[4][i] = now_r2_even0[i] - now_r2_odd0[i];)
-    FU_EACH(i, 3, next_r2[4][i] = next_r2_even0[i] - next_r2_odd0[i];)
-    FU_EACH(i, 3, now_r2[0][i] = now_r2_even0[i] + now_r2_odd0[i];)
-    FU_EACH(i, 3, next_r2[0][i] = next_r2_even0[i] + next_r2_odd0[i];)
-    FU_EACH(i, 3, now_r2_even1[i] = now_t1[i] + 0.6746189844426773*now_t3[i];)
-    FU_EACH(i, 3, next_r2_even1[i] = next_t1[i] + 0.6746189844426773*next_t3[i];)
-    FU_EACH(i, 3, now_r2_odd1[i] = -1.6154079303170494*now_t2[i] + 1.306266795769628*now_t4[i];)
-    FU_EACH(i, 3, next_r2_odd1[i] = -1.6154079303170494*next_t2[i] + 1.306266795769628*next_t4[i];)
-    FU_EACH(i, 3, now_r2[3][i] = now_r2_even1[i] - now_r2_odd1[i];)
-    FU_EACH(i, 3, next_r2[3][i] = next_r2_even1[i] - next_r2_odd1[i];)
-    FU_EACH(i, 3, now_r2[1][i] = now_r2_even1[i] + now_r2_odd1[i];)
-    FU_EACH(i, 3, next_r2[1][i] = next_r2_even1[i] + next_r2_odd1[i];)
-    FU_EACH(i, 3, now_r2[2][i] = now_t1[i] - 1.5*now_t3[i];)
-    FU_EACH(i, 3, next_r2[2][i] = next_t1[i] - 1.5*next_t3[i];)
-    FU_EACH(g, 5,
-        now_a1[g] = now_r1[g][0]*now_r1[g][0] + now_r1[g][1]*now_r1[g][1] + now_r1[g][2]*now_r1[g][2] - 1.0;
-        next_a1[g] = next_r1[g][0]*next_r1[g][0] + next_r1[g][1]*next_r1[g][1] + next_r1[g][2]*next_r1[g][2] - 1.0;
-        now_b[g] = now_r1[g][0]*now_r2[g][0] + now_r1[g][1]*now_r2[g][1] + now_r1[g][2]*now_r2[g][2];
-        next_b[g] = next_r1[g][0]*next_r2[g][0] + next_r1[g][1]*next_r2[g][1] + next_r1[g][2]*next_r2[g][2];
-        now_c[g] = now_r2[g][0]*now_r2[g][0] + now_r2[g][1]*now_r2[g][1] + now_r2[g][2]*now_r2[g][2];
-        next_c[g] = next_r2[g][0]*next_r2[g][0] + next_r2[g][1]*next_r2[g][1] + next_r2[g][2]*next_r2[g][2];)
+    CABLE18_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_2
     EA5[0] = 0.23692688505618928*EA_l;
     EI5[0] = 0.23692688505618928*EI_l;
     EA5[1] = 0.4786286704993663*EA_l;
     EI5[1] = 0.4786286704993663*EI_l;
     EA5[2] = 0.5688888888888887*EA_l;
     EI5[2] = 0.5688888888888887*EI_l;
-    FU_EACH(g, 5,
-        now_len[g] = FU_SQRT(now_a1[g] + 1.0);
-        next_len[g] = FU_SQRT(next_a1[g] + 1.0);
-        now_inv_len[g] = 1.0/now_len[g];
-        next_inv_len[g] = 1.0/next_len[g];
-        now_eps[g] = now_a1[g]/(now_len[g] + 1.0);
-        next_eps[g] = next_a1[g]/(next_len[g] + 1.0);
-        now_a[g] = now_a1[g] + 1.0;
-        next_a[g] = next_a1[g] + 1.0;
-        now_inv_a[g] = now_inv_len[g]*now_inv_len[g];
-        next_inv_a[g] = next_inv_len[g]*next_inv_len[g];
-        now_scale[g] = EI5[g < 2 ? g : 4 - g]*now_inv_a[g]*now_inv_a[g];
-        next_scale[g] = EI5[g < 2 ? g : 4 - g]*next_inv_a[g]*next_inv_a[g];
-        now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g];
-        next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
+    CABLE18_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_4
     /* forces at the quadrature points */
     fu_real D_len_a1[5], D_cross2_a1[5], D_inv_a_a1[5], D_scale_a1[5], D_cross2_b[5], D_cross2_c[5], D_a1[5], D_b[5],
         D_c[5], mean1_abc[5][3], mean2_abc[5][3], half_abc[5], F1_abc[5][3], F2_abc[5][3], sum_abc1_0[3],
@@ -400,14 +245,7 @@ void cable18_engineering_exact_discrete_force(fu_real l, const fu_real *e, const
         half_abc[g] = 0.5*D_b[g];
         FU_EACH(i, 3, F1_abc[g][i] = D_a1[g]*mean1_abc[g][i] + half_abc[g]*mean2_abc[g][i];)
         FU_EACH(i, 3, F2_abc[g][i] = D_c[g]*mean2_abc[g][i] + half_abc[g]*mean1_abc[g][i];))
-    FU_EACH(i, 3, sum_abc1_0[i] = F1_abc[0][i] + F1_abc[4][i];)
-    FU_EACH(i, 3, difference_abc1_0[i] = F1_abc[0][i] - F1_abc[4][i];)
-    FU_EACH(i, 3, sum_abc1_1[i] = F1_abc[1][i] + F1_abc[3][i];)
-    FU_EACH(i, 3, difference_abc1_1[i] = F1_abc[1][i] - F1_abc[3][i];)
-    FU_EACH(i, 3, sum_abc2_0[i] = F2_abc[0][i] + F2_abc[4][i];)
-    FU_EACH(i, 3, difference_abc2_0[i] = F2_abc[0][i] - F2_abc[4][i];)
-    FU_EACH(i, 3, sum_abc2_1[i] = F2_abc[1][i] + F2_abc[3][i];)
-    FU_EACH(i, 3, difference_abc2_1[i] = F2_abc[1][i] - F2_abc[3][i];)
+    CABLE18_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS
     CABLE18_FORCES_ON_STRAIN_VECTORS
     CABLE18_FORCES_ON_NODAL_VECTORS
     /* outputs */
@@ -426,22 +264,7 @@ FU_KERNEL void cable18_engineering_exact_damping_force(fu_real l, const fu_real 
         r1_b3[3], d1_b3[3], r2_b3[3], d2_b3[3], i_b3[3], di_b3[3], rate_b3[3], F_0[3], F_1[3], F_2[3], F_3[3], F_4[3],
         F1_b0[3], F2_b0[3], inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3], F1_b3[3], F2_b3[3];
     const fu_real EI_tau = 2.0*A[1]*tau*w;
-    FU_EACH(i, 3, r1_b0[i] = chord3[i] - 0.8611363115940526*t1[i] + 0.6123336207187138*t2[i] - 0.304746984955206*t3[i];)
-    FU_EACH(i, 3, d1_b0[i] = chordd3[i] - 0.8611363115940526*dt1[i] + 0.6123336207187138*dt2[i] - 0.304746984955206*dt3[i];)
-    FU_EACH(i, 3, r2_b0[i] = t1[i] - 2.583408934782158*t2[i] + 4.0616681035935684*t3[i] - 4.7166378294686*t4[i];)
-    FU_EACH(i, 3, d2_b0[i] = dt1[i] - 2.583408934782158*dt2[i] + 4.0616681035935684*dt3[i] - 4.7166378294686*dt4[i];)
-    const fu_real
-        len_b0 = FU_SQRT(r1_b0[0]*r1_b0[0] + r1_b0[1]*r1_b0[1] + r1_b0[2]*r1_b0[2]),
-        inv_b0 = 1.0/len_b0;
-    FU_EACH(i, 3, i_b0[i] = inv_b0*r1_b0[i];)
-    const fu_real stretch_b0 = d1_b0[0]*i_b0[0] + d1_b0[1]*i_b0[1] + d1_b0[2]*i_b0[2];
-    FU_EACH(i, 3, di_b0[i] = inv_b0*(d1_b0[i] - i_b0[i]*stretch_b0);)
-    const fu_real
-        along_b0 = i_b0[0]*r2_b0[0] + i_b0[1]*r2_b0[1] + i_b0[2]*r2_b0[2],
-        across_b0 = di_b0[0]*r2_b0[0] + di_b0[1]*r2_b0[1] + di_b0[2]*r2_b0[2];
-    FU_EACH(i, 3, rate_b0[i] = across_b0*i_b0[i] - along_b0*di_b0[i] + d2_b0[i];)
-    FU_EACH(i, 3, r1_b1[i] = chord3[i] - 0.33998104358485626*t1[i] - 0.3266193350044281*t2[i] + 0.4117279996728996*t3[i];)
-    FU_EACH(i, 3, d1_b1[i] = chordd3[i] - 0.33998104358485626*dt1[i] - 0.3266193350044281*dt2[i] + 0.4117279996728996*dt3[i];)
+    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] + 1.8621528669557281*t4[i];)
     FU_EACH(i, 3, d2_b1[i] = dt1[i] - 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] + 1.8621528669557281*dt4[i];)
     const fu_real len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]);
@@ -464,20 +287,7 @@ FU_KERNEL void cable18_engineering_exact_damping_force(fu_real l, const fu_real 
     along_b[1] = i_b[1][0]*r2_b[1][0] + i_b[1][1]*r2_b[1][1] + i_b[1][2]*r2_b[1][2];
     const fu_real across_b2 = di_b2[0]*r2_b[1][0] + di_b2[1]*r2_b[1][1] + di_b2[2]*r2_b[1][2];
     FU_EACH(i, 3, rate_b[1][i] = across_b2*i_b[1][i] - along_b[1]*di_b2[i] + d2_b2[i];)
-    FU_EACH(i, 3, r1_b3[i] = chord3[i] + 0.8611363115940526*t1[i] + 0.6123336207187138*t2[i] + 0.304746984955206*t3[i];)
-    FU_EACH(i, 3, d1_b3[i] = chordd3[i] + 0.8611363115940526*dt1[i] + 0.6123336207187138*dt2[i] + 0.304746984955206*dt3[i];)
-    FU_EACH(i, 3, r2_b3[i] = t1[i] + 2.583408934782158*t2[i] + 4.0616681035935684*t3[i] + 4.7166378294686*t4[i];)
-    FU_EACH(i, 3, d2_b3[i] = dt1[i] + 2.583408934782158*dt2[i] + 4.0616681035935684*dt3[i] + 4.7166378294686*dt4[i];)
-    const fu_real
-        len_b3 = FU_SQRT(r1_b3[0]*r1_b3[0] + r1_b3[1]*r1_b3[1] + r1_b3[2]*r1_b3[2]),
-        inv_b3 = 1.0/len_b3;
-    FU_EACH(i, 3, i_b3[i] = inv_b3*r1_b3[i];)
-    const fu_real stretch_b3 = d1_b3[0]*i_b3[0] + d1_b3[1]*i_b3[1] + d1_b3[2]*i_b3[2];
-    FU_EACH(i, 3, di_b3[i] = inv_b3*(d1_b3[i] - i_b3[i]*stretch_b3);)
-    const fu_real
-        along_b3 = i_b3[0]*r2_b3[0] + i_b3[1]*r2_b3[1] + i_b3[2]*r2_b3[2],
-        across_b3 = di_b3[0]*r2_b3[0] + di_b3[1]*r2_b3[1] + di_b3[2]*r2_b3[2];
-    FU_EACH(i, 3, rate_b3[i] = across_b3*i_b3[i] - along_b3*di_b3[i] + d2_b3[i];)
+    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     const fu_real N_0 = 0.23692688505618928*EA_tau*deps_0*inv_0;
     FU_EACH(i, 3, F_0[i] = N_0*r1_0[i];)
     const fu_real N_1 = 0.4786286704993663*EA_tau*deps_1*inv_1;
@@ -487,22 +297,7 @@ FU_KERNEL void cable18_engineering_exact_damping_force(fu_real l, const fu_real 
     const fu_real N_3 = 0.4786286704993663*EA_tau*deps_3*inv_3;
     FU_EACH(i, 3, F_3[i] = N_3*r1_3[i];)
     const fu_real N_4 = 0.23692688505618928*EA_tau*deps_4*inv_4;
-    FU_EACH(i, 3, F_4[i] = N_4*r1_4[i];)
-    const fu_real
-        inward_b0 = 0.34785484513745357*EI_tau*inv_b0*(i_b0[0]*rate_b0[0] + i_b0[1]*rate_b0[1] + i_b0[2]*rate_b0[2]),
-        lever_b0 = 0.34785484513745357*EI_tau*along_b0*inv_b0;
-    FU_EACH(i, 3, F1_b0[i] = inward_b0*r2_b0[i] - lever_b0*rate_b0[i];)
-    FU_EACH(i, 3, F2_b0[i] = 0.34785484513745357*EI_tau*rate_b0[i];)
-    FU_EACH(g, 2,
-        inward_b[g] = 0.6521451548625464*EI_tau*inv_b[g]*(i_b[g][0]*rate_b[g][0] + i_b[g][1]*rate_b[g][1] + i_b[g][2]*rate_b[g][2]);
-        lever_b[g] = 0.6521451548625464*EI_tau*along_b[g]*inv_b[g];
-        FU_EACH(i, 3, F1_b[g][i] = inward_b[g]*r2_b[g][i] - lever_b[g]*rate_b[g][i];)
-        FU_EACH(i, 3, F2_b[g][i] = 0.6521451548625464*EI_tau*rate_b[g][i];))
-    const fu_real
-        inward_b3 = 0.34785484513745357*EI_tau*inv_b3*(i_b3[0]*rate_b3[0] + i_b3[1]*rate_b3[1] + i_b3[2]*rate_b3[2]),
-        lever_b3 = 0.34785484513745357*EI_tau*along_b3*inv_b3;
-    FU_EACH(i, 3, F1_b3[i] = inward_b3*r2_b3[i] - lever_b3*rate_b3[i];)
-    FU_EACH(i, 3, F2_b3[i] = 0.34785484513745357*EI_tau*rate_b3[i];)
+    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
     CABLE18_FORCES_ON_STRAIN_VECTORS_2
     CABLE18_FORCES_ON_NODAL_VECTORS
     /* outputs */
@@ -557,113 +352,7 @@ void cable18_engineering_exact_damping_tangent(fu_real l, const fu_real *e, cons
     FU_EACH(i, 3, di_4[i] = inv_4*(d1_4[i] - deps_4*i_4[i]);)
     FU_EACH(i, 3, by_4[i] = 0.23692688505618928*EA_tau*(di_4[i] + i_4[i]*rate) - N_4*i_4[i];)
     FU_PAIRS(i, j, 3, K_4[i][j] = by_4[j]*i_4[i];)
-    FU_EACH(i, 3, K_4[i][i] += N_4;)
-    FU_PAIRS(i, j, 3, sum11_d10[i][j] = K_0[i][j] + K_4[i][j];)
-    FU_PAIRS(i, j, 3, sum11_d11[i][j] = K_1[i][j] + K_3[i][j];)
-    FU_PAIRS(i, j, 3, difference11_d10[i][j] = K_0[i][j] - K_4[i][j];)
-    FU_PAIRS(i, j, 3, difference11_d11[i][j] = K_1[i][j] - K_3[i][j];)
-    const fu_real
-        k_b0 = inv_b0*(-inv_b0*stretch_b0 + rate),
-        level_b0 = across_b0*inv_b0 - along_b0*k_b0;
-    FU_EACH(i, 3, p_b0[i] = -along_b0*i_b0[i] + r2_b0[i];)
-    FU_EACH(i, 3, by_turn_b0[i] = inv_b0*(along_b0*i_b0[i] - p_b0[i]);)
-    const fu_real by_i_i_b0 = across_b0*inv_b0 + level_b0;
-    FU_EACH(i, 3, by_i_b0[i] = -by_i_i_b0*i_b0[i] + k_b0*p_b0[i];)
-    K21_b0[0][0] = 0.34785484513745357*EI_tau*(by_i_b0[0]*i_b0[0] + by_turn_b0[0]*di_b0[0] + level_b0);
-    K21_b0[0][1] = 0.34785484513745357*EI_tau*(by_i_b0[1]*i_b0[0] + by_turn_b0[1]*di_b0[0]);
-    K21_b0[0][2] = 0.34785484513745357*EI_tau*(by_i_b0[2]*i_b0[0] + by_turn_b0[2]*di_b0[0]);
-    K21_b0[1][0] = 0.34785484513745357*EI_tau*(by_i_b0[0]*i_b0[1] + by_turn_b0[0]*di_b0[1]);
-    K21_b0[1][1] = 0.34785484513745357*EI_tau*(by_i_b0[1]*i_b0[1] + by_turn_b0[1]*di_b0[1] + level_b0);
-    K21_b0[1][2] = 0.34785484513745357*EI_tau*(by_i_b0[2]*i_b0[1] + by_turn_b0[2]*di_b0[1]);
-    K21_b0[2][0] = 0.34785484513745357*EI_tau*(by_i_b0[0]*i_b0[2] + by_turn_b0[0]*di_b0[2]);
-    K21_b0[2][1] = 0.34785484513745357*EI_tau*(by_i_b0[1]*i_b0[2] + by_turn_b0[1]*di_b0[2]);
-    K21_b0[2][2] = 0.34785484513745357*EI_tau*(by_i_b0[2]*i_b0[2] + by_turn_b0[2]*di_b0[2] + level_b0);
-    FU_PAIRS(i, j, 3, K22_b0[i][j] = 0.34785484513745357*EI_tau*(-di_b0[i]*i_b0[j] + di_b0[j]*i_b0[i]);)
-    FU_EACH(i, 3, K22_b0[i][i] += 0.34785484513745357*EI_tau*rate;)
-    const fu_real
-        stiff_b0 = 0.34785484513745357*EI_tau*inv_b0,
-        lever_b0 = along_b0*inv_b0,
-        growth_b0 = i_b0[0]*rate_b0[0] + i_b0[1]*rate_b0[1] + i_b0[2]*rate_b0[2];
-    FU_EACH(i, 3, pushed_b0[i] = stiff_b0*(-along_b0*di_b0[i]*inv_b0 + d2_b0[i]*inv_b0 - 2.0*growth_b0*i_b0[i]*inv_b0 + k_b0*p_b0[i]);)
-    FU_EACH(i, 3, turned_b0[i] = by_turn_b0[i]*stiff_b0;)
-    FU_EACH(i, 3, follows_b0[i] = stiff_b0*(di_b0[i] + i_b0[i]*rate);)
-    FU_EACH(i, 3, stiff_i_b0[i] = i_b0[i]*stiff_b0;)
-    FU_PAIRS(i, j, 3, K11_b0[i][j] = -K21_b0[i][j]*lever_b0 + pushed_b0[j]*r2_b0[i] + rate_b0[i]*turned_b0[j];)
-    FU_PAIRS(i, j, 3, K12_b0[i][j] = -K22_b0[i][j]*lever_b0 + follows_b0[j]*r2_b0[i] - rate_b0[i]*stiff_i_b0[j];)
-    FU_EACH(i, 3, K12_b0[i][i] += growth_b0*stiff_b0;)
-    FU_EACH(g, 2,
-        k_b[g] = inv_b[g]*(-inv_b[g]*stretch_b[g] + rate);
-        level_b[g] = across_b[g]*inv_b[g] - along_b[g]*k_b[g];
-        FU_EACH(i, 3, p_b[g][i] = -along_b[g]*i_b[g][i] + r2_b[g][i];)
-        FU_EACH(i, 3, by_turn_b[g][i] = inv_b[g]*(along_b[g]*i_b[g][i] - p_b[g][i]);)
-        by_i_i_b[g] = across_b[g]*inv_b[g] + level_b[g];
-        FU_EACH(i, 3, by_i_b[g][i] = -by_i_i_b[g]*i_b[g][i] + k_b[g]*p_b[g][i];)
-        K21_b[g][0][0] = 0.6521451548625464*EI_tau*(by_i_b[g][0]*i_b[g][0] + by_turn_b[g][0]*di_b[g][0] + level_b[g]);
-        K21_b[g][0][1] = 0.6521451548625464*EI_tau*(by_i_b[g][1]*i_b[g][0] + by_turn_b[g][1]*di_b[g][0]);
-        K21_b[g][0][2] = 0.6521451548625464*EI_tau*(by_i_b[g][2]*i_b[g][0] + by_turn_b[g][2]*di_b[g][0]);
-        K21_b[g][1][0] = 0.6521451548625464*EI_tau*(by_i_b[g][0]*i_b[g][1] + by_turn_b[g][0]*di_b[g][1]);
-        K21_b[g][1][1] = 0.6521451548625464*EI_tau*(by_i_b[g][1]*i_b[g][1] + by_turn_b[g][1]*di_b[g][1] + level_b[g]);
-        K21_b[g][1][2] = 0.6521451548625464*EI_tau*(by_i_b[g][2]*i_b[g][1] + by_turn_b[g][2]*di_b[g][1]);
-        K21_b[g][2][0] = 0.6521451548625464*EI_tau*(by_i_b[g][0]*i_b[g][2] + by_turn_b[g][0]*di_b[g][2]);
-        K21_b[g][2][1] = 0.6521451548625464*EI_tau*(by_i_b[g][1]*i_b[g][2] + by_turn_b[g][1]*di_b[g][2]);
-        K21_b[g][2][2] = 0.6521451548625464*EI_tau*(by_i_b[g][2]*i_b[g][2] + by_turn_b[g][2]*di_b[g][2] + level_b[g]);
-        FU_PAIRS(i, j, 3, K22_b[g][i][j] = 0.6521451548625464*EI_tau*(-di_b[g][i]*i_b[g][j] + di_b[g][j]*i_b[g][i]);)
-        FU_EACH(i, 3, K22_b[g][i][i] += 0.6521451548625464*EI_tau*rate;)
-        stiff_b[g] = 0.6521451548625464*EI_tau*inv_b[g];
-        lever_b[g] = along_b[g]*inv_b[g];
-        growth_b[g] = i_b[g][0]*rate_b[g][0] + i_b[g][1]*rate_b[g][1] + i_b[g][2]*rate_b[g][2];
-        FU_EACH(i, 3, pushed_b[g][i] = stiff_b[g]*(-along_b[g]*di_b[g][i]*inv_b[g] + d2_b[g][i]*inv_b[g] - 2.0*growth_b[g]*i_b[g][i]*inv_b[g] + k_b[g]*p_b[g][i]);)
-        FU_EACH(i, 3, turned_b[g][i] = by_turn_b[g][i]*stiff_b[g];)
-        FU_EACH(i, 3, follows_b[g][i] = stiff_b[g]*(di_b[g][i] + i_b[g][i]*rate);)
-        FU_EACH(i, 3, stiff_i_b[g][i] = i_b[g][i]*stiff_b[g];)
-        FU_PAIRS(i, j, 3, K11_b[g][i][j] = -K21_b[g][i][j]*lever_b[g] + pushed_b[g][j]*r2_b[g][i] + rate_b[g][i]*turned_b[g][j];)
-        FU_PAIRS(i, j, 3, K12_b[g][i][j] = -K22_b[g][i][j]*lever_b[g] + follows_b[g][j]*r2_b[g][i] - rate_b[g][i]*stiff_i_b[g][j];)
-        FU_EACH(i, 3, K12_b[g][i][i] += growth_b[g]*stiff_b[g];))
-    const fu_real
-        k_b3 = inv_b3*(-inv_b3*stretch_b3 + rate),
-        level_b3 = across_b3*inv_b3 - along_b3*k_b3;
-    FU_EACH(i, 3, p_b3[i] = -along_b3*i_b3[i] + r2_b3[i];)
-    FU_EACH(i, 3, by_turn_b3[i] = inv_b3*(along_b3*i_b3[i] - p_b3[i]);)
-    const fu_real by_i_i_b3 = across_b3*inv_b3 + level_b3;
-    FU_EACH(i, 3, by_i_b3[i] = -by_i_i_b3*i_b3[i] + k_b3*p_b3[i];)
-    K21_b3[0][0] = 0.34785484513745357*EI_tau*(by_i_b3[0]*i_b3[0] + by_turn_b3[0]*di_b3[0] + level_b3);
-    K21_b3[0][1] = 0.34785484513745357*EI_tau*(by_i_b3[1]*i_b3[0] + by_turn_b3[1]*di_b3[0]);
-    K21_b3[0][2] = 0.34785484513745357*EI_tau*(by_i_b3[2]*i_b3[0] + by_turn_b3[2]*di_b3[0]);
-    K21_b3[1][0] = 0.34785484513745357*EI_tau*(by_i_b3[0]*i_b3[1] + by_turn_b3[0]*di_b3[1]);
-    K21_b3[1][1] = 0.34785484513745357*EI_tau*(by_i_b3[1]*i_b3[1] + by_turn_b3[1]*di_b3[1] + level_b3);
-    K21_b3[1][2] = 0.34785484513745357*EI_tau*(by_i_b3[2]*i_b3[1] + by_turn_b3[2]*di_b3[1]);
-    K21_b3[2][0] = 0.34785484513745357*EI_tau*(by_i_b3[0]*i_b3[2] + by_turn_b3[0]*di_b3[2]);
-    K21_b3[2][1] = 0.34785484513745357*EI_tau*(by_i_b3[1]*i_b3[2] + by_turn_b3[1]*di_b3[2]);
-    K21_b3[2][2] = 0.34785484513745357*EI_tau*(by_i_b3[2]*i_b3[2] + by_turn_b3[2]*di_b3[2] + level_b3);
-    FU_PAIRS(i, j, 3, K22_b3[i][j] = 0.34785484513745357*EI_tau*(-di_b3[i]*i_b3[j] + di_b3[j]*i_b3[i]);)
-    FU_EACH(i, 3, K22_b3[i][i] += 0.34785484513745357*EI_tau*rate;)
-    const fu_real
-        stiff_b3 = 0.34785484513745357*EI_tau*inv_b3,
-        lever_b3 = along_b3*inv_b3,
-        growth_b3 = i_b3[0]*rate_b3[0] + i_b3[1]*rate_b3[1] + i_b3[2]*rate_b3[2];
-    FU_EACH(i, 3, pushed_b3[i] = stiff_b3*(-along_b3*di_b3[i]*inv_b3 + d2_b3[i]*inv_b3 - 2.0*growth_b3*i_b3[i]*inv_b3 + k_b3*p_b3[i]);)
-    FU_EACH(i, 3, turned_b3[i] = by_turn_b3[i]*stiff_b3;)
-    FU_EACH(i, 3, follows_b3[i] = stiff_b3*(di_b3[i] + i_b3[i]*rate);)
-    FU_EACH(i, 3, stiff_i_b3[i] = i_b3[i]*stiff_b3;)
-    FU_PAIRS(i, j, 3, K11_b3[i][j] = -K21_b3[i][j]*lever_b3 + pushed_b3[j]*r2_b3[i] + rate_b3[i]*turned_b3[j];)
-    FU_PAIRS(i, j, 3, K12_b3[i][j] = -K22_b3[i][j]*lever_b3 + follows_b3[j]*r2_b3[i] - rate_b3[i]*stiff_i_b3[j];)
-    FU_EACH(i, 3, K12_b3[i][i] += growth_b3*stiff_b3;)
-    FU_PAIRS(i, j, 3, sum11_d20[i][j] = K11_b0[i][j] + K11_b3[i][j];)
-    FU_PAIRS(i, j, 3, sum11_d21[i][j] = K11_b[0][i][j] + K11_b[1][i][j];)
-    FU_PAIRS(i, j, 3, difference11_d20[i][j] = K11_b0[i][j] - K11_b3[i][j];)
-    FU_PAIRS(i, j, 3, sum12_d20[i][j] = K12_b0[i][j] + K12_b3[i][j];)
-    FU_PAIRS(i, j, 3, difference11_d21[i][j] = K11_b[0][i][j] - K11_b[1][i][j];)
-    FU_PAIRS(i, j, 3, sum12_d21[i][j] = K12_b[0][i][j] + K12_b[1][i][j];)
-    FU_PAIRS(i, j, 3, difference12_d20[i][j] = K12_b0[i][j] - K12_b3[i][j];)
-    FU_PAIRS(i, j, 3, difference12_d21[i][j] = K12_b[0][i][j] - K12_b[1][i][j];)
-    FU_PAIRS(i, j, 3, sum21_d20[i][j] = K21_b0[i][j] + K21_b3[i][j];)
-    FU_PAIRS(i, j, 3, sum21_d21[i][j] = K21_b[0][i][j] + K21_b[1][i][j];)
-    FU_PAIRS(i, j, 3, difference21_d20[i][j] = K21_b0[i][j] - K21_b3[i][j];)
-    FU_PAIRS(i, j, 3, sum22_d20[i][j] = K22_b0[i][j] + K22_b3[i][j];)
-    FU_PAIRS(i, j, 3, difference21_d21[i][j] = K21_b[0][i][j] - K21_b[1][i][j];)
-    FU_PAIRS(i, j, 3, sum22_d21[i][j] = K22_b[0][i][j] + K22_b[1][i][j];)
-    FU_PAIRS(i, j, 3, difference22_d20[i][j] = K22_b0[i][j] - K22_b3[i][j];)
-    FU_PAIRS(i, j, 3, difference22_d21[i][j] = K22_b[0][i][j] - K22_b[1][i][j];)
+    CABLE18_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE18_BLOCKS_OVER_STRAIN_VECTORS_2
     CABLE18_OVER_NODAL_VECTORS_K_T_2
     CABLE18_OVER_NODAL_VECTORS_T_K_T_3
@@ -742,31 +431,7 @@ void cable18_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, co
     const fu_real
         excess_deps_4 = deps_4*weight - relaxed_strain[4],
         N_4 = 0.23692688505618928*EA_tau*excess_deps_4*inv_4;
-    FU_EACH(i, 3, F_4[i] = N_4*r1_4[i];)
-    excess_rate_b0[0] = rate_b0[0]*weight - relaxed_strain[5];
-    excess_rate_b0[1] = rate_b0[1]*weight - relaxed_strain[6];
-    excess_rate_b0[2] = rate_b0[2]*weight - relaxed_strain[7];
-    const fu_real
-        inward_b0 = 0.34785484513745357*EI_tau*inv_b0*(excess_rate_b0[0]*i_b0[0] + excess_rate_b0[1]*i_b0[1] + excess_rate_b0[2]*i_b0[2]),
-        lever_b0 = 0.34785484513745357*EI_tau*along_b0*inv_b0;
-    FU_EACH(i, 3, F1_b0[i] = -excess_rate_b0[i]*lever_b0 + inward_b0*r2_b0[i];)
-    FU_EACH(i, 3, F2_b0[i] = 0.34785484513745357*EI_tau*excess_rate_b0[i];)
-    FU_EACH(g, 2,
-        excess_rate_b[g][0] = rate_b[g][0]*weight - relaxed_strain[3*g + 8];
-        excess_rate_b[g][1] = rate_b[g][1]*weight - relaxed_strain[3*g + 9];
-        excess_rate_b[g][2] = rate_b[g][2]*weight - relaxed_strain[3*g + 10];
-        inward_b[g] = 0.6521451548625464*EI_tau*inv_b[g]*(excess_rate_b[g][0]*i_b[g][0] + excess_rate_b[g][1]*i_b[g][1] + excess_rate_b[g][2]*i_b[g][2]);
-        lever_b[g] = 0.6521451548625464*EI_tau*along_b[g]*inv_b[g];
-        FU_EACH(i, 3, F1_b[g][i] = -excess_rate_b[g][i]*lever_b[g] + inward_b[g]*r2_b[g][i];)
-        FU_EACH(i, 3, F2_b[g][i] = 0.6521451548625464*EI_tau*excess_rate_b[g][i];))
-    excess_rate_b3[0] = rate_b3[0]*weight - relaxed_strain[14];
-    excess_rate_b3[1] = rate_b3[1]*weight - relaxed_strain[15];
-    excess_rate_b3[2] = rate_b3[2]*weight - relaxed_strain[16];
-    const fu_real
-        inward_b3 = 0.34785484513745357*EI_tau*inv_b3*(excess_rate_b3[0]*i_b3[0] + excess_rate_b3[1]*i_b3[1] + excess_rate_b3[2]*i_b3[2]),
-        lever_b3 = 0.34785484513745357*EI_tau*along_b3*inv_b3;
-    FU_EACH(i, 3, F1_b3[i] = -excess_rate_b3[i]*lever_b3 + inward_b3*r2_b3[i];)
-    FU_EACH(i, 3, F2_b3[i] = 0.34785484513745357*EI_tau*excess_rate_b3[i];)
+    CABLE18_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2
     CABLE18_FORCES_ON_STRAIN_VECTORS_2
     CABLE18_FORCES_ON_NODAL_VECTORS
     CABLE18_OUTPUTS_4

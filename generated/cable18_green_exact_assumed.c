@@ -17,28 +17,7 @@
     fu_real r1_even0[3], r1_odd0[3], r1[5][3], r1_even1[3], r1_odd1[3], r2_even0[3], r2_odd0[3], r2[5][3], r2_even1[3], \
         r2_odd1[3], a1[5], b[5], c[5], EI5[3], eps[5], a[5], inv_a[5], scale[5], cross2[5]; \
     const fu_real EI_l = 2.0*A[1]*w; \
-    FU_EACH(i, 3, r1_even0[i] = chord3[i] + 0.7317428697781312*t2[i] + 0.24573545909491168*t4[i];) \
-    FU_EACH(i, 3, r1_odd0[i] = -0.906179845938664*t1[i] - 0.501031171044662*t3[i];) \
-    FU_EACH(i, 3, r1[4][i] = r1_even0[i] - r1_odd0[i];) \
-    FU_EACH(i, 3, r1[0][i] = r1_even0[i] + r1_odd0[i];) \
-    FU_EACH(i, 3, r1_even1[i] = chord3[i] - 0.06507620311146456*t2[i] - 0.34450089119367744*t4[i];) \
-    FU_EACH(i, 3, r1_odd1[i] = -0.5384693101056831*t1[i] + 0.4173821037266682*t3[i];) \
-    FU_EACH(i, 3, r1[3][i] = r1_even1[i] - r1_odd1[i];) \
-    FU_EACH(i, 3, r1[1][i] = r1_even1[i] + r1_odd1[i];) \
-    FU_EACH(i, 3, r1[2][i] = chord3[i] - 0.5*t2[i] + 0.375*t4[i];) \
-    FU_EACH(i, 3, r2_even0[i] = t1[i] + 4.658714348890656*t3[i];) \
-    FU_EACH(i, 3, r2_odd0[i] = -2.718539537815992*t2[i] - 6.225757735128626*t4[i];) \
-    FU_EACH(i, 3, r2[4][i] = r2_even0[i] - r2_odd0[i];) \
-    FU_EACH(i, 3, r2[0][i] = r2_even0[i] + r2_odd0[i];) \
-    FU_EACH(i, 3, r2_even1[i] = t1[i] + 0.6746189844426773*t3[i];) \
-    FU_EACH(i, 3, r2_odd1[i] = -1.6154079303170494*t2[i] + 1.306266795769628*t4[i];) \
-    FU_EACH(i, 3, r2[3][i] = r2_even1[i] - r2_odd1[i];) \
-    FU_EACH(i, 3, r2[1][i] = r2_even1[i] + r2_odd1[i];) \
-    FU_EACH(i, 3, r2[2][i] = t1[i] - 1.5*t3[i];) \
-    FU_EACH(g, 5, \
-        a1[g] = r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2] - 1.0; \
-        b[g] = r1[g][0]*r2[g][0] + r1[g][1]*r2[g][1] + r1[g][2]*r2[g][2]; \
-        c[g] = r2[g][0]*r2[g][0] + r2[g][1]*r2[g][1] + r2[g][2]*r2[g][2];) \
+    CABLE18_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_5 \
     EI5[0] = 0.23692688505618928*EI_l; \
     EI5[1] = 0.4786286704993663*EI_l; \
     EI5[2] = 0.5688888888888887*EI_l; \
@@ -69,69 +48,8 @@ void cable18_green_exact_assumed_energy(fu_real l, const fu_real *e, const fu_re
     /* strain at the quadrature points */
     fu_real r1_x[5], r1_y[5], r1_z[5], r2_x[5], r2_y[5], r2_z[5], a1[5], b[5], c[5], EI5[3], eps[5], a[5], inv_a[5],
         scale[5], cross2[5];
-    const fu_real
-        EI_l = 2.0*A[1]*w,
-        r1_even0_x = chord3_x + 0.7317428697781312*t2_x + 0.24573545909491168*t4_x,
-        r1_even0_y = chord3_y + 0.7317428697781312*t2_y + 0.24573545909491168*t4_y,
-        r1_even0_z = chord3_z + 0.7317428697781312*t2_z + 0.24573545909491168*t4_z,
-        r1_odd0_x = -0.906179845938664*t1_x - 0.501031171044662*t3_x,
-        r1_odd0_y = -0.906179845938664*t1_y - 0.501031171044662*t3_y,
-        r1_odd0_z = -0.906179845938664*t1_z - 0.501031171044662*t3_z;
-    r1_x[4] = r1_even0_x - r1_odd0_x;
-    r1_y[4] = r1_even0_y - r1_odd0_y;
-    r1_z[4] = r1_even0_z - r1_odd0_z;
-    r1_x[0] = r1_even0_x + r1_odd0_x;
-    r1_y[0] = r1_even0_y + r1_odd0_y;
-    r1_z[0] = r1_even0_z + r1_odd0_z;
-    const fu_real
-        r1_even1_x = chord3_x - 0.06507620311146456*t2_x - 0.34450089119367744*t4_x,
-        r1_even1_y = chord3_y - 0.06507620311146456*t2_y - 0.34450089119367744*t4_y,
-        r1_even1_z = chord3_z - 0.06507620311146456*t2_z - 0.34450089119367744*t4_z,
-        r1_odd1_x = -0.5384693101056831*t1_x + 0.4173821037266682*t3_x,
-        r1_odd1_y = -0.5384693101056831*t1_y + 0.4173821037266682*t3_y,
-        r1_odd1_z = -0.5384693101056831*t1_z + 0.4173821037266682*t3_z;
-    r1_x[3] = r1_even1_x - r1_odd1_x;
-    r1_y[3] = r1_even1_y - r1_odd1_y;
-    r1_z[3] = r1_even1_z - r1_odd1_z;
-    r1_x[1] = r1_even1_x + r1_odd1_x;
-    r1_y[1] = r1_even1_y + r1_odd1_y;
-    r1_z[1] = r1_even1_z + r1_odd1_z;
-    r1_x[2] = chord3_x - 0.5*t2_x + 0.375*t4_x;
-    r1_y[2] = chord3_y - 0.5*t2_y + 0.375*t4_y;
-    r1_z[2] = chord3_z - 0.5*t2_z + 0.375*t4_z;
-    const fu_real
-        r2_even0_x = t1_x + 4.658714348890656*t3_x,
-        r2_even0_y = t1_y + 4.658714348890656*t3_y,
-        r2_even0_z = t1_z + 4.658714348890656*t3_z,
-        r2_odd0_x = -2.718539537815992*t2_x - 6.225757735128626*t4_x,
-        r2_odd0_y = -2.718539537815992*t2_y - 6.225757735128626*t4_y,
-        r2_odd0_z = -2.718539537815992*t2_z - 6.225757735128626*t4_z;
-    r2_x[4] = r2_even0_x - r2_odd0_x;
-    r2_y[4] = r2_even0_y - r2_odd0_y;
-    r2_z[4] = r2_even0_z - r2_odd0_z;
-    r2_x[0] = r2_even0_x + r2_odd0_x;
-    r2_y[0] = r2_even0_y + r2_odd0_y;
-    r2_z[0] = r2_even0_z + r2_odd0_z;
-    const fu_real
-        r2_even1_x = t1_x + 0.6746189844426773*t3_x,
-        r2_even1_y = t1_y + 0.6746189844426773*t3_y,
-        r2_even1_z = t1_z + 0.6746189844426773*t3_z,
-        r2_odd1_x = -1.6154079303170494*t2_x + 1.306266795769628*t4_x,
-        r2_odd1_y = -1.6154079303170494*t2_y + 1.306266795769628*t4_y,
-        r2_odd1_z = -1.6154079303170494*t2_z + 1.306266795769628*t4_z;
-    r2_x[3] = r2_even1_x - r2_odd1_x;
-    r2_y[3] = r2_even1_y - r2_odd1_y;
-    r2_z[3] = r2_even1_z - r2_odd1_z;
-    r2_x[1] = r2_even1_x + r2_odd1_x;
-    r2_y[1] = r2_even1_y + r2_odd1_y;
-    r2_z[1] = r2_even1_z + r2_odd1_z;
-    r2_x[2] = t1_x - 1.5*t3_x;
-    r2_y[2] = t1_y - 1.5*t3_y;
-    r2_z[2] = t1_z - 1.5*t3_z;
-    FU_EACH(g, 5,
-        a1[g] = r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g] + r1_z[g]*r1_z[g] - 1.0;
-        b[g] = r1_x[g]*r2_x[g] + r1_y[g]*r2_y[g] + r1_z[g]*r2_z[g];
-        c[g] = r2_x[g]*r2_x[g] + r2_y[g]*r2_y[g] + r2_z[g]*r2_z[g];)
+    const fu_real EI_l = 2.0*A[1]*w;
+    CABLE18_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS
     EI5[0] = 0.23692688505618928*EI_l;
     EI5[1] = 0.4786286704993663*EI_l;
     EI5[2] = 0.5688888888888887*EI_l;
@@ -169,14 +87,7 @@ FU_KERNEL void cable18_green_exact_assumed_elastic_force(fu_real l, const fu_rea
         half_abc[g] = 0.5*D_b[g];
         FU_EACH(i, 3, F1_abc[g][i] = D_a1[g]*r1[g][i] + half_abc[g]*r2[g][i];)
         FU_EACH(i, 3, F2_abc[g][i] = D_c[g]*r2[g][i] + half_abc[g]*r1[g][i];))
-    FU_EACH(i, 3, sum_abc1_0[i] = F1_abc[0][i] + F1_abc[4][i];)
-    FU_EACH(i, 3, difference_abc1_0[i] = F1_abc[0][i] - F1_abc[4][i];)
-    FU_EACH(i, 3, sum_abc1_1[i] = F1_abc[1][i] + F1_abc[3][i];)
-    FU_EACH(i, 3, difference_abc1_1[i] = F1_abc[1][i] - F1_abc[3][i];)
-    FU_EACH(i, 3, sum_abc2_0[i] = F2_abc[0][i] + F2_abc[4][i];)
-    FU_EACH(i, 3, difference_abc2_0[i] = F2_abc[0][i] - F2_abc[4][i];)
-    FU_EACH(i, 3, sum_abc2_1[i] = F2_abc[1][i] + F2_abc[3][i];)
-    FU_EACH(i, 3, difference_abc2_1[i] = F2_abc[1][i] - F2_abc[3][i];)
+    CABLE18_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS
     CABLE18_FORCES_ON_STRAIN_VECTORS
     CABLE18_FORCES_ON_NODAL_VECTORS
     /* outputs */
@@ -230,18 +141,7 @@ void cable18_green_exact_assumed_elastic_tangent(fu_real l, const fu_real *e, co
         FU_UPPER(i, j, 3, K22_abc[g][i][j] = b2_abc[g][j]*r1[g][i];)
         FU_EACH(i, 3, K22_abc[g][i][i] += D_c[g];)
         FU_UPPER(i, j, 3, K22_abc[g][j][i] = K22_abc[g][i][j];))
-    FU_UPPER(i, j, 3, sum11_abc0[i][j] = K11_abc[0][i][j] + K11_abc[4][i][j]; sum11_abc0[j][i] = sum11_abc0[i][j];)
-    FU_UPPER(i, j, 3, sum11_abc1[i][j] = K11_abc[1][i][j] + K11_abc[3][i][j]; sum11_abc1[j][i] = sum11_abc1[i][j];)
-    FU_UPPER(i, j, 3, difference11_abc0[i][j] = K11_abc[0][i][j] - K11_abc[4][i][j]; difference11_abc0[j][i] = difference11_abc0[i][j];)
-    FU_PAIRS(i, j, 3, sum12_abc0[i][j] = K12_abc[0][i][j] + K12_abc[4][i][j];)
-    FU_UPPER(i, j, 3, difference11_abc1[i][j] = K11_abc[1][i][j] - K11_abc[3][i][j]; difference11_abc1[j][i] = difference11_abc1[i][j];)
-    FU_PAIRS(i, j, 3, sum12_abc1[i][j] = K12_abc[1][i][j] + K12_abc[3][i][j];)
-    FU_PAIRS(i, j, 3, difference12_abc0[i][j] = K12_abc[0][i][j] - K12_abc[4][i][j];)
-    FU_PAIRS(i, j, 3, difference12_abc1[i][j] = K12_abc[1][i][j] - K12_abc[3][i][j];)
-    FU_UPPER(i, j, 3, sum22_abc0[i][j] = K22_abc[0][i][j] + K22_abc[4][i][j]; sum22_abc0[j][i] = sum22_abc0[i][j];)
-    FU_UPPER(i, j, 3, sum22_abc1[i][j] = K22_abc[1][i][j] + K22_abc[3][i][j]; sum22_abc1[j][i] = sum22_abc1[i][j];)
-    FU_UPPER(i, j, 3, difference22_abc0[i][j] = K22_abc[0][i][j] - K22_abc[4][i][j]; difference22_abc0[j][i] = difference22_abc0[i][j];)
-    FU_UPPER(i, j, 3, difference22_abc1[i][j] = K22_abc[1][i][j] - K22_abc[3][i][j]; difference22_abc1[j][i] = difference22_abc1[i][j];)
+    CABLE18_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     /* derivatives of the strain's modes */
     fu_real eps_m0_t[4][3], eps_m1_t[4][3], eps_m2_t[4][3], eps_m3_t[4][3], eps_m4_t[4][3];
     FU_EACH(i, 3, eps_m0_t[0][i] = (1.0/3.0)*t1[i];)
@@ -327,63 +227,11 @@ void cable18_green_exact_assumed_discrete_force(fu_real l, const fu_real *e, con
         next_eps[5], now_a[5], next_a[5], now_inv_a[5], next_inv_a[5], now_scale[5], next_scale[5], now_cross2[5],
         next_cross2[5];
     const fu_real EI_l = 2.0*A[1]*w;
-    FU_EACH(i, 3, now_r1_even0[i] = chordnow_3[i] + 0.7317428697781312*now_t2[i] + 0.24573545909491168*now_t4[i];)
-    FU_EACH(i, 3, next_r1_even0[i] = chordnext_3[i] + 0.7317428697781312*next_t2[i] + 0.24573545909491168*next_t4[i];)
-    FU_EACH(i, 3, now_r1_odd0[i] = -0.906179845938664*now_t1[i] - 0.501031171044662*now_t3[i];)
-    FU_EACH(i, 3, next_r1_odd0[i] = -0.906179845938664*next_t1[i] - 0.501031171044662*next_t3[i];)
-    FU_EACH(i, 3, now_r1[4][i] = now_r1_even0[i] - now_r1_odd0[i];)
-    FU_EACH(i, 3, next_r1[4][i] = next_r1_even0[i] - next_r1_odd0[i];)
-    FU_EACH(i, 3, now_r1[0][i] = now_r1_even0[i] + now_r1_odd0[i];)
-    FU_EACH(i, 3, next_r1[0][i] = next_r1_even0[i] + next_r1_odd0[i];)
-    FU_EACH(i, 3, now_r1_even1[i] = chordnow_3[i] - 0.06507620311146456*now_t2[i] - 0.34450089119367744*now_t4[i];)
-    FU_EACH(i, 3, next_r1_even1[i] = chordnext_3[i] - 0.06507620311146456*next_t2[i] - 0.34450089119367744*next_t4[i];)
-    FU_EACH(i, 3, now_r1_odd1[i] = -0.5384693101056831*now_t1[i] + 0.4173821037266682*now_t3[i];)
-    FU_EACH(i, 3, next_r1_odd1[i] = -0.5384693101056831*next_t1[i] + 0.4173821037266682*next_t3[i];)
-    FU_EACH(i, 3, now_r1[3][i] = now_r1_even1[i] - now_r1_odd1[i];)
-    FU_EACH(i, 3, next_r1[3][i] = next_r1_even1[i] - next_r1_odd1[i];)
-    FU_EACH(i, 3, now_r1[1][i] = now_r1_even1[i] + now_r1_odd1[i];)
-    FU_EACH(i, 3, next_r1[1][i] = next_r1_even1[i] + next_r1_odd1[i];)
-    FU_EACH(i, 3, now_r1[2][i] = chordnow_3[i] - 0.5*now_t2[i] + 0.375*now_t4[i];)
-    FU_EACH(i, 3, next_r1[2][i] = chordnext_3[i] - 0.5*next_t2[i] + 0.375*next_t4[i];)
-    FU_EACH(i, 3, now_r2_even0[i] = now_t1[i] + 4.658714348890656*now_t3[i];)
-    FU_EACH(i, 3, next_r2_even0[i] = next_t1[i] + 4.658714348890656*next_t3[i];)
-    FU_EACH(i, 3, now_r2_odd0[i] = -2.718539537815992*now_t2[i] - 6.225757735128626*now_t4[i];)
-    FU_EACH(i, 3, next_r2_odd0[i] = -2.718539537815992*next_t2[i] - 6.225757735128626*next_t4[i];)
-    FU_EACH(i, 3, now_r2[4][i] = now_r2_even0[i] - now_r2_odd0[i];)
-    FU_EACH(i, 3, next_r2[4][i] = next_r2_even0[i] - next_r2_odd0[i];)
-    FU_EACH(i, 3, now_r2[0][i] = now_r2_even0[i] + now_r2_odd0[i];)
-    FU_EACH(i, 3, next_r2[0][i] = next_r2_even0[i] + next_r2_odd0[i];)
-    FU_EACH(i, 3, now_r2_even1[i] = now_t1[i] + 0.6746189844426773*now_t3[i];)
-    FU_EACH(i, 3, next_r2_even1[i] = next_t1[i] + 0.6746189844426773*next_t3[i];)
-    FU_EACH(i, 3, now_r2_odd1[i] = -1.6154079303170494*now_t2[i] + 1.306266795769628*now_t4[i];)
-    FU_EACH(i, 3, next_r2_odd1[i] = -1.6154079303170494*next_t2[i] + 1.306266795769628*next_t4[i];)
-    FU_EACH(i, 3, now_r2[3][i] = now_r2_even1[i] - now_r2_odd1[i];)
-    FU_EACH(i, 3, next_r2[3][i] = next_r2_even1[i] - next_r2_odd1[i];)
-    FU_EACH(i, 3, now_r2[1][i] = now_r2_even1[i] + now_r2_odd1[i];)
-    FU_EACH(i, 3, next_r2[1][i] = next_r2_even1[i] + next_r2_odd1[i];)
-    FU_EACH(i, 3, now_r2[2][i] = now_t1[i] - 1.5*now_t3[i];)
-    FU_EACH(i, 3, next_r2[2][i] = next_t1[i] - 1.5*next_t3[i];)
-    FU_EACH(g, 5,
-        now_a1[g] = now_r1[g][0]*now_r1[g][0] + now_r1[g][1]*now_r1[g][1] + now_r1[g][2]*now_r1[g][2] - 1.0;
-        next_a1[g] = next_r1[g][0]*next_r1[g][0] + next_r1[g][1]*next_r1[g][1] + next_r1[g][2]*next_r1[g][2] - 1.0;
-        now_b[g] = now_r1[g][0]*now_r2[g][0] + now_r1[g][1]*now_r2[g][1] + now_r1[g][2]*now_r2[g][2];
-        next_b[g] = next_r1[g][0]*next_r2[g][0] + next_r1[g][1]*next_r2[g][1] + next_r1[g][2]*next_r2[g][2];
-        now_c[g] = now_r2[g][0]*now_r2[g][0] + now_r2[g][1]*now_r2[g][1] + now_r2[g][2]*now_r2[g][2];
-        next_c[g] = next_r2[g][0]*next_r2[g][0] + next_r2[g][1]*next_r2[g][1] + next_r2[g][2]*next_r2[g][2];)
+    CABLE18_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_2
     EI5[0] = 0.23692688505618928*EI_l;
     EI5[1] = 0.4786286704993663*EI_l;
     EI5[2] = 0.5688888888888887*EI_l;
-    FU_EACH(g, 5,
-        now_eps[g] = 0.5*now_a1[g];
-        next_eps[g] = 0.5*next_a1[g];
-        now_a[g] = now_a1[g] + 1.0;
-        next_a[g] = next_a1[g] + 1.0;
-        now_inv_a[g] = 1.0/now_a[g];
-        next_inv_a[g] = 1.0/next_a[g];
-        now_scale[g] = EI5[g < 2 ? g : 4 - g]*now_inv_a[g]*now_inv_a[g]*now_inv_a[g];
-        next_scale[g] = EI5[g < 2 ? g : 4 - g]*next_inv_a[g]*next_inv_a[g]*next_inv_a[g];
-        now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g];
-        next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
+    CABLE18_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_3
     CABLE18_STRAIN_BY_ITS_LEGENDRE_MODES_2
     CABLE18_NORMAL_FORCE_AT_THE_QUADRATURE_POINTS_3
     /* forces at the quadrature points */
@@ -412,14 +260,8 @@ void cable18_green_exact_assumed_discrete_force(fu_real l, const fu_real *e, con
         D_scale_2_a1_2 = D_inv_a_2_a1_2*EI5[2]*(next_inv_a[2]*next_inv_a[2] + next_inv_a[2]*now_inv_a[2] + now_inv_a[2]*now_inv_a[2]),
         D_cross2_2_b_2 = -next_b[2] - now_b[2],
         D_cross2_2_c_2 = 0.5*next_a[2] + 0.5*now_a[2],
-        D_a1_2 = D_cross2_2_a1_2*(0.5*next_scale[2] + 0.5*now_scale[2]) + D_scale_2_a1_2*(0.5*next_cross2[2] + 0.5*now_cross2[2]) + 0.25*next_even_N_2 + 0.25*now_even_N_2,
-        D_b_2 = D_cross2_2_b_2*(0.5*next_scale[2] + 0.5*now_scale[2]),
-        D_c_2 = D_cross2_2_c_2*(0.5*next_scale[2] + 0.5*now_scale[2]);
-    FU_EACH(i, 3, mean1_abc2[i] = 0.5*next_r1[2][i] + 0.5*now_r1[2][i];)
-    FU_EACH(i, 3, mean2_abc2[i] = 0.5*next_r2[2][i] + 0.5*now_r2[2][i];)
-    const fu_real half_abc2 = 0.5*D_b_2;
-    FU_EACH(i, 3, F1_abc2[i] = D_a1_2*mean1_abc2[i] + half_abc2*mean2_abc2[i];)
-    FU_EACH(i, 3, F2_abc2[i] = D_c_2*mean2_abc2[i] + half_abc2*mean1_abc2[i];)
+        D_a1_2 = D_cross2_2_a1_2*(0.5*next_scale[2] + 0.5*now_scale[2]) + D_scale_2_a1_2*(0.5*next_cross2[2] + 0.5*now_cross2[2]) + 0.25*next_even_N_2 + 0.25*now_even_N_2;
+    CABLE18_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_3
     FU_EACH(g, 2,
         D_cross2_a1_at[g] = 0.5*next_c[g + 3] + 0.5*now_c[g + 3];
         D_inv_a_a1_at[g] = -(next_inv_a[g + 3]*now_inv_a[g + 3]);
@@ -563,37 +405,8 @@ void cable18_green_exact_assumed_section_forces(fu_real l, fu_real x, const fu_r
         a = a1 + 1.0,
         inv_a = 1.0/a,
         scale = inv_a*inv_a*inv_a,
-        cross2 = a*c - b*b,
-        r1_even0_x = chord3_x + 0.7317428697781312*t2_x + 0.24573545909491168*t4_x,
-        r1_even0_y = chord3_y + 0.7317428697781312*t2_y + 0.24573545909491168*t4_y,
-        r1_even0_z = chord3_z + 0.7317428697781312*t2_z + 0.24573545909491168*t4_z,
-        r1_odd0_x = -0.906179845938664*t1_x - 0.501031171044662*t3_x,
-        r1_odd0_y = -0.906179845938664*t1_y - 0.501031171044662*t3_y,
-        r1_odd0_z = -0.906179845938664*t1_z - 0.501031171044662*t3_z;
-    r1_x_at[4] = r1_even0_x - r1_odd0_x;
-    r1_y_at[4] = r1_even0_y - r1_odd0_y;
-    r1_z_at[4] = r1_even0_z - r1_odd0_z;
-    r1_x_at[0] = r1_even0_x + r1_odd0_x;
-    r1_y_at[0] = r1_even0_y + r1_odd0_y;
-    r1_z_at[0] = r1_even0_z + r1_odd0_z;
-    const fu_real
-        r1_even1_x = chord3_x - 0.06507620311146456*t2_x - 0.34450089119367744*t4_x,
-        r1_even1_y = chord3_y - 0.06507620311146456*t2_y - 0.34450089119367744*t4_y,
-        r1_even1_z = chord3_z - 0.06507620311146456*t2_z - 0.34450089119367744*t4_z,
-        r1_odd1_x = -0.5384693101056831*t1_x + 0.4173821037266682*t3_x,
-        r1_odd1_y = -0.5384693101056831*t1_y + 0.4173821037266682*t3_y,
-        r1_odd1_z = -0.5384693101056831*t1_z + 0.4173821037266682*t3_z;
-    r1_x_at[3] = r1_even1_x - r1_odd1_x;
-    r1_y_at[3] = r1_even1_y - r1_odd1_y;
-    r1_z_at[3] = r1_even1_z - r1_odd1_z;
-    r1_x_at[1] = r1_even1_x + r1_odd1_x;
-    r1_y_at[1] = r1_even1_y + r1_odd1_y;
-    r1_z_at[1] = r1_even1_z + r1_odd1_z;
-    r1_x_at[2] = chord3_x - 0.5*t2_x + 0.375*t4_x;
-    r1_y_at[2] = chord3_y - 0.5*t2_y + 0.375*t4_y;
-    r1_z_at[2] = chord3_z - 0.5*t2_z + 0.375*t4_z;
-    FU_EACH(g, 5,
-        a1_at[g] = r1_x_at[g]*r1_x_at[g] + r1_y_at[g]*r1_y_at[g] + r1_z_at[g]*r1_z_at[g] - 1.0;)
+        cross2 = a*c - b*b;
+    CABLE18_PART_OF_ENERGY_PER_LENGTH_THROUGH_ITS_INVARIANTS
     FU_EACH(g, 5,
         eps[g] = 0.5*a1_at[g];)
     CABLE18_STRAIN_BY_ITS_LEGENDRE_MODES

@@ -15,6 +15,18 @@
 #include "kernels.h"
 #include "cable8p_stages.h"
 
+/* part of rate of axial strain at the quadrature points: of cable8p_engineering_exact_tension_only_damping_force and 2 more */
+#define CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    const fu_real \
+        len_0 = FU_SQRT(a1_0 + 1.0), \
+        eps_0 = a1_0/(len_0 + 1.0), \
+        transition2 = A[3]*A[3], \
+        smooth_0 = FU_SQRT(eps_0*eps_0 + transition2), \
+        inv_smooth_0 = 1.0/smooth_0, \
+        u_0 = eps_0*inv_smooth_0, \
+        quarter_lost = -0.25*A[2] + 0.25, \
+        share_0 = A[2] + quarter_lost*(-u_0 + 2.0)*(u_0 + 1.0)*(u_0 + 1.0);
+
 /* strain at the quadrature points: of cable8p_engineering_exact_tension_only_elastic_force and 1 more */
 #define CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_STRAIN_AT_THE_QUADRATURE_POINTS \
     fu_real r1_even0[2], r1_odd0[2], r1[5][2], r1_even1[2], r1_odd1[2], r2_odd0[2], r2[5][2], r2_odd1[2], a1[5], b[5], \
@@ -31,17 +43,7 @@
     FU_EACH(i, 2, r1[3][i] = r1_even1[i] - r1_odd1[i];) \
     FU_EACH(i, 2, r1[1][i] = r1_even1[i] + r1_odd1[i];) \
     FU_EACH(i, 2, r1[2][i] = chord2[i] - 0.5*t2[i];) \
-    FU_EACH(i, 2, r2_odd0[i] = -(2.718539537815992*t2[i]);) \
-    FU_EACH(i, 2, r2[4][i] = -r2_odd0[i] + t1[i];) \
-    FU_EACH(i, 2, r2[0][i] = r2_odd0[i] + t1[i];) \
-    FU_EACH(i, 2, r2_odd1[i] = -(1.6154079303170494*t2[i]);) \
-    FU_EACH(i, 2, r2[3][i] = -r2_odd1[i] + t1[i];) \
-    FU_EACH(i, 2, r2[1][i] = r2_odd1[i] + t1[i];) \
-    FU_EACH(i, 2, r2[2][i] = t1[i];) \
-    FU_EACH(g, 5, \
-        a1[g] = r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] - 1.0; \
-        b[g] = r1[g][0]*r2[g][0] + r1[g][1]*r2[g][1]; \
-        c[g] = r2[g][0]*r2[g][0] + r2[g][1]*r2[g][1];) \
+    CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_5 \
     EA5[0] = 0.23692688505618928*EA_l; \
     EI5[0] = 0.23692688505618928*EI_l; \
     EA5[1] = 0.4786286704993663*EA_l; \
@@ -129,26 +131,7 @@ void cable8p_engineering_exact_tension_only_energy(fu_real l, const fu_real *e, 
     r1_y[1] = r1_even1_y + r1_odd1_y;
     r1_x[2] = chord2_x - 0.5*t2_x;
     r1_y[2] = chord2_y - 0.5*t2_y;
-    const fu_real
-        r2_odd0_x = -(2.718539537815992*t2_x),
-        r2_odd0_y = -(2.718539537815992*t2_y);
-    r2_x[4] = -r2_odd0_x + t1_x;
-    r2_y[4] = -r2_odd0_y + t1_y;
-    r2_x[0] = r2_odd0_x + t1_x;
-    r2_y[0] = r2_odd0_y + t1_y;
-    const fu_real
-        r2_odd1_x = -(1.6154079303170494*t2_x),
-        r2_odd1_y = -(1.6154079303170494*t2_y);
-    r2_x[3] = -r2_odd1_x + t1_x;
-    r2_y[3] = -r2_odd1_y + t1_y;
-    r2_x[1] = r2_odd1_x + t1_x;
-    r2_y[1] = r2_odd1_y + t1_y;
-    r2_x[2] = t1_x;
-    r2_y[2] = t1_y;
-    FU_EACH(g, 5,
-        a1[g] = r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g] - 1.0;
-        b[g] = r1_x[g]*r2_x[g] + r1_y[g]*r2_y[g];
-        c[g] = r2_x[g]*r2_x[g] + r2_y[g]*r2_y[g];)
+    CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS
     const fu_real
         EA5_0 = 0.23692688505618928*EA_l,
         EI5_0 = 0.23692688505618928*EI_l,
@@ -220,14 +203,7 @@ FU_KERNEL void cable8p_engineering_exact_tension_only_elastic_force(fu_real l, c
         half_abc[g] = 0.5*D_b[g];
         FU_EACH(i, 2, F1_abc[g][i] = D_a1[g]*r1[g][i] + half_abc[g]*r2[g][i];)
         FU_EACH(i, 2, F2_abc[g][i] = D_c[g]*r2[g][i] + half_abc[g]*r1[g][i];))
-    FU_EACH(i, 2, sum_abc1_0[i] = F1_abc[0][i] + F1_abc[4][i];)
-    FU_EACH(i, 2, difference_abc1_0[i] = F1_abc[0][i] - F1_abc[4][i];)
-    FU_EACH(i, 2, sum_abc1_1[i] = F1_abc[1][i] + F1_abc[3][i];)
-    FU_EACH(i, 2, difference_abc1_1[i] = F1_abc[1][i] - F1_abc[3][i];)
-    FU_EACH(i, 2, sum_abc2_0[i] = F2_abc[0][i] + F2_abc[4][i];)
-    FU_EACH(i, 2, difference_abc2_0[i] = F2_abc[0][i] - F2_abc[4][i];)
-    FU_EACH(i, 2, sum_abc2_1[i] = F2_abc[1][i] + F2_abc[3][i];)
-    FU_EACH(i, 2, difference_abc2_1[i] = F2_abc[1][i] - F2_abc[3][i];)
+    CABLE8P_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS
     CABLE8P_FORCES_ON_STRAIN_VECTORS
     /* forces on nodal vectors */
     fu_real f_r_2[2];
@@ -299,18 +275,7 @@ FU_KERNEL void cable8p_engineering_exact_tension_only_elastic_tangent(fu_real l,
         FU_UPPER(i, j, 2, K22_abc[g][i][j] = b2_abc[g][j]*r1[g][i];)
         FU_EACH(i, 2, K22_abc[g][i][i] += D_c[g];)
         FU_UPPER(i, j, 2, K22_abc[g][j][i] = K22_abc[g][i][j];))
-    FU_UPPER(i, j, 2, sum11_abc0[i][j] = K11_abc[0][i][j] + K11_abc[4][i][j]; sum11_abc0[j][i] = sum11_abc0[i][j];)
-    FU_UPPER(i, j, 2, sum11_abc1[i][j] = K11_abc[1][i][j] + K11_abc[3][i][j]; sum11_abc1[j][i] = sum11_abc1[i][j];)
-    FU_UPPER(i, j, 2, difference11_abc0[i][j] = K11_abc[0][i][j] - K11_abc[4][i][j]; difference11_abc0[j][i] = difference11_abc0[i][j];)
-    FU_PAIRS(i, j, 2, sum12_abc0[i][j] = K12_abc[0][i][j] + K12_abc[4][i][j];)
-    FU_UPPER(i, j, 2, difference11_abc1[i][j] = K11_abc[1][i][j] - K11_abc[3][i][j]; difference11_abc1[j][i] = difference11_abc1[i][j];)
-    FU_PAIRS(i, j, 2, sum12_abc1[i][j] = K12_abc[1][i][j] + K12_abc[3][i][j];)
-    FU_PAIRS(i, j, 2, difference12_abc0[i][j] = K12_abc[0][i][j] - K12_abc[4][i][j];)
-    FU_PAIRS(i, j, 2, difference12_abc1[i][j] = K12_abc[1][i][j] - K12_abc[3][i][j];)
-    FU_UPPER(i, j, 2, sum22_abc0[i][j] = K22_abc[0][i][j] + K22_abc[4][i][j]; sum22_abc0[j][i] = sum22_abc0[i][j];)
-    FU_UPPER(i, j, 2, sum22_abc1[i][j] = K22_abc[1][i][j] + K22_abc[3][i][j]; sum22_abc1[j][i] = sum22_abc1[i][j];)
-    FU_UPPER(i, j, 2, difference22_abc0[i][j] = K22_abc[0][i][j] - K22_abc[4][i][j]; difference22_abc0[j][i] = difference22_abc0[i][j];)
-    FU_UPPER(i, j, 2, difference22_abc1[i][j] = K22_abc[1][i][j] - K22_abc[3][i][j]; difference22_abc1[j][i] = difference22_abc1[i][j];)
+    CABLE8P_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE8P_BLOCKS_OVER_STRAIN_VECTORS
     CABLE8P_OVER_NODAL_VECTORS_K_T
     CABLE8P_OVER_NODAL_VECTORS_T_K_T
@@ -517,11 +482,7 @@ void cable8p_engineering_exact_tension_only_discrete_force(fu_real l, const fu_r
         D_a1_2 = D_cross2_2_a1_2*(0.5*next_scale[1] + 0.5*now_scale[1]) + D_len_2_a1_2*EA5_2*(next_eps[1] + now_eps[1])*(A[2] + 0.5*half_lost*(next_eps[1]*next_inv_smooth[1] + 1.0) + 0.5*half_lost*(now_eps[1]*now_inv_smooth[1] + 1.0)) + D_scale_2_a1_2*(0.5*next_cross2[1] + 0.5*now_cross2[1]) + half_lost*(D_inv_smooth_2_a1_2*(0.5*next_eps[1] + 0.5*now_eps[1]) + D_len_2_a1_2*(0.5*next_inv_smooth[1] + 0.5*now_inv_smooth[1]))*(0.5*EA5_2*next_eps[1]*next_eps[1] + 0.5*EA5_2*now_eps[1]*now_eps[1]),
         D_b_2 = D_cross2_2_b_2*(0.5*next_scale[1] + 0.5*now_scale[1]),
         D_c_2 = D_cross2_2_c_2*(0.5*next_scale[1] + 0.5*now_scale[1]);
-    FU_EACH(i, 2, mean1_abc2[i] = 0.5*next_r1_2[i] + 0.5*now_r1_2[i];)
-    FU_EACH(i, 2, mean2_abc2[i] = 0.5*next_t1[i] + 0.5*now_t1[i];)
-    const fu_real half_abc2 = 0.5*D_b_2;
-    FU_EACH(i, 2, F1_abc2[i] = D_a1_2*mean1_abc2[i] + half_abc2*mean2_abc2[i];)
-    FU_EACH(i, 2, F2_abc2[i] = D_c_2*mean2_abc2[i] + half_abc2*mean1_abc2[i];)
+    CABLE8P_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2
     const fu_real
         D_cross2_3_a1_3 = 0.5*next_c[2] + 0.5*now_c[2],
         D_inv_a_3_a1_3 = -(next_inv_a[2]*now_inv_a[2]),
@@ -599,15 +560,8 @@ FU_KERNEL void cable8p_engineering_exact_tension_only_damping_force(fu_real l, c
     const fu_real
         d1_0_x = chordd2_x - 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x,
         d1_0_y = chordd2_y - 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y,
-        a1_0 = r1_x[0]*r1_x[0] + r1_y[0]*r1_y[0] - 1.0,
-        len_0 = FU_SQRT(a1_0 + 1.0),
-        eps_0 = a1_0/(len_0 + 1.0),
-        transition2 = A[3]*A[3],
-        smooth_0 = FU_SQRT(eps_0*eps_0 + transition2),
-        inv_smooth_0 = 1.0/smooth_0,
-        u_0 = eps_0*inv_smooth_0,
-        quarter_lost = -0.25*A[2] + 0.25,
-        share_0 = A[2] + quarter_lost*(-u_0 + 2.0)*(u_0 + 1.0)*(u_0 + 1.0);
+        a1_0 = r1_x[0]*r1_x[0] + r1_y[0]*r1_y[0] - 1.0;
+    CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     viscosity[0] = 0.5555555555555557*EA_tau*share_0;
     const fu_real len_0_2 = FU_SQRT(r1_x[0]*r1_x[0] + r1_y[0]*r1_y[0]);
     inv[0] = 1.0/len_0_2;
@@ -659,17 +613,7 @@ FU_KERNEL void cable8p_engineering_exact_tension_only_damping_force(fu_real l, c
         d2_b0_x = dt1_x - 1.7320508075688772*dt2_x,
         d2_b0_y = dt1_y - 1.7320508075688772*dt2_y,
         len_b0 = FU_SQRT(r1_b0_x*r1_b0_x + r1_b0_y*r1_b0_y);
-    inv_b[0] = 1.0/len_b0;
-    i_b_x[0] = inv_b[0]*r1_b0_x;
-    i_b_y[0] = inv_b[0]*r1_b0_y;
-    const fu_real
-        stretch_b0 = d1_b0_x*i_b_x[0] + d1_b0_y*i_b_y[0],
-        di_b0_x = inv_b[0]*(d1_b0_x - i_b_x[0]*stretch_b0),
-        di_b0_y = inv_b[0]*(d1_b0_y - i_b_y[0]*stretch_b0);
-    along_b[0] = i_b_x[0]*r2_b_x[0] + i_b_y[0]*r2_b_y[0];
-    const fu_real across_b0 = di_b0_x*r2_b_x[0] + di_b0_y*r2_b_y[0];
-    rate_b_x[0] = across_b0*i_b_x[0] - along_b[0]*di_b0_x + d2_b0_x;
-    rate_b_y[0] = across_b0*i_b_y[0] - along_b[0]*di_b0_y + d2_b0_y;
+    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     const fu_real
         r1_b1_x = chord2_x + 0.5773502691896257*t1_x,
         r1_b1_y = chord2_y + 0.5773502691896257*t1_y,
@@ -681,28 +625,12 @@ FU_KERNEL void cable8p_engineering_exact_tension_only_damping_force(fu_real l, c
         d2_b1_x = dt1_x + 1.7320508075688772*dt2_x,
         d2_b1_y = dt1_y + 1.7320508075688772*dt2_y,
         len_b1 = FU_SQRT(r1_b1_x*r1_b1_x + r1_b1_y*r1_b1_y);
-    inv_b[1] = 1.0/len_b1;
-    i_b_x[1] = inv_b[1]*r1_b1_x;
-    i_b_y[1] = inv_b[1]*r1_b1_y;
-    const fu_real
-        stretch_b1 = d1_b1_x*i_b_x[1] + d1_b1_y*i_b_y[1],
-        di_b1_x = inv_b[1]*(d1_b1_x - i_b_x[1]*stretch_b1),
-        di_b1_y = inv_b[1]*(d1_b1_y - i_b_y[1]*stretch_b1);
-    along_b[1] = i_b_x[1]*r2_b_x[1] + i_b_y[1]*r2_b_y[1];
-    const fu_real across_b1 = di_b1_x*r2_b_x[1] + di_b1_y*r2_b_y[1];
-    rate_b_x[1] = across_b1*i_b_x[1] - along_b[1]*di_b1_x + d2_b1_x;
-    rate_b_y[1] = across_b1*i_b_y[1] - along_b[1]*di_b1_y + d2_b1_y;
+    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     FU_EACH(g, 3,
         N[g] = deps[g]*inv[g]*viscosity[g];
         F_x[g] = N[g]*r1_x[g];
         F_y[g] = N[g]*r1_y[g];)
-    FU_EACH(g, 2,
-        inward_b[g] = EI_tau*inv_b[g]*(i_b_x[g]*rate_b_x[g] + i_b_y[g]*rate_b_y[g]);
-        lever_b[g] = EI_tau*along_b[g]*inv_b[g];
-        F1_b_x[g] = inward_b[g]*r2_b_x[g] - lever_b[g]*rate_b_x[g];
-        F1_b_y[g] = inward_b[g]*r2_b_y[g] - lever_b[g]*rate_b_y[g];
-        F2_b_x[g] = EI_tau*rate_b_x[g];
-        F2_b_y[g] = EI_tau*rate_b_y[g];)
+    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
     /* forces on strain vectors */
     const fu_real
         f_t0_x = F1_b_x[0] + F1_b_x[1] + F_x[0] + F_x[1] + F_x[2],
@@ -740,16 +668,9 @@ void cable8p_engineering_exact_tension_only_damping_tangent(fu_real l, const fu_
     const fu_real EA_tau = 0.5*A[0]*tau/w;
     FU_EACH(i, 2, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
     FU_EACH(i, 2, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
+    const fu_real a1_0 = r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1] - 1.0;
+    CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     const fu_real
-        a1_0 = r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1] - 1.0,
-        len_0 = FU_SQRT(a1_0 + 1.0),
-        eps_0 = a1_0/(len_0 + 1.0),
-        transition2 = A[3]*A[3],
-        smooth_0 = FU_SQRT(eps_0*eps_0 + transition2),
-        inv_smooth_0 = 1.0/smooth_0,
-        u_0 = eps_0*inv_smooth_0,
-        quarter_lost = -0.25*A[2] + 0.25,
-        share_0 = A[2] + quarter_lost*(-u_0 + 2.0)*(u_0 + 1.0)*(u_0 + 1.0),
         d_eps_0_smooth_0 = eps_0*inv_smooth_0,
         d_eps_0_inv_smooth_0 = -(d_eps_0_smooth_0*inv_smooth_0*inv_smooth_0),
         d_eps_0_u_0 = d_eps_0_inv_smooth_0*eps_0 + inv_smooth_0,
@@ -820,60 +741,7 @@ void cable8p_engineering_exact_tension_only_damping_tangent(fu_real l, const fu_
     const fu_real change_2 = 0.5555555555555557*EA_tau*d_eps_2_share_2*deps_2;
     FU_EACH(i, 2, by_2[i] = -N_2*i_2[i] + change_2*i_2[i] + viscosity_2*(di_2[i] + i_2[i]*rate);)
     FU_PAIRS(i, j, 2, K_2[i][j] = by_2[j]*i_2[i];)
-    FU_EACH(i, 2, K_2[i][i] += N_2;)
-    FU_PAIRS(i, j, 2, sum11_d10[i][j] = K_0[i][j] + K_2[i][j];)
-    FU_PAIRS(i, j, 2, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];)
-    const fu_real
-        k_b0 = inv_b0*(-inv_b0*stretch_b0 + rate),
-        level_b0 = across_b0*inv_b0 - along_b0*k_b0;
-    FU_EACH(i, 2, p_b0[i] = -along_b0*i_b0[i] + r2_b0[i];)
-    FU_EACH(i, 2, by_turn_b0[i] = inv_b0*(along_b0*i_b0[i] - p_b0[i]);)
-    const fu_real by_i_i_b0 = across_b0*inv_b0 + level_b0;
-    FU_EACH(i, 2, by_i_b0[i] = -by_i_i_b0*i_b0[i] + k_b0*p_b0[i];)
-    K_b0[2][0][0] = EI_tau*(by_i_b0[0]*i_b0[0] + by_turn_b0[0]*di_b0[0] + level_b0);
-    K_b0[2][0][1] = EI_tau*(by_i_b0[1]*i_b0[0] + by_turn_b0[1]*di_b0[0]);
-    K_b0[2][1][0] = EI_tau*(by_i_b0[0]*i_b0[1] + by_turn_b0[0]*di_b0[1]);
-    K_b0[2][1][1] = EI_tau*(by_i_b0[1]*i_b0[1] + by_turn_b0[1]*di_b0[1] + level_b0);
-    FU_PAIRS(i, j, 2, K_b0[3][i][j] = EI_tau*(-di_b0[i]*i_b0[j] + di_b0[j]*i_b0[i]);)
-    FU_EACH(i, 2, K_b0[3][i][i] += EI_tau*rate;)
-    const fu_real
-        stiff_b0 = EI_tau*inv_b0,
-        lever_b0 = along_b0*inv_b0,
-        growth_b0 = i_b0[0]*rate_b0[0] + i_b0[1]*rate_b0[1];
-    FU_EACH(i, 2, pushed_b0[i] = stiff_b0*(-along_b0*di_b0[i]*inv_b0 + d2_b0[i]*inv_b0 - 2.0*growth_b0*i_b0[i]*inv_b0 + k_b0*p_b0[i]);)
-    FU_EACH(i, 2, turned_b0[i] = by_turn_b0[i]*stiff_b0;)
-    FU_EACH(i, 2, follows_b0[i] = stiff_b0*(di_b0[i] + i_b0[i]*rate);)
-    FU_EACH(i, 2, stiff_i_b0[i] = i_b0[i]*stiff_b0;)
-    FU_PAIRS(i, j, 2, K_b0[0][i][j] = -K_b0[2][i][j]*lever_b0 + pushed_b0[j]*r2_b0[i] + rate_b0[i]*turned_b0[j];)
-    FU_PAIRS(i, j, 2, K_b0[1][i][j] = -K_b0[3][i][j]*lever_b0 + follows_b0[j]*r2_b0[i] - rate_b0[i]*stiff_i_b0[j];)
-    FU_EACH(i, 2, K_b0[1][i][i] += growth_b0*stiff_b0;)
-    const fu_real
-        k_b1 = inv_b1*(-inv_b1*stretch_b1 + rate),
-        level_b1 = across_b1*inv_b1 - along_b1*k_b1;
-    FU_EACH(i, 2, p_b1[i] = -along_b1*i_b1[i] + r2_b1[i];)
-    FU_EACH(i, 2, by_turn_b1[i] = inv_b1*(along_b1*i_b1[i] - p_b1[i]);)
-    const fu_real by_i_i_b1 = across_b1*inv_b1 + level_b1;
-    FU_EACH(i, 2, by_i_b1[i] = -by_i_i_b1*i_b1[i] + k_b1*p_b1[i];)
-    K_b1[2][0][0] = EI_tau*(by_i_b1[0]*i_b1[0] + by_turn_b1[0]*di_b1[0] + level_b1);
-    K_b1[2][0][1] = EI_tau*(by_i_b1[1]*i_b1[0] + by_turn_b1[1]*di_b1[0]);
-    K_b1[2][1][0] = EI_tau*(by_i_b1[0]*i_b1[1] + by_turn_b1[0]*di_b1[1]);
-    K_b1[2][1][1] = EI_tau*(by_i_b1[1]*i_b1[1] + by_turn_b1[1]*di_b1[1] + level_b1);
-    FU_PAIRS(i, j, 2, K_b1[3][i][j] = EI_tau*(-di_b1[i]*i_b1[j] + di_b1[j]*i_b1[i]);)
-    FU_EACH(i, 2, K_b1[3][i][i] += EI_tau*rate;)
-    const fu_real
-        stiff_b1 = EI_tau*inv_b1,
-        lever_b1 = along_b1*inv_b1,
-        growth_b1 = i_b1[0]*rate_b1[0] + i_b1[1]*rate_b1[1];
-    FU_EACH(i, 2, pushed_b1[i] = stiff_b1*(-along_b1*di_b1[i]*inv_b1 + d2_b1[i]*inv_b1 - 2.0*growth_b1*i_b1[i]*inv_b1 + k_b1*p_b1[i]);)
-    FU_EACH(i, 2, turned_b1[i] = by_turn_b1[i]*stiff_b1;)
-    FU_EACH(i, 2, follows_b1[i] = stiff_b1*(di_b1[i] + i_b1[i]*rate);)
-    FU_EACH(i, 2, stiff_i_b1[i] = i_b1[i]*stiff_b1;)
-    FU_PAIRS(i, j, 2, K_b1[0][i][j] = -K_b1[2][i][j]*lever_b1 + pushed_b1[j]*r2_b1[i] + rate_b1[i]*turned_b1[j];)
-    FU_PAIRS(i, j, 2, K_b1[1][i][j] = -K_b1[3][i][j]*lever_b1 + follows_b1[j]*r2_b1[i] - rate_b1[i]*stiff_i_b1[j];)
-    FU_EACH(i, 2, K_b1[1][i][i] += growth_b1*stiff_b1;)
-    FU_EACH(g, 4,
-        FU_PAIRS(i, j, 2, sum_d20[g][i][j] = K_b0[g][i][j] + K_b1[g][i][j];)
-        FU_PAIRS(i, j, 2, difference_d20[g][i][j] = K_b0[g][i][j] - K_b1[g][i][j];))
+    CABLE8P_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE8P_BLOCKS_OVER_STRAIN_VECTORS_2
     CABLE8P_OVER_NODAL_VECTORS_K_T_3
     CABLE8P_OVER_NODAL_VECTORS_T_K_T_3
@@ -901,15 +769,9 @@ FU_KERNEL void cable8p_engineering_exact_tension_only_dissipation(fu_real l, con
         r1_0_y = chord2_y - 0.7745966692414834*t1_y + 0.40000000000000013*t2_y,
         d1_0_x = chordd2_x - 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x,
         d1_0_y = chordd2_y - 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y,
-        a1_0 = r1_0_x*r1_0_x + r1_0_y*r1_0_y - 1.0,
-        len_0 = FU_SQRT(a1_0 + 1.0),
-        eps_0 = a1_0/(len_0 + 1.0),
-        transition2 = A[3]*A[3],
-        smooth_0 = FU_SQRT(eps_0*eps_0 + transition2),
-        inv_smooth_0 = 1.0/smooth_0,
-        u_0 = eps_0*inv_smooth_0,
-        quarter_lost = -0.25*A[2] + 0.25,
-        share_0 = A[2] + quarter_lost*(-u_0 + 2.0)*(u_0 + 1.0)*(u_0 + 1.0),
+        a1_0 = r1_0_x*r1_0_x + r1_0_y*r1_0_y - 1.0;
+    CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
+    const fu_real
         viscosity_0 = 0.5555555555555557*EA_tau*share_0,
         len_0_2 = FU_SQRT(r1_0_x*r1_0_x + r1_0_y*r1_0_y),
         inv_0 = 1.0/len_0_2,

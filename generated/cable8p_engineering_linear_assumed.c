@@ -209,10 +209,7 @@ FU_KERNEL void cable8p_engineering_linear_assumed_elastic_tangent(fu_real l, con
         FU_UPPER(i, j, 2, K_a[g][i][j] = a1_a[g][j]*r1[g][i];)
         FU_EACH(i, 2, K_a[g][i][i] += D_a1[g];)
         FU_UPPER(i, j, 2, K_a[g][j][i] = K_a[g][i][j];))
-    FU_UPPER(i, j, 2, sum11_a0[i][j] = K_a[0][i][j] + K_a[4][i][j]; sum11_a0[j][i] = sum11_a0[i][j];)
-    FU_UPPER(i, j, 2, sum11_a1[i][j] = K_a[1][i][j] + K_a[3][i][j]; sum11_a1[j][i] = sum11_a1[i][j];)
-    FU_UPPER(i, j, 2, difference11_a0[i][j] = K_a[0][i][j] - K_a[4][i][j]; difference11_a0[j][i] = difference11_a0[i][j];)
-    FU_UPPER(i, j, 2, difference11_a1[i][j] = K_a[1][i][j] - K_a[3][i][j]; difference11_a1[j][i] = difference11_a1[i][j];)
+    CABLE8P_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS_2
     /* second derivatives at the quadrature points */
     const fu_real
         sum11_c0_xx = 2.0*EI_l,

@@ -26,17 +26,7 @@
     FU_EACH(i, 2, r1[3][i] = r1_even1[i] - r1_odd1[i];) \
     FU_EACH(i, 2, r1[1][i] = r1_even1[i] + r1_odd1[i];) \
     FU_EACH(i, 2, r1[2][i] = chord2[i] - 0.5*t2[i];) \
-    FU_EACH(i, 2, r2_odd0[i] = -(2.718539537815992*t2[i]);) \
-    FU_EACH(i, 2, r2[4][i] = -r2_odd0[i] + t1[i];) \
-    FU_EACH(i, 2, r2[0][i] = r2_odd0[i] + t1[i];) \
-    FU_EACH(i, 2, r2_odd1[i] = -(1.6154079303170494*t2[i]);) \
-    FU_EACH(i, 2, r2[3][i] = -r2_odd1[i] + t1[i];) \
-    FU_EACH(i, 2, r2[1][i] = r2_odd1[i] + t1[i];) \
-    FU_EACH(i, 2, r2[2][i] = t1[i];) \
-    FU_EACH(g, 5, \
-        a1[g] = r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] - 1.0; \
-        b[g] = r1[g][0]*r2[g][0] + r1[g][1]*r2[g][1]; \
-        c[g] = r2[g][0]*r2[g][0] + r2[g][1]*r2[g][1];) \
+    CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_5 \
     EI5[0] = 0.23692688505618928*EI_l; \
     EI5[1] = 0.4786286704993663*EI_l; \
     EI5[2] = 0.5688888888888887*EI_l; \
@@ -95,26 +85,7 @@ void cable8p_green_exact_assumed_energy(fu_real l, const fu_real *e, const fu_re
     r1_y[1] = r1_even1_y + r1_odd1_y;
     r1_x[2] = chord2_x - 0.5*t2_x;
     r1_y[2] = chord2_y - 0.5*t2_y;
-    const fu_real
-        r2_odd0_x = -(2.718539537815992*t2_x),
-        r2_odd0_y = -(2.718539537815992*t2_y);
-    r2_x[4] = -r2_odd0_x + t1_x;
-    r2_y[4] = -r2_odd0_y + t1_y;
-    r2_x[0] = r2_odd0_x + t1_x;
-    r2_y[0] = r2_odd0_y + t1_y;
-    const fu_real
-        r2_odd1_x = -(1.6154079303170494*t2_x),
-        r2_odd1_y = -(1.6154079303170494*t2_y);
-    r2_x[3] = -r2_odd1_x + t1_x;
-    r2_y[3] = -r2_odd1_y + t1_y;
-    r2_x[1] = r2_odd1_x + t1_x;
-    r2_y[1] = r2_odd1_y + t1_y;
-    r2_x[2] = t1_x;
-    r2_y[2] = t1_y;
-    FU_EACH(g, 5,
-        a1[g] = r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g] - 1.0;
-        b[g] = r1_x[g]*r2_x[g] + r1_y[g]*r2_y[g];
-        c[g] = r2_x[g]*r2_x[g] + r2_y[g]*r2_y[g];)
+    CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS
     EI5[0] = 0.23692688505618928*EI_l;
     EI5[1] = 0.4786286704993663*EI_l;
     EI5[2] = 0.5688888888888887*EI_l;
@@ -157,14 +128,7 @@ FU_KERNEL void cable8p_green_exact_assumed_elastic_force(fu_real l, const fu_rea
         half_abc[g] = 0.5*D_b[g];
         FU_EACH(i, 2, F1_abc[g][i] = D_a1[g]*r1[g][i] + half_abc[g]*r2[g][i];)
         FU_EACH(i, 2, F2_abc[g][i] = D_c[g]*r2[g][i] + half_abc[g]*r1[g][i];))
-    FU_EACH(i, 2, sum_abc1_0[i] = F1_abc[0][i] + F1_abc[4][i];)
-    FU_EACH(i, 2, difference_abc1_0[i] = F1_abc[0][i] - F1_abc[4][i];)
-    FU_EACH(i, 2, sum_abc1_1[i] = F1_abc[1][i] + F1_abc[3][i];)
-    FU_EACH(i, 2, difference_abc1_1[i] = F1_abc[1][i] - F1_abc[3][i];)
-    FU_EACH(i, 2, sum_abc2_0[i] = F2_abc[0][i] + F2_abc[4][i];)
-    FU_EACH(i, 2, difference_abc2_0[i] = F2_abc[0][i] - F2_abc[4][i];)
-    FU_EACH(i, 2, sum_abc2_1[i] = F2_abc[1][i] + F2_abc[3][i];)
-    FU_EACH(i, 2, difference_abc2_1[i] = F2_abc[1][i] - F2_abc[3][i];)
+    CABLE8P_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS
     CABLE8P_FORCES_ON_STRAIN_VECTORS
     /* forces on nodal vectors */
     fu_real f_r_2[2];
@@ -226,18 +190,7 @@ FU_KERNEL void cable8p_green_exact_assumed_elastic_tangent(fu_real l, const fu_r
         FU_UPPER(i, j, 2, K22_abc[g][i][j] = b2_abc[g][j]*r1[g][i];)
         FU_EACH(i, 2, K22_abc[g][i][i] += D_c[g];)
         FU_UPPER(i, j, 2, K22_abc[g][j][i] = K22_abc[g][i][j];))
-    FU_UPPER(i, j, 2, sum11_abc0[i][j] = K11_abc[0][i][j] + K11_abc[4][i][j]; sum11_abc0[j][i] = sum11_abc0[i][j];)
-    FU_UPPER(i, j, 2, sum11_abc1[i][j] = K11_abc[1][i][j] + K11_abc[3][i][j]; sum11_abc1[j][i] = sum11_abc1[i][j];)
-    FU_UPPER(i, j, 2, difference11_abc0[i][j] = K11_abc[0][i][j] - K11_abc[4][i][j]; difference11_abc0[j][i] = difference11_abc0[i][j];)
-    FU_PAIRS(i, j, 2, sum12_abc0[i][j] = K12_abc[0][i][j] + K12_abc[4][i][j];)
-    FU_UPPER(i, j, 2, difference11_abc1[i][j] = K11_abc[1][i][j] - K11_abc[3][i][j]; difference11_abc1[j][i] = difference11_abc1[i][j];)
-    FU_PAIRS(i, j, 2, sum12_abc1[i][j] = K12_abc[1][i][j] + K12_abc[3][i][j];)
-    FU_PAIRS(i, j, 2, difference12_abc0[i][j] = K12_abc[0][i][j] - K12_abc[4][i][j];)
-    FU_PAIRS(i, j, 2, difference12_abc1[i][j] = K12_abc[1][i][j] - K12_abc[3][i][j];)
-    FU_UPPER(i, j, 2, sum22_abc0[i][j] = K22_abc[0][i][j] + K22_abc[4][i][j]; sum22_abc0[j][i] = sum22_abc0[i][j];)
-    FU_UPPER(i, j, 2, sum22_abc1[i][j] = K22_abc[1][i][j] + K22_abc[3][i][j]; sum22_abc1[j][i] = sum22_abc1[i][j];)
-    FU_UPPER(i, j, 2, difference22_abc0[i][j] = K22_abc[0][i][j] - K22_abc[4][i][j]; difference22_abc0[j][i] = difference22_abc0[i][j];)
-    FU_UPPER(i, j, 2, difference22_abc1[i][j] = K22_abc[1][i][j] - K22_abc[3][i][j]; difference22_abc1[j][i] = difference22_abc1[i][j];)
+    CABLE8P_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE8P_DERIVATIVES_OF_THE_STRAIN_S_MODES
     CABLE8P_STRESS_CHANGED_BY_THE_STRAIN_S_MODES
     /* blocks over strain vectors */
@@ -245,9 +198,7 @@ FU_KERNEL void cable8p_green_exact_assumed_elastic_tangent(fu_real l, const fu_r
     FU_UPPER(i, j, 2, K_t0_t0[i][j] = K11_abc[2][i][j] + chord2[i]*dN_m0_t0[j] + dN_m1_t0[j]*t1[i] + dN_m2_t0[j]*t2[i] + sum11_abc0[i][j] + sum11_abc1[i][j]; K_t0_t0[j][i] = K_t0_t0[i][j];)
     FU_PAIRS(i, j, 2, K_t0_t1[i][j] = K12_abc[2][i][j] + chord2[i]*dN_m0_t1[j] + dN_m1_t1[j]*t1[i] + dN_m2_t1[j]*t2[i] - 0.906179845938664*difference11_abc0[i][j] - 0.5384693101056831*difference11_abc1[i][j] + sum12_abc0[i][j] + sum12_abc1[i][j];)
     FU_PAIRS(i, j, 2, K_t0_t2[i][j] = -0.5*K11_abc[2][i][j] + chord2[i]*dN_m0_t2[j] + dN_m1_t2[j]*t1[i] + dN_m2_t2[j]*t2[i] - 2.718539537815992*difference12_abc0[i][j] - 1.6154079303170494*difference12_abc1[i][j] + 0.7317428697781312*sum11_abc0[i][j] - 0.06507620311146456*sum11_abc1[i][j];)
-    FU_UPPER(i, j, 2, K_t1_t1[i][j] = K22_abc[2][i][j] + dN_m0_t1[j]*eps_m0_t1[i] + dN_m1_t1[j]*eps_m1_t1[i] + dN_m2_t1[j]*eps_m2_t1[i] - 0.906179845938664*difference12_abc0[i][j] - 0.906179845938664*difference12_abc0[j][i] - 0.5384693101056831*difference12_abc1[i][j] - 0.5384693101056831*difference12_abc1[j][i] + 0.8211619131854208*sum11_abc0[i][j] + 0.2899491979256903*sum11_abc1[i][j] + sum22_abc0[i][j] + sum22_abc1[i][j]; K_t1_t1[j][i] = K_t1_t1[i][j];)
-    FU_PAIRS(i, j, 2, K_t1_t2[i][j] = -0.5*K12_abc[2][j][i] + dN_m0_t2[j]*eps_m0_t1[i] + dN_m1_t2[j]*eps_m1_t1[i] + dN_m2_t2[j]*eps_m2_t1[i] - 0.6630906410022628*difference11_abc0[i][j] + 0.03504153819372763*difference11_abc1[i][j] - 2.718539537815992*difference22_abc0[i][j] - 1.6154079303170494*difference22_abc1[i][j] + 2.4634857395562624*sum12_abc0[i][j] + 0.7317428697781312*sum12_abc0[j][i] + 0.869847593777071*sum12_abc1[i][j] - 0.06507620311146456*sum12_abc1[j][i];)
-    FU_UPPER(i, j, 2, K_t2_t2[i][j] = 0.25*K11_abc[2][i][j] + dN_m0_t2[j]*eps_m0_t2[i] + dN_m1_t2[j]*eps_m1_t2[i] + dN_m2_t2[j]*eps_m2_t2[i] - 1.9892719230067883*difference12_abc0[i][j] - 1.9892719230067883*difference12_abc0[j][i] + 0.1051246145811829*difference12_abc1[i][j] + 0.1051246145811829*difference12_abc1[j][i] + 0.5354476274711351*sum11_abc0[i][j] + 0.0042349122114045895*sum11_abc1[i][j] + 7.390457218668788*sum22_abc0[i][j] + 2.6095427813312133*sum22_abc1[i][j]; K_t2_t2[j][i] = K_t2_t2[i][j];)
+    CABLE8P_PART_OF_BLOCKS_OVER_STRAIN_VECTORS
     CABLE8P_OVER_NODAL_VECTORS_K_T
     CABLE8P_OVER_NODAL_VECTORS_T_K_T
     /* the first position: rigid translation makes no force */
@@ -298,44 +249,11 @@ void cable8p_green_exact_assumed_discrete_force(fu_real l, const fu_real *e, con
     FU_EACH(i, 2, next_r2[0][i] = next_r2_odd0[i] + next_t1[i];)
     FU_EACH(i, 2, now_r2_odd1[i] = -(1.6154079303170494*now_t2[i]);)
     FU_EACH(i, 2, next_r2_odd1[i] = -(1.6154079303170494*next_t2[i]);)
-    FU_EACH(i, 2, now_r2_at[0][i] = -now_r2_odd1[i] + now_t1[i];)
-    FU_EACH(i, 2, next_r2_at[0][i] = -next_r2_odd1[i] + next_t1[i];)
-    FU_EACH(i, 2, now_r2[1][i] = now_r2_odd1[i] + now_t1[i];)
-    FU_EACH(i, 2, next_r2[1][i] = next_r2_odd1[i] + next_t1[i];)
-    FU_EACH(g, 2,
-        now_a1[g] = now_r1[g][0]*now_r1[g][0] + now_r1[g][1]*now_r1[g][1] - 1.0;
-        next_a1[g] = next_r1[g][0]*next_r1[g][0] + next_r1[g][1]*next_r1[g][1] - 1.0;
-        now_b[g] = now_r1[g][0]*now_r2[g][0] + now_r1[g][1]*now_r2[g][1];
-        next_b[g] = next_r1[g][0]*next_r2[g][0] + next_r1[g][1]*next_r2[g][1];
-        now_c[g] = now_r2[g][0]*now_r2[g][0] + now_r2[g][1]*now_r2[g][1];
-        next_c[g] = next_r2[g][0]*next_r2[g][0] + next_r2[g][1]*next_r2[g][1];)
-    now_a1[2] = now_r1_2[0]*now_r1_2[0] + now_r1_2[1]*now_r1_2[1] - 1.0;
-    next_a1[2] = next_r1_2[0]*next_r1_2[0] + next_r1_2[1]*next_r1_2[1] - 1.0;
-    now_b[2] = now_r1_2[0]*now_t1[0] + now_r1_2[1]*now_t1[1];
-    next_b[2] = next_r1_2[0]*next_t1[0] + next_r1_2[1]*next_t1[1];
-    now_c[2] = now_t1[0]*now_t1[0] + now_t1[1]*now_t1[1];
-    next_c[2] = next_t1[0]*next_t1[0] + next_t1[1]*next_t1[1];
-    FU_EACH(g, 2,
-        now_a1[g + 3] = now_r1_at[g][0]*now_r1_at[g][0] + now_r1_at[g][1]*now_r1_at[g][1] - 1.0;
-        next_a1[g + 3] = next_r1_at[g][0]*next_r1_at[g][0] + next_r1_at[g][1]*next_r1_at[g][1] - 1.0;
-        now_b[g + 3] = now_r1_at[g][0]*now_r2_at[g][0] + now_r1_at[g][1]*now_r2_at[g][1];
-        next_b[g + 3] = next_r1_at[g][0]*next_r2_at[g][0] + next_r1_at[g][1]*next_r2_at[g][1];
-        now_c[g + 3] = now_r2_at[g][0]*now_r2_at[g][0] + now_r2_at[g][1]*now_r2_at[g][1];
-        next_c[g + 3] = next_r2_at[g][0]*next_r2_at[g][0] + next_r2_at[g][1]*next_r2_at[g][1];)
+    CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_2
     EI5[0] = 0.23692688505618928*EI_l;
     EI5[1] = 0.4786286704993663*EI_l;
     EI5[2] = 0.5688888888888887*EI_l;
-    FU_EACH(g, 5,
-        now_eps[g] = 0.5*now_a1[g];
-        next_eps[g] = 0.5*next_a1[g];
-        now_a[g] = now_a1[g] + 1.0;
-        next_a[g] = next_a1[g] + 1.0;
-        now_inv_a[g] = 1.0/now_a[g];
-        next_inv_a[g] = 1.0/next_a[g];
-        now_scale[g] = EI5[g < 2 ? g : 4 - g]*now_inv_a[g]*now_inv_a[g]*now_inv_a[g];
-        next_scale[g] = EI5[g < 2 ? g : 4 - g]*next_inv_a[g]*next_inv_a[g]*next_inv_a[g];
-        now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g];
-        next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
+    CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_3
     CABLE8P_STRAIN_BY_ITS_LEGENDRE_MODES_2
     CABLE8P_NORMAL_FORCE_AT_THE_QUADRATURE_POINTS_3
     /* forces at the quadrature points */
@@ -367,11 +285,7 @@ void cable8p_green_exact_assumed_discrete_force(fu_real l, const fu_real *e, con
         D_a1_2 = D_cross2_2_a1_2*(0.5*next_scale[2] + 0.5*now_scale[2]) + D_scale_2_a1_2*(0.5*next_cross2[2] + 0.5*now_cross2[2]) + 0.25*next_even_N_2 + 0.25*now_even_N_2,
         D_b_2 = D_cross2_2_b_2*(0.5*next_scale[2] + 0.5*now_scale[2]),
         D_c_2 = D_cross2_2_c_2*(0.5*next_scale[2] + 0.5*now_scale[2]);
-    FU_EACH(i, 2, mean1_abc2[i] = 0.5*next_r1_2[i] + 0.5*now_r1_2[i];)
-    FU_EACH(i, 2, mean2_abc2[i] = 0.5*next_t1[i] + 0.5*now_t1[i];)
-    const fu_real half_abc2 = 0.5*D_b_2;
-    FU_EACH(i, 2, F1_abc2[i] = D_a1_2*mean1_abc2[i] + half_abc2*mean2_abc2[i];)
-    FU_EACH(i, 2, F2_abc2[i] = D_c_2*mean2_abc2[i] + half_abc2*mean1_abc2[i];)
+    CABLE8P_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2
     FU_EACH(g, 2,
         D_cross2_a1_at[g] = 0.5*next_c[g + 3] + 0.5*now_c[g + 3];
         D_inv_a_a1_at[g] = -(next_inv_a[g + 3]*now_inv_a[g + 3]);

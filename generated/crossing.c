@@ -12,6 +12,491 @@
  */
 #include "kernels.h"
 
+/* part of conditions of closeness: of crossing_closest and 1 more */
+#define CROSSING_PART_OF_CONDITIONS_OF_CLOSENESS \
+    const fu_real \
+        J_00 = d[0]*k[0] + d[1]*k[1] + d[2]*k[2] + t[0]*t[0] + t[1]*t[1] + t[2]*t[2], \
+        J_01 = -t[0]*t[3] - t[1]*t[4] - t[2]*t[5], \
+        J_10 = t[0]*t[3] + t[1]*t[4] + t[2]*t[5], \
+        J_11 = d[0]*k[3] + d[1]*k[4] + d[2]*k[5] - t[3]*t[3] - t[4]*t[4] - t[5]*t[5], \
+        det_J = J_00*J_11 - J_01*J_10, \
+        inv_J = 1.0/det_J;
+
+/* part of derivatives of the force where the points stay: of crossing_force and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY \
+    const fu_real \
+        d_t0_depth = -d[0]*d_t0_n_x - d[1]*d_t0_n_y - d[2]*d_t0_n_z, \
+        d_t0_size_p = d_t0_depth*depth/size_p, \
+        d_t0_root_p = 0.5*d_t0_size_p/root_p, \
+        d_t0_elastic = c[3]*d_t0_root_p*depth + d_t0_depth*(c[2] + c[3]*root_p), \
+        d_t0_rate = -d_t0_n_x*u[0] - d_t0_n_y*u[1] - d_t0_n_z*u[2], \
+        d_t0_N_law = c[4]*d_t0_rate*elastic + d_t0_elastic*(c[4]*rate + 1.0);
+
+/* part of derivatives of the force where the points stay: of crossing_force and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_2 \
+    const fu_real \
+        d_t1_depth = -d[0]*d_t1_n_x - d[1]*d_t1_n_y - d[2]*d_t1_n_z, \
+        d_t1_size_p = d_t1_depth*depth/size_p, \
+        d_t1_root_p = 0.5*d_t1_size_p/root_p, \
+        d_t1_elastic = c[3]*d_t1_root_p*depth + d_t1_depth*(c[2] + c[3]*root_p), \
+        d_t1_rate = -d_t1_n_x*u[0] - d_t1_n_y*u[1] - d_t1_n_z*u[2], \
+        d_t1_N_law = c[4]*d_t1_rate*elastic + d_t1_elastic*(c[4]*rate + 1.0);
+
+/* part of derivatives of the force where the points stay: of crossing_force and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_3 \
+    const fu_real \
+        d_t2_depth = -d[0]*d_t2_n_x - d[1]*d_t2_n_y - d[2]*d_t2_n_z, \
+        d_t2_size_p = d_t2_depth*depth/size_p, \
+        d_t2_root_p = 0.5*d_t2_size_p/root_p, \
+        d_t2_elastic = c[3]*d_t2_root_p*depth + d_t2_depth*(c[2] + c[3]*root_p), \
+        d_t2_rate = -d_t2_n_x*u[0] - d_t2_n_y*u[1] - d_t2_n_z*u[2], \
+        d_t2_N_law = c[4]*d_t2_rate*elastic + d_t2_elastic*(c[4]*rate + 1.0);
+
+/* part of derivatives of the force where the points stay: of crossing_force and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_4 \
+    const fu_real \
+        d_t3_depth = -d[0]*d_t3_n_x - d[1]*d_t3_n_y - d[2]*d_t3_n_z, \
+        d_t3_size_p = d_t3_depth*depth/size_p, \
+        d_t3_root_p = 0.5*d_t3_size_p/root_p, \
+        d_t3_elastic = c[3]*d_t3_root_p*depth + d_t3_depth*(c[2] + c[3]*root_p), \
+        d_t3_rate = -d_t3_n_x*u[0] - d_t3_n_y*u[1] - d_t3_n_z*u[2], \
+        d_t3_N_law = c[4]*d_t3_rate*elastic + d_t3_elastic*(c[4]*rate + 1.0);
+
+/* part of derivatives of the force where the points stay: of crossing_force and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_5 \
+    const fu_real \
+        d_t4_depth = -d[0]*d_t4_n_x - d[1]*d_t4_n_y - d[2]*d_t4_n_z, \
+        d_t4_size_p = d_t4_depth*depth/size_p, \
+        d_t4_root_p = 0.5*d_t4_size_p/root_p, \
+        d_t4_elastic = c[3]*d_t4_root_p*depth + d_t4_depth*(c[2] + c[3]*root_p), \
+        d_t4_rate = -d_t4_n_x*u[0] - d_t4_n_y*u[1] - d_t4_n_z*u[2], \
+        d_t4_N_law = c[4]*d_t4_rate*elastic + d_t4_elastic*(c[4]*rate + 1.0);
+
+/* part of derivatives of the force where the points stay: of crossing_force and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_6 \
+    const fu_real \
+        d_t5_depth = -d[0]*d_t5_n_x - d[1]*d_t5_n_y - d[2]*d_t5_n_z, \
+        d_t5_size_p = d_t5_depth*depth/size_p, \
+        d_t5_root_p = 0.5*d_t5_size_p/root_p, \
+        d_t5_elastic = c[3]*d_t5_root_p*depth + d_t5_depth*(c[2] + c[3]*root_p), \
+        d_t5_rate = -d_t5_n_x*u[0] - d_t5_n_y*u[1] - d_t5_n_z*u[2], \
+        d_t5_N_law = c[4]*d_t5_rate*elastic + d_t5_elastic*(c[4]*rate + 1.0);
+
+/* part of stretch of the spring: of crossing_stretch and 2 more */
+#define CROSSING_PART_OF_STRETCH_OF_THE_SPRING \
+    const fu_real \
+        len_t = FU_SQRT(t[3]*t[3] + t[4]*t[4] + t[5]*t[5]), \
+        inv_t = 1.0/len_t, \
+        tau_x = inv_t*t[3], \
+        tau_y = inv_t*t[4], \
+        tau_z = inv_t*t[5], \
+        across_x = n_y*tau_z - n_z*tau_y, \
+        across_y = -n_x*tau_z + n_z*tau_x, \
+        across_z = n_x*tau_y - n_y*tau_x, \
+        len_t_half = FU_SQRT(t_half_x[1]*t_half_x[1] + t_half_y[1]*t_half_y[1] + t_half_z[1]*t_half_z[1]), \
+        inv_t_half = 1.0/len_t_half, \
+        tau_half_x = inv_t_half*t_half_x[1], \
+        tau_half_y = inv_t_half*t_half_y[1], \
+        tau_half_z = inv_t_half*t_half_z[1], \
+        m_half_x = t_half_y[0]*t_half_z[1] - t_half_z[0]*t_half_y[1], \
+        m_half_y = -t_half_x[0]*t_half_z[1] + t_half_z[0]*t_half_x[1], \
+        m_half_z = t_half_x[0]*t_half_y[1] - t_half_y[0]*t_half_x[1], \
+        len_m_half = FU_SQRT(m_half_x*m_half_x + m_half_y*m_half_y + m_half_z*m_half_z), \
+        across_half_x = c[1]*m_half_y*tau_half_z/len_m_half - c[1]*m_half_z*tau_half_y/len_m_half, \
+        across_half_y = -c[1]*m_half_x*tau_half_z/len_m_half + c[1]*m_half_z*tau_half_x/len_m_half, \
+        across_half_z = c[1]*m_half_x*tau_half_y/len_m_half - c[1]*m_half_y*tau_half_x/len_m_half;
+
+/* part of stretch of the spring: of crossing_stretch and 2 more */
+#define CROSSING_PART_OF_STRETCH_OF_THE_SPRING_2 \
+    const fu_real \
+        x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + tau_z*u[2] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + (2.0/3.0)*slip_half_z*tau_half_z + x[0], \
+        x_1 = (2.0/3.0)*across_half_x*slip_half_x + (2.0/3.0)*across_half_y*slip_half_y + (2.0/3.0)*across_half_z*slip_half_z + (1.0/6.0)*h*(across_x*u[0] + across_y*u[1] + across_z*u[2] + v[1]) + x[1], \
+        x_now_x = across_x*x_1 + tau_x*x_0, \
+        x_now_y = across_y*x_1 + tau_y*x_0, \
+        x_now_z = across_z*x_1 + tau_z*x_0;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_7 \
+    const fu_real \
+        d_t3_len_t = inv_t*t[3], \
+        d_t3_inv_t = -(d_t3_len_t*inv_t*inv_t), \
+        d_t3_tau_y = d_t3_inv_t*t[4], \
+        d_t3_tau_z = d_t3_inv_t*t[5], \
+        d_t3_across_x = d_t3_n_y*tau_z - d_t3_n_z*tau_y - d_t3_tau_y*n_z + d_t3_tau_z*n_y, \
+        d_t3_tau_x = d_t3_inv_t*t[3] + inv_t, \
+        d_t3_x_0 = (1.0/6.0)*d_t3_tau_x*h*u[0] + (1.0/6.0)*d_t3_tau_y*h*u[1] + (1.0/6.0)*d_t3_tau_z*h*u[2];
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_8 \
+    const fu_real \
+        d_t3_across_y = -d_t3_n_x*tau_z + d_t3_n_z*tau_x + d_t3_tau_x*n_z - d_t3_tau_z*n_x, \
+        d_t3_across_z = d_t3_n_x*tau_y - d_t3_n_y*tau_x - d_t3_tau_x*n_y + d_t3_tau_y*n_x, \
+        d_t3_x_1 = (1.0/6.0)*d_t3_across_x*h*u[0] + (1.0/6.0)*d_t3_across_y*h*u[1] + (1.0/6.0)*d_t3_across_z*h*u[2], \
+        d_t3_x_now_x = across_x*d_t3_x_1 + d_t3_across_x*x_1 + d_t3_tau_x*x_0 + d_t3_x_0*tau_x;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_9 \
+    const fu_real \
+        d_t4_len_t = inv_t*t[4], \
+        d_t4_inv_t = -(d_t4_len_t*inv_t*inv_t), \
+        d_t4_tau_y = d_t4_inv_t*t[4] + inv_t, \
+        d_t4_tau_z = d_t4_inv_t*t[5], \
+        d_t4_across_x = d_t4_n_y*tau_z - d_t4_n_z*tau_y - d_t4_tau_y*n_z + d_t4_tau_z*n_y, \
+        d_t4_tau_x = d_t4_inv_t*t[3], \
+        d_t4_x_0 = (1.0/6.0)*d_t4_tau_x*h*u[0] + (1.0/6.0)*d_t4_tau_y*h*u[1] + (1.0/6.0)*d_t4_tau_z*h*u[2];
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_10 \
+    const fu_real \
+        d_t4_across_y = -d_t4_n_x*tau_z + d_t4_n_z*tau_x + d_t4_tau_x*n_z - d_t4_tau_z*n_x, \
+        d_t4_across_z = d_t4_n_x*tau_y - d_t4_n_y*tau_x - d_t4_tau_x*n_y + d_t4_tau_y*n_x, \
+        d_t4_x_1 = (1.0/6.0)*d_t4_across_x*h*u[0] + (1.0/6.0)*d_t4_across_y*h*u[1] + (1.0/6.0)*d_t4_across_z*h*u[2], \
+        d_t4_x_now_x = across_x*d_t4_x_1 + d_t4_across_x*x_1 + d_t4_tau_x*x_0 + d_t4_x_0*tau_x;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_11 \
+    const fu_real \
+        d_t5_len_t = inv_t*t[5], \
+        d_t5_inv_t = -(d_t5_len_t*inv_t*inv_t), \
+        d_t5_tau_y = d_t5_inv_t*t[4], \
+        d_t5_tau_z = d_t5_inv_t*t[5] + inv_t, \
+        d_t5_across_x = d_t5_n_y*tau_z - d_t5_n_z*tau_y - d_t5_tau_y*n_z + d_t5_tau_z*n_y, \
+        d_t5_tau_x = d_t5_inv_t*t[3], \
+        d_t5_x_0 = (1.0/6.0)*d_t5_tau_x*h*u[0] + (1.0/6.0)*d_t5_tau_y*h*u[1] + (1.0/6.0)*d_t5_tau_z*h*u[2];
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_12 \
+    const fu_real \
+        d_t5_across_y = -d_t5_n_x*tau_z + d_t5_n_z*tau_x + d_t5_tau_x*n_z - d_t5_tau_z*n_x, \
+        d_t5_across_z = d_t5_n_x*tau_y - d_t5_n_y*tau_x - d_t5_tau_x*n_y + d_t5_tau_y*n_x, \
+        d_t5_x_1 = (1.0/6.0)*d_t5_across_x*h*u[0] + (1.0/6.0)*d_t5_across_y*h*u[1] + (1.0/6.0)*d_t5_across_z*h*u[2], \
+        d_t5_x_now_x = across_x*d_t5_x_1 + d_t5_across_x*x_1 + d_t5_tau_x*x_0 + d_t5_x_0*tau_x;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_13 \
+    const fu_real \
+        d_t_half0_x_m_half_y = -t_half_z[1], \
+        d_t_half0_x_len_m_half = (d_t_half0_x_m_half_y*m_half_y + m_half_z*t_half_y[1])/len_m_half, \
+        d_t_half0_x_across_half_x = c[1]*d_t_half0_x_m_half_y*tau_half_z/len_m_half - c[1]*t_half_y[1]*tau_half_y/len_m_half + d_t_half0_x_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)), \
+        d_t_half0_x_across_half_y = c[1]*t_half_y[1]*tau_half_x/len_m_half + d_t_half0_x_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half0_x_across_half_z = -c[1]*d_t_half0_x_m_half_y*tau_half_x/len_m_half + d_t_half0_x_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half0_x_x_1 = (2.0/3.0)*d_t_half0_x_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_x_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_x_across_half_z*slip_half_z, \
+        d_t_half0_x_x_now_x = across_x*d_t_half0_x_x_1;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_14 \
+    const fu_real \
+        d_t_half0_y_m_half_z = -t_half_x[1], \
+        d_t_half0_y_len_m_half = (d_t_half0_y_m_half_z*m_half_z + m_half_x*t_half_z[1])/len_m_half, \
+        d_t_half0_y_across_half_x = -c[1]*d_t_half0_y_m_half_z*tau_half_y/len_m_half + d_t_half0_y_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)), \
+        d_t_half0_y_across_half_y = c[1]*d_t_half0_y_m_half_z*tau_half_x/len_m_half - c[1]*t_half_z[1]*tau_half_z/len_m_half + d_t_half0_y_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half0_y_across_half_z = c[1]*t_half_z[1]*tau_half_y/len_m_half + d_t_half0_y_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half0_y_x_1 = (2.0/3.0)*d_t_half0_y_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_y_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_y_across_half_z*slip_half_z, \
+        d_t_half0_y_x_now_x = across_x*d_t_half0_y_x_1;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_15 \
+    const fu_real \
+        d_t_half0_z_m_half_x = -t_half_y[1], \
+        d_t_half0_z_len_m_half = (d_t_half0_z_m_half_x*m_half_x + m_half_y*t_half_x[1])/len_m_half, \
+        d_t_half0_z_across_half_x = c[1]*t_half_x[1]*tau_half_z/len_m_half + d_t_half0_z_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)), \
+        d_t_half0_z_across_half_y = -c[1]*d_t_half0_z_m_half_x*tau_half_z/len_m_half + d_t_half0_z_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half0_z_across_half_z = c[1]*d_t_half0_z_m_half_x*tau_half_y/len_m_half - c[1]*t_half_x[1]*tau_half_x/len_m_half + d_t_half0_z_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half0_z_x_1 = (2.0/3.0)*d_t_half0_z_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_z_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_z_across_half_z*slip_half_z, \
+        d_t_half0_z_x_now_x = across_x*d_t_half0_z_x_1;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_16 \
+    const fu_real \
+        d_t_half1_x_len_t_half = inv_t_half*t_half_x[1], \
+        d_t_half1_x_inv_t_half = -(d_t_half1_x_len_t_half*inv_t_half*inv_t_half), \
+        d_t_half1_x_tau_half_x = d_t_half1_x_inv_t_half*t_half_x[1] + inv_t_half, \
+        d_t_half1_x_tau_half_y = d_t_half1_x_inv_t_half*t_half_y[1], \
+        d_t_half1_x_tau_half_z = d_t_half1_x_inv_t_half*t_half_z[1], \
+        d_t_half1_x_x_0 = (2.0/3.0)*d_t_half1_x_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half1_x_tau_half_y*slip_half_y + (2.0/3.0)*d_t_half1_x_tau_half_z*slip_half_z, \
+        d_t_half1_x_m_half_z = -t_half_y[0], \
+        d_t_half1_x_len_m_half = (d_t_half1_x_m_half_z*m_half_z + m_half_y*t_half_z[0])/len_m_half, \
+        d_t_half1_x_across_half_x = -c[1]*d_t_half1_x_m_half_z*tau_half_y/len_m_half - c[1]*d_t_half1_x_tau_half_y*m_half_z/len_m_half + c[1]*d_t_half1_x_tau_half_z*m_half_y/len_m_half + c[1]*t_half_z[0]*tau_half_z/len_m_half + d_t_half1_x_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)), \
+        d_t_half1_x_across_half_y = c[1]*d_t_half1_x_m_half_z*tau_half_x/len_m_half + c[1]*d_t_half1_x_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_x_tau_half_z*m_half_x/len_m_half + d_t_half1_x_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half1_x_across_half_z = -c[1]*d_t_half1_x_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_x_tau_half_y*m_half_x/len_m_half - c[1]*t_half_z[0]*tau_half_x/len_m_half + d_t_half1_x_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half1_x_x_1 = (2.0/3.0)*d_t_half1_x_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_x_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_x_across_half_z*slip_half_z, \
+        d_t_half1_x_x_now_x = across_x*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_x;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_17 \
+    const fu_real \
+        d_t_half1_y_len_t_half = inv_t_half*t_half_y[1], \
+        d_t_half1_y_inv_t_half = -(d_t_half1_y_len_t_half*inv_t_half*inv_t_half), \
+        d_t_half1_y_tau_half_x = d_t_half1_y_inv_t_half*t_half_x[1], \
+        d_t_half1_y_tau_half_y = d_t_half1_y_inv_t_half*t_half_y[1] + inv_t_half, \
+        d_t_half1_y_tau_half_z = d_t_half1_y_inv_t_half*t_half_z[1], \
+        d_t_half1_y_x_0 = (2.0/3.0)*d_t_half1_y_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half1_y_tau_half_y*slip_half_y + (2.0/3.0)*d_t_half1_y_tau_half_z*slip_half_z, \
+        d_t_half1_y_m_half_x = -t_half_z[0], \
+        d_t_half1_y_len_m_half = (d_t_half1_y_m_half_x*m_half_x + m_half_z*t_half_x[0])/len_m_half, \
+        d_t_half1_y_across_half_x = -c[1]*d_t_half1_y_tau_half_y*m_half_z/len_m_half + c[1]*d_t_half1_y_tau_half_z*m_half_y/len_m_half - c[1]*t_half_x[0]*tau_half_y/len_m_half + d_t_half1_y_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)), \
+        d_t_half1_y_across_half_y = -c[1]*d_t_half1_y_m_half_x*tau_half_z/len_m_half + c[1]*d_t_half1_y_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_y_tau_half_z*m_half_x/len_m_half + c[1]*t_half_x[0]*tau_half_x/len_m_half + d_t_half1_y_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half1_y_across_half_z = c[1]*d_t_half1_y_m_half_x*tau_half_y/len_m_half - c[1]*d_t_half1_y_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_y_tau_half_y*m_half_x/len_m_half + d_t_half1_y_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half1_y_x_1 = (2.0/3.0)*d_t_half1_y_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_y_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_y_across_half_z*slip_half_z, \
+        d_t_half1_y_x_now_x = across_x*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_x;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_18 \
+    const fu_real \
+        d_t_half1_z_len_t_half = inv_t_half*t_half_z[1], \
+        d_t_half1_z_inv_t_half = -(d_t_half1_z_len_t_half*inv_t_half*inv_t_half), \
+        d_t_half1_z_tau_half_x = d_t_half1_z_inv_t_half*t_half_x[1], \
+        d_t_half1_z_tau_half_y = d_t_half1_z_inv_t_half*t_half_y[1], \
+        d_t_half1_z_tau_half_z = d_t_half1_z_inv_t_half*t_half_z[1] + inv_t_half, \
+        d_t_half1_z_x_0 = (2.0/3.0)*d_t_half1_z_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half1_z_tau_half_y*slip_half_y + (2.0/3.0)*d_t_half1_z_tau_half_z*slip_half_z, \
+        d_t_half1_z_m_half_y = -t_half_x[0], \
+        d_t_half1_z_len_m_half = (d_t_half1_z_m_half_y*m_half_y + m_half_x*t_half_y[0])/len_m_half, \
+        d_t_half1_z_across_half_x = c[1]*d_t_half1_z_m_half_y*tau_half_z/len_m_half - c[1]*d_t_half1_z_tau_half_y*m_half_z/len_m_half + c[1]*d_t_half1_z_tau_half_z*m_half_y/len_m_half + d_t_half1_z_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)), \
+        d_t_half1_z_across_half_y = c[1]*d_t_half1_z_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_z_tau_half_z*m_half_x/len_m_half - c[1]*t_half_y[0]*tau_half_z/len_m_half + d_t_half1_z_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half1_z_across_half_z = -c[1]*d_t_half1_z_m_half_y*tau_half_x/len_m_half - c[1]*d_t_half1_z_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_z_tau_half_y*m_half_x/len_m_half + c[1]*t_half_y[0]*tau_half_y/len_m_half + d_t_half1_z_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
+        d_t_half1_z_x_1 = (2.0/3.0)*d_t_half1_z_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_z_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_z_across_half_z*slip_half_z, \
+        d_t_half1_z_x_now_x = across_x*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_x;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_19 \
+    const fu_real \
+        d_t0_slip_half_x = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]), \
+        d_t1_slip_half_y = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]), \
+        d_t2_slip_half_z = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]), \
+        d_t3_rate_d_x = -s_rate_at[1], \
+        d_t3_slip_half_x = -0.25*d_t3_rate_d_x*h + 0.75*e[1] - 0.125*h*(s_rate[1] + s_rate_at[1]), \
+        d_t4_rate_d_y = -s_rate_at[1], \
+        d_t4_slip_half_y = -0.25*d_t4_rate_d_y*h + 0.75*e[1] - 0.125*h*(s_rate[1] + s_rate_at[1]), \
+        d_t5_rate_d_z = -s_rate_at[1], \
+        d_t5_slip_half_z = -0.25*d_t5_rate_d_z*h + 0.75*e[1] - 0.125*h*(s_rate[1] + s_rate_at[1]), \
+        d_u0_slip_half_x = -(0.25*h), \
+        d_u1_slip_half_y = -(0.25*h), \
+        d_u2_slip_half_z = -(0.25*h), \
+        d_w0_t_half0_x = -(0.125*h), \
+        d_w0_slip_half_x = d_w0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])), \
+        d_w1_t_half0_y = -(0.125*h), \
+        d_w1_slip_half_y = d_w1_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])), \
+        d_w2_t_half0_z = -(0.125*h), \
+        d_w2_slip_half_z = d_w2_t_half0_z*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])), \
+        d_w3_t_half1_x = -(0.125*h), \
+        d_w3_slip_half_x = d_w3_t_half1_x*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])), \
+        d_w4_t_half1_y = -(0.125*h), \
+        d_w4_slip_half_y = d_w4_t_half1_y*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])), \
+        d_w5_t_half1_z = -(0.125*h), \
+        d_w5_slip_half_z = d_w5_t_half1_z*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])), \
+        d_k0_t_half0_x = -(0.125*h*s_rate_at[0]), \
+        d_k0_slip_half_x = d_k0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])), \
+        d_k1_t_half0_y = -(0.125*h*s_rate_at[0]), \
+        d_k1_slip_half_y = d_k1_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])), \
+        d_k2_t_half0_z = -(0.125*h*s_rate_at[0]), \
+        d_k2_slip_half_z = d_k2_t_half0_z*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])), \
+        d_k3_t_half1_x = -(0.125*h*s_rate_at[1]), \
+        d_k3_slip_half_x = d_k3_t_half1_x*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])), \
+        d_k4_t_half1_y = -(0.125*h*s_rate_at[1]), \
+        d_k4_slip_half_y = d_k4_t_half1_y*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])), \
+        d_k5_t_half1_z = -(0.125*h*s_rate_at[1]), \
+        d_k5_slip_half_z = d_k5_t_half1_z*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])), \
+        d_e0_slip_half_x = -(1.5*t_half_x[0]), \
+        d_e0_slip_half_y = -(1.5*t_half_y[0]), \
+        d_e0_slip_half_z = -(1.5*t_half_z[0]), \
+        d_e1_slip_half_x = 1.5*t_half_x[1], \
+        d_e1_slip_half_y = 1.5*t_half_y[1], \
+        d_e1_slip_half_z = 1.5*t_half_z[1], \
+        d_s_rate_0_t_half0_x = -(0.125*h*k[0]), \
+        d_s_rate_0_t_half0_y = -(0.125*h*k[1]), \
+        d_s_rate_0_t_half0_z = -(0.125*h*k[2]), \
+        d_s_rate_0_slip_half_x = d_s_rate_0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])) - 0.25*h*t[0] + 0.25*h*t_half_x[0], \
+        d_s_rate_0_slip_half_y = d_s_rate_0_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])) - 0.25*h*t[1] + 0.25*h*t_half_y[0], \
+        d_s_rate_0_slip_half_z = d_s_rate_0_t_half0_z*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])) - 0.25*h*t[2] + 0.25*h*t_half_z[0], \
+        d_s_rate_1_t_half1_x = -(0.125*h*k[3]), \
+        d_s_rate_1_t_half1_y = -(0.125*h*k[4]), \
+        d_s_rate_1_t_half1_z = -(0.125*h*k[5]), \
+        d_s_rate_1_rate_d_x = -t[3], \
+        d_s_rate_1_slip_half_x = -0.25*d_s_rate_1_rate_d_x*h + d_s_rate_1_t_half1_x*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])) - 0.25*h*t_half_x[1], \
+        d_s_rate_1_rate_d_y = -t[4], \
+        d_s_rate_1_slip_half_y = -0.25*d_s_rate_1_rate_d_y*h + d_s_rate_1_t_half1_y*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])) - 0.25*h*t_half_y[1], \
+        d_s_rate_1_rate_d_z = -t[5], \
+        d_s_rate_1_slip_half_z = -0.25*d_s_rate_1_rate_d_z*h + d_s_rate_1_t_half1_z*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])) - 0.25*h*t_half_z[1];
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_20 \
+    FU_EACH(g, 3, \
+        d_d_det_J[g] = J_00*k[g + 3] + J_11*k[g]; \
+        d_d_inv_J[g] = -(d_d_det_J[g]*inv_J*inv_J); \
+        d_d_s_rate_0[g] = d_d_inv_J[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*k[g + 3]*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]) + inv_J*(J_01*w[g + 3] - J_11*w[g]); \
+        d_d_s_rate_1[g] = d_d_inv_J[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*k[g]*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + inv_J*(-J_00*w[g + 3] + J_10*w[g]);) \
+    FU_EACH(g, 3, \
+        d_t_J_01[g] = -t[g + 3]; \
+        d_t_J_00[g] = 2.0*t[g]; \
+        d_t_det_J[g] = -J_01*t[g + 3] - J_10*d_t_J_01[g] + J_11*d_t_J_00[g]; \
+        d_t_inv_J[g] = -(d_t_det_J[g]*inv_J*inv_J); \
+        d_t_s_rate_0[g] = -J_11*inv_J*u[g] + d_t_J_01[g]*inv_J*(d[0]*w[3] + d[1]*w[4] + d[2]*w[5] + t[3]*u[0] + t[4]*u[1] + t[5]*u[2]) + d_t_inv_J[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])); \
+        d_t_s_rate_1[g] = J_10*inv_J*u[g] + d_t_J_00[g]*inv_J*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + d_t_inv_J[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*t[g + 3]*(d[0]*w[0] + d[1]*w[1] + d[2]*w[2] + t[0]*u[0] + t[1]*u[1] + t[2]*u[2]);) \
+    FU_EACH(g, 3, \
+        d_t_J_01_at[g] = -t[g]; \
+        d_t_J_11[g] = -(2.0*t[g + 3]); \
+        d_t_det_J_at[g] = J_00*d_t_J_11[g] - J_01*t[g] - J_10*d_t_J_01_at[g]; \
+        d_t_inv_J_at[g] = -(d_t_det_J_at[g]*inv_J*inv_J); \
+        d_t_s_rate_0[g + 3] = J_01*inv_J*u[g] + d_t_J_01_at[g]*inv_J*(d[0]*w[3] + d[1]*w[4] + d[2]*w[5] + t[3]*u[0] + t[4]*u[1] + t[5]*u[2]) + d_t_J_11[g]*inv_J*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]) + d_t_inv_J_at[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])); \
+        d_t_s_rate_1[g + 3] = -J_00*inv_J*u[g] + d_t_inv_J_at[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*t[g]*(d[0]*w[0] + d[1]*w[1] + d[2]*w[2] + t[0]*u[0] + t[1]*u[1] + t[2]*u[2]);) \
+    FU_EACH(g, 3, \
+        d_u_s_rate_0[g] = inv_J*(J_01*t[g + 3] - J_11*t[g]); \
+        d_u_s_rate_1[g] = inv_J*(-J_00*t[g + 3] + J_10*t[g]);) \
+    FU_EACH(g, 3, \
+        d_w_s_rate_0[g] = -(J_11*d[g]*inv_J); \
+        d_w_s_rate_1[g] = J_10*d[g]*inv_J;) \
+    FU_EACH(g, 3, \
+        d_w_s_rate_0_at[g] = J_01*d[g]*inv_J; \
+        d_w_s_rate_1_at[g] = -(J_00*d[g]*inv_J);) \
+    FU_EACH(g, 3, \
+        d_k_det_J[g] = J_11*d[g]; \
+        d_k_inv_J[g] = -(d_k_det_J[g]*inv_J*inv_J); \
+        d_k_s_rate_0[g] = d_k_inv_J[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])); \
+        d_k_s_rate_1[g] = d[g]*inv_J*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + d_k_inv_J[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));) \
+    FU_EACH(g, 3, \
+        d_k_det_J_at[g] = J_00*d[g]; \
+        d_k_inv_J_at[g] = -(d_k_det_J_at[g]*inv_J*inv_J); \
+        d_k_s_rate_0_at[g] = d[g]*inv_J*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]) + d_k_inv_J_at[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])); \
+        d_k_s_rate_1_at[g] = d_k_inv_J_at[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));) \
+    const fu_real \
+        F0_0_2 = F0_0 + F0_26*d_d_s_rate_0[0] + F0_27*d_d_s_rate_1[0], \
+        F0_1_2 = F0_1 + F0_26*d_d_s_rate_0[1] + F0_27*d_d_s_rate_1[1], \
+        F0_2_2 = F0_2 + F0_26*d_d_s_rate_0[2] + F0_27*d_d_s_rate_1[2]; \
+    FU_EACH(g, 6, \
+        F0_2_at[g] = F0_26*d_t_s_rate_0[g] + F0_27*d_t_s_rate_1[g] + F0[g];) \
+    const fu_real \
+        F0_9_2 = F0_26*d_u_s_rate_0[0] + F0_27*d_u_s_rate_1[0] + F0_9, \
+        F0_10_2 = F0_10 + F0_26*d_u_s_rate_0[1] + F0_27*d_u_s_rate_1[1], \
+        F0_11_2 = F0_11 + F0_26*d_u_s_rate_0[2] + F0_27*d_u_s_rate_1[2], \
+        F0_12_2 = F0_12 + F0_26*d_w_s_rate_0[0] + F0_27*d_w_s_rate_1[0], \
+        F0_13_2 = F0_13 + F0_26*d_w_s_rate_0[1] + F0_27*d_w_s_rate_1[1], \
+        F0_14_2 = F0_14 + F0_26*d_w_s_rate_0[2] + F0_27*d_w_s_rate_1[2], \
+        F0_15_2 = F0_15 + F0_26*d_w_s_rate_0_at[0] + F0_27*d_w_s_rate_1_at[0], \
+        F0_16_2 = F0_16 + F0_26*d_w_s_rate_0_at[1] + F0_27*d_w_s_rate_1_at[1], \
+        F0_17_2 = F0_17 + F0_26*d_w_s_rate_0_at[2] + F0_27*d_w_s_rate_1_at[2], \
+        F0_18_2 = F0_18 + F0_26*d_k_s_rate_0[0] + F0_27*d_k_s_rate_1[0], \
+        F0_19_2 = F0_19 + F0_26*d_k_s_rate_0[1] + F0_27*d_k_s_rate_1[1], \
+        F0_20_2 = F0_20 + F0_26*d_k_s_rate_0[2] + F0_27*d_k_s_rate_1[2], \
+        F0_21_2 = F0_21 + F0_26*d_k_s_rate_0_at[0] + F0_27*d_k_s_rate_1_at[0], \
+        F0_22_2 = F0_22 + F0_26*d_k_s_rate_0_at[1] + F0_27*d_k_s_rate_1_at[1], \
+        F0_23_2 = F0_23 + F0_26*d_k_s_rate_0_at[2] + F0_27*d_k_s_rate_1_at[2], \
+        F1_0_2 = F1_0 + F1_26*d_d_s_rate_0[0] + F1_27*d_d_s_rate_1[0], \
+        F1_1_2 = F1_1 + F1_26*d_d_s_rate_0[1] + F1_27*d_d_s_rate_1[1], \
+        F1_2_2 = F1_2 + F1_26*d_d_s_rate_0[2] + F1_27*d_d_s_rate_1[2]; \
+    FU_EACH(g, 6, \
+        F1_2_at[g] = F1_26*d_t_s_rate_0[g] + F1_27*d_t_s_rate_1[g] + F1[g];) \
+    const fu_real \
+        F1_9_2 = F1_26*d_u_s_rate_0[0] + F1_27*d_u_s_rate_1[0] + F1_9, \
+        F1_10_2 = F1_10 + F1_26*d_u_s_rate_0[1] + F1_27*d_u_s_rate_1[1], \
+        F1_11_2 = F1_11 + F1_26*d_u_s_rate_0[2] + F1_27*d_u_s_rate_1[2], \
+        F1_12_2 = F1_12 + F1_26*d_w_s_rate_0[0] + F1_27*d_w_s_rate_1[0], \
+        F1_13_2 = F1_13 + F1_26*d_w_s_rate_0[1] + F1_27*d_w_s_rate_1[1], \
+        F1_14_2 = F1_14 + F1_26*d_w_s_rate_0[2] + F1_27*d_w_s_rate_1[2], \
+        F1_15_2 = F1_15 + F1_26*d_w_s_rate_0_at[0] + F1_27*d_w_s_rate_1_at[0], \
+        F1_16_2 = F1_16 + F1_26*d_w_s_rate_0_at[1] + F1_27*d_w_s_rate_1_at[1], \
+        F1_17_2 = F1_17 + F1_26*d_w_s_rate_0_at[2] + F1_27*d_w_s_rate_1_at[2], \
+        F1_18_2 = F1_18 + F1_26*d_k_s_rate_0[0] + F1_27*d_k_s_rate_1[0], \
+        F1_19_2 = F1_19 + F1_26*d_k_s_rate_0[1] + F1_27*d_k_s_rate_1[1], \
+        F1_20_2 = F1_20 + F1_26*d_k_s_rate_0[2] + F1_27*d_k_s_rate_1[2], \
+        F1_21_2 = F1_21 + F1_26*d_k_s_rate_0_at[0] + F1_27*d_k_s_rate_1_at[0], \
+        F1_22_2 = F1_22 + F1_26*d_k_s_rate_0_at[1] + F1_27*d_k_s_rate_1_at[1], \
+        F1_23_2 = F1_23 + F1_26*d_k_s_rate_0_at[2] + F1_27*d_k_s_rate_1_at[2], \
+        F2_0_2 = F2_0 + F2_26*d_d_s_rate_0[0] + F2_27*d_d_s_rate_1[0], \
+        F2_1_2 = F2_1 + F2_26*d_d_s_rate_0[1] + F2_27*d_d_s_rate_1[1], \
+        F2_2_2 = F2_2 + F2_26*d_d_s_rate_0[2] + F2_27*d_d_s_rate_1[2]; \
+    FU_EACH(g, 6, \
+        F2_2_at[g] = F2_26*d_t_s_rate_0[g] + F2_27*d_t_s_rate_1[g] + F2[g];) \
+    const fu_real \
+        F2_9_2 = F2_26*d_u_s_rate_0[0] + F2_27*d_u_s_rate_1[0] + F2_9, \
+        F2_10_2 = F2_10 + F2_26*d_u_s_rate_0[1] + F2_27*d_u_s_rate_1[1], \
+        F2_11_2 = F2_11 + F2_26*d_u_s_rate_0[2] + F2_27*d_u_s_rate_1[2], \
+        F2_12_2 = F2_12 + F2_26*d_w_s_rate_0[0] + F2_27*d_w_s_rate_1[0], \
+        F2_13_2 = F2_13 + F2_26*d_w_s_rate_0[1] + F2_27*d_w_s_rate_1[1], \
+        F2_14_2 = F2_14 + F2_26*d_w_s_rate_0[2] + F2_27*d_w_s_rate_1[2], \
+        F2_15_2 = F2_15 + F2_26*d_w_s_rate_0_at[0] + F2_27*d_w_s_rate_1_at[0], \
+        F2_16_2 = F2_16 + F2_26*d_w_s_rate_0_at[1] + F2_27*d_w_s_rate_1_at[1], \
+        F2_17_2 = F2_17 + F2_26*d_w_s_rate_0_at[2] + F2_27*d_w_s_rate_1_at[2], \
+        F2_18_2 = F2_18 + F2_26*d_k_s_rate_0[0] + F2_27*d_k_s_rate_1[0], \
+        F2_19_2 = F2_19 + F2_26*d_k_s_rate_0[1] + F2_27*d_k_s_rate_1[1], \
+        F2_20_2 = F2_20 + F2_26*d_k_s_rate_0[2] + F2_27*d_k_s_rate_1[2], \
+        F2_21_2 = F2_21 + F2_26*d_k_s_rate_0_at[0] + F2_27*d_k_s_rate_1_at[0], \
+        F2_22_2 = F2_22 + F2_26*d_k_s_rate_0_at[1] + F2_27*d_k_s_rate_1_at[1], \
+        F2_23_2 = F2_23 + F2_26*d_k_s_rate_0_at[2] + F2_27*d_k_s_rate_1_at[2];
+
+/* part of outputs: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_OUTPUTS \
+    F_d[0] = F0_0_2 + F_s0_x*s0_0 + F_s1_x*s1_0; \
+    F_d[1] = F0_1_2 + F_s0_x*s0_1 + F_s1_x*s1_1; \
+    F_d[2] = F0_2_2 + F_s0_x*s0_2 + F_s1_x*s1_2; \
+    F_d[3] = F1_0_2 + F_s0_y*s0_0 + F_s1_y*s1_0; \
+    F_d[4] = F1_1_2 + F_s0_y*s0_1 + F_s1_y*s1_1; \
+    F_d[5] = F1_2_2 + F_s0_y*s0_2 + F_s1_y*s1_2; \
+    F_d[6] = F2_0_2 + F_s0_z*s0_0 + F_s1_z*s1_0; \
+    F_d[7] = F2_1_2 + F_s0_z*s0_1 + F_s1_z*s1_1; \
+    F_d[8] = F2_2_2 + F_s0_z*s0_2 + F_s1_z*s1_2; \
+    F_t[0] = F0_2_at[0] + F_s0_x*s0_3 + F_s1_x*s1_3; \
+    F_t[1] = F0_2_at[1] + F_s0_x*s0_4 + F_s1_x*s1_4; \
+    F_t[2] = F0_2_at[2] + F_s0_x*s0_5 + F_s1_x*s1_5; \
+    F_t[3] = F0_2_at[3] + F_s0_x*s0_6 + F_s1_x*s1_6; \
+    F_t[4] = F0_2_at[4] + F_s0_x*s0_7 + F_s1_x*s1_7; \
+    F_t[5] = F0_2_at[5] + F_s0_x*s0_8 + F_s1_x*s1_8; \
+    F_t[6] = F1_2_at[0] + F_s0_y*s0_3 + F_s1_y*s1_3; \
+    F_t[7] = F1_2_at[1] + F_s0_y*s0_4 + F_s1_y*s1_4; \
+    F_t[8] = F1_2_at[2] + F_s0_y*s0_5 + F_s1_y*s1_5; \
+    F_t[9] = F1_2_at[3] + F_s0_y*s0_6 + F_s1_y*s1_6; \
+    F_t[10] = F1_2_at[4] + F_s0_y*s0_7 + F_s1_y*s1_7; \
+    F_t[11] = F1_2_at[5] + F_s0_y*s0_8 + F_s1_y*s1_8; \
+    F_t[12] = F2_2_at[0] + F_s0_z*s0_3 + F_s1_z*s1_3; \
+    F_t[13] = F2_2_at[1] + F_s0_z*s0_4 + F_s1_z*s1_4; \
+    F_t[14] = F2_2_at[2] + F_s0_z*s0_5 + F_s1_z*s1_5; \
+    F_t[15] = F2_2_at[3] + F_s0_z*s0_6 + F_s1_z*s1_6; \
+    F_t[16] = F2_2_at[4] + F_s0_z*s0_7 + F_s1_z*s1_7; \
+    F_t[17] = F2_2_at[5] + F_s0_z*s0_8 + F_s1_z*s1_8; \
+    F_u[0] = F0_9_2; \
+    F_u[1] = F0_10_2; \
+    F_u[2] = F0_11_2; \
+    F_u[3] = F1_9_2; \
+    F_u[4] = F1_10_2; \
+    F_u[5] = F1_11_2; \
+    F_u[6] = F2_9_2; \
+    F_u[7] = F2_10_2; \
+    F_u[8] = F2_11_2; \
+    F_w[0] = F0_12_2; \
+    F_w[1] = F0_13_2; \
+    F_w[2] = F0_14_2; \
+    F_w[3] = F0_15_2; \
+    F_w[4] = F0_16_2; \
+    F_w[5] = F0_17_2; \
+    F_w[6] = F1_12_2; \
+    F_w[7] = F1_13_2; \
+    F_w[8] = F1_14_2; \
+    F_w[9] = F1_15_2; \
+    F_w[10] = F1_16_2; \
+    F_w[11] = F1_17_2; \
+    F_w[12] = F2_12_2; \
+    F_w[13] = F2_13_2; \
+    F_w[14] = F2_14_2; \
+    F_w[15] = F2_15_2; \
+    F_w[16] = F2_16_2; \
+    F_w[17] = F2_17_2; \
+    F_k[0] = F0_18_2; \
+    F_k[1] = F0_19_2; \
+    F_k[2] = F0_20_2; \
+    F_k[3] = F0_21_2; \
+    F_k[4] = F0_22_2; \
+    F_k[5] = F0_23_2; \
+    F_k[6] = F1_18_2; \
+    F_k[7] = F1_19_2; \
+    F_k[8] = F1_20_2; \
+    F_k[9] = F1_21_2; \
+    F_k[10] = F1_22_2; \
+    F_k[11] = F1_23_2; \
+    F_k[12] = F2_18_2; \
+    F_k[13] = F2_19_2; \
+    F_k[14] = F2_20_2; \
+    F_k[15] = F2_21_2; \
+    F_k[16] = F2_22_2; \
+    F_k[17] = F2_23_2;
+
 /* law: of crossing_contact and 1 more */
 #define CROSSING_LAW \
     const fu_real \
@@ -104,13 +589,8 @@ void crossing_closest(const fu_real *d, const fu_real *t, const fu_real *k, fu_r
     /* conditions of closeness */
     const fu_real
         h_0 = d[0]*t[0] + d[1]*t[1] + d[2]*t[2],
-        h_1 = d[0]*t[3] + d[1]*t[4] + d[2]*t[5],
-        J_00 = d[0]*k[0] + d[1]*k[1] + d[2]*k[2] + t[0]*t[0] + t[1]*t[1] + t[2]*t[2],
-        J_01 = -t[0]*t[3] - t[1]*t[4] - t[2]*t[5],
-        J_10 = t[0]*t[3] + t[1]*t[4] + t[2]*t[5],
-        J_11 = d[0]*k[3] + d[1]*k[4] + d[2]*k[5] - t[3]*t[3] - t[4]*t[4] - t[5]*t[5],
-        det_J = J_00*J_11 - J_01*J_10,
-        inv_J = 1.0/det_J;
+        h_1 = d[0]*t[3] + d[1]*t[4] + d[2]*t[5];
+    CROSSING_PART_OF_CONDITIONS_OF_CLOSENESS
     /* outputs */
     step[0] = inv_J*(J_01*h_1 - J_11*h_0);
     step[1] = inv_J*(-J_00*h_1 + J_10*h_0);
@@ -221,13 +701,9 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t0_side_m = c[1]*d_t0_inv_m,
         d_t0_n_x = d_t0_side_m*m_x,
         d_t0_n_y = d_t0_m_y*side_m + d_t0_side_m*m_y,
-        d_t0_n_z = d_t0_side_m*m_z + side_m*t[4],
-        d_t0_depth = -d[0]*d_t0_n_x - d[1]*d_t0_n_y - d[2]*d_t0_n_z,
-        d_t0_size_p = d_t0_depth*depth/size_p,
-        d_t0_root_p = 0.5*d_t0_size_p/root_p,
-        d_t0_elastic = c[3]*d_t0_root_p*depth + d_t0_depth*(c[2] + c[3]*root_p),
-        d_t0_rate = -d_t0_n_x*u[0] - d_t0_n_y*u[1] - d_t0_n_z*u[2],
-        d_t0_N_law = c[4]*d_t0_rate*elastic + d_t0_elastic*(c[4]*rate + 1.0),
+        d_t0_n_z = d_t0_side_m*m_z + side_m*t[4];
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY
+    const fu_real
         d_t0_slip_x = d_t0_n_x*rate + d_t0_rate*n_x,
         d_t0_slip_y = d_t0_n_y*rate + d_t0_rate*n_y,
         d_t0_slip_z = d_t0_n_z*rate + d_t0_rate*n_z,
@@ -243,13 +719,9 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t1_side_m = c[1]*d_t1_inv_m,
         d_t1_n_x = d_t1_side_m*m_x + side_m*t[5],
         d_t1_n_y = d_t1_side_m*m_y,
-        d_t1_n_z = d_t1_m_z*side_m + d_t1_side_m*m_z,
-        d_t1_depth = -d[0]*d_t1_n_x - d[1]*d_t1_n_y - d[2]*d_t1_n_z,
-        d_t1_size_p = d_t1_depth*depth/size_p,
-        d_t1_root_p = 0.5*d_t1_size_p/root_p,
-        d_t1_elastic = c[3]*d_t1_root_p*depth + d_t1_depth*(c[2] + c[3]*root_p),
-        d_t1_rate = -d_t1_n_x*u[0] - d_t1_n_y*u[1] - d_t1_n_z*u[2],
-        d_t1_N_law = c[4]*d_t1_rate*elastic + d_t1_elastic*(c[4]*rate + 1.0),
+        d_t1_n_z = d_t1_m_z*side_m + d_t1_side_m*m_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_2
+    const fu_real
         d_t1_slip_x = d_t1_n_x*rate + d_t1_rate*n_x,
         d_t1_slip_y = d_t1_n_y*rate + d_t1_rate*n_y,
         d_t1_slip_z = d_t1_n_z*rate + d_t1_rate*n_z,
@@ -265,13 +737,9 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t2_side_m = c[1]*d_t2_inv_m,
         d_t2_n_x = d_t2_m_x*side_m + d_t2_side_m*m_x,
         d_t2_n_y = d_t2_side_m*m_y + side_m*t[3],
-        d_t2_n_z = d_t2_side_m*m_z,
-        d_t2_depth = -d[0]*d_t2_n_x - d[1]*d_t2_n_y - d[2]*d_t2_n_z,
-        d_t2_size_p = d_t2_depth*depth/size_p,
-        d_t2_root_p = 0.5*d_t2_size_p/root_p,
-        d_t2_elastic = c[3]*d_t2_root_p*depth + d_t2_depth*(c[2] + c[3]*root_p),
-        d_t2_rate = -d_t2_n_x*u[0] - d_t2_n_y*u[1] - d_t2_n_z*u[2],
-        d_t2_N_law = c[4]*d_t2_rate*elastic + d_t2_elastic*(c[4]*rate + 1.0),
+        d_t2_n_z = d_t2_side_m*m_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_3
+    const fu_real
         d_t2_slip_x = d_t2_n_x*rate + d_t2_rate*n_x,
         d_t2_slip_y = d_t2_n_y*rate + d_t2_rate*n_y,
         d_t2_slip_z = d_t2_n_z*rate + d_t2_rate*n_z,
@@ -287,13 +755,9 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t3_side_m = c[1]*d_t3_inv_m,
         d_t3_n_x = d_t3_side_m*m_x,
         d_t3_n_y = d_t3_side_m*m_y + side_m*t[2],
-        d_t3_n_z = d_t3_m_z*side_m + d_t3_side_m*m_z,
-        d_t3_depth = -d[0]*d_t3_n_x - d[1]*d_t3_n_y - d[2]*d_t3_n_z,
-        d_t3_size_p = d_t3_depth*depth/size_p,
-        d_t3_root_p = 0.5*d_t3_size_p/root_p,
-        d_t3_elastic = c[3]*d_t3_root_p*depth + d_t3_depth*(c[2] + c[3]*root_p),
-        d_t3_rate = -d_t3_n_x*u[0] - d_t3_n_y*u[1] - d_t3_n_z*u[2],
-        d_t3_N_law = c[4]*d_t3_rate*elastic + d_t3_elastic*(c[4]*rate + 1.0),
+        d_t3_n_z = d_t3_m_z*side_m + d_t3_side_m*m_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_4
+    const fu_real
         d_t3_slip_x = d_t3_n_x*rate + d_t3_rate*n_x,
         d_t3_slip_y = d_t3_n_y*rate + d_t3_rate*n_y,
         d_t3_slip_z = d_t3_n_z*rate + d_t3_rate*n_z,
@@ -309,13 +773,9 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t4_side_m = c[1]*d_t4_inv_m,
         d_t4_n_x = d_t4_m_x*side_m + d_t4_side_m*m_x,
         d_t4_n_y = d_t4_side_m*m_y,
-        d_t4_n_z = d_t4_side_m*m_z + side_m*t[0],
-        d_t4_depth = -d[0]*d_t4_n_x - d[1]*d_t4_n_y - d[2]*d_t4_n_z,
-        d_t4_size_p = d_t4_depth*depth/size_p,
-        d_t4_root_p = 0.5*d_t4_size_p/root_p,
-        d_t4_elastic = c[3]*d_t4_root_p*depth + d_t4_depth*(c[2] + c[3]*root_p),
-        d_t4_rate = -d_t4_n_x*u[0] - d_t4_n_y*u[1] - d_t4_n_z*u[2],
-        d_t4_N_law = c[4]*d_t4_rate*elastic + d_t4_elastic*(c[4]*rate + 1.0),
+        d_t4_n_z = d_t4_side_m*m_z + side_m*t[0];
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_5
+    const fu_real
         d_t4_slip_x = d_t4_n_x*rate + d_t4_rate*n_x,
         d_t4_slip_y = d_t4_n_y*rate + d_t4_rate*n_y,
         d_t4_slip_z = d_t4_n_z*rate + d_t4_rate*n_z,
@@ -331,13 +791,9 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t5_side_m = c[1]*d_t5_inv_m,
         d_t5_n_x = d_t5_side_m*m_x + side_m*t[1],
         d_t5_n_y = d_t5_m_y*side_m + d_t5_side_m*m_y,
-        d_t5_n_z = d_t5_side_m*m_z,
-        d_t5_depth = -d[0]*d_t5_n_x - d[1]*d_t5_n_y - d[2]*d_t5_n_z,
-        d_t5_size_p = d_t5_depth*depth/size_p,
-        d_t5_root_p = 0.5*d_t5_size_p/root_p,
-        d_t5_elastic = c[3]*d_t5_root_p*depth + d_t5_depth*(c[2] + c[3]*root_p),
-        d_t5_rate = -d_t5_n_x*u[0] - d_t5_n_y*u[1] - d_t5_n_z*u[2],
-        d_t5_N_law = c[4]*d_t5_rate*elastic + d_t5_elastic*(c[4]*rate + 1.0),
+        d_t5_n_z = d_t5_side_m*m_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_6
+    const fu_real
         d_t5_slip_x = d_t5_n_x*rate + d_t5_rate*n_x,
         d_t5_slip_y = d_t5_n_y*rate + d_t5_rate*n_y,
         d_t5_slip_z = d_t5_n_z*rate + d_t5_rate*n_z,
@@ -452,13 +908,8 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
 void crossing_motion(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot)
 {
     /* conditions of closeness */
+    CROSSING_PART_OF_CONDITIONS_OF_CLOSENESS
     const fu_real
-        J_00 = d[0]*k[0] + d[1]*k[1] + d[2]*k[2] + t[0]*t[0] + t[1]*t[1] + t[2]*t[2],
-        J_01 = -t[0]*t[3] - t[1]*t[4] - t[2]*t[5],
-        J_10 = t[0]*t[3] + t[1]*t[4] + t[2]*t[5],
-        J_11 = d[0]*k[3] + d[1]*k[4] + d[2]*k[5] - t[3]*t[3] - t[4]*t[4] - t[5]*t[5],
-        det_J = J_00*J_11 - J_01*J_10,
-        inv_J = 1.0/det_J,
         s_rate_0 = inv_J*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])),
         s_rate_1 = inv_J*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])),
         rate_d_x = s_rate_0*t[0] - s_rate_1*t[3] + u[0],
@@ -495,35 +946,12 @@ void crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, cons
     CROSSING_RATES_OF_THE_CLOSEST_POINTS
     CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP
     /* stretch of the spring */
+    CROSSING_PART_OF_STRETCH_OF_THE_SPRING
     const fu_real
-        len_t = FU_SQRT(t[3]*t[3] + t[4]*t[4] + t[5]*t[5]),
-        inv_t = 1.0/len_t,
-        tau_x = inv_t*t[3],
-        tau_y = inv_t*t[4],
-        tau_z = inv_t*t[5],
-        across_x = n_y*tau_z - n_z*tau_y,
-        across_y = -n_x*tau_z + n_z*tau_x,
-        across_z = n_x*tau_y - n_y*tau_x,
-        len_t_half = FU_SQRT(t_half_x[1]*t_half_x[1] + t_half_y[1]*t_half_y[1] + t_half_z[1]*t_half_z[1]),
-        inv_t_half = 1.0/len_t_half,
-        tau_half_x = inv_t_half*t_half_x[1],
-        tau_half_y = inv_t_half*t_half_y[1],
-        tau_half_z = inv_t_half*t_half_z[1],
-        m_half_x = t_half_y[0]*t_half_z[1] - t_half_z[0]*t_half_y[1],
-        m_half_y = -t_half_x[0]*t_half_z[1] + t_half_z[0]*t_half_x[1],
-        m_half_z = t_half_x[0]*t_half_y[1] - t_half_y[0]*t_half_x[1],
-        len_m_half = FU_SQRT(m_half_x*m_half_x + m_half_y*m_half_y + m_half_z*m_half_z),
-        across_half_x = c[1]*m_half_y*tau_half_z/len_m_half - c[1]*m_half_z*tau_half_y/len_m_half,
-        across_half_y = -c[1]*m_half_x*tau_half_z/len_m_half + c[1]*m_half_z*tau_half_x/len_m_half,
-        across_half_z = c[1]*m_half_x*tau_half_y/len_m_half - c[1]*m_half_y*tau_half_x/len_m_half,
         old_x = across_x*x[1] + tau_x*x[0],
         old_y = across_y*x[1] + tau_y*x[0],
-        old_z = across_z*x[1] + tau_z*x[0],
-        x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + tau_z*u[2] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + (2.0/3.0)*slip_half_z*tau_half_z + x[0],
-        x_1 = (2.0/3.0)*across_half_x*slip_half_x + (2.0/3.0)*across_half_y*slip_half_y + (2.0/3.0)*across_half_z*slip_half_z + (1.0/6.0)*h*(across_x*u[0] + across_y*u[1] + across_z*u[2] + v[1]) + x[1],
-        x_now_x = across_x*x_1 + tau_x*x_0,
-        x_now_y = across_y*x_1 + tau_y*x_0,
-        x_now_z = across_z*x_1 + tau_z*x_0;
+        old_z = across_z*x[1] + tau_z*x[0];
+    CROSSING_PART_OF_STRETCH_OF_THE_SPRING_2
     /* outputs */
     now[0] = x_now_x;
     now[1] = x_now_y;
@@ -553,32 +981,9 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
     CROSSING_RATES_OF_THE_CLOSEST_POINTS
     CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP
     /* stretch of the spring */
+    CROSSING_PART_OF_STRETCH_OF_THE_SPRING
+    CROSSING_PART_OF_STRETCH_OF_THE_SPRING_2
     const fu_real
-        len_t = FU_SQRT(t[3]*t[3] + t[4]*t[4] + t[5]*t[5]),
-        inv_t = 1.0/len_t,
-        tau_x = inv_t*t[3],
-        tau_y = inv_t*t[4],
-        tau_z = inv_t*t[5],
-        across_x = n_y*tau_z - n_z*tau_y,
-        across_y = -n_x*tau_z + n_z*tau_x,
-        across_z = n_x*tau_y - n_y*tau_x,
-        len_t_half = FU_SQRT(t_half_x[1]*t_half_x[1] + t_half_y[1]*t_half_y[1] + t_half_z[1]*t_half_z[1]),
-        inv_t_half = 1.0/len_t_half,
-        tau_half_x = inv_t_half*t_half_x[1],
-        tau_half_y = inv_t_half*t_half_y[1],
-        tau_half_z = inv_t_half*t_half_z[1],
-        m_half_x = t_half_y[0]*t_half_z[1] - t_half_z[0]*t_half_y[1],
-        m_half_y = -t_half_x[0]*t_half_z[1] + t_half_z[0]*t_half_x[1],
-        m_half_z = t_half_x[0]*t_half_y[1] - t_half_y[0]*t_half_x[1],
-        len_m_half = FU_SQRT(m_half_x*m_half_x + m_half_y*m_half_y + m_half_z*m_half_z),
-        across_half_x = c[1]*m_half_y*tau_half_z/len_m_half - c[1]*m_half_z*tau_half_y/len_m_half,
-        across_half_y = -c[1]*m_half_x*tau_half_z/len_m_half + c[1]*m_half_z*tau_half_x/len_m_half,
-        across_half_z = c[1]*m_half_x*tau_half_y/len_m_half - c[1]*m_half_y*tau_half_x/len_m_half,
-        x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + tau_z*u[2] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + (2.0/3.0)*slip_half_z*tau_half_z + x[0],
-        x_1 = (2.0/3.0)*across_half_x*slip_half_x + (2.0/3.0)*across_half_y*slip_half_y + (2.0/3.0)*across_half_z*slip_half_z + (1.0/6.0)*h*(across_x*u[0] + across_y*u[1] + across_z*u[2] + v[1]) + x[1],
-        x_now_x = across_x*x_1 + tau_x*x_0,
-        x_now_y = across_y*x_1 + tau_y*x_0,
-        x_now_z = across_z*x_1 + tau_z*x_0,
         F_x = -(k_t*x_now_x),
         F_y = -(k_t*x_now_y),
         F_z = -(k_t*x_now_z);
@@ -646,19 +1051,11 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
         d_t3_inv_m = -(d_t3_len_m*inv_m*inv_m),
         d_t3_side_m = c[1]*d_t3_inv_m,
         d_t3_n_y = d_t3_side_m*m_y + side_m*t[2],
-        d_t3_n_z = d_t3_m_z*side_m + d_t3_side_m*m_z,
-        d_t3_len_t = inv_t*t[3],
-        d_t3_inv_t = -(d_t3_len_t*inv_t*inv_t),
-        d_t3_tau_y = d_t3_inv_t*t[4],
-        d_t3_tau_z = d_t3_inv_t*t[5],
-        d_t3_across_x = d_t3_n_y*tau_z - d_t3_n_z*tau_y - d_t3_tau_y*n_z + d_t3_tau_z*n_y,
-        d_t3_tau_x = d_t3_inv_t*t[3] + inv_t,
-        d_t3_x_0 = (1.0/6.0)*d_t3_tau_x*h*u[0] + (1.0/6.0)*d_t3_tau_y*h*u[1] + (1.0/6.0)*d_t3_tau_z*h*u[2],
-        d_t3_n_x = d_t3_side_m*m_x,
-        d_t3_across_y = -d_t3_n_x*tau_z + d_t3_n_z*tau_x + d_t3_tau_x*n_z - d_t3_tau_z*n_x,
-        d_t3_across_z = d_t3_n_x*tau_y - d_t3_n_y*tau_x - d_t3_tau_x*n_y + d_t3_tau_y*n_x,
-        d_t3_x_1 = (1.0/6.0)*d_t3_across_x*h*u[0] + (1.0/6.0)*d_t3_across_y*h*u[1] + (1.0/6.0)*d_t3_across_z*h*u[2],
-        d_t3_x_now_x = across_x*d_t3_x_1 + d_t3_across_x*x_1 + d_t3_tau_x*x_0 + d_t3_x_0*tau_x,
+        d_t3_n_z = d_t3_m_z*side_m + d_t3_side_m*m_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_7
+    const fu_real d_t3_n_x = d_t3_side_m*m_x;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_8
+    const fu_real
         d_t3_F_x = -(d_t3_x_now_x*k_t),
         d_t3_x_now_y = across_y*d_t3_x_1 + d_t3_across_y*x_1 + d_t3_tau_y*x_0 + d_t3_x_0*tau_y,
         d_t3_F_y = -(d_t3_x_now_y*k_t),
@@ -669,19 +1066,11 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
         d_t4_inv_m = -(d_t4_len_m*inv_m*inv_m),
         d_t4_side_m = c[1]*d_t4_inv_m,
         d_t4_n_y = d_t4_side_m*m_y,
-        d_t4_n_z = d_t4_side_m*m_z + side_m*t[0],
-        d_t4_len_t = inv_t*t[4],
-        d_t4_inv_t = -(d_t4_len_t*inv_t*inv_t),
-        d_t4_tau_y = d_t4_inv_t*t[4] + inv_t,
-        d_t4_tau_z = d_t4_inv_t*t[5],
-        d_t4_across_x = d_t4_n_y*tau_z - d_t4_n_z*tau_y - d_t4_tau_y*n_z + d_t4_tau_z*n_y,
-        d_t4_tau_x = d_t4_inv_t*t[3],
-        d_t4_x_0 = (1.0/6.0)*d_t4_tau_x*h*u[0] + (1.0/6.0)*d_t4_tau_y*h*u[1] + (1.0/6.0)*d_t4_tau_z*h*u[2],
-        d_t4_n_x = d_t4_m_x*side_m + d_t4_side_m*m_x,
-        d_t4_across_y = -d_t4_n_x*tau_z + d_t4_n_z*tau_x + d_t4_tau_x*n_z - d_t4_tau_z*n_x,
-        d_t4_across_z = d_t4_n_x*tau_y - d_t4_n_y*tau_x - d_t4_tau_x*n_y + d_t4_tau_y*n_x,
-        d_t4_x_1 = (1.0/6.0)*d_t4_across_x*h*u[0] + (1.0/6.0)*d_t4_across_y*h*u[1] + (1.0/6.0)*d_t4_across_z*h*u[2],
-        d_t4_x_now_x = across_x*d_t4_x_1 + d_t4_across_x*x_1 + d_t4_tau_x*x_0 + d_t4_x_0*tau_x,
+        d_t4_n_z = d_t4_side_m*m_z + side_m*t[0];
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_9
+    const fu_real d_t4_n_x = d_t4_m_x*side_m + d_t4_side_m*m_x;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_10
+    const fu_real
         d_t4_F_x = -(d_t4_x_now_x*k_t),
         d_t4_x_now_y = across_y*d_t4_x_1 + d_t4_across_y*x_1 + d_t4_tau_y*x_0 + d_t4_x_0*tau_y,
         d_t4_F_y = -(d_t4_x_now_y*k_t),
@@ -692,19 +1081,11 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
         d_t5_inv_m = -(d_t5_len_m*inv_m*inv_m),
         d_t5_side_m = c[1]*d_t5_inv_m,
         d_t5_n_y = d_t5_m_y*side_m + d_t5_side_m*m_y,
-        d_t5_n_z = d_t5_side_m*m_z,
-        d_t5_len_t = inv_t*t[5],
-        d_t5_inv_t = -(d_t5_len_t*inv_t*inv_t),
-        d_t5_tau_y = d_t5_inv_t*t[4],
-        d_t5_tau_z = d_t5_inv_t*t[5] + inv_t,
-        d_t5_across_x = d_t5_n_y*tau_z - d_t5_n_z*tau_y - d_t5_tau_y*n_z + d_t5_tau_z*n_y,
-        d_t5_tau_x = d_t5_inv_t*t[3],
-        d_t5_x_0 = (1.0/6.0)*d_t5_tau_x*h*u[0] + (1.0/6.0)*d_t5_tau_y*h*u[1] + (1.0/6.0)*d_t5_tau_z*h*u[2],
-        d_t5_n_x = d_t5_side_m*m_x + side_m*t[1],
-        d_t5_across_y = -d_t5_n_x*tau_z + d_t5_n_z*tau_x + d_t5_tau_x*n_z - d_t5_tau_z*n_x,
-        d_t5_across_z = d_t5_n_x*tau_y - d_t5_n_y*tau_x - d_t5_tau_x*n_y + d_t5_tau_y*n_x,
-        d_t5_x_1 = (1.0/6.0)*d_t5_across_x*h*u[0] + (1.0/6.0)*d_t5_across_y*h*u[1] + (1.0/6.0)*d_t5_across_z*h*u[2],
-        d_t5_x_now_x = across_x*d_t5_x_1 + d_t5_across_x*x_1 + d_t5_tau_x*x_0 + d_t5_x_0*tau_x,
+        d_t5_n_z = d_t5_side_m*m_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_11
+    const fu_real d_t5_n_x = d_t5_side_m*m_x + side_m*t[1];
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_12
+    const fu_real
         d_t5_F_x = -(d_t5_x_now_x*k_t),
         d_t5_x_now_y = across_y*d_t5_x_1 + d_t5_across_y*x_1 + d_t5_tau_y*x_0 + d_t5_x_0*tau_y,
         d_t5_F_y = -(d_t5_x_now_y*k_t),
@@ -733,92 +1114,44 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
         d_u2_x_now_y = across_y*d_u2_x_1 + d_u2_x_0*tau_y,
         d_u2_F_y = -(d_u2_x_now_y*k_t),
         d_u2_x_now_z = across_z*d_u2_x_1 + d_u2_x_0*tau_z,
-        d_u2_F_z = -(d_u2_x_now_z*k_t),
-        d_t_half0_x_m_half_y = -t_half_z[1],
-        d_t_half0_x_len_m_half = (d_t_half0_x_m_half_y*m_half_y + m_half_z*t_half_y[1])/len_m_half,
-        d_t_half0_x_across_half_x = c[1]*d_t_half0_x_m_half_y*tau_half_z/len_m_half - c[1]*t_half_y[1]*tau_half_y/len_m_half + d_t_half0_x_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half0_x_across_half_y = c[1]*t_half_y[1]*tau_half_x/len_m_half + d_t_half0_x_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_x_across_half_z = -c[1]*d_t_half0_x_m_half_y*tau_half_x/len_m_half + d_t_half0_x_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_x_x_1 = (2.0/3.0)*d_t_half0_x_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_x_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_x_across_half_z*slip_half_z,
-        d_t_half0_x_x_now_x = across_x*d_t_half0_x_x_1,
+        d_u2_F_z = -(d_u2_x_now_z*k_t);
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_13
+    const fu_real
         d_t_half0_x_F_x = -(d_t_half0_x_x_now_x*k_t),
         d_t_half0_x_x_now_y = across_y*d_t_half0_x_x_1,
         d_t_half0_x_F_y = -(d_t_half0_x_x_now_y*k_t),
         d_t_half0_x_x_now_z = across_z*d_t_half0_x_x_1,
-        d_t_half0_x_F_z = -(d_t_half0_x_x_now_z*k_t),
-        d_t_half0_y_m_half_z = -t_half_x[1],
-        d_t_half0_y_len_m_half = (d_t_half0_y_m_half_z*m_half_z + m_half_x*t_half_z[1])/len_m_half,
-        d_t_half0_y_across_half_x = -c[1]*d_t_half0_y_m_half_z*tau_half_y/len_m_half + d_t_half0_y_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half0_y_across_half_y = c[1]*d_t_half0_y_m_half_z*tau_half_x/len_m_half - c[1]*t_half_z[1]*tau_half_z/len_m_half + d_t_half0_y_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_y_across_half_z = c[1]*t_half_z[1]*tau_half_y/len_m_half + d_t_half0_y_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_y_x_1 = (2.0/3.0)*d_t_half0_y_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_y_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_y_across_half_z*slip_half_z,
-        d_t_half0_y_x_now_x = across_x*d_t_half0_y_x_1,
+        d_t_half0_x_F_z = -(d_t_half0_x_x_now_z*k_t);
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_14
+    const fu_real
         d_t_half0_y_F_x = -(d_t_half0_y_x_now_x*k_t),
         d_t_half0_y_x_now_y = across_y*d_t_half0_y_x_1,
         d_t_half0_y_F_y = -(d_t_half0_y_x_now_y*k_t),
         d_t_half0_y_x_now_z = across_z*d_t_half0_y_x_1,
-        d_t_half0_y_F_z = -(d_t_half0_y_x_now_z*k_t),
-        d_t_half0_z_m_half_x = -t_half_y[1],
-        d_t_half0_z_len_m_half = (d_t_half0_z_m_half_x*m_half_x + m_half_y*t_half_x[1])/len_m_half,
-        d_t_half0_z_across_half_x = c[1]*t_half_x[1]*tau_half_z/len_m_half + d_t_half0_z_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half0_z_across_half_y = -c[1]*d_t_half0_z_m_half_x*tau_half_z/len_m_half + d_t_half0_z_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_z_across_half_z = c[1]*d_t_half0_z_m_half_x*tau_half_y/len_m_half - c[1]*t_half_x[1]*tau_half_x/len_m_half + d_t_half0_z_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_z_x_1 = (2.0/3.0)*d_t_half0_z_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_z_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_z_across_half_z*slip_half_z,
-        d_t_half0_z_x_now_x = across_x*d_t_half0_z_x_1,
+        d_t_half0_y_F_z = -(d_t_half0_y_x_now_z*k_t);
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_15
+    const fu_real
         d_t_half0_z_F_x = -(d_t_half0_z_x_now_x*k_t),
         d_t_half0_z_x_now_y = across_y*d_t_half0_z_x_1,
         d_t_half0_z_F_y = -(d_t_half0_z_x_now_y*k_t),
         d_t_half0_z_x_now_z = across_z*d_t_half0_z_x_1,
-        d_t_half0_z_F_z = -(d_t_half0_z_x_now_z*k_t),
-        d_t_half1_x_len_t_half = inv_t_half*t_half_x[1],
-        d_t_half1_x_inv_t_half = -(d_t_half1_x_len_t_half*inv_t_half*inv_t_half),
-        d_t_half1_x_tau_half_x = d_t_half1_x_inv_t_half*t_half_x[1] + inv_t_half,
-        d_t_half1_x_tau_half_y = d_t_half1_x_inv_t_half*t_half_y[1],
-        d_t_half1_x_tau_half_z = d_t_half1_x_inv_t_half*t_half_z[1],
-        d_t_half1_x_x_0 = (2.0/3.0)*d_t_half1_x_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half1_x_tau_half_y*slip_half_y + (2.0/3.0)*d_t_half1_x_tau_half_z*slip_half_z,
-        d_t_half1_x_m_half_z = -t_half_y[0],
-        d_t_half1_x_len_m_half = (d_t_half1_x_m_half_z*m_half_z + m_half_y*t_half_z[0])/len_m_half,
-        d_t_half1_x_across_half_x = -c[1]*d_t_half1_x_m_half_z*tau_half_y/len_m_half - c[1]*d_t_half1_x_tau_half_y*m_half_z/len_m_half + c[1]*d_t_half1_x_tau_half_z*m_half_y/len_m_half + c[1]*t_half_z[0]*tau_half_z/len_m_half + d_t_half1_x_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half1_x_across_half_y = c[1]*d_t_half1_x_m_half_z*tau_half_x/len_m_half + c[1]*d_t_half1_x_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_x_tau_half_z*m_half_x/len_m_half + d_t_half1_x_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_x_across_half_z = -c[1]*d_t_half1_x_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_x_tau_half_y*m_half_x/len_m_half - c[1]*t_half_z[0]*tau_half_x/len_m_half + d_t_half1_x_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_x_x_1 = (2.0/3.0)*d_t_half1_x_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_x_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_x_across_half_z*slip_half_z,
-        d_t_half1_x_x_now_x = across_x*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_x,
+        d_t_half0_z_F_z = -(d_t_half0_z_x_now_z*k_t);
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_16
+    const fu_real
         d_t_half1_x_F_x = -(d_t_half1_x_x_now_x*k_t),
         d_t_half1_x_x_now_y = across_y*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_y,
         d_t_half1_x_F_y = -(d_t_half1_x_x_now_y*k_t),
         d_t_half1_x_x_now_z = across_z*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_z,
-        d_t_half1_x_F_z = -(d_t_half1_x_x_now_z*k_t),
-        d_t_half1_y_len_t_half = inv_t_half*t_half_y[1],
-        d_t_half1_y_inv_t_half = -(d_t_half1_y_len_t_half*inv_t_half*inv_t_half),
-        d_t_half1_y_tau_half_x = d_t_half1_y_inv_t_half*t_half_x[1],
-        d_t_half1_y_tau_half_y = d_t_half1_y_inv_t_half*t_half_y[1] + inv_t_half,
-        d_t_half1_y_tau_half_z = d_t_half1_y_inv_t_half*t_half_z[1],
-        d_t_half1_y_x_0 = (2.0/3.0)*d_t_half1_y_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half1_y_tau_half_y*slip_half_y + (2.0/3.0)*d_t_half1_y_tau_half_z*slip_half_z,
-        d_t_half1_y_m_half_x = -t_half_z[0],
-        d_t_half1_y_len_m_half = (d_t_half1_y_m_half_x*m_half_x + m_half_z*t_half_x[0])/len_m_half,
-        d_t_half1_y_across_half_x = -c[1]*d_t_half1_y_tau_half_y*m_half_z/len_m_half + c[1]*d_t_half1_y_tau_half_z*m_half_y/len_m_half - c[1]*t_half_x[0]*tau_half_y/len_m_half + d_t_half1_y_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half1_y_across_half_y = -c[1]*d_t_half1_y_m_half_x*tau_half_z/len_m_half + c[1]*d_t_half1_y_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_y_tau_half_z*m_half_x/len_m_half + c[1]*t_half_x[0]*tau_half_x/len_m_half + d_t_half1_y_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_y_across_half_z = c[1]*d_t_half1_y_m_half_x*tau_half_y/len_m_half - c[1]*d_t_half1_y_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_y_tau_half_y*m_half_x/len_m_half + d_t_half1_y_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_y_x_1 = (2.0/3.0)*d_t_half1_y_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_y_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_y_across_half_z*slip_half_z,
-        d_t_half1_y_x_now_x = across_x*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_x,
+        d_t_half1_x_F_z = -(d_t_half1_x_x_now_z*k_t);
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_17
+    const fu_real
         d_t_half1_y_F_x = -(d_t_half1_y_x_now_x*k_t),
         d_t_half1_y_x_now_y = across_y*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_y,
         d_t_half1_y_F_y = -(d_t_half1_y_x_now_y*k_t),
         d_t_half1_y_x_now_z = across_z*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_z,
-        d_t_half1_y_F_z = -(d_t_half1_y_x_now_z*k_t),
-        d_t_half1_z_len_t_half = inv_t_half*t_half_z[1],
-        d_t_half1_z_inv_t_half = -(d_t_half1_z_len_t_half*inv_t_half*inv_t_half),
-        d_t_half1_z_tau_half_x = d_t_half1_z_inv_t_half*t_half_x[1],
-        d_t_half1_z_tau_half_y = d_t_half1_z_inv_t_half*t_half_y[1],
-        d_t_half1_z_tau_half_z = d_t_half1_z_inv_t_half*t_half_z[1] + inv_t_half,
-        d_t_half1_z_x_0 = (2.0/3.0)*d_t_half1_z_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half1_z_tau_half_y*slip_half_y + (2.0/3.0)*d_t_half1_z_tau_half_z*slip_half_z,
-        d_t_half1_z_m_half_y = -t_half_x[0],
-        d_t_half1_z_len_m_half = (d_t_half1_z_m_half_y*m_half_y + m_half_x*t_half_y[0])/len_m_half,
-        d_t_half1_z_across_half_x = c[1]*d_t_half1_z_m_half_y*tau_half_z/len_m_half - c[1]*d_t_half1_z_tau_half_y*m_half_z/len_m_half + c[1]*d_t_half1_z_tau_half_z*m_half_y/len_m_half + d_t_half1_z_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half1_z_across_half_y = c[1]*d_t_half1_z_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_z_tau_half_z*m_half_x/len_m_half - c[1]*t_half_y[0]*tau_half_z/len_m_half + d_t_half1_z_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_z_across_half_z = -c[1]*d_t_half1_z_m_half_y*tau_half_x/len_m_half - c[1]*d_t_half1_z_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_z_tau_half_y*m_half_x/len_m_half + c[1]*t_half_y[0]*tau_half_y/len_m_half + d_t_half1_z_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_z_x_1 = (2.0/3.0)*d_t_half1_z_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_z_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_z_across_half_z*slip_half_z,
-        d_t_half1_z_x_now_x = across_x*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_x,
+        d_t_half1_y_F_z = -(d_t_half1_y_x_now_z*k_t);
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_18
+    const fu_real
         d_t_half1_z_F_x = -(d_t_half1_z_x_now_x*k_t),
         d_t_half1_z_x_now_y = across_y*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_y,
         d_t_half1_z_F_y = -(d_t_half1_z_x_now_y*k_t),
@@ -847,64 +1180,9 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
         d_slip_half_z_x_now_y = across_y*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_y,
         d_slip_half_z_F_y = -(d_slip_half_z_x_now_y*k_t),
         d_slip_half_z_x_now_z = across_z*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_z,
-        d_slip_half_z_F_z = -(d_slip_half_z_x_now_z*k_t),
-        d_t0_slip_half_x = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]),
-        d_t1_slip_half_y = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]),
-        d_t2_slip_half_z = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]),
-        d_t3_rate_d_x = -s_rate_at[1],
-        d_t3_slip_half_x = -0.25*d_t3_rate_d_x*h + 0.75*e[1] - 0.125*h*(s_rate[1] + s_rate_at[1]),
-        d_t4_rate_d_y = -s_rate_at[1],
-        d_t4_slip_half_y = -0.25*d_t4_rate_d_y*h + 0.75*e[1] - 0.125*h*(s_rate[1] + s_rate_at[1]),
-        d_t5_rate_d_z = -s_rate_at[1],
-        d_t5_slip_half_z = -0.25*d_t5_rate_d_z*h + 0.75*e[1] - 0.125*h*(s_rate[1] + s_rate_at[1]),
-        d_u0_slip_half_x = -(0.25*h),
-        d_u1_slip_half_y = -(0.25*h),
-        d_u2_slip_half_z = -(0.25*h),
-        d_w0_t_half0_x = -(0.125*h),
-        d_w0_slip_half_x = d_w0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_w1_t_half0_y = -(0.125*h),
-        d_w1_slip_half_y = d_w1_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_w2_t_half0_z = -(0.125*h),
-        d_w2_slip_half_z = d_w2_t_half0_z*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_w3_t_half1_x = -(0.125*h),
-        d_w3_slip_half_x = d_w3_t_half1_x*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_w4_t_half1_y = -(0.125*h),
-        d_w4_slip_half_y = d_w4_t_half1_y*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_w5_t_half1_z = -(0.125*h),
-        d_w5_slip_half_z = d_w5_t_half1_z*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_k0_t_half0_x = -(0.125*h*s_rate_at[0]),
-        d_k0_slip_half_x = d_k0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_k1_t_half0_y = -(0.125*h*s_rate_at[0]),
-        d_k1_slip_half_y = d_k1_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_k2_t_half0_z = -(0.125*h*s_rate_at[0]),
-        d_k2_slip_half_z = d_k2_t_half0_z*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_k3_t_half1_x = -(0.125*h*s_rate_at[1]),
-        d_k3_slip_half_x = d_k3_t_half1_x*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_k4_t_half1_y = -(0.125*h*s_rate_at[1]),
-        d_k4_slip_half_y = d_k4_t_half1_y*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_k5_t_half1_z = -(0.125*h*s_rate_at[1]),
-        d_k5_slip_half_z = d_k5_t_half1_z*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_e0_slip_half_x = -(1.5*t_half_x[0]),
-        d_e0_slip_half_y = -(1.5*t_half_y[0]),
-        d_e0_slip_half_z = -(1.5*t_half_z[0]),
-        d_e1_slip_half_x = 1.5*t_half_x[1],
-        d_e1_slip_half_y = 1.5*t_half_y[1],
-        d_e1_slip_half_z = 1.5*t_half_z[1],
-        d_s_rate_0_t_half0_x = -(0.125*h*k[0]),
-        d_s_rate_0_t_half0_y = -(0.125*h*k[1]),
-        d_s_rate_0_t_half0_z = -(0.125*h*k[2]),
-        d_s_rate_0_slip_half_x = d_s_rate_0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])) - 0.25*h*t[0] + 0.25*h*t_half_x[0],
-        d_s_rate_0_slip_half_y = d_s_rate_0_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])) - 0.25*h*t[1] + 0.25*h*t_half_y[0],
-        d_s_rate_0_slip_half_z = d_s_rate_0_t_half0_z*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])) - 0.25*h*t[2] + 0.25*h*t_half_z[0],
-        d_s_rate_1_t_half1_x = -(0.125*h*k[3]),
-        d_s_rate_1_t_half1_y = -(0.125*h*k[4]),
-        d_s_rate_1_t_half1_z = -(0.125*h*k[5]),
-        d_s_rate_1_rate_d_x = -t[3],
-        d_s_rate_1_slip_half_x = -0.25*d_s_rate_1_rate_d_x*h + d_s_rate_1_t_half1_x*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])) - 0.25*h*t_half_x[1],
-        d_s_rate_1_rate_d_y = -t[4],
-        d_s_rate_1_slip_half_y = -0.25*d_s_rate_1_rate_d_y*h + d_s_rate_1_t_half1_y*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])) - 0.25*h*t_half_y[1],
-        d_s_rate_1_rate_d_z = -t[5],
-        d_s_rate_1_slip_half_z = -0.25*d_s_rate_1_rate_d_z*h + d_s_rate_1_t_half1_z*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])) - 0.25*h*t_half_z[1],
+        d_slip_half_z_F_z = -(d_slip_half_z_x_now_z*k_t);
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_19
+    const fu_real
         F0_0 = 1.5*d_slip_half_x_F_x,
         F0_1 = 1.5*d_slip_half_y_F_x,
         F0_2 = 1.5*d_slip_half_z_F_x;
@@ -992,185 +1270,13 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
         F2_25 = d_e1_slip_half_x*d_slip_half_x_F_z + d_e1_slip_half_y*d_slip_half_y_F_z + d_e1_slip_half_z*d_slip_half_z_F_z,
         F2_26 = d_s_rate_0_slip_half_x*d_slip_half_x_F_z + d_s_rate_0_slip_half_y*d_slip_half_y_F_z + d_s_rate_0_slip_half_z*d_slip_half_z_F_z + d_s_rate_0_t_half0_x*d_t_half0_x_F_z + d_s_rate_0_t_half0_y*d_t_half0_y_F_z + d_s_rate_0_t_half0_z*d_t_half0_z_F_z,
         F2_27 = d_s_rate_1_slip_half_x*d_slip_half_x_F_z + d_s_rate_1_slip_half_y*d_slip_half_y_F_z + d_s_rate_1_slip_half_z*d_slip_half_z_F_z + d_s_rate_1_t_half1_x*d_t_half1_x_F_z + d_s_rate_1_t_half1_y*d_t_half1_y_F_z + d_s_rate_1_t_half1_z*d_t_half1_z_F_z;
-    FU_EACH(g, 3,
-        d_d_det_J[g] = J_00*k[g + 3] + J_11*k[g];
-        d_d_inv_J[g] = -(d_d_det_J[g]*inv_J*inv_J);
-        d_d_s_rate_0[g] = d_d_inv_J[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*k[g + 3]*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]) + inv_J*(J_01*w[g + 3] - J_11*w[g]);
-        d_d_s_rate_1[g] = d_d_inv_J[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*k[g]*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + inv_J*(-J_00*w[g + 3] + J_10*w[g]);)
-    FU_EACH(g, 3,
-        d_t_J_01[g] = -t[g + 3];
-        d_t_J_00[g] = 2.0*t[g];
-        d_t_det_J[g] = -J_01*t[g + 3] - J_10*d_t_J_01[g] + J_11*d_t_J_00[g];
-        d_t_inv_J[g] = -(d_t_det_J[g]*inv_J*inv_J);
-        d_t_s_rate_0[g] = -J_11*inv_J*u[g] + d_t_J_01[g]*inv_J*(d[0]*w[3] + d[1]*w[4] + d[2]*w[5] + t[3]*u[0] + t[4]*u[1] + t[5]*u[2]) + d_t_inv_J[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));
-        d_t_s_rate_1[g] = J_10*inv_J*u[g] + d_t_J_00[g]*inv_J*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + d_t_inv_J[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*t[g + 3]*(d[0]*w[0] + d[1]*w[1] + d[2]*w[2] + t[0]*u[0] + t[1]*u[1] + t[2]*u[2]);)
-    FU_EACH(g, 3,
-        d_t_J_01_at[g] = -t[g];
-        d_t_J_11[g] = -(2.0*t[g + 3]);
-        d_t_det_J_at[g] = J_00*d_t_J_11[g] - J_01*t[g] - J_10*d_t_J_01_at[g];
-        d_t_inv_J_at[g] = -(d_t_det_J_at[g]*inv_J*inv_J);
-        d_t_s_rate_0[g + 3] = J_01*inv_J*u[g] + d_t_J_01_at[g]*inv_J*(d[0]*w[3] + d[1]*w[4] + d[2]*w[5] + t[3]*u[0] + t[4]*u[1] + t[5]*u[2]) + d_t_J_11[g]*inv_J*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]) + d_t_inv_J_at[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));
-        d_t_s_rate_1[g + 3] = -J_00*inv_J*u[g] + d_t_inv_J_at[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*t[g]*(d[0]*w[0] + d[1]*w[1] + d[2]*w[2] + t[0]*u[0] + t[1]*u[1] + t[2]*u[2]);)
-    FU_EACH(g, 3,
-        d_u_s_rate_0[g] = inv_J*(J_01*t[g + 3] - J_11*t[g]);
-        d_u_s_rate_1[g] = inv_J*(-J_00*t[g + 3] + J_10*t[g]);)
-    FU_EACH(g, 3,
-        d_w_s_rate_0[g] = -(J_11*d[g]*inv_J);
-        d_w_s_rate_1[g] = J_10*d[g]*inv_J;)
-    FU_EACH(g, 3,
-        d_w_s_rate_0_at[g] = J_01*d[g]*inv_J;
-        d_w_s_rate_1_at[g] = -(J_00*d[g]*inv_J);)
-    FU_EACH(g, 3,
-        d_k_det_J[g] = J_11*d[g];
-        d_k_inv_J[g] = -(d_k_det_J[g]*inv_J*inv_J);
-        d_k_s_rate_0[g] = d_k_inv_J[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));
-        d_k_s_rate_1[g] = d[g]*inv_J*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + d_k_inv_J[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));)
-    FU_EACH(g, 3,
-        d_k_det_J_at[g] = J_00*d[g];
-        d_k_inv_J_at[g] = -(d_k_det_J_at[g]*inv_J*inv_J);
-        d_k_s_rate_0_at[g] = d[g]*inv_J*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]) + d_k_inv_J_at[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));
-        d_k_s_rate_1_at[g] = d_k_inv_J_at[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));)
-    const fu_real
-        F0_0_2 = F0_0 + F0_26*d_d_s_rate_0[0] + F0_27*d_d_s_rate_1[0],
-        F0_1_2 = F0_1 + F0_26*d_d_s_rate_0[1] + F0_27*d_d_s_rate_1[1],
-        F0_2_2 = F0_2 + F0_26*d_d_s_rate_0[2] + F0_27*d_d_s_rate_1[2];
-    FU_EACH(g, 6,
-        F0_2_at[g] = F0_26*d_t_s_rate_0[g] + F0_27*d_t_s_rate_1[g] + F0[g];)
-    const fu_real
-        F0_9_2 = F0_26*d_u_s_rate_0[0] + F0_27*d_u_s_rate_1[0] + F0_9,
-        F0_10_2 = F0_10 + F0_26*d_u_s_rate_0[1] + F0_27*d_u_s_rate_1[1],
-        F0_11_2 = F0_11 + F0_26*d_u_s_rate_0[2] + F0_27*d_u_s_rate_1[2],
-        F0_12_2 = F0_12 + F0_26*d_w_s_rate_0[0] + F0_27*d_w_s_rate_1[0],
-        F0_13_2 = F0_13 + F0_26*d_w_s_rate_0[1] + F0_27*d_w_s_rate_1[1],
-        F0_14_2 = F0_14 + F0_26*d_w_s_rate_0[2] + F0_27*d_w_s_rate_1[2],
-        F0_15_2 = F0_15 + F0_26*d_w_s_rate_0_at[0] + F0_27*d_w_s_rate_1_at[0],
-        F0_16_2 = F0_16 + F0_26*d_w_s_rate_0_at[1] + F0_27*d_w_s_rate_1_at[1],
-        F0_17_2 = F0_17 + F0_26*d_w_s_rate_0_at[2] + F0_27*d_w_s_rate_1_at[2],
-        F0_18_2 = F0_18 + F0_26*d_k_s_rate_0[0] + F0_27*d_k_s_rate_1[0],
-        F0_19_2 = F0_19 + F0_26*d_k_s_rate_0[1] + F0_27*d_k_s_rate_1[1],
-        F0_20_2 = F0_20 + F0_26*d_k_s_rate_0[2] + F0_27*d_k_s_rate_1[2],
-        F0_21_2 = F0_21 + F0_26*d_k_s_rate_0_at[0] + F0_27*d_k_s_rate_1_at[0],
-        F0_22_2 = F0_22 + F0_26*d_k_s_rate_0_at[1] + F0_27*d_k_s_rate_1_at[1],
-        F0_23_2 = F0_23 + F0_26*d_k_s_rate_0_at[2] + F0_27*d_k_s_rate_1_at[2],
-        F1_0_2 = F1_0 + F1_26*d_d_s_rate_0[0] + F1_27*d_d_s_rate_1[0],
-        F1_1_2 = F1_1 + F1_26*d_d_s_rate_0[1] + F1_27*d_d_s_rate_1[1],
-        F1_2_2 = F1_2 + F1_26*d_d_s_rate_0[2] + F1_27*d_d_s_rate_1[2];
-    FU_EACH(g, 6,
-        F1_2_at[g] = F1_26*d_t_s_rate_0[g] + F1_27*d_t_s_rate_1[g] + F1[g];)
-    const fu_real
-        F1_9_2 = F1_26*d_u_s_rate_0[0] + F1_27*d_u_s_rate_1[0] + F1_9,
-        F1_10_2 = F1_10 + F1_26*d_u_s_rate_0[1] + F1_27*d_u_s_rate_1[1],
-        F1_11_2 = F1_11 + F1_26*d_u_s_rate_0[2] + F1_27*d_u_s_rate_1[2],
-        F1_12_2 = F1_12 + F1_26*d_w_s_rate_0[0] + F1_27*d_w_s_rate_1[0],
-        F1_13_2 = F1_13 + F1_26*d_w_s_rate_0[1] + F1_27*d_w_s_rate_1[1],
-        F1_14_2 = F1_14 + F1_26*d_w_s_rate_0[2] + F1_27*d_w_s_rate_1[2],
-        F1_15_2 = F1_15 + F1_26*d_w_s_rate_0_at[0] + F1_27*d_w_s_rate_1_at[0],
-        F1_16_2 = F1_16 + F1_26*d_w_s_rate_0_at[1] + F1_27*d_w_s_rate_1_at[1],
-        F1_17_2 = F1_17 + F1_26*d_w_s_rate_0_at[2] + F1_27*d_w_s_rate_1_at[2],
-        F1_18_2 = F1_18 + F1_26*d_k_s_rate_0[0] + F1_27*d_k_s_rate_1[0],
-        F1_19_2 = F1_19 + F1_26*d_k_s_rate_0[1] + F1_27*d_k_s_rate_1[1],
-        F1_20_2 = F1_20 + F1_26*d_k_s_rate_0[2] + F1_27*d_k_s_rate_1[2],
-        F1_21_2 = F1_21 + F1_26*d_k_s_rate_0_at[0] + F1_27*d_k_s_rate_1_at[0],
-        F1_22_2 = F1_22 + F1_26*d_k_s_rate_0_at[1] + F1_27*d_k_s_rate_1_at[1],
-        F1_23_2 = F1_23 + F1_26*d_k_s_rate_0_at[2] + F1_27*d_k_s_rate_1_at[2],
-        F2_0_2 = F2_0 + F2_26*d_d_s_rate_0[0] + F2_27*d_d_s_rate_1[0],
-        F2_1_2 = F2_1 + F2_26*d_d_s_rate_0[1] + F2_27*d_d_s_rate_1[1],
-        F2_2_2 = F2_2 + F2_26*d_d_s_rate_0[2] + F2_27*d_d_s_rate_1[2];
-    FU_EACH(g, 6,
-        F2_2_at[g] = F2_26*d_t_s_rate_0[g] + F2_27*d_t_s_rate_1[g] + F2[g];)
-    const fu_real
-        F2_9_2 = F2_26*d_u_s_rate_0[0] + F2_27*d_u_s_rate_1[0] + F2_9,
-        F2_10_2 = F2_10 + F2_26*d_u_s_rate_0[1] + F2_27*d_u_s_rate_1[1],
-        F2_11_2 = F2_11 + F2_26*d_u_s_rate_0[2] + F2_27*d_u_s_rate_1[2],
-        F2_12_2 = F2_12 + F2_26*d_w_s_rate_0[0] + F2_27*d_w_s_rate_1[0],
-        F2_13_2 = F2_13 + F2_26*d_w_s_rate_0[1] + F2_27*d_w_s_rate_1[1],
-        F2_14_2 = F2_14 + F2_26*d_w_s_rate_0[2] + F2_27*d_w_s_rate_1[2],
-        F2_15_2 = F2_15 + F2_26*d_w_s_rate_0_at[0] + F2_27*d_w_s_rate_1_at[0],
-        F2_16_2 = F2_16 + F2_26*d_w_s_rate_0_at[1] + F2_27*d_w_s_rate_1_at[1],
-        F2_17_2 = F2_17 + F2_26*d_w_s_rate_0_at[2] + F2_27*d_w_s_rate_1_at[2],
-        F2_18_2 = F2_18 + F2_26*d_k_s_rate_0[0] + F2_27*d_k_s_rate_1[0],
-        F2_19_2 = F2_19 + F2_26*d_k_s_rate_0[1] + F2_27*d_k_s_rate_1[1],
-        F2_20_2 = F2_20 + F2_26*d_k_s_rate_0[2] + F2_27*d_k_s_rate_1[2],
-        F2_21_2 = F2_21 + F2_26*d_k_s_rate_0_at[0] + F2_27*d_k_s_rate_1_at[0],
-        F2_22_2 = F2_22 + F2_26*d_k_s_rate_0_at[1] + F2_27*d_k_s_rate_1_at[1],
-        F2_23_2 = F2_23 + F2_26*d_k_s_rate_0_at[2] + F2_27*d_k_s_rate_1_at[2];
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_20
     CROSSING_DERIVATIVES_OF_THE_FORCE_ALONG_THE_LINES
     /* outputs */
     F[0] = F_x;
     F[1] = F_y;
     F[2] = F_z;
-    F_d[0] = F0_0_2 + F_s0_x*s0_0 + F_s1_x*s1_0;
-    F_d[1] = F0_1_2 + F_s0_x*s0_1 + F_s1_x*s1_1;
-    F_d[2] = F0_2_2 + F_s0_x*s0_2 + F_s1_x*s1_2;
-    F_d[3] = F1_0_2 + F_s0_y*s0_0 + F_s1_y*s1_0;
-    F_d[4] = F1_1_2 + F_s0_y*s0_1 + F_s1_y*s1_1;
-    F_d[5] = F1_2_2 + F_s0_y*s0_2 + F_s1_y*s1_2;
-    F_d[6] = F2_0_2 + F_s0_z*s0_0 + F_s1_z*s1_0;
-    F_d[7] = F2_1_2 + F_s0_z*s0_1 + F_s1_z*s1_1;
-    F_d[8] = F2_2_2 + F_s0_z*s0_2 + F_s1_z*s1_2;
-    F_t[0] = F0_2_at[0] + F_s0_x*s0_3 + F_s1_x*s1_3;
-    F_t[1] = F0_2_at[1] + F_s0_x*s0_4 + F_s1_x*s1_4;
-    F_t[2] = F0_2_at[2] + F_s0_x*s0_5 + F_s1_x*s1_5;
-    F_t[3] = F0_2_at[3] + F_s0_x*s0_6 + F_s1_x*s1_6;
-    F_t[4] = F0_2_at[4] + F_s0_x*s0_7 + F_s1_x*s1_7;
-    F_t[5] = F0_2_at[5] + F_s0_x*s0_8 + F_s1_x*s1_8;
-    F_t[6] = F1_2_at[0] + F_s0_y*s0_3 + F_s1_y*s1_3;
-    F_t[7] = F1_2_at[1] + F_s0_y*s0_4 + F_s1_y*s1_4;
-    F_t[8] = F1_2_at[2] + F_s0_y*s0_5 + F_s1_y*s1_5;
-    F_t[9] = F1_2_at[3] + F_s0_y*s0_6 + F_s1_y*s1_6;
-    F_t[10] = F1_2_at[4] + F_s0_y*s0_7 + F_s1_y*s1_7;
-    F_t[11] = F1_2_at[5] + F_s0_y*s0_8 + F_s1_y*s1_8;
-    F_t[12] = F2_2_at[0] + F_s0_z*s0_3 + F_s1_z*s1_3;
-    F_t[13] = F2_2_at[1] + F_s0_z*s0_4 + F_s1_z*s1_4;
-    F_t[14] = F2_2_at[2] + F_s0_z*s0_5 + F_s1_z*s1_5;
-    F_t[15] = F2_2_at[3] + F_s0_z*s0_6 + F_s1_z*s1_6;
-    F_t[16] = F2_2_at[4] + F_s0_z*s0_7 + F_s1_z*s1_7;
-    F_t[17] = F2_2_at[5] + F_s0_z*s0_8 + F_s1_z*s1_8;
-    F_u[0] = F0_9_2;
-    F_u[1] = F0_10_2;
-    F_u[2] = F0_11_2;
-    F_u[3] = F1_9_2;
-    F_u[4] = F1_10_2;
-    F_u[5] = F1_11_2;
-    F_u[6] = F2_9_2;
-    F_u[7] = F2_10_2;
-    F_u[8] = F2_11_2;
-    F_w[0] = F0_12_2;
-    F_w[1] = F0_13_2;
-    F_w[2] = F0_14_2;
-    F_w[3] = F0_15_2;
-    F_w[4] = F0_16_2;
-    F_w[5] = F0_17_2;
-    F_w[6] = F1_12_2;
-    F_w[7] = F1_13_2;
-    F_w[8] = F1_14_2;
-    F_w[9] = F1_15_2;
-    F_w[10] = F1_16_2;
-    F_w[11] = F1_17_2;
-    F_w[12] = F2_12_2;
-    F_w[13] = F2_13_2;
-    F_w[14] = F2_14_2;
-    F_w[15] = F2_15_2;
-    F_w[16] = F2_16_2;
-    F_w[17] = F2_17_2;
-    F_k[0] = F0_18_2;
-    F_k[1] = F0_19_2;
-    F_k[2] = F0_20_2;
-    F_k[3] = F0_21_2;
-    F_k[4] = F0_22_2;
-    F_k[5] = F0_23_2;
-    F_k[6] = F1_18_2;
-    F_k[7] = F1_19_2;
-    F_k[8] = F1_20_2;
-    F_k[9] = F1_21_2;
-    F_k[10] = F1_22_2;
-    F_k[11] = F1_23_2;
-    F_k[12] = F2_18_2;
-    F_k[13] = F2_19_2;
-    F_k[14] = F2_20_2;
-    F_k[15] = F2_21_2;
-    F_k[16] = F2_22_2;
-    F_k[17] = F2_23_2;
+    CROSSING_PART_OF_OUTPUTS
 }
 
 /* friction that slides, its derivatives with the points moving (Hunt & Crossley 1975; closest points by the implicit function theorem) */
@@ -1198,32 +1304,9 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
     CROSSING_RATES_OF_THE_CLOSEST_POINTS
     CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP
     /* stretch of the spring */
+    CROSSING_PART_OF_STRETCH_OF_THE_SPRING
+    CROSSING_PART_OF_STRETCH_OF_THE_SPRING_2
     const fu_real
-        len_t = FU_SQRT(t[3]*t[3] + t[4]*t[4] + t[5]*t[5]),
-        inv_t = 1.0/len_t,
-        tau_x = inv_t*t[3],
-        tau_y = inv_t*t[4],
-        tau_z = inv_t*t[5],
-        across_x = n_y*tau_z - n_z*tau_y,
-        across_y = -n_x*tau_z + n_z*tau_x,
-        across_z = n_x*tau_y - n_y*tau_x,
-        len_t_half = FU_SQRT(t_half_x[1]*t_half_x[1] + t_half_y[1]*t_half_y[1] + t_half_z[1]*t_half_z[1]),
-        inv_t_half = 1.0/len_t_half,
-        tau_half_x = inv_t_half*t_half_x[1],
-        tau_half_y = inv_t_half*t_half_y[1],
-        tau_half_z = inv_t_half*t_half_z[1],
-        m_half_x = t_half_y[0]*t_half_z[1] - t_half_z[0]*t_half_y[1],
-        m_half_y = -t_half_x[0]*t_half_z[1] + t_half_z[0]*t_half_x[1],
-        m_half_z = t_half_x[0]*t_half_y[1] - t_half_y[0]*t_half_x[1],
-        len_m_half = FU_SQRT(m_half_x*m_half_x + m_half_y*m_half_y + m_half_z*m_half_z),
-        across_half_x = c[1]*m_half_y*tau_half_z/len_m_half - c[1]*m_half_z*tau_half_y/len_m_half,
-        across_half_y = -c[1]*m_half_x*tau_half_z/len_m_half + c[1]*m_half_z*tau_half_x/len_m_half,
-        across_half_z = c[1]*m_half_x*tau_half_y/len_m_half - c[1]*m_half_y*tau_half_x/len_m_half,
-        x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + tau_z*u[2] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + (2.0/3.0)*slip_half_z*tau_half_z + x[0],
-        x_1 = (2.0/3.0)*across_half_x*slip_half_x + (2.0/3.0)*across_half_y*slip_half_y + (2.0/3.0)*across_half_z*slip_half_z + (1.0/6.0)*h*(across_x*u[0] + across_y*u[1] + across_z*u[2] + v[1]) + x[1],
-        x_now_x = across_x*x_1 + tau_x*x_0,
-        x_now_y = across_y*x_1 + tau_y*x_0,
-        x_now_z = across_z*x_1 + tau_z*x_0,
         size = FU_SQRT(x_now_x*x_now_x + x_now_y*x_now_y + x_now_z*x_now_z),
         inv_size = 1.0/size,
         F_x_2 = -(N_law*inv_size*mu*x_now_x),
@@ -1267,13 +1350,9 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
         d_t0_side_m = c[1]*d_t0_inv_m,
         d_t0_n_x = d_t0_side_m*m_x,
         d_t0_n_y = d_t0_m_y*side_m + d_t0_side_m*m_y,
-        d_t0_n_z = d_t0_side_m*m_z + side_m*t[4],
-        d_t0_depth = -d[0]*d_t0_n_x - d[1]*d_t0_n_y - d[2]*d_t0_n_z,
-        d_t0_size_p = d_t0_depth*depth/size_p,
-        d_t0_root_p = 0.5*d_t0_size_p/root_p,
-        d_t0_elastic = c[3]*d_t0_root_p*depth + d_t0_depth*(c[2] + c[3]*root_p),
-        d_t0_rate = -d_t0_n_x*u[0] - d_t0_n_y*u[1] - d_t0_n_z*u[2],
-        d_t0_N_law = c[4]*d_t0_rate*elastic + d_t0_elastic*(c[4]*rate + 1.0),
+        d_t0_n_z = d_t0_side_m*m_z + side_m*t[4];
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY
+    const fu_real
         d_t0_across_x = d_t0_n_y*tau_z - d_t0_n_z*tau_y,
         d_t0_across_y = -d_t0_n_x*tau_z + d_t0_n_z*tau_x,
         d_t0_across_z = d_t0_n_x*tau_y - d_t0_n_y*tau_x,
@@ -1292,13 +1371,9 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
         d_t1_side_m = c[1]*d_t1_inv_m,
         d_t1_n_x = d_t1_side_m*m_x + side_m*t[5],
         d_t1_n_y = d_t1_side_m*m_y,
-        d_t1_n_z = d_t1_m_z*side_m + d_t1_side_m*m_z,
-        d_t1_depth = -d[0]*d_t1_n_x - d[1]*d_t1_n_y - d[2]*d_t1_n_z,
-        d_t1_size_p = d_t1_depth*depth/size_p,
-        d_t1_root_p = 0.5*d_t1_size_p/root_p,
-        d_t1_elastic = c[3]*d_t1_root_p*depth + d_t1_depth*(c[2] + c[3]*root_p),
-        d_t1_rate = -d_t1_n_x*u[0] - d_t1_n_y*u[1] - d_t1_n_z*u[2],
-        d_t1_N_law = c[4]*d_t1_rate*elastic + d_t1_elastic*(c[4]*rate + 1.0),
+        d_t1_n_z = d_t1_m_z*side_m + d_t1_side_m*m_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_2
+    const fu_real
         d_t1_across_x = d_t1_n_y*tau_z - d_t1_n_z*tau_y,
         d_t1_across_y = -d_t1_n_x*tau_z + d_t1_n_z*tau_x,
         d_t1_across_z = d_t1_n_x*tau_y - d_t1_n_y*tau_x,
@@ -1317,13 +1392,9 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
         d_t2_side_m = c[1]*d_t2_inv_m,
         d_t2_n_x = d_t2_m_x*side_m + d_t2_side_m*m_x,
         d_t2_n_y = d_t2_side_m*m_y + side_m*t[3],
-        d_t2_n_z = d_t2_side_m*m_z,
-        d_t2_depth = -d[0]*d_t2_n_x - d[1]*d_t2_n_y - d[2]*d_t2_n_z,
-        d_t2_size_p = d_t2_depth*depth/size_p,
-        d_t2_root_p = 0.5*d_t2_size_p/root_p,
-        d_t2_elastic = c[3]*d_t2_root_p*depth + d_t2_depth*(c[2] + c[3]*root_p),
-        d_t2_rate = -d_t2_n_x*u[0] - d_t2_n_y*u[1] - d_t2_n_z*u[2],
-        d_t2_N_law = c[4]*d_t2_rate*elastic + d_t2_elastic*(c[4]*rate + 1.0),
+        d_t2_n_z = d_t2_side_m*m_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_3
+    const fu_real
         d_t2_across_x = d_t2_n_y*tau_z - d_t2_n_z*tau_y,
         d_t2_across_y = -d_t2_n_x*tau_z + d_t2_n_z*tau_x,
         d_t2_across_z = d_t2_n_x*tau_y - d_t2_n_y*tau_x,
@@ -1342,24 +1413,11 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
         d_t3_side_m = c[1]*d_t3_inv_m,
         d_t3_n_x = d_t3_side_m*m_x,
         d_t3_n_y = d_t3_side_m*m_y + side_m*t[2],
-        d_t3_n_z = d_t3_m_z*side_m + d_t3_side_m*m_z,
-        d_t3_depth = -d[0]*d_t3_n_x - d[1]*d_t3_n_y - d[2]*d_t3_n_z,
-        d_t3_size_p = d_t3_depth*depth/size_p,
-        d_t3_root_p = 0.5*d_t3_size_p/root_p,
-        d_t3_elastic = c[3]*d_t3_root_p*depth + d_t3_depth*(c[2] + c[3]*root_p),
-        d_t3_rate = -d_t3_n_x*u[0] - d_t3_n_y*u[1] - d_t3_n_z*u[2],
-        d_t3_N_law = c[4]*d_t3_rate*elastic + d_t3_elastic*(c[4]*rate + 1.0),
-        d_t3_len_t = inv_t*t[3],
-        d_t3_inv_t = -(d_t3_len_t*inv_t*inv_t),
-        d_t3_tau_y = d_t3_inv_t*t[4],
-        d_t3_tau_z = d_t3_inv_t*t[5],
-        d_t3_across_x = d_t3_n_y*tau_z - d_t3_n_z*tau_y - d_t3_tau_y*n_z + d_t3_tau_z*n_y,
-        d_t3_tau_x = d_t3_inv_t*t[3] + inv_t,
-        d_t3_x_0 = (1.0/6.0)*d_t3_tau_x*h*u[0] + (1.0/6.0)*d_t3_tau_y*h*u[1] + (1.0/6.0)*d_t3_tau_z*h*u[2],
-        d_t3_across_y = -d_t3_n_x*tau_z + d_t3_n_z*tau_x + d_t3_tau_x*n_z - d_t3_tau_z*n_x,
-        d_t3_across_z = d_t3_n_x*tau_y - d_t3_n_y*tau_x - d_t3_tau_x*n_y + d_t3_tau_y*n_x,
-        d_t3_x_1 = (1.0/6.0)*d_t3_across_x*h*u[0] + (1.0/6.0)*d_t3_across_y*h*u[1] + (1.0/6.0)*d_t3_across_z*h*u[2],
-        d_t3_x_now_x = across_x*d_t3_x_1 + d_t3_across_x*x_1 + d_t3_tau_x*x_0 + d_t3_x_0*tau_x,
+        d_t3_n_z = d_t3_m_z*side_m + d_t3_side_m*m_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_4
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_7
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_8
+    const fu_real
         d_t3_x_now_y = across_y*d_t3_x_1 + d_t3_across_y*x_1 + d_t3_tau_y*x_0 + d_t3_x_0*tau_y,
         d_t3_x_now_z = across_z*d_t3_x_1 + d_t3_across_z*x_1 + d_t3_tau_z*x_0 + d_t3_x_0*tau_z,
         d_t3_size = inv_size*(d_t3_x_now_x*x_now_x + d_t3_x_now_y*x_now_y + d_t3_x_now_z*x_now_z),
@@ -1373,24 +1431,11 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
         d_t4_side_m = c[1]*d_t4_inv_m,
         d_t4_n_x = d_t4_m_x*side_m + d_t4_side_m*m_x,
         d_t4_n_y = d_t4_side_m*m_y,
-        d_t4_n_z = d_t4_side_m*m_z + side_m*t[0],
-        d_t4_depth = -d[0]*d_t4_n_x - d[1]*d_t4_n_y - d[2]*d_t4_n_z,
-        d_t4_size_p = d_t4_depth*depth/size_p,
-        d_t4_root_p = 0.5*d_t4_size_p/root_p,
-        d_t4_elastic = c[3]*d_t4_root_p*depth + d_t4_depth*(c[2] + c[3]*root_p),
-        d_t4_rate = -d_t4_n_x*u[0] - d_t4_n_y*u[1] - d_t4_n_z*u[2],
-        d_t4_N_law = c[4]*d_t4_rate*elastic + d_t4_elastic*(c[4]*rate + 1.0),
-        d_t4_len_t = inv_t*t[4],
-        d_t4_inv_t = -(d_t4_len_t*inv_t*inv_t),
-        d_t4_tau_y = d_t4_inv_t*t[4] + inv_t,
-        d_t4_tau_z = d_t4_inv_t*t[5],
-        d_t4_across_x = d_t4_n_y*tau_z - d_t4_n_z*tau_y - d_t4_tau_y*n_z + d_t4_tau_z*n_y,
-        d_t4_tau_x = d_t4_inv_t*t[3],
-        d_t4_x_0 = (1.0/6.0)*d_t4_tau_x*h*u[0] + (1.0/6.0)*d_t4_tau_y*h*u[1] + (1.0/6.0)*d_t4_tau_z*h*u[2],
-        d_t4_across_y = -d_t4_n_x*tau_z + d_t4_n_z*tau_x + d_t4_tau_x*n_z - d_t4_tau_z*n_x,
-        d_t4_across_z = d_t4_n_x*tau_y - d_t4_n_y*tau_x - d_t4_tau_x*n_y + d_t4_tau_y*n_x,
-        d_t4_x_1 = (1.0/6.0)*d_t4_across_x*h*u[0] + (1.0/6.0)*d_t4_across_y*h*u[1] + (1.0/6.0)*d_t4_across_z*h*u[2],
-        d_t4_x_now_x = across_x*d_t4_x_1 + d_t4_across_x*x_1 + d_t4_tau_x*x_0 + d_t4_x_0*tau_x,
+        d_t4_n_z = d_t4_side_m*m_z + side_m*t[0];
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_5
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_9
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_10
+    const fu_real
         d_t4_x_now_y = across_y*d_t4_x_1 + d_t4_across_y*x_1 + d_t4_tau_y*x_0 + d_t4_x_0*tau_y,
         d_t4_x_now_z = across_z*d_t4_x_1 + d_t4_across_z*x_1 + d_t4_tau_z*x_0 + d_t4_x_0*tau_z,
         d_t4_size = inv_size*(d_t4_x_now_x*x_now_x + d_t4_x_now_y*x_now_y + d_t4_x_now_z*x_now_z),
@@ -1404,24 +1449,11 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
         d_t5_side_m = c[1]*d_t5_inv_m,
         d_t5_n_x = d_t5_side_m*m_x + side_m*t[1],
         d_t5_n_y = d_t5_m_y*side_m + d_t5_side_m*m_y,
-        d_t5_n_z = d_t5_side_m*m_z,
-        d_t5_depth = -d[0]*d_t5_n_x - d[1]*d_t5_n_y - d[2]*d_t5_n_z,
-        d_t5_size_p = d_t5_depth*depth/size_p,
-        d_t5_root_p = 0.5*d_t5_size_p/root_p,
-        d_t5_elastic = c[3]*d_t5_root_p*depth + d_t5_depth*(c[2] + c[3]*root_p),
-        d_t5_rate = -d_t5_n_x*u[0] - d_t5_n_y*u[1] - d_t5_n_z*u[2],
-        d_t5_N_law = c[4]*d_t5_rate*elastic + d_t5_elastic*(c[4]*rate + 1.0),
-        d_t5_len_t = inv_t*t[5],
-        d_t5_inv_t = -(d_t5_len_t*inv_t*inv_t),
-        d_t5_tau_y = d_t5_inv_t*t[4],
-        d_t5_tau_z = d_t5_inv_t*t[5] + inv_t,
-        d_t5_across_x = d_t5_n_y*tau_z - d_t5_n_z*tau_y - d_t5_tau_y*n_z + d_t5_tau_z*n_y,
-        d_t5_tau_x = d_t5_inv_t*t[3],
-        d_t5_x_0 = (1.0/6.0)*d_t5_tau_x*h*u[0] + (1.0/6.0)*d_t5_tau_y*h*u[1] + (1.0/6.0)*d_t5_tau_z*h*u[2],
-        d_t5_across_y = -d_t5_n_x*tau_z + d_t5_n_z*tau_x + d_t5_tau_x*n_z - d_t5_tau_z*n_x,
-        d_t5_across_z = d_t5_n_x*tau_y - d_t5_n_y*tau_x - d_t5_tau_x*n_y + d_t5_tau_y*n_x,
-        d_t5_x_1 = (1.0/6.0)*d_t5_across_x*h*u[0] + (1.0/6.0)*d_t5_across_y*h*u[1] + (1.0/6.0)*d_t5_across_z*h*u[2],
-        d_t5_x_now_x = across_x*d_t5_x_1 + d_t5_across_x*x_1 + d_t5_tau_x*x_0 + d_t5_x_0*tau_x,
+        d_t5_n_z = d_t5_side_m*m_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_6
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_11
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_12
+    const fu_real
         d_t5_x_now_y = across_y*d_t5_x_1 + d_t5_across_y*x_1 + d_t5_tau_y*x_0 + d_t5_x_0*tau_y,
         d_t5_x_now_z = across_z*d_t5_x_1 + d_t5_across_z*x_1 + d_t5_tau_z*x_0 + d_t5_x_0*tau_z,
         d_t5_size = inv_size*(d_t5_x_now_x*x_now_x + d_t5_x_now_y*x_now_y + d_t5_x_now_z*x_now_z),
@@ -1464,102 +1496,54 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
         d_u2_inv_size = -(d_u2_size*inv_size*inv_size),
         d_u2_F_x_2 = -N_law*d_u2_inv_size*mu*x_now_x - N_law*d_u2_x_now_x*inv_size*mu - d_u2_N_law*inv_size*mu*x_now_x,
         d_u2_F_y_2 = -N_law*d_u2_inv_size*mu*x_now_y - N_law*d_u2_x_now_y*inv_size*mu - d_u2_N_law*inv_size*mu*x_now_y,
-        d_u2_F_z_2 = -N_law*d_u2_inv_size*mu*x_now_z - N_law*d_u2_x_now_z*inv_size*mu - d_u2_N_law*inv_size*mu*x_now_z,
-        d_t_half0_x_m_half_y = -t_half_z[1],
-        d_t_half0_x_len_m_half = (d_t_half0_x_m_half_y*m_half_y + m_half_z*t_half_y[1])/len_m_half,
-        d_t_half0_x_across_half_x = c[1]*d_t_half0_x_m_half_y*tau_half_z/len_m_half - c[1]*t_half_y[1]*tau_half_y/len_m_half + d_t_half0_x_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half0_x_across_half_y = c[1]*t_half_y[1]*tau_half_x/len_m_half + d_t_half0_x_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_x_across_half_z = -c[1]*d_t_half0_x_m_half_y*tau_half_x/len_m_half + d_t_half0_x_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_x_x_1 = (2.0/3.0)*d_t_half0_x_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_x_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_x_across_half_z*slip_half_z,
-        d_t_half0_x_x_now_x = across_x*d_t_half0_x_x_1,
+        d_u2_F_z_2 = -N_law*d_u2_inv_size*mu*x_now_z - N_law*d_u2_x_now_z*inv_size*mu - d_u2_N_law*inv_size*mu*x_now_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_13
+    const fu_real
         d_t_half0_x_x_now_y = across_y*d_t_half0_x_x_1,
         d_t_half0_x_x_now_z = across_z*d_t_half0_x_x_1,
         d_t_half0_x_size = inv_size*(d_t_half0_x_x_now_x*x_now_x + d_t_half0_x_x_now_y*x_now_y + d_t_half0_x_x_now_z*x_now_z),
         d_t_half0_x_inv_size = -(d_t_half0_x_size*inv_size*inv_size),
         d_t_half0_x_F_x_2 = -N_law*d_t_half0_x_inv_size*mu*x_now_x - N_law*d_t_half0_x_x_now_x*inv_size*mu,
         d_t_half0_x_F_y_2 = -N_law*d_t_half0_x_inv_size*mu*x_now_y - N_law*d_t_half0_x_x_now_y*inv_size*mu,
-        d_t_half0_x_F_z_2 = -N_law*d_t_half0_x_inv_size*mu*x_now_z - N_law*d_t_half0_x_x_now_z*inv_size*mu,
-        d_t_half0_y_m_half_z = -t_half_x[1],
-        d_t_half0_y_len_m_half = (d_t_half0_y_m_half_z*m_half_z + m_half_x*t_half_z[1])/len_m_half,
-        d_t_half0_y_across_half_x = -c[1]*d_t_half0_y_m_half_z*tau_half_y/len_m_half + d_t_half0_y_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half0_y_across_half_y = c[1]*d_t_half0_y_m_half_z*tau_half_x/len_m_half - c[1]*t_half_z[1]*tau_half_z/len_m_half + d_t_half0_y_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_y_across_half_z = c[1]*t_half_z[1]*tau_half_y/len_m_half + d_t_half0_y_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_y_x_1 = (2.0/3.0)*d_t_half0_y_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_y_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_y_across_half_z*slip_half_z,
-        d_t_half0_y_x_now_x = across_x*d_t_half0_y_x_1,
+        d_t_half0_x_F_z_2 = -N_law*d_t_half0_x_inv_size*mu*x_now_z - N_law*d_t_half0_x_x_now_z*inv_size*mu;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_14
+    const fu_real
         d_t_half0_y_x_now_y = across_y*d_t_half0_y_x_1,
         d_t_half0_y_x_now_z = across_z*d_t_half0_y_x_1,
         d_t_half0_y_size = inv_size*(d_t_half0_y_x_now_x*x_now_x + d_t_half0_y_x_now_y*x_now_y + d_t_half0_y_x_now_z*x_now_z),
         d_t_half0_y_inv_size = -(d_t_half0_y_size*inv_size*inv_size),
         d_t_half0_y_F_x_2 = -N_law*d_t_half0_y_inv_size*mu*x_now_x - N_law*d_t_half0_y_x_now_x*inv_size*mu,
         d_t_half0_y_F_y_2 = -N_law*d_t_half0_y_inv_size*mu*x_now_y - N_law*d_t_half0_y_x_now_y*inv_size*mu,
-        d_t_half0_y_F_z_2 = -N_law*d_t_half0_y_inv_size*mu*x_now_z - N_law*d_t_half0_y_x_now_z*inv_size*mu,
-        d_t_half0_z_m_half_x = -t_half_y[1],
-        d_t_half0_z_len_m_half = (d_t_half0_z_m_half_x*m_half_x + m_half_y*t_half_x[1])/len_m_half,
-        d_t_half0_z_across_half_x = c[1]*t_half_x[1]*tau_half_z/len_m_half + d_t_half0_z_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half0_z_across_half_y = -c[1]*d_t_half0_z_m_half_x*tau_half_z/len_m_half + d_t_half0_z_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_z_across_half_z = c[1]*d_t_half0_z_m_half_x*tau_half_y/len_m_half - c[1]*t_half_x[1]*tau_half_x/len_m_half + d_t_half0_z_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half0_z_x_1 = (2.0/3.0)*d_t_half0_z_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_z_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_z_across_half_z*slip_half_z,
-        d_t_half0_z_x_now_x = across_x*d_t_half0_z_x_1,
+        d_t_half0_y_F_z_2 = -N_law*d_t_half0_y_inv_size*mu*x_now_z - N_law*d_t_half0_y_x_now_z*inv_size*mu;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_15
+    const fu_real
         d_t_half0_z_x_now_y = across_y*d_t_half0_z_x_1,
         d_t_half0_z_x_now_z = across_z*d_t_half0_z_x_1,
         d_t_half0_z_size = inv_size*(d_t_half0_z_x_now_x*x_now_x + d_t_half0_z_x_now_y*x_now_y + d_t_half0_z_x_now_z*x_now_z),
         d_t_half0_z_inv_size = -(d_t_half0_z_size*inv_size*inv_size),
         d_t_half0_z_F_x_2 = -N_law*d_t_half0_z_inv_size*mu*x_now_x - N_law*d_t_half0_z_x_now_x*inv_size*mu,
         d_t_half0_z_F_y_2 = -N_law*d_t_half0_z_inv_size*mu*x_now_y - N_law*d_t_half0_z_x_now_y*inv_size*mu,
-        d_t_half0_z_F_z_2 = -N_law*d_t_half0_z_inv_size*mu*x_now_z - N_law*d_t_half0_z_x_now_z*inv_size*mu,
-        d_t_half1_x_len_t_half = inv_t_half*t_half_x[1],
-        d_t_half1_x_inv_t_half = -(d_t_half1_x_len_t_half*inv_t_half*inv_t_half),
-        d_t_half1_x_tau_half_x = d_t_half1_x_inv_t_half*t_half_x[1] + inv_t_half,
-        d_t_half1_x_tau_half_y = d_t_half1_x_inv_t_half*t_half_y[1],
-        d_t_half1_x_tau_half_z = d_t_half1_x_inv_t_half*t_half_z[1],
-        d_t_half1_x_x_0 = (2.0/3.0)*d_t_half1_x_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half1_x_tau_half_y*slip_half_y + (2.0/3.0)*d_t_half1_x_tau_half_z*slip_half_z,
-        d_t_half1_x_m_half_z = -t_half_y[0],
-        d_t_half1_x_len_m_half = (d_t_half1_x_m_half_z*m_half_z + m_half_y*t_half_z[0])/len_m_half,
-        d_t_half1_x_across_half_x = -c[1]*d_t_half1_x_m_half_z*tau_half_y/len_m_half - c[1]*d_t_half1_x_tau_half_y*m_half_z/len_m_half + c[1]*d_t_half1_x_tau_half_z*m_half_y/len_m_half + c[1]*t_half_z[0]*tau_half_z/len_m_half + d_t_half1_x_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half1_x_across_half_y = c[1]*d_t_half1_x_m_half_z*tau_half_x/len_m_half + c[1]*d_t_half1_x_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_x_tau_half_z*m_half_x/len_m_half + d_t_half1_x_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_x_across_half_z = -c[1]*d_t_half1_x_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_x_tau_half_y*m_half_x/len_m_half - c[1]*t_half_z[0]*tau_half_x/len_m_half + d_t_half1_x_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_x_x_1 = (2.0/3.0)*d_t_half1_x_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_x_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_x_across_half_z*slip_half_z,
-        d_t_half1_x_x_now_x = across_x*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_x,
+        d_t_half0_z_F_z_2 = -N_law*d_t_half0_z_inv_size*mu*x_now_z - N_law*d_t_half0_z_x_now_z*inv_size*mu;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_16
+    const fu_real
         d_t_half1_x_x_now_y = across_y*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_y,
         d_t_half1_x_x_now_z = across_z*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_z,
         d_t_half1_x_size = inv_size*(d_t_half1_x_x_now_x*x_now_x + d_t_half1_x_x_now_y*x_now_y + d_t_half1_x_x_now_z*x_now_z),
         d_t_half1_x_inv_size = -(d_t_half1_x_size*inv_size*inv_size),
         d_t_half1_x_F_x_2 = -N_law*d_t_half1_x_inv_size*mu*x_now_x - N_law*d_t_half1_x_x_now_x*inv_size*mu,
         d_t_half1_x_F_y_2 = -N_law*d_t_half1_x_inv_size*mu*x_now_y - N_law*d_t_half1_x_x_now_y*inv_size*mu,
-        d_t_half1_x_F_z_2 = -N_law*d_t_half1_x_inv_size*mu*x_now_z - N_law*d_t_half1_x_x_now_z*inv_size*mu,
-        d_t_half1_y_len_t_half = inv_t_half*t_half_y[1],
-        d_t_half1_y_inv_t_half = -(d_t_half1_y_len_t_half*inv_t_half*inv_t_half),
-        d_t_half1_y_tau_half_x = d_t_half1_y_inv_t_half*t_half_x[1],
-        d_t_half1_y_tau_half_y = d_t_half1_y_inv_t_half*t_half_y[1] + inv_t_half,
-        d_t_half1_y_tau_half_z = d_t_half1_y_inv_t_half*t_half_z[1],
-        d_t_half1_y_x_0 = (2.0/3.0)*d_t_half1_y_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half1_y_tau_half_y*slip_half_y + (2.0/3.0)*d_t_half1_y_tau_half_z*slip_half_z,
-        d_t_half1_y_m_half_x = -t_half_z[0],
-        d_t_half1_y_len_m_half = (d_t_half1_y_m_half_x*m_half_x + m_half_z*t_half_x[0])/len_m_half,
-        d_t_half1_y_across_half_x = -c[1]*d_t_half1_y_tau_half_y*m_half_z/len_m_half + c[1]*d_t_half1_y_tau_half_z*m_half_y/len_m_half - c[1]*t_half_x[0]*tau_half_y/len_m_half + d_t_half1_y_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half1_y_across_half_y = -c[1]*d_t_half1_y_m_half_x*tau_half_z/len_m_half + c[1]*d_t_half1_y_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_y_tau_half_z*m_half_x/len_m_half + c[1]*t_half_x[0]*tau_half_x/len_m_half + d_t_half1_y_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_y_across_half_z = c[1]*d_t_half1_y_m_half_x*tau_half_y/len_m_half - c[1]*d_t_half1_y_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_y_tau_half_y*m_half_x/len_m_half + d_t_half1_y_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_y_x_1 = (2.0/3.0)*d_t_half1_y_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_y_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_y_across_half_z*slip_half_z,
-        d_t_half1_y_x_now_x = across_x*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_x,
+        d_t_half1_x_F_z_2 = -N_law*d_t_half1_x_inv_size*mu*x_now_z - N_law*d_t_half1_x_x_now_z*inv_size*mu;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_17
+    const fu_real
         d_t_half1_y_x_now_y = across_y*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_y,
         d_t_half1_y_x_now_z = across_z*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_z,
         d_t_half1_y_size = inv_size*(d_t_half1_y_x_now_x*x_now_x + d_t_half1_y_x_now_y*x_now_y + d_t_half1_y_x_now_z*x_now_z),
         d_t_half1_y_inv_size = -(d_t_half1_y_size*inv_size*inv_size),
         d_t_half1_y_F_x_2 = -N_law*d_t_half1_y_inv_size*mu*x_now_x - N_law*d_t_half1_y_x_now_x*inv_size*mu,
         d_t_half1_y_F_y_2 = -N_law*d_t_half1_y_inv_size*mu*x_now_y - N_law*d_t_half1_y_x_now_y*inv_size*mu,
-        d_t_half1_y_F_z_2 = -N_law*d_t_half1_y_inv_size*mu*x_now_z - N_law*d_t_half1_y_x_now_z*inv_size*mu,
-        d_t_half1_z_len_t_half = inv_t_half*t_half_z[1],
-        d_t_half1_z_inv_t_half = -(d_t_half1_z_len_t_half*inv_t_half*inv_t_half),
-        d_t_half1_z_tau_half_x = d_t_half1_z_inv_t_half*t_half_x[1],
-        d_t_half1_z_tau_half_y = d_t_half1_z_inv_t_half*t_half_y[1],
-        d_t_half1_z_tau_half_z = d_t_half1_z_inv_t_half*t_half_z[1] + inv_t_half,
-        d_t_half1_z_x_0 = (2.0/3.0)*d_t_half1_z_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half1_z_tau_half_y*slip_half_y + (2.0/3.0)*d_t_half1_z_tau_half_z*slip_half_z,
-        d_t_half1_z_m_half_y = -t_half_x[0],
-        d_t_half1_z_len_m_half = (d_t_half1_z_m_half_y*m_half_y + m_half_x*t_half_y[0])/len_m_half,
-        d_t_half1_z_across_half_x = c[1]*d_t_half1_z_m_half_y*tau_half_z/len_m_half - c[1]*d_t_half1_z_tau_half_y*m_half_z/len_m_half + c[1]*d_t_half1_z_tau_half_z*m_half_y/len_m_half + d_t_half1_z_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)),
-        d_t_half1_z_across_half_y = c[1]*d_t_half1_z_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_z_tau_half_z*m_half_x/len_m_half - c[1]*t_half_y[0]*tau_half_z/len_m_half + d_t_half1_z_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_z_across_half_z = -c[1]*d_t_half1_z_m_half_y*tau_half_x/len_m_half - c[1]*d_t_half1_z_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_z_tau_half_y*m_half_x/len_m_half + c[1]*t_half_y[0]*tau_half_y/len_m_half + d_t_half1_z_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)),
-        d_t_half1_z_x_1 = (2.0/3.0)*d_t_half1_z_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_z_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_z_across_half_z*slip_half_z,
-        d_t_half1_z_x_now_x = across_x*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_x,
+        d_t_half1_y_F_z_2 = -N_law*d_t_half1_y_inv_size*mu*x_now_z - N_law*d_t_half1_y_x_now_z*inv_size*mu;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_18
+    const fu_real
         d_t_half1_z_x_now_y = across_y*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_y,
         d_t_half1_z_x_now_z = across_z*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_z,
         d_t_half1_z_size = inv_size*(d_t_half1_z_x_now_x*x_now_x + d_t_half1_z_x_now_y*x_now_y + d_t_half1_z_x_now_z*x_now_z),
@@ -1596,64 +1580,9 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
         d_slip_half_z_inv_size = -(d_slip_half_z_size*inv_size*inv_size),
         d_slip_half_z_F_x_2 = -N_law*d_slip_half_z_inv_size*mu*x_now_x - N_law*d_slip_half_z_x_now_x*inv_size*mu,
         d_slip_half_z_F_y_2 = -N_law*d_slip_half_z_inv_size*mu*x_now_y - N_law*d_slip_half_z_x_now_y*inv_size*mu,
-        d_slip_half_z_F_z_2 = -N_law*d_slip_half_z_inv_size*mu*x_now_z - N_law*d_slip_half_z_x_now_z*inv_size*mu,
-        d_t0_slip_half_x = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]),
-        d_t1_slip_half_y = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]),
-        d_t2_slip_half_z = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]),
-        d_t3_rate_d_x = -s_rate_at[1],
-        d_t3_slip_half_x = -0.25*d_t3_rate_d_x*h + 0.75*e[1] - 0.125*h*(s_rate[1] + s_rate_at[1]),
-        d_t4_rate_d_y = -s_rate_at[1],
-        d_t4_slip_half_y = -0.25*d_t4_rate_d_y*h + 0.75*e[1] - 0.125*h*(s_rate[1] + s_rate_at[1]),
-        d_t5_rate_d_z = -s_rate_at[1],
-        d_t5_slip_half_z = -0.25*d_t5_rate_d_z*h + 0.75*e[1] - 0.125*h*(s_rate[1] + s_rate_at[1]),
-        d_u0_slip_half_x = -(0.25*h),
-        d_u1_slip_half_y = -(0.25*h),
-        d_u2_slip_half_z = -(0.25*h),
-        d_w0_t_half0_x = -(0.125*h),
-        d_w0_slip_half_x = d_w0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_w1_t_half0_y = -(0.125*h),
-        d_w1_slip_half_y = d_w1_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_w2_t_half0_z = -(0.125*h),
-        d_w2_slip_half_z = d_w2_t_half0_z*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_w3_t_half1_x = -(0.125*h),
-        d_w3_slip_half_x = d_w3_t_half1_x*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_w4_t_half1_y = -(0.125*h),
-        d_w4_slip_half_y = d_w4_t_half1_y*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_w5_t_half1_z = -(0.125*h),
-        d_w5_slip_half_z = d_w5_t_half1_z*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_k0_t_half0_x = -(0.125*h*s_rate_at[0]),
-        d_k0_slip_half_x = d_k0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_k1_t_half0_y = -(0.125*h*s_rate_at[0]),
-        d_k1_slip_half_y = d_k1_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_k2_t_half0_z = -(0.125*h*s_rate_at[0]),
-        d_k2_slip_half_z = d_k2_t_half0_z*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])),
-        d_k3_t_half1_x = -(0.125*h*s_rate_at[1]),
-        d_k3_slip_half_x = d_k3_t_half1_x*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_k4_t_half1_y = -(0.125*h*s_rate_at[1]),
-        d_k4_slip_half_y = d_k4_t_half1_y*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_k5_t_half1_z = -(0.125*h*s_rate_at[1]),
-        d_k5_slip_half_z = d_k5_t_half1_z*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])),
-        d_e0_slip_half_x = -(1.5*t_half_x[0]),
-        d_e0_slip_half_y = -(1.5*t_half_y[0]),
-        d_e0_slip_half_z = -(1.5*t_half_z[0]),
-        d_e1_slip_half_x = 1.5*t_half_x[1],
-        d_e1_slip_half_y = 1.5*t_half_y[1],
-        d_e1_slip_half_z = 1.5*t_half_z[1],
-        d_s_rate_0_t_half0_x = -(0.125*h*k[0]),
-        d_s_rate_0_t_half0_y = -(0.125*h*k[1]),
-        d_s_rate_0_t_half0_z = -(0.125*h*k[2]),
-        d_s_rate_0_slip_half_x = d_s_rate_0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])) - 0.25*h*t[0] + 0.25*h*t_half_x[0],
-        d_s_rate_0_slip_half_y = d_s_rate_0_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])) - 0.25*h*t[1] + 0.25*h*t_half_y[0],
-        d_s_rate_0_slip_half_z = d_s_rate_0_t_half0_z*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_at[0])) - 0.25*h*t[2] + 0.25*h*t_half_z[0],
-        d_s_rate_1_t_half1_x = -(0.125*h*k[3]),
-        d_s_rate_1_t_half1_y = -(0.125*h*k[4]),
-        d_s_rate_1_t_half1_z = -(0.125*h*k[5]),
-        d_s_rate_1_rate_d_x = -t[3],
-        d_s_rate_1_slip_half_x = -0.25*d_s_rate_1_rate_d_x*h + d_s_rate_1_t_half1_x*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])) - 0.25*h*t_half_x[1],
-        d_s_rate_1_rate_d_y = -t[4],
-        d_s_rate_1_slip_half_y = -0.25*d_s_rate_1_rate_d_y*h + d_s_rate_1_t_half1_y*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])) - 0.25*h*t_half_y[1],
-        d_s_rate_1_rate_d_z = -t[5],
-        d_s_rate_1_slip_half_z = -0.25*d_s_rate_1_rate_d_z*h + d_s_rate_1_t_half1_z*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])) - 0.25*h*t_half_z[1],
+        d_slip_half_z_F_z_2 = -N_law*d_slip_half_z_inv_size*mu*x_now_z - N_law*d_slip_half_z_x_now_z*inv_size*mu;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_19
+    const fu_real
         F0_0 = d_d0_F_x_2 + 1.5*d_slip_half_x_F_x_2,
         F0_1 = d_d1_F_x_2 + 1.5*d_slip_half_y_F_x_2,
         F0_2 = d_d2_F_x_2 + 1.5*d_slip_half_z_F_x_2;
@@ -1741,185 +1670,13 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
         F2_25 = d_e1_slip_half_x*d_slip_half_x_F_z_2 + d_e1_slip_half_y*d_slip_half_y_F_z_2 + d_e1_slip_half_z*d_slip_half_z_F_z_2,
         F2_26 = d_s_rate_0_slip_half_x*d_slip_half_x_F_z_2 + d_s_rate_0_slip_half_y*d_slip_half_y_F_z_2 + d_s_rate_0_slip_half_z*d_slip_half_z_F_z_2 + d_s_rate_0_t_half0_x*d_t_half0_x_F_z_2 + d_s_rate_0_t_half0_y*d_t_half0_y_F_z_2 + d_s_rate_0_t_half0_z*d_t_half0_z_F_z_2,
         F2_27 = d_s_rate_1_slip_half_x*d_slip_half_x_F_z_2 + d_s_rate_1_slip_half_y*d_slip_half_y_F_z_2 + d_s_rate_1_slip_half_z*d_slip_half_z_F_z_2 + d_s_rate_1_t_half1_x*d_t_half1_x_F_z_2 + d_s_rate_1_t_half1_y*d_t_half1_y_F_z_2 + d_s_rate_1_t_half1_z*d_t_half1_z_F_z_2;
-    FU_EACH(g, 3,
-        d_d_det_J[g] = J_00*k[g + 3] + J_11*k[g];
-        d_d_inv_J[g] = -(d_d_det_J[g]*inv_J*inv_J);
-        d_d_s_rate_0[g] = d_d_inv_J[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*k[g + 3]*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]) + inv_J*(J_01*w[g + 3] - J_11*w[g]);
-        d_d_s_rate_1[g] = d_d_inv_J[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*k[g]*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + inv_J*(-J_00*w[g + 3] + J_10*w[g]);)
-    FU_EACH(g, 3,
-        d_t_J_01[g] = -t[g + 3];
-        d_t_J_00[g] = 2.0*t[g];
-        d_t_det_J[g] = -J_01*t[g + 3] - J_10*d_t_J_01[g] + J_11*d_t_J_00[g];
-        d_t_inv_J[g] = -(d_t_det_J[g]*inv_J*inv_J);
-        d_t_s_rate_0[g] = -J_11*inv_J*u[g] + d_t_J_01[g]*inv_J*(d[0]*w[3] + d[1]*w[4] + d[2]*w[5] + t[3]*u[0] + t[4]*u[1] + t[5]*u[2]) + d_t_inv_J[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));
-        d_t_s_rate_1[g] = J_10*inv_J*u[g] + d_t_J_00[g]*inv_J*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + d_t_inv_J[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*t[g + 3]*(d[0]*w[0] + d[1]*w[1] + d[2]*w[2] + t[0]*u[0] + t[1]*u[1] + t[2]*u[2]);)
-    FU_EACH(g, 3,
-        d_t_J_01_at[g] = -t[g];
-        d_t_J_11[g] = -(2.0*t[g + 3]);
-        d_t_det_J_at[g] = J_00*d_t_J_11[g] - J_01*t[g] - J_10*d_t_J_01_at[g];
-        d_t_inv_J_at[g] = -(d_t_det_J_at[g]*inv_J*inv_J);
-        d_t_s_rate_0[g + 3] = J_01*inv_J*u[g] + d_t_J_01_at[g]*inv_J*(d[0]*w[3] + d[1]*w[4] + d[2]*w[5] + t[3]*u[0] + t[4]*u[1] + t[5]*u[2]) + d_t_J_11[g]*inv_J*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]) + d_t_inv_J_at[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));
-        d_t_s_rate_1[g + 3] = -J_00*inv_J*u[g] + d_t_inv_J_at[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])) + inv_J*t[g]*(d[0]*w[0] + d[1]*w[1] + d[2]*w[2] + t[0]*u[0] + t[1]*u[1] + t[2]*u[2]);)
-    FU_EACH(g, 3,
-        d_u_s_rate_0[g] = inv_J*(J_01*t[g + 3] - J_11*t[g]);
-        d_u_s_rate_1[g] = inv_J*(-J_00*t[g + 3] + J_10*t[g]);)
-    FU_EACH(g, 3,
-        d_w_s_rate_0[g] = -(J_11*d[g]*inv_J);
-        d_w_s_rate_1[g] = J_10*d[g]*inv_J;)
-    FU_EACH(g, 3,
-        d_w_s_rate_0_at[g] = J_01*d[g]*inv_J;
-        d_w_s_rate_1_at[g] = -(J_00*d[g]*inv_J);)
-    FU_EACH(g, 3,
-        d_k_det_J[g] = J_11*d[g];
-        d_k_inv_J[g] = -(d_k_det_J[g]*inv_J*inv_J);
-        d_k_s_rate_0[g] = d_k_inv_J[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));
-        d_k_s_rate_1[g] = d[g]*inv_J*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + d_k_inv_J[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));)
-    FU_EACH(g, 3,
-        d_k_det_J_at[g] = J_00*d[g];
-        d_k_inv_J_at[g] = -(d_k_det_J_at[g]*inv_J*inv_J);
-        d_k_s_rate_0_at[g] = d[g]*inv_J*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]) + d_k_inv_J_at[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));
-        d_k_s_rate_1_at[g] = d_k_inv_J_at[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));)
-    const fu_real
-        F0_0_2 = F0_0 + F0_26*d_d_s_rate_0[0] + F0_27*d_d_s_rate_1[0],
-        F0_1_2 = F0_1 + F0_26*d_d_s_rate_0[1] + F0_27*d_d_s_rate_1[1],
-        F0_2_2 = F0_2 + F0_26*d_d_s_rate_0[2] + F0_27*d_d_s_rate_1[2];
-    FU_EACH(g, 6,
-        F0_2_at[g] = F0_26*d_t_s_rate_0[g] + F0_27*d_t_s_rate_1[g] + F0[g];)
-    const fu_real
-        F0_9_2 = F0_26*d_u_s_rate_0[0] + F0_27*d_u_s_rate_1[0] + F0_9,
-        F0_10_2 = F0_10 + F0_26*d_u_s_rate_0[1] + F0_27*d_u_s_rate_1[1],
-        F0_11_2 = F0_11 + F0_26*d_u_s_rate_0[2] + F0_27*d_u_s_rate_1[2],
-        F0_12_2 = F0_12 + F0_26*d_w_s_rate_0[0] + F0_27*d_w_s_rate_1[0],
-        F0_13_2 = F0_13 + F0_26*d_w_s_rate_0[1] + F0_27*d_w_s_rate_1[1],
-        F0_14_2 = F0_14 + F0_26*d_w_s_rate_0[2] + F0_27*d_w_s_rate_1[2],
-        F0_15_2 = F0_15 + F0_26*d_w_s_rate_0_at[0] + F0_27*d_w_s_rate_1_at[0],
-        F0_16_2 = F0_16 + F0_26*d_w_s_rate_0_at[1] + F0_27*d_w_s_rate_1_at[1],
-        F0_17_2 = F0_17 + F0_26*d_w_s_rate_0_at[2] + F0_27*d_w_s_rate_1_at[2],
-        F0_18_2 = F0_18 + F0_26*d_k_s_rate_0[0] + F0_27*d_k_s_rate_1[0],
-        F0_19_2 = F0_19 + F0_26*d_k_s_rate_0[1] + F0_27*d_k_s_rate_1[1],
-        F0_20_2 = F0_20 + F0_26*d_k_s_rate_0[2] + F0_27*d_k_s_rate_1[2],
-        F0_21_2 = F0_21 + F0_26*d_k_s_rate_0_at[0] + F0_27*d_k_s_rate_1_at[0],
-        F0_22_2 = F0_22 + F0_26*d_k_s_rate_0_at[1] + F0_27*d_k_s_rate_1_at[1],
-        F0_23_2 = F0_23 + F0_26*d_k_s_rate_0_at[2] + F0_27*d_k_s_rate_1_at[2],
-        F1_0_2 = F1_0 + F1_26*d_d_s_rate_0[0] + F1_27*d_d_s_rate_1[0],
-        F1_1_2 = F1_1 + F1_26*d_d_s_rate_0[1] + F1_27*d_d_s_rate_1[1],
-        F1_2_2 = F1_2 + F1_26*d_d_s_rate_0[2] + F1_27*d_d_s_rate_1[2];
-    FU_EACH(g, 6,
-        F1_2_at[g] = F1_26*d_t_s_rate_0[g] + F1_27*d_t_s_rate_1[g] + F1[g];)
-    const fu_real
-        F1_9_2 = F1_26*d_u_s_rate_0[0] + F1_27*d_u_s_rate_1[0] + F1_9,
-        F1_10_2 = F1_10 + F1_26*d_u_s_rate_0[1] + F1_27*d_u_s_rate_1[1],
-        F1_11_2 = F1_11 + F1_26*d_u_s_rate_0[2] + F1_27*d_u_s_rate_1[2],
-        F1_12_2 = F1_12 + F1_26*d_w_s_rate_0[0] + F1_27*d_w_s_rate_1[0],
-        F1_13_2 = F1_13 + F1_26*d_w_s_rate_0[1] + F1_27*d_w_s_rate_1[1],
-        F1_14_2 = F1_14 + F1_26*d_w_s_rate_0[2] + F1_27*d_w_s_rate_1[2],
-        F1_15_2 = F1_15 + F1_26*d_w_s_rate_0_at[0] + F1_27*d_w_s_rate_1_at[0],
-        F1_16_2 = F1_16 + F1_26*d_w_s_rate_0_at[1] + F1_27*d_w_s_rate_1_at[1],
-        F1_17_2 = F1_17 + F1_26*d_w_s_rate_0_at[2] + F1_27*d_w_s_rate_1_at[2],
-        F1_18_2 = F1_18 + F1_26*d_k_s_rate_0[0] + F1_27*d_k_s_rate_1[0],
-        F1_19_2 = F1_19 + F1_26*d_k_s_rate_0[1] + F1_27*d_k_s_rate_1[1],
-        F1_20_2 = F1_20 + F1_26*d_k_s_rate_0[2] + F1_27*d_k_s_rate_1[2],
-        F1_21_2 = F1_21 + F1_26*d_k_s_rate_0_at[0] + F1_27*d_k_s_rate_1_at[0],
-        F1_22_2 = F1_22 + F1_26*d_k_s_rate_0_at[1] + F1_27*d_k_s_rate_1_at[1],
-        F1_23_2 = F1_23 + F1_26*d_k_s_rate_0_at[2] + F1_27*d_k_s_rate_1_at[2],
-        F2_0_2 = F2_0 + F2_26*d_d_s_rate_0[0] + F2_27*d_d_s_rate_1[0],
-        F2_1_2 = F2_1 + F2_26*d_d_s_rate_0[1] + F2_27*d_d_s_rate_1[1],
-        F2_2_2 = F2_2 + F2_26*d_d_s_rate_0[2] + F2_27*d_d_s_rate_1[2];
-    FU_EACH(g, 6,
-        F2_2_at[g] = F2_26*d_t_s_rate_0[g] + F2_27*d_t_s_rate_1[g] + F2[g];)
-    const fu_real
-        F2_9_2 = F2_26*d_u_s_rate_0[0] + F2_27*d_u_s_rate_1[0] + F2_9,
-        F2_10_2 = F2_10 + F2_26*d_u_s_rate_0[1] + F2_27*d_u_s_rate_1[1],
-        F2_11_2 = F2_11 + F2_26*d_u_s_rate_0[2] + F2_27*d_u_s_rate_1[2],
-        F2_12_2 = F2_12 + F2_26*d_w_s_rate_0[0] + F2_27*d_w_s_rate_1[0],
-        F2_13_2 = F2_13 + F2_26*d_w_s_rate_0[1] + F2_27*d_w_s_rate_1[1],
-        F2_14_2 = F2_14 + F2_26*d_w_s_rate_0[2] + F2_27*d_w_s_rate_1[2],
-        F2_15_2 = F2_15 + F2_26*d_w_s_rate_0_at[0] + F2_27*d_w_s_rate_1_at[0],
-        F2_16_2 = F2_16 + F2_26*d_w_s_rate_0_at[1] + F2_27*d_w_s_rate_1_at[1],
-        F2_17_2 = F2_17 + F2_26*d_w_s_rate_0_at[2] + F2_27*d_w_s_rate_1_at[2],
-        F2_18_2 = F2_18 + F2_26*d_k_s_rate_0[0] + F2_27*d_k_s_rate_1[0],
-        F2_19_2 = F2_19 + F2_26*d_k_s_rate_0[1] + F2_27*d_k_s_rate_1[1],
-        F2_20_2 = F2_20 + F2_26*d_k_s_rate_0[2] + F2_27*d_k_s_rate_1[2],
-        F2_21_2 = F2_21 + F2_26*d_k_s_rate_0_at[0] + F2_27*d_k_s_rate_1_at[0],
-        F2_22_2 = F2_22 + F2_26*d_k_s_rate_0_at[1] + F2_27*d_k_s_rate_1_at[1],
-        F2_23_2 = F2_23 + F2_26*d_k_s_rate_0_at[2] + F2_27*d_k_s_rate_1_at[2];
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_20
     CROSSING_DERIVATIVES_OF_THE_FORCE_ALONG_THE_LINES
     /* outputs */
     F[0] = F_x_2;
     F[1] = F_y_2;
     F[2] = F_z_2;
-    F_d[0] = F0_0_2 + F_s0_x*s0_0 + F_s1_x*s1_0;
-    F_d[1] = F0_1_2 + F_s0_x*s0_1 + F_s1_x*s1_1;
-    F_d[2] = F0_2_2 + F_s0_x*s0_2 + F_s1_x*s1_2;
-    F_d[3] = F1_0_2 + F_s0_y*s0_0 + F_s1_y*s1_0;
-    F_d[4] = F1_1_2 + F_s0_y*s0_1 + F_s1_y*s1_1;
-    F_d[5] = F1_2_2 + F_s0_y*s0_2 + F_s1_y*s1_2;
-    F_d[6] = F2_0_2 + F_s0_z*s0_0 + F_s1_z*s1_0;
-    F_d[7] = F2_1_2 + F_s0_z*s0_1 + F_s1_z*s1_1;
-    F_d[8] = F2_2_2 + F_s0_z*s0_2 + F_s1_z*s1_2;
-    F_t[0] = F0_2_at[0] + F_s0_x*s0_3 + F_s1_x*s1_3;
-    F_t[1] = F0_2_at[1] + F_s0_x*s0_4 + F_s1_x*s1_4;
-    F_t[2] = F0_2_at[2] + F_s0_x*s0_5 + F_s1_x*s1_5;
-    F_t[3] = F0_2_at[3] + F_s0_x*s0_6 + F_s1_x*s1_6;
-    F_t[4] = F0_2_at[4] + F_s0_x*s0_7 + F_s1_x*s1_7;
-    F_t[5] = F0_2_at[5] + F_s0_x*s0_8 + F_s1_x*s1_8;
-    F_t[6] = F1_2_at[0] + F_s0_y*s0_3 + F_s1_y*s1_3;
-    F_t[7] = F1_2_at[1] + F_s0_y*s0_4 + F_s1_y*s1_4;
-    F_t[8] = F1_2_at[2] + F_s0_y*s0_5 + F_s1_y*s1_5;
-    F_t[9] = F1_2_at[3] + F_s0_y*s0_6 + F_s1_y*s1_6;
-    F_t[10] = F1_2_at[4] + F_s0_y*s0_7 + F_s1_y*s1_7;
-    F_t[11] = F1_2_at[5] + F_s0_y*s0_8 + F_s1_y*s1_8;
-    F_t[12] = F2_2_at[0] + F_s0_z*s0_3 + F_s1_z*s1_3;
-    F_t[13] = F2_2_at[1] + F_s0_z*s0_4 + F_s1_z*s1_4;
-    F_t[14] = F2_2_at[2] + F_s0_z*s0_5 + F_s1_z*s1_5;
-    F_t[15] = F2_2_at[3] + F_s0_z*s0_6 + F_s1_z*s1_6;
-    F_t[16] = F2_2_at[4] + F_s0_z*s0_7 + F_s1_z*s1_7;
-    F_t[17] = F2_2_at[5] + F_s0_z*s0_8 + F_s1_z*s1_8;
-    F_u[0] = F0_9_2;
-    F_u[1] = F0_10_2;
-    F_u[2] = F0_11_2;
-    F_u[3] = F1_9_2;
-    F_u[4] = F1_10_2;
-    F_u[5] = F1_11_2;
-    F_u[6] = F2_9_2;
-    F_u[7] = F2_10_2;
-    F_u[8] = F2_11_2;
-    F_w[0] = F0_12_2;
-    F_w[1] = F0_13_2;
-    F_w[2] = F0_14_2;
-    F_w[3] = F0_15_2;
-    F_w[4] = F0_16_2;
-    F_w[5] = F0_17_2;
-    F_w[6] = F1_12_2;
-    F_w[7] = F1_13_2;
-    F_w[8] = F1_14_2;
-    F_w[9] = F1_15_2;
-    F_w[10] = F1_16_2;
-    F_w[11] = F1_17_2;
-    F_w[12] = F2_12_2;
-    F_w[13] = F2_13_2;
-    F_w[14] = F2_14_2;
-    F_w[15] = F2_15_2;
-    F_w[16] = F2_16_2;
-    F_w[17] = F2_17_2;
-    F_k[0] = F0_18_2;
-    F_k[1] = F0_19_2;
-    F_k[2] = F0_20_2;
-    F_k[3] = F0_21_2;
-    F_k[4] = F0_22_2;
-    F_k[5] = F0_23_2;
-    F_k[6] = F1_18_2;
-    F_k[7] = F1_19_2;
-    F_k[8] = F1_20_2;
-    F_k[9] = F1_21_2;
-    F_k[10] = F1_22_2;
-    F_k[11] = F1_23_2;
-    F_k[12] = F2_18_2;
-    F_k[13] = F2_19_2;
-    F_k[14] = F2_20_2;
-    F_k[15] = F2_21_2;
-    F_k[16] = F2_22_2;
-    F_k[17] = F2_23_2;
+    CROSSING_PART_OF_OUTPUTS
 }
 
 /* forces over a step that balance energy (Hunt & Crossley 1975; closest points by the implicit function theorem; Gonzalez 1996) */

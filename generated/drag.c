@@ -20,6 +20,77 @@
  */
 #include "kernels.h"
 
+/* part of derivatives: of drag_inertia_of_point and 1 more */
+#define DRAG_PART_OF_DERIVATIVES \
+    const fu_real \
+        d_th1_CM1_y = -A[6]*C[0] - A[7]*C[1] - A[8]*C[2], \
+        d_th1_CM2_y = -A[6]*C[3] - A[7]*C[4] - A[8]*C[5], \
+        d_th1_CM3_y = -A[6]*C[6] - A[7]*C[7] - A[8]*C[8], \
+        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y + A[2]*d_th1_CM3_y, \
+        d_th1_CM1_z = A[3]*C[0] + A[4]*C[1] + A[5]*C[2], \
+        d_th1_CM2_z = A[3]*C[3] + A[4]*C[4] + A[5]*C[5], \
+        d_th1_CM3_z = A[3]*C[6] + A[4]*C[7] + A[5]*C[8], \
+        d_th1_M1_z = A[0]*d_th1_CM1_z + A[1]*d_th1_CM2_z + A[2]*d_th1_CM3_z;
+
+/* part of derivatives: of drag_inertia_of_point and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_2 \
+    const fu_real \
+        d_th1_M2_x = -A[6]*CM_x[0] - A[7]*CM_x[1] - A[8]*CM_x[2], \
+        d_th1_M2_y = A[3]*d_th1_CM1_y + A[4]*d_th1_CM2_y + A[5]*d_th1_CM3_y - A[6]*CM_y[0] - A[7]*CM_y[1] - A[8]*CM_y[2], \
+        d_th1_M2_z = A[3]*d_th1_CM1_z + A[4]*d_th1_CM2_z + A[5]*d_th1_CM3_z - A[6]*CM_z[0] - A[7]*CM_z[1] - A[8]*CM_z[2];
+
+/* part of derivatives: of drag_inertia_of_point and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_3 \
+    const fu_real \
+        d_th1_M3_x = A[3]*CM_x[0] + A[4]*CM_x[1] + A[5]*CM_x[2], \
+        d_th1_M3_y = A[3]*CM_y[0] + A[4]*CM_y[1] + A[5]*CM_y[2] + A[6]*d_th1_CM1_y + A[7]*d_th1_CM2_y + A[8]*d_th1_CM3_y, \
+        d_th1_M3_z = A[3]*CM_z[0] + A[4]*CM_z[1] + A[5]*CM_z[2] + A[6]*d_th1_CM1_z + A[7]*d_th1_CM2_z + A[8]*d_th1_CM3_z;
+
+/* part of derivatives: of drag_inertia_of_point and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_4 \
+    const fu_real \
+        d_th2_CM1_x = A[6]*C[0] + A[7]*C[1] + A[8]*C[2], \
+        d_th2_CM2_x = A[6]*C[3] + A[7]*C[4] + A[8]*C[5], \
+        d_th2_CM3_x = A[6]*C[6] + A[7]*C[7] + A[8]*C[8], \
+        d_th2_M1_x = A[0]*d_th2_CM1_x + A[1]*d_th2_CM2_x + A[2]*d_th2_CM3_x + A[6]*CM_x[0] + A[7]*CM_x[1] + A[8]*CM_x[2], \
+        d_th2_M1_y = A[6]*CM_y[0] + A[7]*CM_y[1] + A[8]*CM_y[2], \
+        d_th2_CM1_z = -A[0]*C[0] - A[1]*C[1] - A[2]*C[2], \
+        d_th2_CM2_z = -A[0]*C[3] - A[1]*C[4] - A[2]*C[5], \
+        d_th2_CM3_z = -A[0]*C[6] - A[1]*C[7] - A[2]*C[8], \
+        d_th2_M1_z = A[0]*d_th2_CM1_z + A[1]*d_th2_CM2_z + A[2]*d_th2_CM3_z + A[6]*CM_z[0] + A[7]*CM_z[1] + A[8]*CM_z[2];
+
+/* part of derivatives: of drag_inertia_of_point and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_5 \
+    const fu_real \
+        d_th2_M3_x = -A[0]*CM_x[0] - A[1]*CM_x[1] - A[2]*CM_x[2] + A[6]*d_th2_CM1_x + A[7]*d_th2_CM2_x + A[8]*d_th2_CM3_x, \
+        d_th2_M3_y = -A[0]*CM_y[0] - A[1]*CM_y[1] - A[2]*CM_y[2], \
+        d_th2_M3_z = -A[0]*CM_z[0] - A[1]*CM_z[1] - A[2]*CM_z[2] + A[6]*d_th2_CM1_z + A[7]*d_th2_CM2_z + A[8]*d_th2_CM3_z;
+
+/* part of outputs: of drag_entry_of_cable and 1 more */
+#define DRAG_PART_OF_OUTPUTS \
+    f_w[0] = -d_w0_pull[0] + d_w0_rate_x; \
+    f_w[1] = -d_w1_pull[0] + d_w1_rate_x; \
+    f_w[2] = -d_w2_pull[0] + d_w2_rate_x; \
+    f_w[3] = -d_w0_pull[1] + d_w0_rate_y; \
+    f_w[4] = -d_w1_pull[1] + d_w1_rate_y; \
+    f_w[5] = -d_w2_pull[1] + d_w2_rate_y; \
+    f_w[6] = -d_w0_pull[2] + d_w0_rate_z; \
+    f_w[7] = -d_w1_pull[2] + d_w1_rate_z; \
+    f_w[8] = -d_w2_pull[2] + d_w2_rate_z; \
+    FU_EACH(point, 3, \
+        f_v[3*point] = d_v0_rate[point]; \
+        f_v[3*point + 1] = d_v1_rate[point]; \
+        f_v[3*point + 2] = d_v2_rate[point];) \
+    f_n[0] = -T + d_n0_rate[0]; \
+    f_n[1] = d_n1_rate[0]; \
+    f_n[2] = d_n2_rate[0]; \
+    f_n[3] = d_n0_rate[1]; \
+    f_n[4] = -T + d_n1_rate[1]; \
+    f_n[5] = d_n2_rate[1]; \
+    f_n[6] = d_n0_rate[2]; \
+    f_n[7] = d_n1_rate[2]; \
+    f_n[8] = -T + d_n2_rate[2];
+
 /* outputs: of drag_along_cable and 1 more */
 #define DRAG_OUTPUTS \
     f[0] = F_x; \
@@ -1045,45 +1116,19 @@ void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *om
         moment2 = -P_x*w[1] + P_y*w[0];
     /* derivatives */
     fu_real d_th_P_x[3], d_th_P_y[3], d_th_P_z[3], d_th_moment0[3], d_th_moment1[3], d_th_moment2[3];
-    const fu_real
-        d_th1_CM1_y = -A[6]*C[0] - A[7]*C[1] - A[8]*C[2],
-        d_th1_CM2_y = -A[6]*C[3] - A[7]*C[4] - A[8]*C[5],
-        d_th1_CM3_y = -A[6]*C[6] - A[7]*C[7] - A[8]*C[8],
-        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y + A[2]*d_th1_CM3_y,
-        d_th1_CM1_z = A[3]*C[0] + A[4]*C[1] + A[5]*C[2],
-        d_th1_CM2_z = A[3]*C[3] + A[4]*C[4] + A[5]*C[5],
-        d_th1_CM3_z = A[3]*C[6] + A[4]*C[7] + A[5]*C[8],
-        d_th1_M1_z = A[0]*d_th1_CM1_z + A[1]*d_th1_CM2_z + A[2]*d_th1_CM3_z;
+    DRAG_PART_OF_DERIVATIVES
     d_th_P_x[0] = d_th1_M1_y*w[1] + d_th1_M1_z*w[2];
-    const fu_real
-        d_th1_M2_x = -A[6]*CM_x[0] - A[7]*CM_x[1] - A[8]*CM_x[2],
-        d_th1_M2_y = A[3]*d_th1_CM1_y + A[4]*d_th1_CM2_y + A[5]*d_th1_CM3_y - A[6]*CM_y[0] - A[7]*CM_y[1] - A[8]*CM_y[2],
-        d_th1_M2_z = A[3]*d_th1_CM1_z + A[4]*d_th1_CM2_z + A[5]*d_th1_CM3_z - A[6]*CM_z[0] - A[7]*CM_z[1] - A[8]*CM_z[2];
+    DRAG_PART_OF_DERIVATIVES_2
     d_th_P_y[0] = d_th1_M2_x*w[0] + d_th1_M2_y*w[1] + d_th1_M2_z*w[2];
-    const fu_real
-        d_th1_M3_x = A[3]*CM_x[0] + A[4]*CM_x[1] + A[5]*CM_x[2],
-        d_th1_M3_y = A[3]*CM_y[0] + A[4]*CM_y[1] + A[5]*CM_y[2] + A[6]*d_th1_CM1_y + A[7]*d_th1_CM2_y + A[8]*d_th1_CM3_y,
-        d_th1_M3_z = A[3]*CM_z[0] + A[4]*CM_z[1] + A[5]*CM_z[2] + A[6]*d_th1_CM1_z + A[7]*d_th1_CM2_z + A[8]*d_th1_CM3_z;
+    DRAG_PART_OF_DERIVATIVES_3
     d_th_P_z[0] = d_th1_M3_x*w[0] + d_th1_M3_y*w[1] + d_th1_M3_z*w[2];
-    const fu_real
-        d_th2_CM1_x = A[6]*C[0] + A[7]*C[1] + A[8]*C[2],
-        d_th2_CM2_x = A[6]*C[3] + A[7]*C[4] + A[8]*C[5],
-        d_th2_CM3_x = A[6]*C[6] + A[7]*C[7] + A[8]*C[8],
-        d_th2_M1_x = A[0]*d_th2_CM1_x + A[1]*d_th2_CM2_x + A[2]*d_th2_CM3_x + A[6]*CM_x[0] + A[7]*CM_x[1] + A[8]*CM_x[2],
-        d_th2_M1_y = A[6]*CM_y[0] + A[7]*CM_y[1] + A[8]*CM_y[2],
-        d_th2_CM1_z = -A[0]*C[0] - A[1]*C[1] - A[2]*C[2],
-        d_th2_CM2_z = -A[0]*C[3] - A[1]*C[4] - A[2]*C[5],
-        d_th2_CM3_z = -A[0]*C[6] - A[1]*C[7] - A[2]*C[8],
-        d_th2_M1_z = A[0]*d_th2_CM1_z + A[1]*d_th2_CM2_z + A[2]*d_th2_CM3_z + A[6]*CM_z[0] + A[7]*CM_z[1] + A[8]*CM_z[2];
+    DRAG_PART_OF_DERIVATIVES_4
     d_th_P_x[1] = d_th2_M1_x*w[0] + d_th2_M1_y*w[1] + d_th2_M1_z*w[2];
     const fu_real
         d_th2_M2_x = A[3]*d_th2_CM1_x + A[4]*d_th2_CM2_x + A[5]*d_th2_CM3_x,
         d_th2_M2_z = A[3]*d_th2_CM1_z + A[4]*d_th2_CM2_z + A[5]*d_th2_CM3_z;
     d_th_P_y[1] = d_th2_M2_x*w[0] + d_th2_M2_z*w[2];
-    const fu_real
-        d_th2_M3_x = -A[0]*CM_x[0] - A[1]*CM_x[1] - A[2]*CM_x[2] + A[6]*d_th2_CM1_x + A[7]*d_th2_CM2_x + A[8]*d_th2_CM3_x,
-        d_th2_M3_y = -A[0]*CM_y[0] - A[1]*CM_y[1] - A[2]*CM_y[2],
-        d_th2_M3_z = -A[0]*CM_z[0] - A[1]*CM_z[1] - A[2]*CM_z[2] + A[6]*d_th2_CM1_z + A[7]*d_th2_CM2_z + A[8]*d_th2_CM3_z;
+    DRAG_PART_OF_DERIVATIVES_5
     d_th_P_z[1] = d_th2_M3_x*w[0] + d_th2_M3_y*w[1] + d_th2_M3_z*w[2];
     const fu_real
         d_th3_CM1_x = -A[3]*C[0] - A[4]*C[1] - A[5]*C[2],
@@ -1436,28 +1481,7 @@ void drag_entry_of_cable(const fu_real *t, const fu_real *m, const fu_real *w, c
         f_t[3*point] = -d_t0_pull[point] + d_t0_rate[point];
         f_t[3*point + 1] = -d_t1_pull[point] + d_t1_rate[point];
         f_t[3*point + 2] = -d_t2_pull[point] + d_t2_rate[point];)
-    f_w[0] = -d_w0_pull[0] + d_w0_rate_x;
-    f_w[1] = -d_w1_pull[0] + d_w1_rate_x;
-    f_w[2] = -d_w2_pull[0] + d_w2_rate_x;
-    f_w[3] = -d_w0_pull[1] + d_w0_rate_y;
-    f_w[4] = -d_w1_pull[1] + d_w1_rate_y;
-    f_w[5] = -d_w2_pull[1] + d_w2_rate_y;
-    f_w[6] = -d_w0_pull[2] + d_w0_rate_z;
-    f_w[7] = -d_w1_pull[2] + d_w1_rate_z;
-    f_w[8] = -d_w2_pull[2] + d_w2_rate_z;
-    FU_EACH(point, 3,
-        f_v[3*point] = d_v0_rate[point];
-        f_v[3*point + 1] = d_v1_rate[point];
-        f_v[3*point + 2] = d_v2_rate[point];)
-    f_n[0] = -T + d_n0_rate[0];
-    f_n[1] = d_n1_rate[0];
-    f_n[2] = d_n2_rate[0];
-    f_n[3] = d_n0_rate[1];
-    f_n[4] = -T + d_n1_rate[1];
-    f_n[5] = d_n2_rate[1];
-    f_n[6] = d_n0_rate[2];
-    f_n[7] = d_n1_rate[2];
-    f_n[8] = -T + d_n2_rate[2];
+    DRAG_PART_OF_OUTPUTS
 }
 
 /* added mass of a body whose wet part changes (Lagrange's equations of T; von Karman, NACA TN 321) */
@@ -1486,48 +1510,22 @@ void drag_entry_of_point(const fu_real *A, const fu_real *C, const fu_real *w, c
     fu_real d_th1_P[3], d_th1_pull[3], d_th1_rate[3], d_th2_P[3], d_th2_pull[3], d_th2_rate[3], d_th3_CM1[2],
         d_th3_CM2[2], d_th3_CM3[2], d_th3_P[3], d_th3_M3[2], d_th3_pull[3], d_th3_rate[3], d_w0_pull[3], d_w1_pull[3],
         d_w2_pull[3], d_v0_rate[3], d_v1_rate[3], d_v2_rate[3], d_n0_rate[3], d_n1_rate[3], d_n2_rate[3];
-    const fu_real
-        d_th1_CM1_y = -A[6]*C[0] - A[7]*C[1] - A[8]*C[2],
-        d_th1_CM2_y = -A[6]*C[3] - A[7]*C[4] - A[8]*C[5],
-        d_th1_CM3_y = -A[6]*C[6] - A[7]*C[7] - A[8]*C[8],
-        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y + A[2]*d_th1_CM3_y,
-        d_th1_CM1_z = A[3]*C[0] + A[4]*C[1] + A[5]*C[2],
-        d_th1_CM2_z = A[3]*C[3] + A[4]*C[4] + A[5]*C[5],
-        d_th1_CM3_z = A[3]*C[6] + A[4]*C[7] + A[5]*C[8],
-        d_th1_M1_z = A[0]*d_th1_CM1_z + A[1]*d_th1_CM2_z + A[2]*d_th1_CM3_z;
+    DRAG_PART_OF_DERIVATIVES
     d_th1_P[0] = d_th1_M1_y*w[1] + d_th1_M1_z*w[2];
-    const fu_real
-        d_th1_M2_x = -A[6]*CM_x[0] - A[7]*CM_x[1] - A[8]*CM_x[2],
-        d_th1_M2_y = A[3]*d_th1_CM1_y + A[4]*d_th1_CM2_y + A[5]*d_th1_CM3_y - A[6]*CM_y[0] - A[7]*CM_y[1] - A[8]*CM_y[2],
-        d_th1_M2_z = A[3]*d_th1_CM1_z + A[4]*d_th1_CM2_z + A[5]*d_th1_CM3_z - A[6]*CM_z[0] - A[7]*CM_z[1] - A[8]*CM_z[2];
+    DRAG_PART_OF_DERIVATIVES_2
     d_th1_P[1] = d_th1_M2_x*w[0] + d_th1_M2_y*w[1] + d_th1_M2_z*w[2];
-    const fu_real
-        d_th1_M3_x = A[3]*CM_x[0] + A[4]*CM_x[1] + A[5]*CM_x[2],
-        d_th1_M3_y = A[3]*CM_y[0] + A[4]*CM_y[1] + A[5]*CM_y[2] + A[6]*d_th1_CM1_y + A[7]*d_th1_CM2_y + A[8]*d_th1_CM3_y,
-        d_th1_M3_z = A[3]*CM_z[0] + A[4]*CM_z[1] + A[5]*CM_z[2] + A[6]*d_th1_CM1_z + A[7]*d_th1_CM2_z + A[8]*d_th1_CM3_z;
+    DRAG_PART_OF_DERIVATIVES_3
     d_th1_P[2] = d_th1_M3_x*w[0] + d_th1_M3_y*w[1] + d_th1_M3_z*w[2];
     const fu_real d_th1_T = 0.5*d_th1_P[0]*w[0] + 0.5*d_th1_P[1]*w[1] + 0.5*d_th1_P[2]*w[2];
     FU_EACH(i, 3, d_th1_pull[i] = d_th1_T*n[i];)
     FU_EACH(i, 3, d_th1_rate[i] = c_rate*d_th1_P[i];)
-    const fu_real
-        d_th2_CM1_x = A[6]*C[0] + A[7]*C[1] + A[8]*C[2],
-        d_th2_CM2_x = A[6]*C[3] + A[7]*C[4] + A[8]*C[5],
-        d_th2_CM3_x = A[6]*C[6] + A[7]*C[7] + A[8]*C[8],
-        d_th2_M1_x = A[0]*d_th2_CM1_x + A[1]*d_th2_CM2_x + A[2]*d_th2_CM3_x + A[6]*CM_x[0] + A[7]*CM_x[1] + A[8]*CM_x[2],
-        d_th2_M1_y = A[6]*CM_y[0] + A[7]*CM_y[1] + A[8]*CM_y[2],
-        d_th2_CM1_z = -A[0]*C[0] - A[1]*C[1] - A[2]*C[2],
-        d_th2_CM2_z = -A[0]*C[3] - A[1]*C[4] - A[2]*C[5],
-        d_th2_CM3_z = -A[0]*C[6] - A[1]*C[7] - A[2]*C[8],
-        d_th2_M1_z = A[0]*d_th2_CM1_z + A[1]*d_th2_CM2_z + A[2]*d_th2_CM3_z + A[6]*CM_z[0] + A[7]*CM_z[1] + A[8]*CM_z[2];
+    DRAG_PART_OF_DERIVATIVES_4
     d_th2_P[0] = d_th2_M1_x*w[0] + d_th2_M1_y*w[1] + d_th2_M1_z*w[2];
     const fu_real
         d_th2_M2_x = A[3]*d_th2_CM1_x + A[4]*d_th2_CM2_x + A[5]*d_th2_CM3_x,
         d_th2_M2_z = A[3]*d_th2_CM1_z + A[4]*d_th2_CM2_z + A[5]*d_th2_CM3_z;
     d_th2_P[1] = d_th2_M2_x*w[0] + d_th2_M2_z*w[2];
-    const fu_real
-        d_th2_M3_x = -A[0]*CM_x[0] - A[1]*CM_x[1] - A[2]*CM_x[2] + A[6]*d_th2_CM1_x + A[7]*d_th2_CM2_x + A[8]*d_th2_CM3_x,
-        d_th2_M3_y = -A[0]*CM_y[0] - A[1]*CM_y[1] - A[2]*CM_y[2],
-        d_th2_M3_z = -A[0]*CM_z[0] - A[1]*CM_z[1] - A[2]*CM_z[2] + A[6]*d_th2_CM1_z + A[7]*d_th2_CM2_z + A[8]*d_th2_CM3_z;
+    DRAG_PART_OF_DERIVATIVES_5
     d_th2_P[2] = d_th2_M3_x*w[0] + d_th2_M3_y*w[1] + d_th2_M3_z*w[2];
     const fu_real d_th2_T = 0.5*d_th2_P[0]*w[0] + 0.5*d_th2_P[1]*w[1] + 0.5*d_th2_P[2]*w[2];
     FU_EACH(i, 3, d_th2_pull[i] = d_th2_T*n[i];)
@@ -1584,26 +1582,5 @@ void drag_entry_of_point(const fu_real *A, const fu_real *C, const fu_real *w, c
         f_turn[3*point] = -d_th1_pull[point] + d_th1_rate[point];
         f_turn[3*point + 1] = -d_th2_pull[point] + d_th2_rate[point];
         f_turn[3*point + 2] = -d_th3_pull[point] + d_th3_rate[point];)
-    f_w[0] = -d_w0_pull[0] + d_w0_rate_x;
-    f_w[1] = -d_w1_pull[0] + d_w1_rate_x;
-    f_w[2] = -d_w2_pull[0] + d_w2_rate_x;
-    f_w[3] = -d_w0_pull[1] + d_w0_rate_y;
-    f_w[4] = -d_w1_pull[1] + d_w1_rate_y;
-    f_w[5] = -d_w2_pull[1] + d_w2_rate_y;
-    f_w[6] = -d_w0_pull[2] + d_w0_rate_z;
-    f_w[7] = -d_w1_pull[2] + d_w1_rate_z;
-    f_w[8] = -d_w2_pull[2] + d_w2_rate_z;
-    FU_EACH(point, 3,
-        f_v[3*point] = d_v0_rate[point];
-        f_v[3*point + 1] = d_v1_rate[point];
-        f_v[3*point + 2] = d_v2_rate[point];)
-    f_n[0] = -T + d_n0_rate[0];
-    f_n[1] = d_n1_rate[0];
-    f_n[2] = d_n2_rate[0];
-    f_n[3] = d_n0_rate[1];
-    f_n[4] = -T + d_n1_rate[1];
-    f_n[5] = d_n2_rate[1];
-    f_n[6] = d_n0_rate[2];
-    f_n[7] = d_n1_rate[2];
-    f_n[8] = -T + d_n2_rate[2];
+    DRAG_PART_OF_OUTPUTS
 }

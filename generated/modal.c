@@ -21,8 +21,8 @@
  */
 #include "kernels.h"
 
-/* acceleration of the frame, less gravity, in its axes: of modal_inertia_force and 2 more */
-#define MODAL_ACCELERATION_OF_THE_FRAME_LESS_GRAVITY_IN_ITS_AXES \
+/* part of acceleration of the frame, less gravity, in its axes: of modal_inertia_tangent and 3 more */
+#define MODAL_PART_OF_ACCELERATION_OF_THE_FRAME_LESS_GRAVITY_IN_ITS_AXES \
     const fu_real \
         A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
         A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
@@ -32,7 +32,37 @@
         A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
         A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
         A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0, \
+        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0;
+
+/* part of derivatives: of modal_inertia_tangent and 1 more */
+#define MODAL_PART_OF_DERIVATIVES \
+    const fu_real \
+        d_w3_W2_y = -(2.0*w[3]), \
+        d_w3_W3_z = -(2.0*w[3]), \
+        d_w4_W1_x = -(2.0*w[4]), \
+        d_w4_W3_z = -(2.0*w[4]), \
+        d_w5_W1_x = -(2.0*w[5]), \
+        d_w5_W2_y = -(2.0*w[5]), \
+        d_th1_a0_y = A1_z*(a[0] - g[0]) + A2_z*(a[1] - g[1]) + A3_z*(a[2] - g[2]), \
+        d_th1_a0_z = -A1_y*(a[0] - g[0]) - A2_y*(a[1] - g[1]) - A3_y*(a[2] - g[2]);
+
+/* part of axes: of modal_attachment and 9 more */
+#define MODAL_PART_OF_AXES \
+    const fu_real \
+        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
+        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
+        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
+        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
+        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0, \
+        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
+        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
+        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
+        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0;
+
+/* acceleration of the frame, less gravity, in its axes: of modal_inertia_force and 2 more */
+#define MODAL_ACCELERATION_OF_THE_FRAME_LESS_GRAVITY_IN_ITS_AXES \
+    MODAL_PART_OF_ACCELERATION_OF_THE_FRAME_LESS_GRAVITY_IN_ITS_AXES \
+    const fu_real \
         a0_x = A1_x*(a[0] - g[0]) + A2_x*(a[1] - g[1]) + A3_x*(a[2] - g[2]), \
         a0_y = A1_y*(a[0] - g[0]) + A2_y*(a[1] - g[1]) + A3_y*(a[2] - g[2]), \
         a0_z = A1_z*(a[0] - g[0]) + A2_z*(a[1] - g[1]) + A3_z*(a[2] - g[2]), \
@@ -48,30 +78,12 @@
 
 /* axes: of modal_mass_matrix and 3 more */
 #define MODAL_AXES \
-    const fu_real \
-        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
-        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0, \
-        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0;
+    MODAL_PART_OF_AXES
 
 /* axes: of modal_attachment_mode and 4 more */
 #define MODAL_AXES_2 \
-    const fu_real \
-        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
-        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0, \
-        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0, \
-        inv_theta = 1.0/(0.25*theta[0]*theta[0] + 0.25*theta[1]*theta[1] + 0.25*theta[2]*theta[2] + 1.0);
+    MODAL_PART_OF_AXES \
+    const fu_real inv_theta = 1.0/(0.25*theta[0]*theta[0] + 0.25*theta[1]*theta[1] + 0.25*theta[2]*theta[2] + 1.0);
 
 /* force in body axes: of modal_attachment_follower and 1 more */
 #define MODAL_FORCE_IN_BODY_AXES \
@@ -142,16 +154,8 @@ void modal_inertia_tangent(const fu_real *b, const fu_real *w, const fu_real *a,
     (void)mass;
     (void)X2;
     /* acceleration of the frame, less gravity, in its axes */
+    MODAL_PART_OF_ACCELERATION_OF_THE_FRAME_LESS_GRAVITY_IN_ITS_AXES
     const fu_real
-        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0,
-        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5],
-        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6],
-        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5],
-        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0,
-        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6],
-        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6],
-        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6],
-        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0,
         W1_x = -w[4]*w[4] - w[5]*w[5],
         W1_y = -a[5] + w[3]*w[4],
         W1_z = a[4] + w[3]*w[5],
@@ -162,15 +166,8 @@ void modal_inertia_tangent(const fu_real *b, const fu_real *w, const fu_real *a,
         W3_y = a[3] + w[4]*w[5],
         W3_z = -w[3]*w[3] - w[4]*w[4];
     /* derivatives */
+    MODAL_PART_OF_DERIVATIVES
     const fu_real
-        d_w3_W2_y = -(2.0*w[3]),
-        d_w3_W3_z = -(2.0*w[3]),
-        d_w4_W1_x = -(2.0*w[4]),
-        d_w4_W3_z = -(2.0*w[4]),
-        d_w5_W1_x = -(2.0*w[5]),
-        d_w5_W2_y = -(2.0*w[5]),
-        d_th1_a0_y = A1_z*(a[0] - g[0]) + A2_z*(a[1] - g[1]) + A3_z*(a[2] - g[2]),
-        d_th1_a0_z = -A1_y*(a[0] - g[0]) - A2_y*(a[1] - g[1]) - A3_y*(a[2] - g[2]),
         d_th2_a0_z = A1_x*(a[0] - g[0]) + A2_x*(a[1] - g[1]) + A3_x*(a[2] - g[2]),
         d_th2_a0_x = -A1_z*(a[0] - g[0]) - A2_z*(a[1] - g[1]) - A3_z*(a[2] - g[2]),
         d_th3_a0_y = -A1_x*(a[0] - g[0]) - A2_x*(a[1] - g[1]) - A3_x*(a[2] - g[2]),
@@ -276,15 +273,8 @@ void modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real *a, co
 {
     MODAL_ACCELERATION_OF_THE_FRAME_LESS_GRAVITY_IN_ITS_AXES
     /* derivatives */
+    MODAL_PART_OF_DERIVATIVES
     const fu_real
-        d_w3_W2_y = -(2.0*w[3]),
-        d_w3_W3_z = -(2.0*w[3]),
-        d_w4_W1_x = -(2.0*w[4]),
-        d_w4_W3_z = -(2.0*w[4]),
-        d_w5_W1_x = -(2.0*w[5]),
-        d_w5_W2_y = -(2.0*w[5]),
-        d_th1_a0_y = A1_z*(a[0] - g[0]) + A2_z*(a[1] - g[1]) + A3_z*(a[2] - g[2]),
-        d_th1_a0_z = -A1_y*(a[0] - g[0]) - A2_y*(a[1] - g[1]) - A3_y*(a[2] - g[2]),
         d_th2_a0_x = -A1_z*(a[0] - g[0]) - A2_z*(a[1] - g[1]) - A3_z*(a[2] - g[2]),
         d_th2_a0_z = A1_x*(a[0] - g[0]) + A2_x*(a[1] - g[1]) + A3_x*(a[2] - g[2]),
         d_th3_a0_x = A1_y*(a[0] - g[0]) + A2_y*(a[1] - g[1]) + A3_y*(a[2] - g[2]),
@@ -370,16 +360,8 @@ void modal_potential_energy(const fu_real *b, const fu_real *g, fu_real mass, co
 void modal_attachment(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias)
 {
     /* axes */
+    MODAL_PART_OF_AXES
     const fu_real
-        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0,
-        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5],
-        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6],
-        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5],
-        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0,
-        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6],
-        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6],
-        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6],
-        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0,
         inv_theta = 1.0/(0.25*theta[0]*theta[0] + 0.25*theta[1]*theta[1] + 0.25*theta[2]*theta[2] + 1.0),
         arm_x = A1_x*u[0] + A1_y*u[1] + A1_z*u[2],
         arm_y = A2_x*u[0] + A2_y*u[1] + A2_z*u[2],

@@ -12,6 +12,48 @@
  */
 #include "kernels.h"
 
+/* part of derivatives of the force where the points stay: of planar_crossing_force and 1 more */
+#define PLANAR_CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY \
+    const fu_real \
+        d_t0_len_m = inv_m*t[0], \
+        d_t0_inv_m = -(d_t0_len_m*inv_m*inv_m), \
+        d_t0_side_m = c[1]*d_t0_inv_m, \
+        d_t0_n_x = d_t0_side_m*t[1], \
+        d_t0_n_y = -d_t0_side_m*t[0] - side_m, \
+        d_t0_depth = -d[0]*d_t0_n_x - d[1]*d_t0_n_y, \
+        d_t0_size_p = d_t0_depth*depth/size_p, \
+        d_t0_root_p = 0.5*d_t0_size_p/root_p, \
+        d_t0_elastic = c[3]*d_t0_root_p*depth + d_t0_depth*(c[2] + c[3]*root_p), \
+        d_t0_rate = -d_t0_n_x*u[0] - d_t0_n_y*u[1], \
+        d_t0_N_law = c[4]*d_t0_rate*elastic + d_t0_elastic*(c[4]*rate + 1.0);
+
+/* part of derivatives of the force where the points stay: of planar_crossing_force and 1 more */
+#define PLANAR_CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_2 \
+    const fu_real \
+        d_t1_len_m = inv_m*t[1], \
+        d_t1_inv_m = -(d_t1_len_m*inv_m*inv_m), \
+        d_t1_side_m = c[1]*d_t1_inv_m, \
+        d_t1_n_x = d_t1_side_m*t[1] + side_m, \
+        d_t1_n_y = -(d_t1_side_m*t[0]), \
+        d_t1_depth = -d[0]*d_t1_n_x - d[1]*d_t1_n_y, \
+        d_t1_size_p = d_t1_depth*depth/size_p, \
+        d_t1_root_p = 0.5*d_t1_size_p/root_p, \
+        d_t1_elastic = c[3]*d_t1_root_p*depth + d_t1_depth*(c[2] + c[3]*root_p), \
+        d_t1_rate = -d_t1_n_x*u[0] - d_t1_n_y*u[1], \
+        d_t1_N_law = c[4]*d_t1_rate*elastic + d_t1_elastic*(c[4]*rate + 1.0);
+
+/* part of stretch of the spring: of planar_crossing_stretch and 2 more */
+#define PLANAR_CROSSING_PART_OF_STRETCH_OF_THE_SPRING \
+    const fu_real \
+        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]), \
+        inv_t = 1.0/len_t, \
+        tau_x = inv_t*t[0], \
+        tau_y = inv_t*t[1], \
+        len_t_half = FU_SQRT(t_half0_x*t_half0_x + t_half0_y*t_half0_y), \
+        inv_t_half = 1.0/len_t_half, \
+        tau_half_x = inv_t_half*t_half0_x, \
+        tau_half_y = inv_t_half*t_half0_y;
+
 /* law: of planar_crossing_contact and 1 more */
 #define PLANAR_CROSSING_LAW \
     const fu_real \
@@ -108,36 +150,18 @@ void planar_crossing_force(const fu_real *d, const fu_real *t, const fu_real *k,
         d_d1_N_law = d_d1_elastic*(c[4]*rate + 1.0),
         d_d1_rub = c[6]*d_d1_N_law*inv_speed,
         d_d1_F_x = d_d1_N_law*n_x - d_d1_rub*slip_x,
-        d_d1_F_y = d_d1_N_law*n_y - d_d1_rub*slip_y,
-        d_t0_len_m = inv_m*t[0],
-        d_t0_inv_m = -(d_t0_len_m*inv_m*inv_m),
-        d_t0_side_m = c[1]*d_t0_inv_m,
-        d_t0_n_x = d_t0_side_m*t[1],
-        d_t0_n_y = -d_t0_side_m*t[0] - side_m,
-        d_t0_depth = -d[0]*d_t0_n_x - d[1]*d_t0_n_y,
-        d_t0_size_p = d_t0_depth*depth/size_p,
-        d_t0_root_p = 0.5*d_t0_size_p/root_p,
-        d_t0_elastic = c[3]*d_t0_root_p*depth + d_t0_depth*(c[2] + c[3]*root_p),
-        d_t0_rate = -d_t0_n_x*u[0] - d_t0_n_y*u[1],
-        d_t0_N_law = c[4]*d_t0_rate*elastic + d_t0_elastic*(c[4]*rate + 1.0),
+        d_d1_F_y = d_d1_N_law*n_y - d_d1_rub*slip_y;
+    PLANAR_CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY
+    const fu_real
         d_t0_slip_x = d_t0_n_x*rate + d_t0_rate*n_x,
         d_t0_slip_y = d_t0_n_y*rate + d_t0_rate*n_y,
         d_t0_speed = inv_speed*(d_t0_slip_x*slip_x + d_t0_slip_y*slip_y),
         d_t0_inv_speed = -(d_t0_speed*inv_speed*inv_speed),
         d_t0_rub = N_law*c[6]*d_t0_inv_speed + c[6]*d_t0_N_law*inv_speed,
         d_t0_F_x = N_law*d_t0_n_x + d_t0_N_law*n_x - d_t0_rub*slip_x - d_t0_slip_x*rub,
-        d_t0_F_y = N_law*d_t0_n_y + d_t0_N_law*n_y - d_t0_rub*slip_y - d_t0_slip_y*rub,
-        d_t1_len_m = inv_m*t[1],
-        d_t1_inv_m = -(d_t1_len_m*inv_m*inv_m),
-        d_t1_side_m = c[1]*d_t1_inv_m,
-        d_t1_n_x = d_t1_side_m*t[1] + side_m,
-        d_t1_n_y = -(d_t1_side_m*t[0]),
-        d_t1_depth = -d[0]*d_t1_n_x - d[1]*d_t1_n_y,
-        d_t1_size_p = d_t1_depth*depth/size_p,
-        d_t1_root_p = 0.5*d_t1_size_p/root_p,
-        d_t1_elastic = c[3]*d_t1_root_p*depth + d_t1_depth*(c[2] + c[3]*root_p),
-        d_t1_rate = -d_t1_n_x*u[0] - d_t1_n_y*u[1],
-        d_t1_N_law = c[4]*d_t1_rate*elastic + d_t1_elastic*(c[4]*rate + 1.0),
+        d_t0_F_y = N_law*d_t0_n_y + d_t0_N_law*n_y - d_t0_rub*slip_y - d_t0_slip_y*rub;
+    PLANAR_CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_2
+    const fu_real
         d_t1_slip_x = d_t1_n_x*rate + d_t1_rate*n_x,
         d_t1_slip_y = d_t1_n_y*rate + d_t1_rate*n_y,
         d_t1_speed = inv_speed*(d_t1_slip_x*slip_x + d_t1_slip_y*slip_y),
@@ -219,15 +243,8 @@ void planar_crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *
         rate_d_y = s_rate_0*t[1] + u[1];
     PLANAR_CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP
     /* stretch of the spring */
+    PLANAR_CROSSING_PART_OF_STRETCH_OF_THE_SPRING
     const fu_real
-        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
-        inv_t = 1.0/len_t,
-        tau_x = inv_t*t[0],
-        tau_y = inv_t*t[1],
-        len_t_half = FU_SQRT(t_half0_x*t_half0_x + t_half0_y*t_half0_y),
-        inv_t_half = 1.0/len_t_half,
-        tau_half_x = inv_t_half*t_half0_x,
-        tau_half_y = inv_t_half*t_half0_y,
         old_x = tau_x*x[0],
         old_y = tau_y*x[0],
         x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + x[0],
@@ -255,15 +272,8 @@ void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real 
         rate_d_y = s_rate_0*t[1] + u[1];
     PLANAR_CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP
     /* stretch of the spring */
+    PLANAR_CROSSING_PART_OF_STRETCH_OF_THE_SPRING
     const fu_real
-        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
-        inv_t = 1.0/len_t,
-        tau_x = inv_t*t[0],
-        tau_y = inv_t*t[1],
-        len_t_half = FU_SQRT(t_half0_x*t_half0_x + t_half0_y*t_half0_y),
-        inv_t_half = 1.0/len_t_half,
-        tau_half_x = inv_t_half*t_half0_x,
-        tau_half_y = inv_t_half*t_half0_y,
         x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + x[0],
         x_now_x = tau_x*x_0,
         x_now_y = tau_y*x_0,
@@ -467,15 +477,8 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
         rate_d_y = s_rate_0*t[1] + u[1];
     PLANAR_CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP
     /* stretch of the spring */
+    PLANAR_CROSSING_PART_OF_STRETCH_OF_THE_SPRING
     const fu_real
-        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
-        inv_t = 1.0/len_t,
-        tau_x = inv_t*t[0],
-        tau_y = inv_t*t[1],
-        len_t_half = FU_SQRT(t_half0_x*t_half0_x + t_half0_y*t_half0_y),
-        inv_t_half = 1.0/len_t_half,
-        tau_half_x = inv_t_half*t_half0_x,
-        tau_half_y = inv_t_half*t_half0_y,
         x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + x[0],
         x_now_x = tau_x*x_0,
         x_now_y = tau_y*x_0,
@@ -507,35 +510,17 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
         d_d1_elastic = c[3]*d_d1_root_p*depth + d_d1_depth*(c[2] + c[3]*root_p),
         d_d1_N_law = d_d1_elastic*(c[4]*rate + 1.0),
         d_d1_F_x_2 = -(d_d1_N_law*mu*side_x*tau_x),
-        d_d1_F_y_2 = -(d_d1_N_law*mu*side_x*tau_y),
-        d_t0_len_m = inv_m*t[0],
-        d_t0_inv_m = -(d_t0_len_m*inv_m*inv_m),
-        d_t0_side_m = c[1]*d_t0_inv_m,
-        d_t0_n_x = d_t0_side_m*t[1],
-        d_t0_n_y = -d_t0_side_m*t[0] - side_m,
-        d_t0_depth = -d[0]*d_t0_n_x - d[1]*d_t0_n_y,
-        d_t0_size_p = d_t0_depth*depth/size_p,
-        d_t0_root_p = 0.5*d_t0_size_p/root_p,
-        d_t0_elastic = c[3]*d_t0_root_p*depth + d_t0_depth*(c[2] + c[3]*root_p),
-        d_t0_rate = -d_t0_n_x*u[0] - d_t0_n_y*u[1],
-        d_t0_N_law = c[4]*d_t0_rate*elastic + d_t0_elastic*(c[4]*rate + 1.0),
+        d_d1_F_y_2 = -(d_d1_N_law*mu*side_x*tau_y);
+    PLANAR_CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY
+    const fu_real
         d_t0_len_t = inv_t*t[0],
         d_t0_inv_t = -(d_t0_len_t*inv_t*inv_t),
         d_t0_tau_x = d_t0_inv_t*t[0] + inv_t,
         d_t0_F_x_2 = -N_law*d_t0_tau_x*mu*side_x - d_t0_N_law*mu*side_x*tau_x,
         d_t0_tau_y = d_t0_inv_t*t[1],
-        d_t0_F_y_2 = -N_law*d_t0_tau_y*mu*side_x - d_t0_N_law*mu*side_x*tau_y,
-        d_t1_len_m = inv_m*t[1],
-        d_t1_inv_m = -(d_t1_len_m*inv_m*inv_m),
-        d_t1_side_m = c[1]*d_t1_inv_m,
-        d_t1_n_x = d_t1_side_m*t[1] + side_m,
-        d_t1_n_y = -(d_t1_side_m*t[0]),
-        d_t1_depth = -d[0]*d_t1_n_x - d[1]*d_t1_n_y,
-        d_t1_size_p = d_t1_depth*depth/size_p,
-        d_t1_root_p = 0.5*d_t1_size_p/root_p,
-        d_t1_elastic = c[3]*d_t1_root_p*depth + d_t1_depth*(c[2] + c[3]*root_p),
-        d_t1_rate = -d_t1_n_x*u[0] - d_t1_n_y*u[1],
-        d_t1_N_law = c[4]*d_t1_rate*elastic + d_t1_elastic*(c[4]*rate + 1.0),
+        d_t0_F_y_2 = -N_law*d_t0_tau_y*mu*side_x - d_t0_N_law*mu*side_x*tau_y;
+    PLANAR_CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_2
+    const fu_real
         d_t1_len_t = inv_t*t[1],
         d_t1_inv_t = -(d_t1_len_t*inv_t*inv_t),
         d_t1_tau_x = d_t1_inv_t*t[0],

@@ -18,6 +18,57 @@
  */
 #include "kernels.h"
 
+/* part of derivatives: of planar_drag_inertia_of_point and 1 more */
+#define PLANAR_DRAG_PART_OF_DERIVATIVES \
+    const fu_real \
+        d_th1_CM1_x = -A[2]*C[0] - A[3]*C[1], \
+        d_th1_CM2_x = -A[2]*C[2] - A[3]*C[3], \
+        d_th1_M1_x = A[0]*d_th1_CM1_x + A[1]*d_th1_CM2_x - A[2]*CM1_x - A[3]*CM2_x, \
+        d_th1_CM1_y = A[0]*C[0] + A[1]*C[1], \
+        d_th1_CM2_y = A[0]*C[2] + A[1]*C[3], \
+        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y - A[2]*CM1_y - A[3]*CM2_y, \
+        d_th1_P_x = d_th1_M1_x*w[0] + d_th1_M1_y*w[1], \
+        d_th1_M2_x = A[0]*CM1_x + A[1]*CM2_x + A[2]*d_th1_CM1_x + A[3]*d_th1_CM2_x, \
+        d_th1_M2_y = A[0]*CM1_y + A[1]*CM2_y + A[2]*d_th1_CM1_y + A[3]*d_th1_CM2_y, \
+        d_th1_P_y = d_th1_M2_x*w[0] + d_th1_M2_y*w[1];
+
+/* part of derivatives: of planar_drag_entry_of_cable and 1 more */
+#define PLANAR_DRAG_PART_OF_DERIVATIVES_2 \
+    const fu_real \
+        d_w0_T = 0.5*M1_x*w[0] + 0.5*M2_x*w[1] + 0.5*P_x, \
+        d_w0_pull_x = d_w0_T*n[0], \
+        d_w0_rate_x = M1_x*c_rate, \
+        d_w0_pull_y = d_w0_T*n[1], \
+        d_w0_rate_y = M2_x*c_rate, \
+        d_w1_T = 0.5*M1_y*w[0] + 0.5*M2_y*w[1] + 0.5*P_y, \
+        d_w1_pull_x = d_w1_T*n[0], \
+        d_w1_rate_x = M1_y*c_rate, \
+        d_w1_pull_y = d_w1_T*n[1], \
+        d_w1_rate_y = M2_y*c_rate, \
+        d_v0_rate_x = P_x*n[0], \
+        d_v0_rate_y = P_y*n[0], \
+        d_v1_rate_x = P_x*n[1], \
+        d_v1_rate_y = P_y*n[1], \
+        d_n0_rate_x = P_x*v[0], \
+        d_n0_rate_y = P_y*v[0], \
+        d_n1_rate_x = P_x*v[1], \
+        d_n1_rate_y = P_y*v[1];
+
+/* part of outputs: of planar_drag_entry_of_cable and 1 more */
+#define PLANAR_DRAG_PART_OF_OUTPUTS \
+    f_w[0] = -d_w0_pull_x + d_w0_rate_x; \
+    f_w[1] = -d_w1_pull_x + d_w1_rate_x; \
+    f_w[2] = -d_w0_pull_y + d_w0_rate_y; \
+    f_w[3] = -d_w1_pull_y + d_w1_rate_y; \
+    f_v[0] = d_v0_rate_x; \
+    f_v[1] = d_v1_rate_x; \
+    f_v[2] = d_v0_rate_y; \
+    f_v[3] = d_v1_rate_y; \
+    f_n[0] = -T + d_n0_rate_x; \
+    f_n[1] = d_n1_rate_x; \
+    f_n[2] = d_n0_rate_y; \
+    f_n[3] = -T + d_n1_rate_y;
+
 /* drag a length of a cable, and its derivatives (Morison et al. 1950; Hall & Goupee 2015) */
 void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w)
 {
@@ -389,17 +440,8 @@ void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_r
         P_rate_y = M2_x*rest_x + M2_y*rest_y + P_x*omega[0],
         moment0 = -P_x*w[1] + P_y*w[0];
     /* derivatives */
+    PLANAR_DRAG_PART_OF_DERIVATIVES
     const fu_real
-        d_th1_CM1_x = -A[2]*C[0] - A[3]*C[1],
-        d_th1_CM2_x = -A[2]*C[2] - A[3]*C[3],
-        d_th1_M1_x = A[0]*d_th1_CM1_x + A[1]*d_th1_CM2_x - A[2]*CM1_x - A[3]*CM2_x,
-        d_th1_CM1_y = A[0]*C[0] + A[1]*C[1],
-        d_th1_CM2_y = A[0]*C[2] + A[1]*C[3],
-        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y - A[2]*CM1_y - A[3]*CM2_y,
-        d_th1_P_x = d_th1_M1_x*w[0] + d_th1_M1_y*w[1],
-        d_th1_M2_x = A[0]*CM1_x + A[1]*CM2_x + A[2]*d_th1_CM1_x + A[3]*d_th1_CM2_x,
-        d_th1_M2_y = A[0]*CM1_y + A[1]*CM2_y + A[2]*d_th1_CM1_y + A[3]*d_th1_CM2_y,
-        d_th1_P_y = d_th1_M2_x*w[0] + d_th1_M2_y*w[1],
         d_th1_P_rate_x = d_th1_M1_x*rest_x + d_th1_M1_y*rest_y - d_th1_P_y*omega[0],
         d_th1_P_rate_y = d_th1_M2_x*rest_x + d_th1_M2_y*rest_y + d_th1_P_x*omega[0],
         d_th1_moment0 = -d_th1_P_x*w[1] + d_th1_P_y*w[0],
@@ -577,25 +619,8 @@ void planar_drag_entry_of_cable(const fu_real *t, const fu_real *m, const fu_rea
         d_t1_pull_x = d_t1_T*n[0],
         d_t1_rate_x = c_rate*d_t1_P_x,
         d_t1_pull_y = d_t1_T*n[1],
-        d_t1_rate_y = c_rate*d_t1_P_y,
-        d_w0_T = 0.5*M1_x*w[0] + 0.5*M2_x*w[1] + 0.5*P_x,
-        d_w0_pull_x = d_w0_T*n[0],
-        d_w0_rate_x = M1_x*c_rate,
-        d_w0_pull_y = d_w0_T*n[1],
-        d_w0_rate_y = M2_x*c_rate,
-        d_w1_T = 0.5*M1_y*w[0] + 0.5*M2_y*w[1] + 0.5*P_y,
-        d_w1_pull_x = d_w1_T*n[0],
-        d_w1_rate_x = M1_y*c_rate,
-        d_w1_pull_y = d_w1_T*n[1],
-        d_w1_rate_y = M2_y*c_rate,
-        d_v0_rate_x = P_x*n[0],
-        d_v0_rate_y = P_y*n[0],
-        d_v1_rate_x = P_x*n[1],
-        d_v1_rate_y = P_y*n[1],
-        d_n0_rate_x = P_x*v[0],
-        d_n0_rate_y = P_y*v[0],
-        d_n1_rate_x = P_x*v[1],
-        d_n1_rate_y = P_y*v[1];
+        d_t1_rate_y = c_rate*d_t1_P_y;
+    PLANAR_DRAG_PART_OF_DERIVATIVES_2
     /* outputs */
     p_rate[0] = rate_x;
     p_rate[1] = rate_y;
@@ -605,18 +630,7 @@ void planar_drag_entry_of_cable(const fu_real *t, const fu_real *m, const fu_rea
     f_t[1] = -d_t1_pull_x + d_t1_rate_x;
     f_t[2] = -d_t0_pull_y + d_t0_rate_y;
     f_t[3] = -d_t1_pull_y + d_t1_rate_y;
-    f_w[0] = -d_w0_pull_x + d_w0_rate_x;
-    f_w[1] = -d_w1_pull_x + d_w1_rate_x;
-    f_w[2] = -d_w0_pull_y + d_w0_rate_y;
-    f_w[3] = -d_w1_pull_y + d_w1_rate_y;
-    f_v[0] = d_v0_rate_x;
-    f_v[1] = d_v1_rate_x;
-    f_v[2] = d_v0_rate_y;
-    f_v[3] = d_v1_rate_y;
-    f_n[0] = -T + d_n0_rate_x;
-    f_n[1] = d_n1_rate_x;
-    f_n[2] = d_n0_rate_y;
-    f_n[3] = -T + d_n1_rate_y;
+    PLANAR_DRAG_PART_OF_OUTPUTS
 }
 
 /* added mass of a body whose wet part changes (Lagrange's equations of T; von Karman, NACA TN 321) */
@@ -643,40 +657,14 @@ void planar_drag_entry_of_point(const fu_real *A, const fu_real *C, const fu_rea
         pull_x = T*n[0],
         pull_y = T*n[1];
     /* derivatives */
+    PLANAR_DRAG_PART_OF_DERIVATIVES
     const fu_real
-        d_th1_CM1_x = -A[2]*C[0] - A[3]*C[1],
-        d_th1_CM2_x = -A[2]*C[2] - A[3]*C[3],
-        d_th1_M1_x = A[0]*d_th1_CM1_x + A[1]*d_th1_CM2_x - A[2]*CM1_x - A[3]*CM2_x,
-        d_th1_CM1_y = A[0]*C[0] + A[1]*C[1],
-        d_th1_CM2_y = A[0]*C[2] + A[1]*C[3],
-        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y - A[2]*CM1_y - A[3]*CM2_y,
-        d_th1_P_x = d_th1_M1_x*w[0] + d_th1_M1_y*w[1],
-        d_th1_M2_x = A[0]*CM1_x + A[1]*CM2_x + A[2]*d_th1_CM1_x + A[3]*d_th1_CM2_x,
-        d_th1_M2_y = A[0]*CM1_y + A[1]*CM2_y + A[2]*d_th1_CM1_y + A[3]*d_th1_CM2_y,
-        d_th1_P_y = d_th1_M2_x*w[0] + d_th1_M2_y*w[1],
         d_th1_T = 0.5*d_th1_P_x*w[0] + 0.5*d_th1_P_y*w[1],
         d_th1_pull_x = d_th1_T*n[0],
         d_th1_rate_x = c_rate*d_th1_P_x,
         d_th1_pull_y = d_th1_T*n[1],
-        d_th1_rate_y = c_rate*d_th1_P_y,
-        d_w0_T = 0.5*M1_x*w[0] + 0.5*M2_x*w[1] + 0.5*P_x,
-        d_w0_pull_x = d_w0_T*n[0],
-        d_w0_rate_x = M1_x*c_rate,
-        d_w0_pull_y = d_w0_T*n[1],
-        d_w0_rate_y = M2_x*c_rate,
-        d_w1_T = 0.5*M1_y*w[0] + 0.5*M2_y*w[1] + 0.5*P_y,
-        d_w1_pull_x = d_w1_T*n[0],
-        d_w1_rate_x = M1_y*c_rate,
-        d_w1_pull_y = d_w1_T*n[1],
-        d_w1_rate_y = M2_y*c_rate,
-        d_v0_rate_x = P_x*n[0],
-        d_v0_rate_y = P_y*n[0],
-        d_v1_rate_x = P_x*n[1],
-        d_v1_rate_y = P_y*n[1],
-        d_n0_rate_x = P_x*v[0],
-        d_n0_rate_y = P_y*v[0],
-        d_n1_rate_x = P_x*v[1],
-        d_n1_rate_y = P_y*v[1];
+        d_th1_rate_y = c_rate*d_th1_P_y;
+    PLANAR_DRAG_PART_OF_DERIVATIVES_2
     /* outputs */
     p_rate[0] = rate_x;
     p_rate[1] = rate_y;
@@ -684,16 +672,5 @@ void planar_drag_entry_of_point(const fu_real *A, const fu_real *C, const fu_rea
     g[1] = pull_y;
     f_turn[0] = -d_th1_pull_x + d_th1_rate_x;
     f_turn[1] = -d_th1_pull_y + d_th1_rate_y;
-    f_w[0] = -d_w0_pull_x + d_w0_rate_x;
-    f_w[1] = -d_w1_pull_x + d_w1_rate_x;
-    f_w[2] = -d_w0_pull_y + d_w0_rate_y;
-    f_w[3] = -d_w1_pull_y + d_w1_rate_y;
-    f_v[0] = d_v0_rate_x;
-    f_v[1] = d_v1_rate_x;
-    f_v[2] = d_v0_rate_y;
-    f_v[3] = d_v1_rate_y;
-    f_n[0] = -T + d_n0_rate_x;
-    f_n[1] = d_n1_rate_x;
-    f_n[2] = d_n0_rate_y;
-    f_n[3] = -T + d_n1_rate_y;
+    PLANAR_DRAG_PART_OF_OUTPUTS
 }

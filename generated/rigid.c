@@ -22,6 +22,56 @@
  */
 #include "kernels.h"
 
+/* part of outputs: of rigid_place and 2 more */
+#define RIGID_PART_OF_OUTPUTS \
+    p[0] = p_x; \
+    p[1] = p_y; \
+    p[2] = p_z; \
+    p_q[0] = 1.0; \
+    p_q[1] = 0.0; \
+    p_q[2] = 0.0; \
+    p_q[3] = d_th1_arm_x; \
+    p_q[4] = d_th2_arm_x; \
+    p_q[5] = d_th3_arm_x; \
+    p_q[6] = 0.0; \
+    p_q[7] = 1.0; \
+    p_q[8] = 0.0; \
+    p_q[9] = d_th1_arm_y; \
+    p_q[10] = d_th2_arm_y; \
+    p_q[11] = d_th3_arm_y; \
+    p_q[12] = 0.0; \
+    p_q[13] = 0.0; \
+    p_q[14] = 1.0; \
+    p_q[15] = d_th1_arm_z; \
+    p_q[16] = d_th2_arm_z; \
+    p_q[17] = d_th3_arm_z;
+
+/* part of derivatives: of rigid_point and 2 more */
+#define RIGID_PART_OF_DERIVATIVES \
+    const fu_real \
+        d_th1_arm_x = -A1_y*u[2] + A1_z*u[1], \
+        d_th1_arm_y = -A2_y*u[2] + A2_z*u[1], \
+        d_th1_arm_z = -A3_y*u[2] + A3_z*u[1], \
+        d_th2_arm_x = A1_x*u[2] - A1_z*u[0], \
+        d_th2_arm_y = A2_x*u[2] - A2_z*u[0], \
+        d_th2_arm_z = A3_x*u[2] - A3_z*u[0], \
+        d_th3_arm_x = -A1_x*u[1] + A1_y*u[0], \
+        d_th3_arm_y = -A2_x*u[1] + A2_y*u[0], \
+        d_th3_arm_z = -A3_x*u[1] + A3_y*u[0];
+
+/* part of axes: of rigid_force and 2 more */
+#define RIGID_PART_OF_AXES \
+    const fu_real \
+        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
+        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
+        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
+        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
+        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0, \
+        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
+        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
+        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
+        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0;
+
 /* position: of rigid_place and 2 more */
 #define RIGID_POSITION \
     const fu_real \
@@ -43,29 +93,11 @@
 
 /* derivatives: of rigid_place and 1 more */
 #define RIGID_DERIVATIVES \
-    const fu_real \
-        d_th1_arm_x = -A1_y*u[2] + A1_z*u[1], \
-        d_th1_arm_y = -A2_y*u[2] + A2_z*u[1], \
-        d_th1_arm_z = -A3_y*u[2] + A3_z*u[1], \
-        d_th2_arm_x = A1_x*u[2] - A1_z*u[0], \
-        d_th2_arm_y = A2_x*u[2] - A2_z*u[0], \
-        d_th2_arm_z = A3_x*u[2] - A3_z*u[0], \
-        d_th3_arm_x = -A1_x*u[1] + A1_y*u[0], \
-        d_th3_arm_y = -A2_x*u[1] + A2_y*u[0], \
-        d_th3_arm_z = -A3_x*u[1] + A3_y*u[0];
+    RIGID_PART_OF_DERIVATIVES
 
 /* axes: of rigid_follower_force and 1 more */
 #define RIGID_AXES \
-    const fu_real \
-        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
-        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0, \
-        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0;
+    RIGID_PART_OF_AXES
 
 /* position and Jacobian of a point (paper eq 12 (q_r); Haug 1989, ch. 9) */
 void rigid_place(const fu_real *b, const fu_real *u, fu_real *p, fu_real *p_q)
@@ -73,27 +105,7 @@ void rigid_place(const fu_real *b, const fu_real *u, fu_real *p, fu_real *p_q)
     RIGID_POSITION
     RIGID_DERIVATIVES
     /* outputs */
-    p[0] = p_x;
-    p[1] = p_y;
-    p[2] = p_z;
-    p_q[0] = 1.0;
-    p_q[1] = 0.0;
-    p_q[2] = 0.0;
-    p_q[3] = d_th1_arm_x;
-    p_q[4] = d_th2_arm_x;
-    p_q[5] = d_th3_arm_x;
-    p_q[6] = 0.0;
-    p_q[7] = 1.0;
-    p_q[8] = 0.0;
-    p_q[9] = d_th1_arm_y;
-    p_q[10] = d_th2_arm_y;
-    p_q[11] = d_th3_arm_y;
-    p_q[12] = 0.0;
-    p_q[13] = 0.0;
-    p_q[14] = 1.0;
-    p_q[15] = d_th1_arm_z;
-    p_q[16] = d_th2_arm_z;
-    p_q[17] = d_th3_arm_z;
+    RIGID_PART_OF_OUTPUTS
 }
 
 /* position, Jacobian, velocity and acceleration bias of a point (paper eq 12 (q_r); Haug 1989, ch. 9) */
@@ -101,16 +113,8 @@ void rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *
 {
     RIGID_POSITION
     /* derivatives */
+    RIGID_PART_OF_DERIVATIVES
     const fu_real
-        d_th1_arm_x = -A1_y*u[2] + A1_z*u[1],
-        d_th1_arm_y = -A2_y*u[2] + A2_z*u[1],
-        d_th1_arm_z = -A3_y*u[2] + A3_z*u[1],
-        d_th2_arm_x = A1_x*u[2] - A1_z*u[0],
-        d_th2_arm_y = A2_x*u[2] - A2_z*u[0],
-        d_th2_arm_z = A3_x*u[2] - A3_z*u[0],
-        d_th3_arm_x = -A1_x*u[1] + A1_y*u[0],
-        d_th3_arm_y = -A2_x*u[1] + A2_y*u[0],
-        d_th3_arm_z = -A3_x*u[1] + A3_y*u[0],
         dt_arm_x = u[0]*(A1_y*w[5] - A1_z*w[4]) + u[1]*(-A1_x*w[5] + A1_z*w[3]) + u[2]*(A1_x*w[4] - A1_y*w[3]),
         dt_p_x = dt_arm_x + w[0],
         dt_arm_y = u[0]*(A2_y*w[5] - A2_z*w[4]) + u[1]*(-A2_x*w[5] + A2_z*w[3]) + u[2]*(A2_x*w[4] - A2_y*w[3]),
@@ -121,27 +125,7 @@ void rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *
         dt_dt_arm_y = (A2_x*w[4] - A2_y*w[3])*(-u[0]*w[4] + u[1]*w[3]) + (-A2_x*w[5] + A2_z*w[3])*(u[0]*w[5] - u[2]*w[3]) + (A2_y*w[5] - A2_z*w[4])*(-u[1]*w[5] + u[2]*w[4]),
         dt_dt_arm_z = (A3_x*w[4] - A3_y*w[3])*(-u[0]*w[4] + u[1]*w[3]) + (-A3_x*w[5] + A3_z*w[3])*(u[0]*w[5] - u[2]*w[3]) + (A3_y*w[5] - A3_z*w[4])*(-u[1]*w[5] + u[2]*w[4]);
     /* outputs */
-    p[0] = p_x;
-    p[1] = p_y;
-    p[2] = p_z;
-    p_q[0] = 1.0;
-    p_q[1] = 0.0;
-    p_q[2] = 0.0;
-    p_q[3] = d_th1_arm_x;
-    p_q[4] = d_th2_arm_x;
-    p_q[5] = d_th3_arm_x;
-    p_q[6] = 0.0;
-    p_q[7] = 1.0;
-    p_q[8] = 0.0;
-    p_q[9] = d_th1_arm_y;
-    p_q[10] = d_th2_arm_y;
-    p_q[11] = d_th3_arm_y;
-    p_q[12] = 0.0;
-    p_q[13] = 0.0;
-    p_q[14] = 1.0;
-    p_q[15] = d_th1_arm_z;
-    p_q[16] = d_th2_arm_z;
-    p_q[17] = d_th3_arm_z;
+    RIGID_PART_OF_OUTPUTS
     v[0] = dt_p_x;
     v[1] = dt_p_y;
     v[2] = dt_p_z;
@@ -194,27 +178,7 @@ void rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_
         d_th3_d_th3_arm_z = -A3_x*u[0] - A3_y*u[1],
         d_th3_g5 = d_th3_d_th3_arm_x*f[0] + d_th3_d_th3_arm_y*f[1] + d_th3_d_th3_arm_z*f[2];
     /* outputs */
-    p[0] = p_x;
-    p[1] = p_y;
-    p[2] = p_z;
-    p_q[0] = 1.0;
-    p_q[1] = 0.0;
-    p_q[2] = 0.0;
-    p_q[3] = d_th1_arm_x;
-    p_q[4] = d_th2_arm_x;
-    p_q[5] = d_th3_arm_x;
-    p_q[6] = 0.0;
-    p_q[7] = 1.0;
-    p_q[8] = 0.0;
-    p_q[9] = d_th1_arm_y;
-    p_q[10] = d_th2_arm_y;
-    p_q[11] = d_th3_arm_y;
-    p_q[12] = 0.0;
-    p_q[13] = 0.0;
-    p_q[14] = 1.0;
-    p_q[15] = d_th1_arm_z;
-    p_q[16] = d_th2_arm_z;
-    p_q[17] = d_th3_arm_z;
+    RIGID_PART_OF_OUTPUTS
     FU_EACH(g, 12,
         K[g] = 0.0;)
     FU_EACH(g, 9,
@@ -418,16 +382,8 @@ void rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_real *b_n
 void rigid_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *g, fu_real *K)
 {
     /* axes */
+    RIGID_PART_OF_AXES
     const fu_real
-        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0,
-        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5],
-        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6],
-        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5],
-        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0,
-        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6],
-        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6],
-        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6],
-        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0,
         local_x = A1_x*f[0] + A2_x*f[1] + A3_x*f[2],
         local_y = A1_y*f[0] + A2_y*f[1] + A3_y*f[2],
         local_z = A1_z*f[0] + A2_z*f[1] + A3_z*f[2];

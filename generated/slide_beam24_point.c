@@ -91,17 +91,11 @@ void slide_beam24_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_r
         ds_ds_N_r_x1 = ds_ds_P_r_x1*l,
         ds_ds_P_r_x2 = inv_l*inv_l*(6.0*xi - 2.0),
         ds_ds_N_r_x2 = ds_ds_P_r_x2*l,
-        ds_ds_P_r_2 = inv_l*inv_l*(-12.0*xi + 6.0),
-        ds_ds_r_x = ds_ds_N_r_x1*e[3] + ds_ds_N_r_x2*e[15] + ds_ds_P_r_2*(-e[0] + e[12]),
-        ds_ds_r_y = ds_ds_N_r_x1*e[4] + ds_ds_N_r_x2*e[16] + ds_ds_P_r_2*(e[13] - e[1]),
-        ds_ds_r_z = ds_ds_N_r_x1*e[5] + ds_ds_N_r_x2*e[17] + ds_ds_P_r_2*(e[14] - e[2]),
-        ds_Py_r_y1 = -inv_l,
-        ds_n_x = ds_Py_r_y1*e[6] + e[18]*inv_l,
-        ds_n_y = ds_Py_r_y1*e[7] + e[19]*inv_l,
-        ds_n_z = ds_Py_r_y1*e[8] + e[20]*inv_l,
-        C_sl = d_ds_r_x_C_l*ds_ds_r_x + d_ds_r_y_C_l*ds_ds_r_y + d_ds_r_z_C_l*ds_ds_r_z + ds_r_x*i_x + ds_r_y*i_y + ds_r_z*i_z,
-        C_sm1 = d_ds_r_x_C_m1*ds_ds_r_x + d_ds_r_y_C_m1*ds_ds_r_y + d_ds_r_z_C_m1*ds_ds_r_z + d_n_x_C_m1*ds_n_x + d_n_y_C_m1*ds_n_y + d_n_z_C_m1*ds_n_z,
-        C_sm2 = d_ds_r_x_C_m2*ds_ds_r_x + d_ds_r_y_C_m2*ds_ds_r_y + d_ds_r_z_C_m2*ds_ds_r_z + d_n_x_C_m2*ds_n_x + d_n_y_C_m2*ds_n_y + d_n_z_C_m2*ds_n_z,
+        ds_ds_P_r_2 = inv_l*inv_l*(-12.0*xi + 6.0);
+    SLIDE_PART_OF_C_S_AND_C_Q_EQ_23
+    const fu_real C_sl = d_ds_r_x_C_l*ds_ds_r_x + d_ds_r_y_C_l*ds_ds_r_y + d_ds_r_z_C_l*ds_ds_r_z + ds_r_x*i_x + ds_r_y*i_y + ds_r_z*i_z;
+    SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_2
+    const fu_real
         de0_r_x = -P_r_2,
         de0_r_p_x = de0_r_x + 1.0,
         de0_ds_r_x = -ds_P_r_2;
@@ -113,28 +107,8 @@ void slide_beam24_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_r
         de1_r_p_y = de1_r_y + 1.0,
         de1_ds_r_y = -ds_P_r_2;
     C_ql[1] = d_ds_r_y_C_l*de1_ds_r_y + de1_r_p_y*i_y;
+    SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_3
     const fu_real
-        C_qm1_1 = d_ds_r_y_C_m1*de1_ds_r_y + de1_r_p_y*j_y,
-        C_qm2_1 = d_ds_r_y_C_m2*de1_ds_r_y + de1_r_p_y*k_y,
-        de2_r_z = -P_r_2,
-        de2_r_p_z = de2_r_z + 1.0,
-        de2_ds_r_z = -ds_P_r_2;
-    C_ql[2] = d_ds_r_z_C_l*de2_ds_r_z + de2_r_p_z*i_z;
-    const fu_real
-        C_qm1_2 = d_ds_r_z_C_m1*de2_ds_r_z + de2_r_p_z*j_z,
-        C_qm2_2 = d_ds_r_z_C_m2*de2_ds_r_z + de2_r_p_z*k_z;
-    C_ql[3] = N_r_x1*i_x + d_ds_r_x_C_l*ds_N_r_x1;
-    const fu_real
-        C_qm1_3 = N_r_x1*j_x + d_ds_r_x_C_m1*ds_N_r_x1,
-        C_qm2_3 = N_r_x1*k_x + d_ds_r_x_C_m2*ds_N_r_x1;
-    C_ql[4] = N_r_x1*i_y + d_ds_r_y_C_l*ds_N_r_x1;
-    const fu_real
-        C_qm1_4 = N_r_x1*j_y + d_ds_r_y_C_m1*ds_N_r_x1,
-        C_qm2_4 = N_r_x1*k_y + d_ds_r_y_C_m2*ds_N_r_x1;
-    C_ql[5] = N_r_x1*i_z + d_ds_r_z_C_l*ds_N_r_x1;
-    const fu_real
-        C_qm1_5 = N_r_x1*j_z + d_ds_r_z_C_m1*ds_N_r_x1,
-        C_qm2_5 = N_r_x1*k_z + d_ds_r_z_C_m2*ds_N_r_x1,
         C_qm1_6 = Py_r_y1*d_n_x_C_m1,
         C_qm2_6 = Py_r_y1*d_n_x_C_m2,
         C_qm1_7 = Py_r_y1*d_n_y_C_m1,
@@ -162,24 +136,7 @@ void slide_beam24_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_r
         C_qm1_16 = N_r_x2*j_y + d_ds_r_y_C_m1*ds_N_r_x2,
         C_qm2_16 = N_r_x2*k_y + d_ds_r_y_C_m2*ds_N_r_x2;
     C_ql[11] = N_r_x2*i_z + d_ds_r_z_C_l*ds_N_r_x2;
-    const fu_real
-        C_qm1_17 = N_r_x2*j_z + d_ds_r_z_C_m1*ds_N_r_x2,
-        C_qm2_17 = N_r_x2*k_z + d_ds_r_z_C_m2*ds_N_r_x2,
-        C_qm1_18 = d_n_x_C_m1*xi,
-        C_qm2_18 = d_n_x_C_m2*xi,
-        C_qm1_19 = d_n_y_C_m1*xi,
-        C_qm2_19 = d_n_y_C_m2*xi,
-        C_qm1_20 = d_n_z_C_m1*xi,
-        C_qm2_20 = d_n_z_C_m2*xi,
-        C_ql_24 = -i_x,
-        C_qm1_24 = -j_x,
-        C_qm2_24 = -k_x,
-        C_ql_25 = -i_y,
-        C_qm1_25 = -j_y,
-        C_qm2_25 = -k_y,
-        C_ql_26 = -i_z,
-        C_qm1_26 = -j_z,
-        C_qm2_26 = -k_z;
+    SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_4
     /* G (eq 24) and the rate of s (eq 25) */
     fu_real G_at[12];
     const fu_real inv_C_sl = 1.0/C_sl;
@@ -197,10 +154,9 @@ void slide_beam24_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_r
         dt_ds_N_r_x1 = dt_ds_P_r_x1*l,
         dt_ds_P_r_x2 = dt_xi*inv_l*(6.0*xi - 2.0),
         dt_ds_N_r_x2 = dt_ds_P_r_x2*l,
-        dt_ds_P_r_2 = dt_xi*inv_l*(-12.0*xi + 6.0),
-        dt_ds_r_x = ds_N_r_x1*v[3] + ds_N_r_x2*v[15] - ds_P_r_2*v[0] + ds_P_r_2*v[12] + dt_ds_N_r_x1*e[3] + dt_ds_N_r_x2*e[15] + dt_ds_P_r_2*(-e[0] + e[12]),
-        dt_ds_r_y = ds_N_r_x1*v[4] + ds_N_r_x2*v[16] + ds_P_r_2*v[13] - ds_P_r_2*v[1] + dt_ds_N_r_x1*e[4] + dt_ds_N_r_x2*e[16] + dt_ds_P_r_2*(e[13] - e[1]),
-        dt_ds_r_z = ds_N_r_x1*v[5] + ds_N_r_x2*v[17] + ds_P_r_2*v[14] - ds_P_r_2*v[2] + dt_ds_N_r_x1*e[5] + dt_ds_N_r_x2*e[17] + dt_ds_P_r_2*(e[14] - e[2]),
+        dt_ds_P_r_2 = dt_xi*inv_l*(-12.0*xi + 6.0);
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33
+    const fu_real
         dt_len_i = inv_i*(ds_r_x*dt_ds_r_x + ds_r_y*dt_ds_r_y + ds_r_z*dt_ds_r_z),
         dt_inv_i = -(dt_len_i*inv_i*inv_i),
         dt_i_x = ds_r_x*dt_inv_i + dt_ds_r_x*inv_i,
@@ -219,30 +175,17 @@ void slide_beam24_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_r
         dt_r_p_y = dt_gap_y + dt_r_y,
         dt_gap_z = v[2] - w[2],
         dt_r_z = N_r_x1*v[5] + N_r_x2*v[17] + P_r_2*v[14] - P_r_2*v[2] + dt_N_r_x1*e[5] + dt_N_r_x2*e[17] + dt_P_r_2*(e[14] - e[2]),
-        dt_r_p_z = dt_gap_z + dt_r_z,
-        dt_Py_r_y1 = -dt_xi,
-        dt_n_y = Py_r_y1*v[7] + dt_Py_r_y1*e[7] + dt_xi*e[19] + v[19]*xi,
-        dt_n_z = Py_r_y1*v[8] + dt_Py_r_y1*e[8] + dt_xi*e[20] + v[20]*xi,
-        dt_m_x = dt_i_y*n_z - dt_i_z*n_y - dt_n_y*i_z + dt_n_z*i_y,
-        dt_n_x = Py_r_y1*v[6] + dt_Py_r_y1*e[6] + dt_xi*e[18] + v[18]*xi,
-        dt_m_y = -dt_i_x*n_z + dt_i_z*n_x + dt_n_x*i_z - dt_n_z*i_x,
-        dt_m_z = dt_i_x*n_y - dt_i_y*n_x - dt_n_x*i_y + dt_n_y*i_x,
-        dt_len_k = inv_k*(dt_m_x*m_x + dt_m_y*m_y + dt_m_z*m_z),
-        dt_inv_k = -(dt_len_k*inv_k*inv_k),
-        dt_k_y = dt_inv_k*m_y + dt_m_y*inv_k,
-        dt_k_z = dt_inv_k*m_z + dt_m_z*inv_k,
-        dt_j_x = -dt_i_y*k_z + dt_i_z*k_y + dt_k_y*i_z - dt_k_z*i_y,
-        dt_k_x = dt_inv_k*m_x + dt_m_x*inv_k,
-        dt_j_y = dt_i_x*k_z - dt_i_z*k_x - dt_k_x*i_z + dt_k_z*i_x,
-        dt_j_z = -dt_i_x*k_y + dt_i_y*k_x + dt_k_x*i_y - dt_k_y*i_x,
+        dt_r_p_z = dt_gap_z + dt_r_z;
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_2
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_3
+    const fu_real
         dt_dt_ds_P_r_x1 = 6.0*dt_xi*dt_xi*inv_l,
         dt_dt_ds_N_r_x1 = dt_dt_ds_P_r_x1*l,
         dt_dt_ds_P_r_x2 = 6.0*dt_xi*dt_xi*inv_l,
         dt_dt_ds_N_r_x2 = dt_dt_ds_P_r_x2*l,
-        dt_dt_ds_P_r_2 = -(12.0*dt_xi*dt_xi*inv_l),
-        dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[15] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[12] + dt_ds_P_r_2*(-v[0] + v[12]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[15] + dt_dt_ds_P_r_2*(-e[0] + e[12]),
-        dt_dt_ds_r_y = 2.0*dt_ds_N_r_x1*v[4] + 2.0*dt_ds_N_r_x2*v[16] + dt_ds_P_r_2*v[13] - dt_ds_P_r_2*v[1] + dt_ds_P_r_2*(v[13] - v[1]) + dt_dt_ds_N_r_x1*e[4] + dt_dt_ds_N_r_x2*e[16] + dt_dt_ds_P_r_2*(e[13] - e[1]),
-        dt_dt_ds_r_z = 2.0*dt_ds_N_r_x1*v[5] + 2.0*dt_ds_N_r_x2*v[17] + dt_ds_P_r_2*v[14] - dt_ds_P_r_2*v[2] + dt_ds_P_r_2*(v[14] - v[2]) + dt_dt_ds_N_r_x1*e[5] + dt_dt_ds_N_r_x2*e[17] + dt_dt_ds_P_r_2*(e[14] - e[2]),
+        dt_dt_ds_P_r_2 = -(12.0*dt_xi*dt_xi*inv_l);
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_4
+    const fu_real
         dt_dt_len_i = ds_r_x*dt_dt_ds_r_x*inv_i + ds_r_y*dt_dt_ds_r_y*inv_i + ds_r_z*dt_dt_ds_r_z*inv_i + dt_ds_r_x*dt_ds_r_x*inv_i + dt_ds_r_y*dt_ds_r_y*inv_i + dt_ds_r_z*dt_ds_r_z*inv_i + dt_inv_i*(ds_r_x*dt_ds_r_x + ds_r_y*dt_ds_r_y + ds_r_z*dt_ds_r_z),
         dt_dt_inv_i = -dt_dt_len_i*inv_i*inv_i - 2.0*dt_inv_i*dt_len_i*inv_i,
         dt_dt_i_x = ds_r_x*dt_dt_inv_i + 2.0*dt_ds_r_x*dt_inv_i + dt_dt_ds_r_x*inv_i,
@@ -256,23 +199,10 @@ void slide_beam24_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_r
         dt_dt_r_x = 2.0*dt_N_r_x1*v[3] + 2.0*dt_N_r_x2*v[15] - dt_P_r_2*v[0] + dt_P_r_2*v[12] + dt_P_r_2*(-v[0] + v[12]) + dt_dt_N_r_x1*e[3] + dt_dt_N_r_x2*e[15] + dt_dt_P_r_2*(-e[0] + e[12]),
         dt_dt_r_y = 2.0*dt_N_r_x1*v[4] + 2.0*dt_N_r_x2*v[16] + dt_P_r_2*v[13] - dt_P_r_2*v[1] + dt_P_r_2*(v[13] - v[1]) + dt_dt_N_r_x1*e[4] + dt_dt_N_r_x2*e[16] + dt_dt_P_r_2*(e[13] - e[1]),
         dt_dt_r_z = 2.0*dt_N_r_x1*v[5] + 2.0*dt_N_r_x2*v[17] + dt_P_r_2*v[14] - dt_P_r_2*v[2] + dt_P_r_2*(v[14] - v[2]) + dt_dt_N_r_x1*e[5] + dt_dt_N_r_x2*e[17] + dt_dt_P_r_2*(e[14] - e[2]),
-        dt_dt_C_l = dt_dt_i_x*r_p_x + dt_dt_i_y*r_p_y + dt_dt_i_z*r_p_z + dt_dt_r_x*i_x + dt_dt_r_y*i_y + dt_dt_r_z*i_z + 2.0*dt_i_x*dt_r_p_x + 2.0*dt_i_y*dt_r_p_y + 2.0*dt_i_z*dt_r_p_z,
-        dt_dt_n_y = 2.0*dt_Py_r_y1*v[7] + 2.0*dt_xi*v[19],
-        dt_dt_n_z = 2.0*dt_Py_r_y1*v[8] + 2.0*dt_xi*v[20],
-        dt_dt_m_x = dt_dt_i_y*n_z - dt_dt_i_z*n_y - dt_dt_n_y*i_z + dt_dt_n_z*i_y + 2.0*dt_i_y*dt_n_z - 2.0*dt_i_z*dt_n_y,
-        dt_dt_n_x = 2.0*dt_Py_r_y1*v[6] + 2.0*dt_xi*v[18],
-        dt_dt_m_y = -dt_dt_i_x*n_z + dt_dt_i_z*n_x + dt_dt_n_x*i_z - dt_dt_n_z*i_x - 2.0*dt_i_x*dt_n_z + 2.0*dt_i_z*dt_n_x,
-        dt_dt_m_z = dt_dt_i_x*n_y - dt_dt_i_y*n_x - dt_dt_n_x*i_y + dt_dt_n_y*i_x + 2.0*dt_i_x*dt_n_y - 2.0*dt_i_y*dt_n_x,
-        dt_dt_len_k = dt_dt_m_x*inv_k*m_x + dt_dt_m_y*inv_k*m_y + dt_dt_m_z*inv_k*m_z + dt_inv_k*(dt_m_x*m_x + dt_m_y*m_y + dt_m_z*m_z) + dt_m_x*dt_m_x*inv_k + dt_m_y*dt_m_y*inv_k + dt_m_z*dt_m_z*inv_k,
-        dt_dt_inv_k = -dt_dt_len_k*inv_k*inv_k - 2.0*dt_inv_k*dt_len_k*inv_k,
-        dt_dt_k_y = dt_dt_inv_k*m_y + dt_dt_m_y*inv_k + 2.0*dt_inv_k*dt_m_y,
-        dt_dt_k_z = dt_dt_inv_k*m_z + dt_dt_m_z*inv_k + 2.0*dt_inv_k*dt_m_z,
-        dt_dt_j_x = -dt_dt_i_y*k_z + dt_dt_i_z*k_y + dt_dt_k_y*i_z - dt_dt_k_z*i_y - 2.0*dt_i_y*dt_k_z + 2.0*dt_i_z*dt_k_y,
-        dt_dt_k_x = dt_dt_inv_k*m_x + dt_dt_m_x*inv_k + 2.0*dt_inv_k*dt_m_x,
-        dt_dt_j_y = dt_dt_i_x*k_z - dt_dt_i_z*k_x - dt_dt_k_x*i_z + dt_dt_k_z*i_x + 2.0*dt_i_x*dt_k_z - 2.0*dt_i_z*dt_k_x,
-        dt_dt_j_z = -dt_dt_i_x*k_y + dt_dt_i_y*k_x + dt_dt_k_x*i_y - dt_dt_k_y*i_x - 2.0*dt_i_x*dt_k_y + 2.0*dt_i_y*dt_k_x,
-        dt_dt_C_m1 = dt_dt_j_x*r_p_x + dt_dt_j_y*r_p_y + dt_dt_j_z*r_p_z + dt_dt_r_x*j_x + dt_dt_r_y*j_y + dt_dt_r_z*j_z + 2.0*dt_j_x*dt_r_p_x + 2.0*dt_j_y*dt_r_p_y + 2.0*dt_j_z*dt_r_p_z,
-        dt_dt_C_m2 = dt_dt_k_x*r_p_x + dt_dt_k_y*r_p_y + dt_dt_k_z*r_p_z + dt_dt_r_x*k_x + dt_dt_r_y*k_y + dt_dt_r_z*k_z + 2.0*dt_k_x*dt_r_p_x + 2.0*dt_k_y*dt_r_p_y + 2.0*dt_k_z*dt_r_p_z;
+        dt_dt_C_l = dt_dt_i_x*r_p_x + dt_dt_i_y*r_p_y + dt_dt_i_z*r_p_z + dt_dt_r_x*i_x + dt_dt_r_y*i_y + dt_dt_r_z*i_z + 2.0*dt_i_x*dt_r_p_x + 2.0*dt_i_y*dt_r_p_y + 2.0*dt_i_z*dt_r_p_z;
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_5
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_6
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_8
     /* outputs */
     C[0] = C_l;
     C[1] = C_m1;
@@ -372,21 +302,7 @@ void slide_beam24_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_r
     H[9] = 0.0;
     H[10] = 0.0;
     H[11] = 0.0;
-    H[12] = C_qm1_12 + C_sm1*G_at[6];
-    H[13] = C_qm1_13 + C_sm1*G_at[7];
-    H[14] = C_qm1_14 + C_sm1*G_at[8];
-    H[15] = C_qm1_15 + C_sm1*G_at[9];
-    H[16] = C_qm1_16 + C_sm1*G_at[10];
-    H[17] = C_qm1_17 + C_sm1*G_at[11];
-    H[18] = C_qm1_18;
-    H[19] = C_qm1_19;
-    H[20] = C_qm1_20;
-    H[21] = 0.0;
-    H[22] = 0.0;
-    H[23] = 0.0;
-    H[24] = C_qm1_24 + C_sm1*G_24;
-    H[25] = C_qm1_25 + C_sm1*G_25;
-    H[26] = C_qm1_26 + C_sm1*G_26;
+    SLIDE_PART_OF_OUTPUTS
     H[27] = C_qm2_0 + C_sm2*G_at[0];
     H[28] = C_qm2_1 + C_sm2*G_at[1];
     H[29] = C_qm2_2 + C_sm2*G_at[2];

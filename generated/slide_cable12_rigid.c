@@ -12,16 +12,8 @@
 
 /* centreline at s and rider's point (eq 19): of slide_cable12_rigid_constraint and 2 more */
 #define SLIDE_CABLE12_RIGID_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
+    SLIDE_PART_OF_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
     const fu_real \
-        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
-        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0, \
-        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0, \
         P_r_x1 = xi*(xi*(xi - 2.0) + 1.0), \
         N_r_x1 = P_r_x1*l, \
         P_r_2 = xi*xi*(-2.0*xi + 3.0), \
@@ -48,25 +40,9 @@
         de1_r_y = -P_r_2, \
         de1_r_p_y = de1_r_y + 1.0, \
         de2_r_z = -P_r_2, \
-        de2_r_p_z = de2_r_z + 1.0, \
-        d_th1_arm_x = -A1_y*u[2] + A1_z*u[1], \
-        d_th1_r_p_x = -d_th1_arm_x, \
-        d_th1_arm_y = -A2_y*u[2] + A2_z*u[1], \
-        d_th1_r_p_y = -d_th1_arm_y, \
-        d_th1_arm_z = -A3_y*u[2] + A3_z*u[1], \
-        d_th1_r_p_z = -d_th1_arm_z, \
-        d_th2_arm_x = A1_x*u[2] - A1_z*u[0], \
-        d_th2_r_p_x = -d_th2_arm_x, \
-        d_th2_arm_y = A2_x*u[2] - A2_z*u[0], \
-        d_th2_r_p_y = -d_th2_arm_y, \
-        d_th2_arm_z = A3_x*u[2] - A3_z*u[0], \
-        d_th2_r_p_z = -d_th2_arm_z, \
-        d_th3_arm_x = -A1_x*u[1] + A1_y*u[0], \
-        d_th3_r_p_x = -d_th3_arm_x, \
-        d_th3_arm_y = -A2_x*u[1] + A2_y*u[0], \
-        d_th3_r_p_y = -d_th3_arm_y, \
-        d_th3_arm_z = -A3_x*u[1] + A3_y*u[0], \
-        d_th3_r_p_z = -d_th3_arm_z, \
+        de2_r_p_z = de2_r_z + 1.0; \
+    SLIDE_PART_OF_JACOBIAN_OF_PHI \
+    const fu_real \
         ds_P_r_x1 = inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0), \
         ds_N_r_x1 = ds_P_r_x1*l, \
         ds_P_r_x2 = inv_l*(xi*xi + 2.0*xi*(xi - 1.0)), \
@@ -137,28 +113,7 @@ void slide_cable12_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_
         de1_r_p_y = de1_r_y + 1.0,
         de1_ds_r_y = -ds_P_r_2;
     C_ql[1] = d_ds_r_y_C_l*de1_ds_r_y + de1_r_p_y*i_y;
-    const fu_real
-        C_qm1_1 = d_ds_r_y_C_m1*de1_ds_r_y + de1_r_p_y*j_y,
-        C_qm2_1 = d_ds_r_y_C_m2*de1_ds_r_y + de1_r_p_y*k_y,
-        de2_r_z = -P_r_2,
-        de2_r_p_z = de2_r_z + 1.0,
-        de2_ds_r_z = -ds_P_r_2;
-    C_ql[2] = d_ds_r_z_C_l*de2_ds_r_z + de2_r_p_z*i_z;
-    const fu_real
-        C_qm1_2 = d_ds_r_z_C_m1*de2_ds_r_z + de2_r_p_z*j_z,
-        C_qm2_2 = d_ds_r_z_C_m2*de2_ds_r_z + de2_r_p_z*k_z;
-    C_ql[3] = N_r_x1*i_x + d_ds_r_x_C_l*ds_N_r_x1;
-    const fu_real
-        C_qm1_3 = N_r_x1*j_x + d_ds_r_x_C_m1*ds_N_r_x1,
-        C_qm2_3 = N_r_x1*k_x + d_ds_r_x_C_m2*ds_N_r_x1;
-    C_ql[4] = N_r_x1*i_y + d_ds_r_y_C_l*ds_N_r_x1;
-    const fu_real
-        C_qm1_4 = N_r_x1*j_y + d_ds_r_y_C_m1*ds_N_r_x1,
-        C_qm2_4 = N_r_x1*k_y + d_ds_r_y_C_m2*ds_N_r_x1;
-    C_ql[5] = N_r_x1*i_z + d_ds_r_z_C_l*ds_N_r_x1;
-    const fu_real
-        C_qm1_5 = N_r_x1*j_z + d_ds_r_z_C_m1*ds_N_r_x1,
-        C_qm2_5 = N_r_x1*k_z + d_ds_r_z_C_m2*ds_N_r_x1;
+    SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_3
     C_ql[6] = P_r_2*i_x + d_ds_r_x_C_l*ds_P_r_2;
     const fu_real
         C_qm1_6 = P_r_2*j_x + d_ds_r_x_C_m1*ds_P_r_2,
@@ -239,10 +194,9 @@ void slide_cable12_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_
         dt_ds_N_r_x1 = dt_ds_P_r_x1*l,
         dt_ds_P_r_x2 = dt_xi*inv_l*(6.0*xi - 2.0),
         dt_ds_N_r_x2 = dt_ds_P_r_x2*l,
-        dt_ds_P_r_2 = dt_xi*inv_l*(-12.0*xi + 6.0),
-        dt_ds_r_x = ds_N_r_x1*v[3] + ds_N_r_x2*v[9] - ds_P_r_2*v[0] + ds_P_r_2*v[6] + dt_ds_N_r_x1*e[3] + dt_ds_N_r_x2*e[9] + dt_ds_P_r_2*(-e[0] + e[6]),
-        dt_ds_r_y = ds_N_r_x1*v[4] + ds_N_r_x2*v[10] - ds_P_r_2*v[1] + ds_P_r_2*v[7] + dt_ds_N_r_x1*e[4] + dt_ds_N_r_x2*e[10] + dt_ds_P_r_2*(-e[1] + e[7]),
-        dt_ds_r_z = ds_N_r_x1*v[5] + ds_N_r_x2*v[11] - ds_P_r_2*v[2] + ds_P_r_2*v[8] + dt_ds_N_r_x1*e[5] + dt_ds_N_r_x2*e[11] + dt_ds_P_r_2*(-e[2] + e[8]),
+        dt_ds_P_r_2 = dt_xi*inv_l*(-12.0*xi + 6.0);
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_9
+    const fu_real
         dt_len_i = inv_i*(ds_r_x*dt_ds_r_x + ds_r_y*dt_ds_r_y + ds_r_z*dt_ds_r_z),
         dt_inv_i = -(dt_len_i*inv_i*inv_i),
         dt_i_x = ds_r_x*dt_inv_i + dt_ds_r_x*inv_i,
@@ -267,23 +221,16 @@ void slide_cable12_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_
         dt_r_p_z = -dt_arm_z + dt_gap_z + dt_r_z,
         dt_m_x = -director[1]*dt_i_z + director[2]*dt_i_y,
         dt_m_y = director[0]*dt_i_z - director[2]*dt_i_x,
-        dt_m_z = -director[0]*dt_i_y + director[1]*dt_i_x,
-        dt_len_k = inv_k*(dt_m_x*m_x + dt_m_y*m_y + dt_m_z*m_z),
-        dt_inv_k = -(dt_len_k*inv_k*inv_k),
-        dt_k_y = dt_inv_k*m_y + dt_m_y*inv_k,
-        dt_k_z = dt_inv_k*m_z + dt_m_z*inv_k,
-        dt_j_x = -dt_i_y*k_z + dt_i_z*k_y + dt_k_y*i_z - dt_k_z*i_y,
-        dt_k_x = dt_inv_k*m_x + dt_m_x*inv_k,
-        dt_j_y = dt_i_x*k_z - dt_i_z*k_x - dt_k_x*i_z + dt_k_z*i_x,
-        dt_j_z = -dt_i_x*k_y + dt_i_y*k_x + dt_k_x*i_y - dt_k_y*i_x,
+        dt_m_z = -director[0]*dt_i_y + director[1]*dt_i_x;
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_3
+    const fu_real
         dt_dt_ds_P_r_x1 = 6.0*dt_xi*dt_xi*inv_l,
         dt_dt_ds_N_r_x1 = dt_dt_ds_P_r_x1*l,
         dt_dt_ds_P_r_x2 = 6.0*dt_xi*dt_xi*inv_l,
         dt_dt_ds_N_r_x2 = dt_dt_ds_P_r_x2*l,
-        dt_dt_ds_P_r_2 = -(12.0*dt_xi*dt_xi*inv_l),
-        dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[9] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[6] + dt_ds_P_r_2*(-v[0] + v[6]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[9] + dt_dt_ds_P_r_2*(-e[0] + e[6]),
-        dt_dt_ds_r_y = 2.0*dt_ds_N_r_x1*v[4] + 2.0*dt_ds_N_r_x2*v[10] - dt_ds_P_r_2*v[1] + dt_ds_P_r_2*v[7] + dt_ds_P_r_2*(-v[1] + v[7]) + dt_dt_ds_N_r_x1*e[4] + dt_dt_ds_N_r_x2*e[10] + dt_dt_ds_P_r_2*(-e[1] + e[7]),
-        dt_dt_ds_r_z = 2.0*dt_ds_N_r_x1*v[5] + 2.0*dt_ds_N_r_x2*v[11] - dt_ds_P_r_2*v[2] + dt_ds_P_r_2*v[8] + dt_ds_P_r_2*(-v[2] + v[8]) + dt_dt_ds_N_r_x1*e[5] + dt_dt_ds_N_r_x2*e[11] + dt_dt_ds_P_r_2*(-e[2] + e[8]),
+        dt_dt_ds_P_r_2 = -(12.0*dt_xi*dt_xi*inv_l);
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_10
+    const fu_real
         dt_dt_len_i = ds_r_x*dt_dt_ds_r_x*inv_i + ds_r_y*dt_dt_ds_r_y*inv_i + ds_r_z*dt_dt_ds_r_z*inv_i + dt_ds_r_x*dt_ds_r_x*inv_i + dt_ds_r_y*dt_ds_r_y*inv_i + dt_ds_r_z*dt_ds_r_z*inv_i + dt_inv_i*(ds_r_x*dt_ds_r_x + ds_r_y*dt_ds_r_y + ds_r_z*dt_ds_r_z),
         dt_dt_inv_i = -dt_dt_len_i*inv_i*inv_i - 2.0*dt_inv_i*dt_len_i*inv_i,
         dt_dt_i_x = ds_r_x*dt_dt_inv_i + 2.0*dt_ds_r_x*dt_inv_i + dt_dt_ds_r_x*inv_i,
@@ -306,17 +253,9 @@ void slide_cable12_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_
         dt_dt_C_l = dt_dt_i_x*r_p_x + dt_dt_i_y*r_p_y + dt_dt_i_z*r_p_z + dt_dt_r_p_x*i_x + dt_dt_r_p_y*i_y + dt_dt_r_p_z*i_z + 2.0*dt_i_x*dt_r_p_x + 2.0*dt_i_y*dt_r_p_y + 2.0*dt_i_z*dt_r_p_z,
         dt_dt_m_x = -director[1]*dt_dt_i_z + director[2]*dt_dt_i_y,
         dt_dt_m_y = director[0]*dt_dt_i_z - director[2]*dt_dt_i_x,
-        dt_dt_m_z = -director[0]*dt_dt_i_y + director[1]*dt_dt_i_x,
-        dt_dt_len_k = dt_dt_m_x*inv_k*m_x + dt_dt_m_y*inv_k*m_y + dt_dt_m_z*inv_k*m_z + dt_inv_k*(dt_m_x*m_x + dt_m_y*m_y + dt_m_z*m_z) + dt_m_x*dt_m_x*inv_k + dt_m_y*dt_m_y*inv_k + dt_m_z*dt_m_z*inv_k,
-        dt_dt_inv_k = -dt_dt_len_k*inv_k*inv_k - 2.0*dt_inv_k*dt_len_k*inv_k,
-        dt_dt_k_y = dt_dt_inv_k*m_y + dt_dt_m_y*inv_k + 2.0*dt_inv_k*dt_m_y,
-        dt_dt_k_z = dt_dt_inv_k*m_z + dt_dt_m_z*inv_k + 2.0*dt_inv_k*dt_m_z,
-        dt_dt_j_x = -dt_dt_i_y*k_z + dt_dt_i_z*k_y + dt_dt_k_y*i_z - dt_dt_k_z*i_y - 2.0*dt_i_y*dt_k_z + 2.0*dt_i_z*dt_k_y,
-        dt_dt_k_x = dt_dt_inv_k*m_x + dt_dt_m_x*inv_k + 2.0*dt_inv_k*dt_m_x,
-        dt_dt_j_y = dt_dt_i_x*k_z - dt_dt_i_z*k_x - dt_dt_k_x*i_z + dt_dt_k_z*i_x + 2.0*dt_i_x*dt_k_z - 2.0*dt_i_z*dt_k_x,
-        dt_dt_j_z = -dt_dt_i_x*k_y + dt_dt_i_y*k_x + dt_dt_k_x*i_y - dt_dt_k_y*i_x - 2.0*dt_i_x*dt_k_y + 2.0*dt_i_y*dt_k_x,
-        dt_dt_C_m1 = dt_dt_j_x*r_p_x + dt_dt_j_y*r_p_y + dt_dt_j_z*r_p_z + dt_dt_r_p_x*j_x + dt_dt_r_p_y*j_y + dt_dt_r_p_z*j_z + 2.0*dt_j_x*dt_r_p_x + 2.0*dt_j_y*dt_r_p_y + 2.0*dt_j_z*dt_r_p_z,
-        dt_dt_C_m2 = dt_dt_k_x*r_p_x + dt_dt_k_y*r_p_y + dt_dt_k_z*r_p_z + dt_dt_r_p_x*k_x + dt_dt_r_p_y*k_y + dt_dt_r_p_z*k_z + 2.0*dt_k_x*dt_r_p_x + 2.0*dt_k_y*dt_r_p_y + 2.0*dt_k_z*dt_r_p_z;
+        dt_dt_m_z = -director[0]*dt_dt_i_y + director[1]*dt_dt_i_x;
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_6
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_7
     /* outputs */
     C[0] = C_l;
     C[1] = C_m1;

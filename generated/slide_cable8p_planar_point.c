@@ -117,12 +117,7 @@ void slide_cable8p_planar_point_terms(fu_real l, fu_real x, const fu_real *e, co
         de1_r_p_y = de1_r_y + 1.0,
         de1_ds_r_y = -ds_P_r_2;
     C_ql[1] = d_ds_r_y_C_l*de1_ds_r_y + de1_r_p_y*i_y;
-    const fu_real C_qm_1 = d_ds_r_y_C_m*de1_ds_r_y + de1_r_p_y*i_x;
-    C_ql[2] = N_r_x1*i_x + d_ds_r_x_C_l*ds_N_r_x1;
-    const fu_real C_qm_2 = N_r_x1*d_r_p_x_C_m + d_ds_r_x_C_m*ds_N_r_x1;
-    C_ql[3] = N_r_x1*i_y + d_ds_r_y_C_l*ds_N_r_x1;
-    const fu_real C_qm_3 = N_r_x1*i_x + d_ds_r_y_C_m*ds_N_r_x1;
-    C_ql[4] = P_r_2*i_x + d_ds_r_x_C_l*ds_P_r_2;
+    SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_7
     const fu_real C_qm_4 = P_r_2*d_r_p_x_C_m + d_ds_r_x_C_m*ds_P_r_2;
     C_ql[5] = P_r_2*i_y + d_ds_r_y_C_l*ds_P_r_2;
     const fu_real C_qm_5 = P_r_2*i_x + d_ds_r_y_C_m*ds_P_r_2;
@@ -147,9 +142,9 @@ void slide_cable8p_planar_point_terms(fu_real l, fu_real x, const fu_real *e, co
         dt_ds_N_r_x1 = dt_ds_P_r_x1*l,
         dt_ds_P_r_x2 = dt_xi*inv_l*(6.0*xi - 2.0),
         dt_ds_N_r_x2 = dt_ds_P_r_x2*l,
-        dt_ds_P_r_2 = dt_xi*inv_l*(-12.0*xi + 6.0),
-        dt_ds_r_x = ds_N_r_x1*v[2] + ds_N_r_x2*v[6] - ds_P_r_2*v[0] + ds_P_r_2*v[4] + dt_ds_N_r_x1*e[2] + dt_ds_N_r_x2*e[6] + dt_ds_P_r_2*(-e[0] + e[4]),
-        dt_ds_r_y = ds_N_r_x1*v[3] + ds_N_r_x2*v[7] - ds_P_r_2*v[1] + ds_P_r_2*v[5] + dt_ds_N_r_x1*e[3] + dt_ds_N_r_x2*e[7] + dt_ds_P_r_2*(-e[1] + e[5]),
+        dt_ds_P_r_2 = dt_xi*inv_l*(-12.0*xi + 6.0);
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_17
+    const fu_real
         dt_len_i = inv_i*(ds_r_x*dt_ds_r_x + ds_r_y*dt_ds_r_y),
         dt_inv_i = -(dt_len_i*inv_i*inv_i),
         dt_i_x = ds_r_x*dt_inv_i + dt_ds_r_x*inv_i,
@@ -169,9 +164,9 @@ void slide_cable8p_planar_point_terms(fu_real l, fu_real x, const fu_real *e, co
         dt_dt_ds_N_r_x1 = dt_dt_ds_P_r_x1*l,
         dt_dt_ds_P_r_x2 = 6.0*dt_xi*dt_xi*inv_l,
         dt_dt_ds_N_r_x2 = dt_dt_ds_P_r_x2*l,
-        dt_dt_ds_P_r_2 = -(12.0*dt_xi*dt_xi*inv_l),
-        dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[2] + 2.0*dt_ds_N_r_x2*v[6] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[4] + dt_ds_P_r_2*(-v[0] + v[4]) + dt_dt_ds_N_r_x1*e[2] + dt_dt_ds_N_r_x2*e[6] + dt_dt_ds_P_r_2*(-e[0] + e[4]),
-        dt_dt_ds_r_y = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[7] - dt_ds_P_r_2*v[1] + dt_ds_P_r_2*v[5] + dt_ds_P_r_2*(-v[1] + v[5]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[7] + dt_dt_ds_P_r_2*(-e[1] + e[5]),
+        dt_dt_ds_P_r_2 = -(12.0*dt_xi*dt_xi*inv_l);
+    SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_18
+    const fu_real
         dt_dt_len_i = ds_r_x*dt_dt_ds_r_x*inv_i + ds_r_y*dt_dt_ds_r_y*inv_i + dt_ds_r_x*dt_ds_r_x*inv_i + dt_ds_r_y*dt_ds_r_y*inv_i + dt_inv_i*(ds_r_x*dt_ds_r_x + ds_r_y*dt_ds_r_y),
         dt_dt_inv_i = -dt_dt_len_i*inv_i*inv_i - 2.0*dt_inv_i*dt_len_i*inv_i,
         dt_dt_i_x = ds_r_x*dt_dt_inv_i + 2.0*dt_ds_r_x*dt_inv_i + dt_dt_ds_r_x*inv_i,

@@ -5,6 +5,458 @@
 #ifndef FUNICULAR_SLIDE_STAGES_H
 #define FUNICULAR_SLIDE_STAGES_H
 
+/* part of C_s and C_q (eq 23): of slide_beam24_rigid_terms and 1 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23 \
+    const fu_real \
+        ds_ds_r_x = ds_ds_N_r_x1*e[3] + ds_ds_N_r_x2*e[15] + ds_ds_P_r_2*(-e[0] + e[12]), \
+        ds_ds_r_y = ds_ds_N_r_x1*e[4] + ds_ds_N_r_x2*e[16] + ds_ds_P_r_2*(e[13] - e[1]), \
+        ds_ds_r_z = ds_ds_N_r_x1*e[5] + ds_ds_N_r_x2*e[17] + ds_ds_P_r_2*(e[14] - e[2]), \
+        ds_Py_r_y1 = -inv_l, \
+        ds_n_x = ds_Py_r_y1*e[6] + e[18]*inv_l, \
+        ds_n_y = ds_Py_r_y1*e[7] + e[19]*inv_l, \
+        ds_n_z = ds_Py_r_y1*e[8] + e[20]*inv_l;
+
+/* part of C_s and C_q (eq 23): of slide_beam24_rigid_terms and 1 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_2 \
+    const fu_real \
+        C_sm1 = d_ds_r_x_C_m1*ds_ds_r_x + d_ds_r_y_C_m1*ds_ds_r_y + d_ds_r_z_C_m1*ds_ds_r_z + d_n_x_C_m1*ds_n_x + d_n_y_C_m1*ds_n_y + d_n_z_C_m1*ds_n_z, \
+        C_sm2 = d_ds_r_x_C_m2*ds_ds_r_x + d_ds_r_y_C_m2*ds_ds_r_y + d_ds_r_z_C_m2*ds_ds_r_z + d_n_x_C_m2*ds_n_x + d_n_y_C_m2*ds_n_y + d_n_z_C_m2*ds_n_z;
+
+/* part of C_s and C_q (eq 23): of slide_beam24_rigid_terms and 5 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_3 \
+    const fu_real \
+        C_qm1_1 = d_ds_r_y_C_m1*de1_ds_r_y + de1_r_p_y*j_y, \
+        C_qm2_1 = d_ds_r_y_C_m2*de1_ds_r_y + de1_r_p_y*k_y, \
+        de2_r_z = -P_r_2, \
+        de2_r_p_z = de2_r_z + 1.0, \
+        de2_ds_r_z = -ds_P_r_2; \
+    C_ql[2] = d_ds_r_z_C_l*de2_ds_r_z + de2_r_p_z*i_z; \
+    const fu_real \
+        C_qm1_2 = d_ds_r_z_C_m1*de2_ds_r_z + de2_r_p_z*j_z, \
+        C_qm2_2 = d_ds_r_z_C_m2*de2_ds_r_z + de2_r_p_z*k_z; \
+    C_ql[3] = N_r_x1*i_x + d_ds_r_x_C_l*ds_N_r_x1; \
+    const fu_real \
+        C_qm1_3 = N_r_x1*j_x + d_ds_r_x_C_m1*ds_N_r_x1, \
+        C_qm2_3 = N_r_x1*k_x + d_ds_r_x_C_m2*ds_N_r_x1; \
+    C_ql[4] = N_r_x1*i_y + d_ds_r_y_C_l*ds_N_r_x1; \
+    const fu_real \
+        C_qm1_4 = N_r_x1*j_y + d_ds_r_y_C_m1*ds_N_r_x1, \
+        C_qm2_4 = N_r_x1*k_y + d_ds_r_y_C_m2*ds_N_r_x1; \
+    C_ql[5] = N_r_x1*i_z + d_ds_r_z_C_l*ds_N_r_x1; \
+    const fu_real \
+        C_qm1_5 = N_r_x1*j_z + d_ds_r_z_C_m1*ds_N_r_x1, \
+        C_qm2_5 = N_r_x1*k_z + d_ds_r_z_C_m2*ds_N_r_x1;
+
+/* part of C_s and C_q (eq 23): of slide_beam24_rigid_terms and 1 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_4 \
+    const fu_real \
+        C_qm1_17 = N_r_x2*j_z + d_ds_r_z_C_m1*ds_N_r_x2, \
+        C_qm2_17 = N_r_x2*k_z + d_ds_r_z_C_m2*ds_N_r_x2, \
+        C_qm1_18 = d_n_x_C_m1*xi, \
+        C_qm2_18 = d_n_x_C_m2*xi, \
+        C_qm1_19 = d_n_y_C_m1*xi, \
+        C_qm2_19 = d_n_y_C_m2*xi, \
+        C_qm1_20 = d_n_z_C_m1*xi, \
+        C_qm2_20 = d_n_z_C_m2*xi, \
+        C_ql_24 = -i_x, \
+        C_qm1_24 = -j_x, \
+        C_qm2_24 = -k_x, \
+        C_ql_25 = -i_y, \
+        C_qm1_25 = -j_y, \
+        C_qm2_25 = -k_y, \
+        C_ql_26 = -i_z, \
+        C_qm1_26 = -j_z, \
+        C_qm2_26 = -k_z;
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33 \
+    const fu_real \
+        dt_ds_r_x = ds_N_r_x1*v[3] + ds_N_r_x2*v[15] - ds_P_r_2*v[0] + ds_P_r_2*v[12] + dt_ds_N_r_x1*e[3] + dt_ds_N_r_x2*e[15] + dt_ds_P_r_2*(-e[0] + e[12]), \
+        dt_ds_r_y = ds_N_r_x1*v[4] + ds_N_r_x2*v[16] + ds_P_r_2*v[13] - ds_P_r_2*v[1] + dt_ds_N_r_x1*e[4] + dt_ds_N_r_x2*e[16] + dt_ds_P_r_2*(e[13] - e[1]), \
+        dt_ds_r_z = ds_N_r_x1*v[5] + ds_N_r_x2*v[17] + ds_P_r_2*v[14] - ds_P_r_2*v[2] + dt_ds_N_r_x1*e[5] + dt_ds_N_r_x2*e[17] + dt_ds_P_r_2*(e[14] - e[2]);
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_2 \
+    const fu_real \
+        dt_Py_r_y1 = -dt_xi, \
+        dt_n_y = Py_r_y1*v[7] + dt_Py_r_y1*e[7] + dt_xi*e[19] + v[19]*xi, \
+        dt_n_z = Py_r_y1*v[8] + dt_Py_r_y1*e[8] + dt_xi*e[20] + v[20]*xi, \
+        dt_m_x = dt_i_y*n_z - dt_i_z*n_y - dt_n_y*i_z + dt_n_z*i_y, \
+        dt_n_x = Py_r_y1*v[6] + dt_Py_r_y1*e[6] + dt_xi*e[18] + v[18]*xi, \
+        dt_m_y = -dt_i_x*n_z + dt_i_z*n_x + dt_n_x*i_z - dt_n_z*i_x, \
+        dt_m_z = dt_i_x*n_y - dt_i_y*n_x - dt_n_x*i_y + dt_n_y*i_x;
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 5 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_3 \
+    const fu_real \
+        dt_len_k = inv_k*(dt_m_x*m_x + dt_m_y*m_y + dt_m_z*m_z), \
+        dt_inv_k = -(dt_len_k*inv_k*inv_k), \
+        dt_k_y = dt_inv_k*m_y + dt_m_y*inv_k, \
+        dt_k_z = dt_inv_k*m_z + dt_m_z*inv_k, \
+        dt_j_x = -dt_i_y*k_z + dt_i_z*k_y + dt_k_y*i_z - dt_k_z*i_y, \
+        dt_k_x = dt_inv_k*m_x + dt_m_x*inv_k, \
+        dt_j_y = dt_i_x*k_z - dt_i_z*k_x - dt_k_x*i_z + dt_k_z*i_x, \
+        dt_j_z = -dt_i_x*k_y + dt_i_y*k_x + dt_k_x*i_y - dt_k_y*i_x;
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_4 \
+    const fu_real \
+        dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[15] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[12] + dt_ds_P_r_2*(-v[0] + v[12]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[15] + dt_dt_ds_P_r_2*(-e[0] + e[12]), \
+        dt_dt_ds_r_y = 2.0*dt_ds_N_r_x1*v[4] + 2.0*dt_ds_N_r_x2*v[16] + dt_ds_P_r_2*v[13] - dt_ds_P_r_2*v[1] + dt_ds_P_r_2*(v[13] - v[1]) + dt_dt_ds_N_r_x1*e[4] + dt_dt_ds_N_r_x2*e[16] + dt_dt_ds_P_r_2*(e[13] - e[1]), \
+        dt_dt_ds_r_z = 2.0*dt_ds_N_r_x1*v[5] + 2.0*dt_ds_N_r_x2*v[17] + dt_ds_P_r_2*v[14] - dt_ds_P_r_2*v[2] + dt_ds_P_r_2*(v[14] - v[2]) + dt_dt_ds_N_r_x1*e[5] + dt_dt_ds_N_r_x2*e[17] + dt_dt_ds_P_r_2*(e[14] - e[2]);
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_5 \
+    const fu_real \
+        dt_dt_n_y = 2.0*dt_Py_r_y1*v[7] + 2.0*dt_xi*v[19], \
+        dt_dt_n_z = 2.0*dt_Py_r_y1*v[8] + 2.0*dt_xi*v[20], \
+        dt_dt_m_x = dt_dt_i_y*n_z - dt_dt_i_z*n_y - dt_dt_n_y*i_z + dt_dt_n_z*i_y + 2.0*dt_i_y*dt_n_z - 2.0*dt_i_z*dt_n_y, \
+        dt_dt_n_x = 2.0*dt_Py_r_y1*v[6] + 2.0*dt_xi*v[18], \
+        dt_dt_m_y = -dt_dt_i_x*n_z + dt_dt_i_z*n_x + dt_dt_n_x*i_z - dt_dt_n_z*i_x - 2.0*dt_i_x*dt_n_z + 2.0*dt_i_z*dt_n_x, \
+        dt_dt_m_z = dt_dt_i_x*n_y - dt_dt_i_y*n_x - dt_dt_n_x*i_y + dt_dt_n_y*i_x + 2.0*dt_i_x*dt_n_y - 2.0*dt_i_y*dt_n_x;
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 5 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_6 \
+    const fu_real \
+        dt_dt_len_k = dt_dt_m_x*inv_k*m_x + dt_dt_m_y*inv_k*m_y + dt_dt_m_z*inv_k*m_z + dt_inv_k*(dt_m_x*m_x + dt_m_y*m_y + dt_m_z*m_z) + dt_m_x*dt_m_x*inv_k + dt_m_y*dt_m_y*inv_k + dt_m_z*dt_m_z*inv_k, \
+        dt_dt_inv_k = -dt_dt_len_k*inv_k*inv_k - 2.0*dt_inv_k*dt_len_k*inv_k, \
+        dt_dt_k_y = dt_dt_inv_k*m_y + dt_dt_m_y*inv_k + 2.0*dt_inv_k*dt_m_y, \
+        dt_dt_k_z = dt_dt_inv_k*m_z + dt_dt_m_z*inv_k + 2.0*dt_inv_k*dt_m_z, \
+        dt_dt_j_x = -dt_dt_i_y*k_z + dt_dt_i_z*k_y + dt_dt_k_y*i_z - dt_dt_k_z*i_y - 2.0*dt_i_y*dt_k_z + 2.0*dt_i_z*dt_k_y, \
+        dt_dt_k_x = dt_dt_inv_k*m_x + dt_dt_m_x*inv_k + 2.0*dt_inv_k*dt_m_x, \
+        dt_dt_j_y = dt_dt_i_x*k_z - dt_dt_i_z*k_x - dt_dt_k_x*i_z + dt_dt_k_z*i_x + 2.0*dt_i_x*dt_k_z - 2.0*dt_i_z*dt_k_x, \
+        dt_dt_j_z = -dt_dt_i_x*k_y + dt_dt_i_y*k_x + dt_dt_k_x*i_y - dt_dt_k_y*i_x - 2.0*dt_i_x*dt_k_y + 2.0*dt_i_y*dt_k_x;
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 2 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_7 \
+    const fu_real \
+        dt_dt_C_m1 = dt_dt_j_x*r_p_x + dt_dt_j_y*r_p_y + dt_dt_j_z*r_p_z + dt_dt_r_p_x*j_x + dt_dt_r_p_y*j_y + dt_dt_r_p_z*j_z + 2.0*dt_j_x*dt_r_p_x + 2.0*dt_j_y*dt_r_p_y + 2.0*dt_j_z*dt_r_p_z, \
+        dt_dt_C_m2 = dt_dt_k_x*r_p_x + dt_dt_k_y*r_p_y + dt_dt_k_z*r_p_z + dt_dt_r_p_x*k_x + dt_dt_r_p_y*k_y + dt_dt_r_p_z*k_z + 2.0*dt_k_x*dt_r_p_x + 2.0*dt_k_y*dt_r_p_y + 2.0*dt_k_z*dt_r_p_z;
+
+/* part of outputs: of slide_beam24_rigid_terms and 1 more */
+#define SLIDE_PART_OF_OUTPUTS \
+    H[12] = C_qm1_12 + C_sm1*G_at[6]; \
+    H[13] = C_qm1_13 + C_sm1*G_at[7]; \
+    H[14] = C_qm1_14 + C_sm1*G_at[8]; \
+    H[15] = C_qm1_15 + C_sm1*G_at[9]; \
+    H[16] = C_qm1_16 + C_sm1*G_at[10]; \
+    H[17] = C_qm1_17 + C_sm1*G_at[11]; \
+    H[18] = C_qm1_18; \
+    H[19] = C_qm1_19; \
+    H[20] = C_qm1_20; \
+    H[21] = 0.0; \
+    H[22] = 0.0; \
+    H[23] = 0.0; \
+    H[24] = C_qm1_24 + C_sm1*G_24; \
+    H[25] = C_qm1_25 + C_sm1*G_25; \
+    H[26] = C_qm1_26 + C_sm1*G_26;
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_point_terms and 2 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_8 \
+    const fu_real \
+        dt_dt_C_m1 = dt_dt_j_x*r_p_x + dt_dt_j_y*r_p_y + dt_dt_j_z*r_p_z + dt_dt_r_x*j_x + dt_dt_r_y*j_y + dt_dt_r_z*j_z + 2.0*dt_j_x*dt_r_p_x + 2.0*dt_j_y*dt_r_p_y + 2.0*dt_j_z*dt_r_p_z, \
+        dt_dt_C_m2 = dt_dt_k_x*r_p_x + dt_dt_k_y*r_p_y + dt_dt_k_z*r_p_z + dt_dt_r_x*k_x + dt_dt_r_y*k_y + dt_dt_r_z*k_z + 2.0*dt_k_x*dt_r_p_x + 2.0*dt_k_y*dt_r_p_y + 2.0*dt_k_z*dt_r_p_z;
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable12_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_9 \
+    const fu_real \
+        dt_ds_r_x = ds_N_r_x1*v[3] + ds_N_r_x2*v[9] - ds_P_r_2*v[0] + ds_P_r_2*v[6] + dt_ds_N_r_x1*e[3] + dt_ds_N_r_x2*e[9] + dt_ds_P_r_2*(-e[0] + e[6]), \
+        dt_ds_r_y = ds_N_r_x1*v[4] + ds_N_r_x2*v[10] - ds_P_r_2*v[1] + ds_P_r_2*v[7] + dt_ds_N_r_x1*e[4] + dt_ds_N_r_x2*e[10] + dt_ds_P_r_2*(-e[1] + e[7]), \
+        dt_ds_r_z = ds_N_r_x1*v[5] + ds_N_r_x2*v[11] - ds_P_r_2*v[2] + ds_P_r_2*v[8] + dt_ds_N_r_x1*e[5] + dt_ds_N_r_x2*e[11] + dt_ds_P_r_2*(-e[2] + e[8]);
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable12_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_10 \
+    const fu_real \
+        dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[9] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[6] + dt_ds_P_r_2*(-v[0] + v[6]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[9] + dt_dt_ds_P_r_2*(-e[0] + e[6]), \
+        dt_dt_ds_r_y = 2.0*dt_ds_N_r_x1*v[4] + 2.0*dt_ds_N_r_x2*v[10] - dt_ds_P_r_2*v[1] + dt_ds_P_r_2*v[7] + dt_ds_P_r_2*(-v[1] + v[7]) + dt_dt_ds_N_r_x1*e[4] + dt_dt_ds_N_r_x2*e[10] + dt_dt_ds_P_r_2*(-e[1] + e[7]), \
+        dt_dt_ds_r_z = 2.0*dt_ds_N_r_x1*v[5] + 2.0*dt_ds_N_r_x2*v[11] - dt_ds_P_r_2*v[2] + dt_ds_P_r_2*v[8] + dt_ds_P_r_2*(-v[2] + v[8]) + dt_dt_ds_N_r_x1*e[5] + dt_dt_ds_N_r_x2*e[11] + dt_dt_ds_P_r_2*(-e[2] + e[8]);
+
+/* part of C_s and C_q (eq 23): of slide_cable18_rigid_terms and 1 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_5 \
+    const fu_real \
+        ds_ds_P_r_xx1 = inv_l*inv_l*(xi*xi*(-3.0*xi + 3.0) + 2.0*xi*(xi*(-0.5*xi + 1.5) - 1.5) + 4.0*xi*(xi*(-xi + 1.5) + xi*(-0.5*xi + 1.5) - 1.5) + 1.0), \
+        ds_ds_N_r_xx1 = ds_ds_P_r_xx1*l*l, \
+        ds_ds_P_r_xx2 = inv_l*inv_l*(xi*xi*xi + 6.0*xi*xi*(xi - 1.0) + 6.0*xi*(xi*(0.5*xi - 1.0) + 0.5)), \
+        ds_ds_N_r_xx2 = ds_ds_P_r_xx2*l*l, \
+        ds_ds_P_r_2 = inv_l*inv_l*(12.0*xi*xi*xi + 6.0*xi*xi*(12.0*xi - 15.0) + 6.0*xi*(xi*(6.0*xi - 15.0) + 10.0)), \
+        ds_ds_r_x = ds_ds_N_r_x1*e[3] + ds_ds_N_r_x2*e[12] + ds_ds_N_r_xx1*e[6] + ds_ds_N_r_xx2*e[15] + ds_ds_P_r_2*(-e[0] + e[9]), \
+        ds_ds_r_y = ds_ds_N_r_x1*e[4] + ds_ds_N_r_x2*e[13] + ds_ds_N_r_xx1*e[7] + ds_ds_N_r_xx2*e[16] + ds_ds_P_r_2*(e[10] - e[1]), \
+        ds_ds_r_z = ds_ds_N_r_x1*e[5] + ds_ds_N_r_x2*e[14] + ds_ds_N_r_xx1*e[8] + ds_ds_N_r_xx2*e[17] + ds_ds_P_r_2*(e[11] - e[2]);
+
+/* part of C_s and C_q (eq 23): of slide_cable18_rigid_terms and 1 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_6 \
+    C_ql[6] = N_r_xx1*i_x + d_ds_r_x_C_l*ds_N_r_xx1; \
+    const fu_real \
+        C_qm1_6 = N_r_xx1*j_x + d_ds_r_x_C_m1*ds_N_r_xx1, \
+        C_qm2_6 = N_r_xx1*k_x + d_ds_r_x_C_m2*ds_N_r_xx1; \
+    C_ql[7] = N_r_xx1*i_y + d_ds_r_y_C_l*ds_N_r_xx1; \
+    const fu_real \
+        C_qm1_7 = N_r_xx1*j_y + d_ds_r_y_C_m1*ds_N_r_xx1, \
+        C_qm2_7 = N_r_xx1*k_y + d_ds_r_y_C_m2*ds_N_r_xx1; \
+    C_ql[8] = N_r_xx1*i_z + d_ds_r_z_C_l*ds_N_r_xx1; \
+    const fu_real \
+        C_qm1_8 = N_r_xx1*j_z + d_ds_r_z_C_m1*ds_N_r_xx1, \
+        C_qm2_8 = N_r_xx1*k_z + d_ds_r_z_C_m2*ds_N_r_xx1; \
+    C_ql[9] = P_r_2*i_x + d_ds_r_x_C_l*ds_P_r_2; \
+    const fu_real \
+        C_qm1_9 = P_r_2*j_x + d_ds_r_x_C_m1*ds_P_r_2, \
+        C_qm2_9 = P_r_2*k_x + d_ds_r_x_C_m2*ds_P_r_2; \
+    C_ql[10] = P_r_2*i_y + d_ds_r_y_C_l*ds_P_r_2; \
+    const fu_real \
+        C_qm1_10 = P_r_2*j_y + d_ds_r_y_C_m1*ds_P_r_2, \
+        C_qm2_10 = P_r_2*k_y + d_ds_r_y_C_m2*ds_P_r_2; \
+    C_ql[11] = P_r_2*i_z + d_ds_r_z_C_l*ds_P_r_2; \
+    const fu_real \
+        C_qm1_11 = P_r_2*j_z + d_ds_r_z_C_m1*ds_P_r_2, \
+        C_qm2_11 = P_r_2*k_z + d_ds_r_z_C_m2*ds_P_r_2, \
+        C_ql_12 = N_r_x2*i_x + d_ds_r_x_C_l*ds_N_r_x2, \
+        C_qm1_12 = N_r_x2*j_x + d_ds_r_x_C_m1*ds_N_r_x2, \
+        C_qm2_12 = N_r_x2*k_x + d_ds_r_x_C_m2*ds_N_r_x2, \
+        C_ql_13 = N_r_x2*i_y + d_ds_r_y_C_l*ds_N_r_x2, \
+        C_qm1_13 = N_r_x2*j_y + d_ds_r_y_C_m1*ds_N_r_x2, \
+        C_qm2_13 = N_r_x2*k_y + d_ds_r_y_C_m2*ds_N_r_x2, \
+        C_ql_14 = N_r_x2*i_z + d_ds_r_z_C_l*ds_N_r_x2, \
+        C_qm1_14 = N_r_x2*j_z + d_ds_r_z_C_m1*ds_N_r_x2, \
+        C_qm2_14 = N_r_x2*k_z + d_ds_r_z_C_m2*ds_N_r_x2, \
+        C_ql_15 = N_r_xx2*i_x + d_ds_r_x_C_l*ds_N_r_xx2, \
+        C_qm1_15 = N_r_xx2*j_x + d_ds_r_x_C_m1*ds_N_r_xx2, \
+        C_qm2_15 = N_r_xx2*k_x + d_ds_r_x_C_m2*ds_N_r_xx2, \
+        C_ql_16 = N_r_xx2*i_y + d_ds_r_y_C_l*ds_N_r_xx2, \
+        C_qm1_16 = N_r_xx2*j_y + d_ds_r_y_C_m1*ds_N_r_xx2, \
+        C_qm2_16 = N_r_xx2*k_y + d_ds_r_y_C_m2*ds_N_r_xx2, \
+        C_ql_17 = N_r_xx2*i_z + d_ds_r_z_C_l*ds_N_r_xx2, \
+        C_qm1_17 = N_r_xx2*j_z + d_ds_r_z_C_m1*ds_N_r_xx2, \
+        C_qm2_17 = N_r_xx2*k_z + d_ds_r_z_C_m2*ds_N_r_xx2, \
+        C_ql_18 = -i_x, \
+        C_qm1_18 = -j_x, \
+        C_qm2_18 = -k_x, \
+        C_ql_19 = -i_y, \
+        C_qm1_19 = -j_y, \
+        C_qm2_19 = -k_y, \
+        C_ql_20 = -i_z, \
+        C_qm1_20 = -j_z, \
+        C_qm2_20 = -k_z;
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable18_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_11 \
+    const fu_real \
+        dt_ds_P_r_xx1 = dt_xi*inv_l*(xi*xi*(-3.0*xi + 3.0) + 2.0*xi*(xi*(-0.5*xi + 1.5) - 1.5) + 4.0*xi*(xi*(-xi + 1.5) + xi*(-0.5*xi + 1.5) - 1.5) + 1.0), \
+        dt_ds_N_r_xx1 = dt_ds_P_r_xx1*l*l, \
+        dt_ds_P_r_xx2 = dt_xi*inv_l*(xi*xi*xi + 6.0*xi*xi*(xi - 1.0) + 6.0*xi*(xi*(0.5*xi - 1.0) + 0.5)), \
+        dt_ds_N_r_xx2 = dt_ds_P_r_xx2*l*l, \
+        dt_ds_P_r_2 = dt_xi*inv_l*(12.0*xi*xi*xi + 6.0*xi*xi*(12.0*xi - 15.0) + 6.0*xi*(xi*(6.0*xi - 15.0) + 10.0)), \
+        dt_ds_r_x = ds_N_r_x1*v[3] + ds_N_r_x2*v[12] + ds_N_r_xx1*v[6] + ds_N_r_xx2*v[15] - ds_P_r_2*v[0] + ds_P_r_2*v[9] + dt_ds_N_r_x1*e[3] + dt_ds_N_r_x2*e[12] + dt_ds_N_r_xx1*e[6] + dt_ds_N_r_xx2*e[15] + dt_ds_P_r_2*(-e[0] + e[9]), \
+        dt_ds_r_y = ds_N_r_x1*v[4] + ds_N_r_x2*v[13] + ds_N_r_xx1*v[7] + ds_N_r_xx2*v[16] + ds_P_r_2*v[10] - ds_P_r_2*v[1] + dt_ds_N_r_x1*e[4] + dt_ds_N_r_x2*e[13] + dt_ds_N_r_xx1*e[7] + dt_ds_N_r_xx2*e[16] + dt_ds_P_r_2*(e[10] - e[1]), \
+        dt_ds_r_z = ds_N_r_x1*v[5] + ds_N_r_x2*v[14] + ds_N_r_xx1*v[8] + ds_N_r_xx2*v[17] + ds_P_r_2*v[11] - ds_P_r_2*v[2] + dt_ds_N_r_x1*e[5] + dt_ds_N_r_x2*e[14] + dt_ds_N_r_xx1*e[8] + dt_ds_N_r_xx2*e[17] + dt_ds_P_r_2*(e[11] - e[2]);
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable18_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_12 \
+    const fu_real \
+        dt_P_r_xx1 = dt_xi*(xi*xi*(xi*(-xi + 1.5) + xi*(-0.5*xi + 1.5) - 1.5) + 2.0*xi*(xi*(xi*(-0.5*xi + 1.5) - 1.5) + 0.5)), \
+        dt_N_r_xx1 = dt_P_r_xx1*l*l, \
+        dt_P_r_xx2 = dt_xi*(xi*xi*xi*(xi - 1.0) + 3.0*xi*xi*(xi*(0.5*xi - 1.0) + 0.5)), \
+        dt_N_r_xx2 = dt_P_r_xx2*l*l, \
+        dt_P_r_2 = dt_xi*(xi*xi*xi*(12.0*xi - 15.0) + 3.0*xi*xi*(xi*(6.0*xi - 15.0) + 10.0)), \
+        dt_r_x = N_r_x1*v[3] + N_r_x2*v[12] + N_r_xx1*v[6] + N_r_xx2*v[15] - P_r_2*v[0] + P_r_2*v[9] + dt_N_r_x1*e[3] + dt_N_r_x2*e[12] + dt_N_r_xx1*e[6] + dt_N_r_xx2*e[15] + dt_P_r_2*(-e[0] + e[9]);
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable18_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_13 \
+    const fu_real \
+        dt_dt_ds_P_r_xx1 = dt_xi*dt_xi*inv_l*(-3.0*xi*xi + 6.0*xi*(-xi + 1.5) + 6.0*xi*(-0.5*xi + 1.5) + 6.0*xi*(-3.0*xi + 3.0) - 9.0), \
+        dt_dt_ds_N_r_xx1 = dt_dt_ds_P_r_xx1*l*l, \
+        dt_dt_ds_P_r_xx2 = dt_xi*dt_xi*inv_l*(9.0*xi*xi + 6.0*xi*(0.5*xi - 1.0) + 18.0*xi*(xi - 1.0) + 3.0), \
+        dt_dt_ds_N_r_xx2 = dt_dt_ds_P_r_xx2*l*l, \
+        dt_dt_ds_P_r_2 = dt_xi*dt_xi*inv_l*(108.0*xi*xi + 6.0*xi*(6.0*xi - 15.0) + 18.0*xi*(12.0*xi - 15.0) + 60.0), \
+        dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[12] + 2.0*dt_ds_N_r_xx1*v[6] + 2.0*dt_ds_N_r_xx2*v[15] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[9] + dt_ds_P_r_2*(-v[0] + v[9]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[12] + dt_dt_ds_N_r_xx1*e[6] + dt_dt_ds_N_r_xx2*e[15] + dt_dt_ds_P_r_2*(-e[0] + e[9]), \
+        dt_dt_ds_r_y = 2.0*dt_ds_N_r_x1*v[4] + 2.0*dt_ds_N_r_x2*v[13] + 2.0*dt_ds_N_r_xx1*v[7] + 2.0*dt_ds_N_r_xx2*v[16] + dt_ds_P_r_2*v[10] - dt_ds_P_r_2*v[1] + dt_ds_P_r_2*(v[10] - v[1]) + dt_dt_ds_N_r_x1*e[4] + dt_dt_ds_N_r_x2*e[13] + dt_dt_ds_N_r_xx1*e[7] + dt_dt_ds_N_r_xx2*e[16] + dt_dt_ds_P_r_2*(e[10] - e[1]), \
+        dt_dt_ds_r_z = 2.0*dt_ds_N_r_x1*v[5] + 2.0*dt_ds_N_r_x2*v[14] + 2.0*dt_ds_N_r_xx1*v[8] + 2.0*dt_ds_N_r_xx2*v[17] + dt_ds_P_r_2*v[11] - dt_ds_P_r_2*v[2] + dt_ds_P_r_2*(v[11] - v[2]) + dt_dt_ds_N_r_x1*e[5] + dt_dt_ds_N_r_x2*e[14] + dt_dt_ds_N_r_xx1*e[8] + dt_dt_ds_N_r_xx2*e[17] + dt_dt_ds_P_r_2*(e[11] - e[2]);
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable18_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_14 \
+    const fu_real \
+        dt_dt_P_r_xx1 = dt_xi*dt_xi*(xi*xi*(-3.0*xi + 3.0) + 2.0*xi*(xi*(-0.5*xi + 1.5) - 1.5) + 4.0*xi*(xi*(-xi + 1.5) + xi*(-0.5*xi + 1.5) - 1.5) + 1.0), \
+        dt_dt_N_r_xx1 = dt_dt_P_r_xx1*l*l, \
+        dt_dt_P_r_xx2 = dt_xi*dt_xi*(xi*xi*xi + 6.0*xi*xi*(xi - 1.0) + 6.0*xi*(xi*(0.5*xi - 1.0) + 0.5)), \
+        dt_dt_N_r_xx2 = dt_dt_P_r_xx2*l*l, \
+        dt_dt_P_r_2 = dt_xi*dt_xi*(12.0*xi*xi*xi + 6.0*xi*xi*(12.0*xi - 15.0) + 6.0*xi*(xi*(6.0*xi - 15.0) + 10.0)), \
+        dt_dt_r_x = 2.0*dt_N_r_x1*v[3] + 2.0*dt_N_r_x2*v[12] + 2.0*dt_N_r_xx1*v[6] + 2.0*dt_N_r_xx2*v[15] - dt_P_r_2*v[0] + dt_P_r_2*v[9] + dt_P_r_2*(-v[0] + v[9]) + dt_dt_N_r_x1*e[3] + dt_dt_N_r_x2*e[12] + dt_dt_N_r_xx1*e[6] + dt_dt_N_r_xx2*e[15] + dt_dt_P_r_2*(-e[0] + e[9]);
+
+/* part of gradient of f . phi: of slide_cable18_rigid_residual and 1 more */
+#define SLIDE_PART_OF_GRADIENT_OF_F_PHI \
+    const fu_real \
+        g_6 = N_r_xx1*f[0], \
+        g_7 = N_r_xx1*f[1], \
+        g_8 = N_r_xx1*f[2], \
+        g_9 = P_r_2*f[0], \
+        g_10 = P_r_2*f[1], \
+        g_11 = P_r_2*f[2], \
+        g_12 = N_r_x2*f[0], \
+        g_13 = N_r_x2*f[1], \
+        g_14 = N_r_x2*f[2], \
+        g_15 = N_r_xx2*f[0], \
+        g_16 = N_r_xx2*f[1], \
+        g_17 = N_r_xx2*f[2], \
+        g_18 = -f[0], \
+        g_19 = -f[1], \
+        g_20 = -f[2];
+
+/* part of centreline at s and rider's point (eq 19): of slide_cable18_rigid_tangent and 11 more */
+#define SLIDE_PART_OF_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
+    const fu_real \
+        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
+        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
+        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
+        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
+        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0, \
+        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
+        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
+        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
+        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0;
+
+/* part of derivative of the gradient: of slide_cable18_rigid_tangent and 1 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT \
+    const fu_real \
+        ds_g_6 = ds_N_r_xx1*f[0], \
+        ds_g_7 = ds_N_r_xx1*f[1], \
+        ds_g_8 = ds_N_r_xx1*f[2], \
+        ds_g_9 = ds_P_r_2*f[0], \
+        ds_g_10 = ds_P_r_2*f[1], \
+        ds_g_11 = ds_P_r_2*f[2], \
+        ds_g_12 = ds_N_r_x2*f[0], \
+        ds_g_13 = ds_N_r_x2*f[1], \
+        ds_g_14 = ds_N_r_x2*f[2], \
+        ds_g_15 = ds_N_r_xx2*f[0], \
+        ds_g_16 = ds_N_r_xx2*f[1], \
+        ds_g_17 = ds_N_r_xx2*f[2], \
+        ds_ds_P_r_x1 = inv_l*inv_l*(2.0*xi*xi*(-6.0*xi + 8.0) + 4.0*xi*(xi*(-3.0*xi + 8.0) - 6.0) + xi*(-6.0*xi*xi + 4.0*xi*(-6.0*xi + 8.0) + 2.0*xi*(-3.0*xi + 8.0) - 12.0));
+
+/* part of derivative of the gradient: of slide_cable18_rigid_tangent and 1 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_2 \
+    const fu_real \
+        ds_ds_P_r_xx1 = inv_l*inv_l*(xi*xi*(-3.0*xi + 3.0) + 2.0*xi*(xi*(-0.5*xi + 1.5) - 1.5) + 4.0*xi*(xi*(-xi + 1.5) + xi*(-0.5*xi + 1.5) - 1.5) + 1.0), \
+        ds_ds_N_r_xx1 = ds_ds_P_r_xx1*l*l, \
+        ds_ds_P_r_xx2 = inv_l*inv_l*(xi*xi*xi + 6.0*xi*xi*(xi - 1.0) + 6.0*xi*(xi*(0.5*xi - 1.0) + 0.5)), \
+        ds_ds_N_r_xx2 = ds_ds_P_r_xx2*l*l, \
+        ds_ds_P_r_2 = inv_l*inv_l*(12.0*xi*xi*xi + 6.0*xi*xi*(12.0*xi - 15.0) + 6.0*xi*(xi*(6.0*xi - 15.0) + 10.0)), \
+        ds_ds_r_x = ds_ds_N_r_x1*e[3] + ds_ds_N_r_x2*e[12] + ds_ds_N_r_xx1*e[6] + ds_ds_N_r_xx2*e[15] + ds_ds_P_r_2*(-e[0] + e[9]), \
+        ds_ds_r_y = ds_ds_N_r_x1*e[4] + ds_ds_N_r_x2*e[13] + ds_ds_N_r_xx1*e[7] + ds_ds_N_r_xx2*e[16] + ds_ds_P_r_2*(e[10] - e[1]), \
+        ds_ds_r_z = ds_ds_N_r_x1*e[5] + ds_ds_N_r_x2*e[14] + ds_ds_N_r_xx1*e[8] + ds_ds_N_r_xx2*e[17] + ds_ds_P_r_2*(e[11] - e[2]);
+
+/* part of C_s and C_q (eq 23): of slide_beam12p_planar_rigid_terms and 3 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_7 \
+    const fu_real C_qm_1 = d_ds_r_y_C_m*de1_ds_r_y + de1_r_p_y*i_x; \
+    C_ql[2] = N_r_x1*i_x + d_ds_r_x_C_l*ds_N_r_x1; \
+    const fu_real C_qm_2 = N_r_x1*d_r_p_x_C_m + d_ds_r_x_C_m*ds_N_r_x1; \
+    C_ql[3] = N_r_x1*i_y + d_ds_r_y_C_l*ds_N_r_x1; \
+    const fu_real C_qm_3 = N_r_x1*i_x + d_ds_r_y_C_m*ds_N_r_x1; \
+    C_ql[4] = P_r_2*i_x + d_ds_r_x_C_l*ds_P_r_2;
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam12p_planar_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_15 \
+    const fu_real \
+        dt_ds_r_x = ds_N_r_x1*v[2] + ds_N_r_x2*v[8] - ds_P_r_2*v[0] + ds_P_r_2*v[6] + dt_ds_N_r_x1*e[2] + dt_ds_N_r_x2*e[8] + dt_ds_P_r_2*(-e[0] + e[6]), \
+        dt_ds_r_y = ds_N_r_x1*v[3] + ds_N_r_x2*v[9] - ds_P_r_2*v[1] + ds_P_r_2*v[7] + dt_ds_N_r_x1*e[3] + dt_ds_N_r_x2*e[9] + dt_ds_P_r_2*(-e[1] + e[7]);
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam12p_planar_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_16 \
+    const fu_real \
+        dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[2] + 2.0*dt_ds_N_r_x2*v[8] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[6] + dt_ds_P_r_2*(-v[0] + v[6]) + dt_dt_ds_N_r_x1*e[2] + dt_dt_ds_N_r_x2*e[8] + dt_dt_ds_P_r_2*(-e[0] + e[6]), \
+        dt_dt_ds_r_y = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[9] - dt_ds_P_r_2*v[1] + dt_ds_P_r_2*v[7] + dt_ds_P_r_2*(-v[1] + v[7]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[9] + dt_dt_ds_P_r_2*(-e[1] + e[7]);
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable8p_planar_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_17 \
+    const fu_real \
+        dt_ds_r_x = ds_N_r_x1*v[2] + ds_N_r_x2*v[6] - ds_P_r_2*v[0] + ds_P_r_2*v[4] + dt_ds_N_r_x1*e[2] + dt_ds_N_r_x2*e[6] + dt_ds_P_r_2*(-e[0] + e[4]), \
+        dt_ds_r_y = ds_N_r_x1*v[3] + ds_N_r_x2*v[7] - ds_P_r_2*v[1] + ds_P_r_2*v[5] + dt_ds_N_r_x1*e[3] + dt_ds_N_r_x2*e[7] + dt_ds_P_r_2*(-e[1] + e[5]);
+
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable8p_planar_rigid_terms and 1 more */
+#define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_18 \
+    const fu_real \
+        dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[2] + 2.0*dt_ds_N_r_x2*v[6] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[4] + dt_ds_P_r_2*(-v[0] + v[4]) + dt_dt_ds_N_r_x1*e[2] + dt_dt_ds_N_r_x2*e[6] + dt_dt_ds_P_r_2*(-e[0] + e[4]), \
+        dt_dt_ds_r_y = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[7] - dt_ds_P_r_2*v[1] + dt_ds_P_r_2*v[5] + dt_ds_P_r_2*(-v[1] + v[5]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[7] + dt_dt_ds_P_r_2*(-e[1] + e[5]);
+
+/* part of derivatives of C by r_p, r_x, director: of slide_beam24_rigid_constraint and 11 more */
+#define SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR \
+    const fu_real \
+        d_ds_r_x_len_k = inv_k*(d_ds_r_x_m_x*m_x + d_ds_r_x_m_y*m_y + d_ds_r_x_m_z*m_z), \
+        d_ds_r_x_inv_k = -(d_ds_r_x_len_k*inv_k*inv_k), \
+        d_ds_r_x_k_y = d_ds_r_x_inv_k*m_y + d_ds_r_x_m_y*inv_k, \
+        d_ds_r_x_k_z = d_ds_r_x_inv_k*m_z + d_ds_r_x_m_z*inv_k, \
+        d_ds_r_x_j_x = -d_ds_r_x_i_y*k_z + d_ds_r_x_i_z*k_y + d_ds_r_x_k_y*i_z - d_ds_r_x_k_z*i_y, \
+        d_ds_r_x_k_x = d_ds_r_x_inv_k*m_x + d_ds_r_x_m_x*inv_k, \
+        d_ds_r_x_j_y = d_ds_r_x_i_x*k_z - d_ds_r_x_i_z*k_x - d_ds_r_x_k_x*i_z + d_ds_r_x_k_z*i_x, \
+        d_ds_r_x_j_z = -d_ds_r_x_i_x*k_y + d_ds_r_x_i_y*k_x + d_ds_r_x_k_x*i_y - d_ds_r_x_k_y*i_x, \
+        d_ds_r_x_C_m1 = d_ds_r_x_j_x*r_p_x + d_ds_r_x_j_y*r_p_y + d_ds_r_x_j_z*r_p_z, \
+        d_ds_r_x_C_m2 = d_ds_r_x_k_x*r_p_x + d_ds_r_x_k_y*r_p_y + d_ds_r_x_k_z*r_p_z;
+
+/* part of derivatives of C by r_p, r_x, director: of slide_beam24_rigid_constraint and 11 more */
+#define SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_2 \
+    const fu_real \
+        d_ds_r_y_len_k = inv_k*(d_ds_r_y_m_x*m_x + d_ds_r_y_m_y*m_y + d_ds_r_y_m_z*m_z), \
+        d_ds_r_y_inv_k = -(d_ds_r_y_len_k*inv_k*inv_k), \
+        d_ds_r_y_k_y = d_ds_r_y_inv_k*m_y + d_ds_r_y_m_y*inv_k, \
+        d_ds_r_y_k_z = d_ds_r_y_inv_k*m_z + d_ds_r_y_m_z*inv_k, \
+        d_ds_r_y_j_x = -d_ds_r_y_i_y*k_z + d_ds_r_y_i_z*k_y + d_ds_r_y_k_y*i_z - d_ds_r_y_k_z*i_y, \
+        d_ds_r_y_k_x = d_ds_r_y_inv_k*m_x + d_ds_r_y_m_x*inv_k, \
+        d_ds_r_y_j_y = d_ds_r_y_i_x*k_z - d_ds_r_y_i_z*k_x - d_ds_r_y_k_x*i_z + d_ds_r_y_k_z*i_x, \
+        d_ds_r_y_j_z = -d_ds_r_y_i_x*k_y + d_ds_r_y_i_y*k_x + d_ds_r_y_k_x*i_y - d_ds_r_y_k_y*i_x, \
+        d_ds_r_y_C_m1 = d_ds_r_y_j_x*r_p_x + d_ds_r_y_j_y*r_p_y + d_ds_r_y_j_z*r_p_z, \
+        d_ds_r_y_C_m2 = d_ds_r_y_k_x*r_p_x + d_ds_r_y_k_y*r_p_y + d_ds_r_y_k_z*r_p_z, \
+        d_ds_r_z_len_i = ds_r_z*inv_i, \
+        d_ds_r_z_inv_i = -(d_ds_r_z_len_i*inv_i*inv_i), \
+        d_ds_r_z_i_x = d_ds_r_z_inv_i*ds_r_x, \
+        d_ds_r_z_i_y = d_ds_r_z_inv_i*ds_r_y, \
+        d_ds_r_z_i_z = d_ds_r_z_inv_i*ds_r_z + inv_i, \
+        d_ds_r_z_C_l = d_ds_r_z_i_x*r_p_x + d_ds_r_z_i_y*r_p_y + d_ds_r_z_i_z*r_p_z;
+
+/* part of derivatives of C by r_p, r_x, director: of slide_beam24_rigid_constraint and 11 more */
+#define SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_3 \
+    const fu_real \
+        d_ds_r_z_len_k = inv_k*(d_ds_r_z_m_x*m_x + d_ds_r_z_m_y*m_y + d_ds_r_z_m_z*m_z), \
+        d_ds_r_z_inv_k = -(d_ds_r_z_len_k*inv_k*inv_k), \
+        d_ds_r_z_k_y = d_ds_r_z_inv_k*m_y + d_ds_r_z_m_y*inv_k, \
+        d_ds_r_z_k_z = d_ds_r_z_inv_k*m_z + d_ds_r_z_m_z*inv_k, \
+        d_ds_r_z_j_x = -d_ds_r_z_i_y*k_z + d_ds_r_z_i_z*k_y + d_ds_r_z_k_y*i_z - d_ds_r_z_k_z*i_y, \
+        d_ds_r_z_k_x = d_ds_r_z_inv_k*m_x + d_ds_r_z_m_x*inv_k, \
+        d_ds_r_z_j_y = d_ds_r_z_i_x*k_z - d_ds_r_z_i_z*k_x - d_ds_r_z_k_x*i_z + d_ds_r_z_k_z*i_x, \
+        d_ds_r_z_j_z = -d_ds_r_z_i_x*k_y + d_ds_r_z_i_y*k_x + d_ds_r_z_k_x*i_y - d_ds_r_z_k_y*i_x, \
+        d_ds_r_z_C_m1 = d_ds_r_z_j_x*r_p_x + d_ds_r_z_j_y*r_p_y + d_ds_r_z_j_z*r_p_z, \
+        d_ds_r_z_C_m2 = d_ds_r_z_k_x*r_p_x + d_ds_r_z_k_y*r_p_y + d_ds_r_z_k_z*r_p_z;
+
+/* part of Jacobian of phi: of slide_beam24_rigid_residual and 5 more */
+#define SLIDE_PART_OF_JACOBIAN_OF_PHI \
+    const fu_real \
+        d_th1_arm_x = -A1_y*u[2] + A1_z*u[1], \
+        d_th1_r_p_x = -d_th1_arm_x, \
+        d_th1_arm_y = -A2_y*u[2] + A2_z*u[1], \
+        d_th1_r_p_y = -d_th1_arm_y, \
+        d_th1_arm_z = -A3_y*u[2] + A3_z*u[1], \
+        d_th1_r_p_z = -d_th1_arm_z, \
+        d_th2_arm_x = A1_x*u[2] - A1_z*u[0], \
+        d_th2_r_p_x = -d_th2_arm_x, \
+        d_th2_arm_y = A2_x*u[2] - A2_z*u[0], \
+        d_th2_r_p_y = -d_th2_arm_y, \
+        d_th2_arm_z = A3_x*u[2] - A3_z*u[0], \
+        d_th2_r_p_z = -d_th2_arm_z, \
+        d_th3_arm_x = -A1_x*u[1] + A1_y*u[0], \
+        d_th3_r_p_x = -d_th3_arm_x, \
+        d_th3_arm_y = -A2_x*u[1] + A2_y*u[0], \
+        d_th3_r_p_y = -d_th3_arm_y, \
+        d_th3_arm_z = -A3_x*u[1] + A3_y*u[0], \
+        d_th3_r_p_z = -d_th3_arm_z;
+
+/* part of Jacobian of phi: of slide_cable18_rigid_residual and 3 more */
+#define SLIDE_PART_OF_JACOBIAN_OF_PHI_2 \
+    const fu_real \
+        ds_P_r_xx1 = inv_l*(xi*xi*(xi*(-xi + 1.5) + xi*(-0.5*xi + 1.5) - 1.5) + 2.0*xi*(xi*(xi*(-0.5*xi + 1.5) - 1.5) + 0.5)), \
+        ds_N_r_xx1 = ds_P_r_xx1*l*l, \
+        ds_P_r_xx2 = inv_l*(xi*xi*xi*(xi - 1.0) + 3.0*xi*xi*(xi*(0.5*xi - 1.0) + 0.5)), \
+        ds_N_r_xx2 = ds_P_r_xx2*l*l, \
+        ds_P_r_2 = inv_l*(xi*xi*xi*(12.0*xi - 15.0) + 3.0*xi*xi*(xi*(6.0*xi - 15.0) + 10.0)), \
+        ds_r_x = ds_N_r_x1*e[3] + ds_N_r_x2*e[12] + ds_N_r_xx1*e[6] + ds_N_r_xx2*e[15] + ds_P_r_2*(-e[0] + e[9]), \
+        ds_r_y = ds_N_r_x1*e[4] + ds_N_r_x2*e[13] + ds_N_r_xx1*e[7] + ds_N_r_xx2*e[16] + ds_P_r_2*(e[10] - e[1]), \
+        ds_r_z = ds_N_r_x1*e[5] + ds_N_r_x2*e[14] + ds_N_r_xx1*e[8] + ds_N_r_xx2*e[17] + ds_P_r_2*(e[11] - e[2]);
+
 /* tangent and director: of slide_beam24_rigid_constraint and 3 more */
 #define SLIDE_TANGENT_AND_DIRECTOR \
     const fu_real \
@@ -52,17 +504,9 @@
         d_ds_r_x_C_l = d_ds_r_x_i_x*r_p_x + d_ds_r_x_i_y*r_p_y + d_ds_r_x_i_z*r_p_z, \
         d_ds_r_x_m_x = d_ds_r_x_i_y*n_z - d_ds_r_x_i_z*n_y, \
         d_ds_r_x_m_y = -d_ds_r_x_i_x*n_z + d_ds_r_x_i_z*n_x, \
-        d_ds_r_x_m_z = d_ds_r_x_i_x*n_y - d_ds_r_x_i_y*n_x, \
-        d_ds_r_x_len_k = inv_k*(d_ds_r_x_m_x*m_x + d_ds_r_x_m_y*m_y + d_ds_r_x_m_z*m_z), \
-        d_ds_r_x_inv_k = -(d_ds_r_x_len_k*inv_k*inv_k), \
-        d_ds_r_x_k_y = d_ds_r_x_inv_k*m_y + d_ds_r_x_m_y*inv_k, \
-        d_ds_r_x_k_z = d_ds_r_x_inv_k*m_z + d_ds_r_x_m_z*inv_k, \
-        d_ds_r_x_j_x = -d_ds_r_x_i_y*k_z + d_ds_r_x_i_z*k_y + d_ds_r_x_k_y*i_z - d_ds_r_x_k_z*i_y, \
-        d_ds_r_x_k_x = d_ds_r_x_inv_k*m_x + d_ds_r_x_m_x*inv_k, \
-        d_ds_r_x_j_y = d_ds_r_x_i_x*k_z - d_ds_r_x_i_z*k_x - d_ds_r_x_k_x*i_z + d_ds_r_x_k_z*i_x, \
-        d_ds_r_x_j_z = -d_ds_r_x_i_x*k_y + d_ds_r_x_i_y*k_x + d_ds_r_x_k_x*i_y - d_ds_r_x_k_y*i_x, \
-        d_ds_r_x_C_m1 = d_ds_r_x_j_x*r_p_x + d_ds_r_x_j_y*r_p_y + d_ds_r_x_j_z*r_p_z, \
-        d_ds_r_x_C_m2 = d_ds_r_x_k_x*r_p_x + d_ds_r_x_k_y*r_p_y + d_ds_r_x_k_z*r_p_z, \
+        d_ds_r_x_m_z = d_ds_r_x_i_x*n_y - d_ds_r_x_i_y*n_x; \
+    SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR \
+    const fu_real \
         d_ds_r_y_len_i = ds_r_y*inv_i, \
         d_ds_r_y_inv_i = -(d_ds_r_y_len_i*inv_i*inv_i), \
         d_ds_r_y_i_x = d_ds_r_y_inv_i*ds_r_x, \
@@ -71,36 +515,14 @@
         d_ds_r_y_C_l = d_ds_r_y_i_x*r_p_x + d_ds_r_y_i_y*r_p_y + d_ds_r_y_i_z*r_p_z, \
         d_ds_r_y_m_x = d_ds_r_y_i_y*n_z - d_ds_r_y_i_z*n_y, \
         d_ds_r_y_m_y = -d_ds_r_y_i_x*n_z + d_ds_r_y_i_z*n_x, \
-        d_ds_r_y_m_z = d_ds_r_y_i_x*n_y - d_ds_r_y_i_y*n_x, \
-        d_ds_r_y_len_k = inv_k*(d_ds_r_y_m_x*m_x + d_ds_r_y_m_y*m_y + d_ds_r_y_m_z*m_z), \
-        d_ds_r_y_inv_k = -(d_ds_r_y_len_k*inv_k*inv_k), \
-        d_ds_r_y_k_y = d_ds_r_y_inv_k*m_y + d_ds_r_y_m_y*inv_k, \
-        d_ds_r_y_k_z = d_ds_r_y_inv_k*m_z + d_ds_r_y_m_z*inv_k, \
-        d_ds_r_y_j_x = -d_ds_r_y_i_y*k_z + d_ds_r_y_i_z*k_y + d_ds_r_y_k_y*i_z - d_ds_r_y_k_z*i_y, \
-        d_ds_r_y_k_x = d_ds_r_y_inv_k*m_x + d_ds_r_y_m_x*inv_k, \
-        d_ds_r_y_j_y = d_ds_r_y_i_x*k_z - d_ds_r_y_i_z*k_x - d_ds_r_y_k_x*i_z + d_ds_r_y_k_z*i_x, \
-        d_ds_r_y_j_z = -d_ds_r_y_i_x*k_y + d_ds_r_y_i_y*k_x + d_ds_r_y_k_x*i_y - d_ds_r_y_k_y*i_x, \
-        d_ds_r_y_C_m1 = d_ds_r_y_j_x*r_p_x + d_ds_r_y_j_y*r_p_y + d_ds_r_y_j_z*r_p_z, \
-        d_ds_r_y_C_m2 = d_ds_r_y_k_x*r_p_x + d_ds_r_y_k_y*r_p_y + d_ds_r_y_k_z*r_p_z, \
-        d_ds_r_z_len_i = ds_r_z*inv_i, \
-        d_ds_r_z_inv_i = -(d_ds_r_z_len_i*inv_i*inv_i), \
-        d_ds_r_z_i_x = d_ds_r_z_inv_i*ds_r_x, \
-        d_ds_r_z_i_y = d_ds_r_z_inv_i*ds_r_y, \
-        d_ds_r_z_i_z = d_ds_r_z_inv_i*ds_r_z + inv_i, \
-        d_ds_r_z_C_l = d_ds_r_z_i_x*r_p_x + d_ds_r_z_i_y*r_p_y + d_ds_r_z_i_z*r_p_z, \
+        d_ds_r_y_m_z = d_ds_r_y_i_x*n_y - d_ds_r_y_i_y*n_x; \
+    SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_2 \
+    const fu_real \
         d_ds_r_z_m_x = d_ds_r_z_i_y*n_z - d_ds_r_z_i_z*n_y, \
         d_ds_r_z_m_y = -d_ds_r_z_i_x*n_z + d_ds_r_z_i_z*n_x, \
-        d_ds_r_z_m_z = d_ds_r_z_i_x*n_y - d_ds_r_z_i_y*n_x, \
-        d_ds_r_z_len_k = inv_k*(d_ds_r_z_m_x*m_x + d_ds_r_z_m_y*m_y + d_ds_r_z_m_z*m_z), \
-        d_ds_r_z_inv_k = -(d_ds_r_z_len_k*inv_k*inv_k), \
-        d_ds_r_z_k_y = d_ds_r_z_inv_k*m_y + d_ds_r_z_m_y*inv_k, \
-        d_ds_r_z_k_z = d_ds_r_z_inv_k*m_z + d_ds_r_z_m_z*inv_k, \
-        d_ds_r_z_j_x = -d_ds_r_z_i_y*k_z + d_ds_r_z_i_z*k_y + d_ds_r_z_k_y*i_z - d_ds_r_z_k_z*i_y, \
-        d_ds_r_z_k_x = d_ds_r_z_inv_k*m_x + d_ds_r_z_m_x*inv_k, \
-        d_ds_r_z_j_y = d_ds_r_z_i_x*k_z - d_ds_r_z_i_z*k_x - d_ds_r_z_k_x*i_z + d_ds_r_z_k_z*i_x, \
-        d_ds_r_z_j_z = -d_ds_r_z_i_x*k_y + d_ds_r_z_i_y*k_x + d_ds_r_z_k_x*i_y - d_ds_r_z_k_y*i_x, \
-        d_ds_r_z_C_m1 = d_ds_r_z_j_x*r_p_x + d_ds_r_z_j_y*r_p_y + d_ds_r_z_j_z*r_p_z, \
-        d_ds_r_z_C_m2 = d_ds_r_z_k_x*r_p_x + d_ds_r_z_k_y*r_p_y + d_ds_r_z_k_z*r_p_z, \
+        d_ds_r_z_m_z = d_ds_r_z_i_x*n_y - d_ds_r_z_i_y*n_x; \
+    SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_3 \
+    const fu_real \
         d_n_x_m_z = -i_y, \
         d_n_x_len_k = inv_k*(d_n_x_m_z*m_z + i_z*m_y), \
         d_n_x_inv_k = -(d_n_x_len_k*inv_k*inv_k), \
@@ -173,16 +595,8 @@
 
 /* centreline at s and rider's point (eq 19): of slide_beam24_rigid_tangent and 1 more */
 #define SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
+    SLIDE_PART_OF_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
     const fu_real \
-        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
-        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0, \
-        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0, \
         P_r_x1 = xi*(xi*(xi - 2.0) + 1.0), \
         N_r_x1 = P_r_x1*l, \
         P_r_2 = xi*xi*(-2.0*xi + 3.0), \
@@ -295,17 +709,9 @@
         d_ds_r_x_C_l = d_ds_r_x_i_x*r_p_x + d_ds_r_x_i_y*r_p_y + d_ds_r_x_i_z*r_p_z, \
         d_ds_r_x_m_x = d_ds_r_x_i_y*director[2] - d_ds_r_x_i_z*director[1], \
         d_ds_r_x_m_y = -d_ds_r_x_i_x*director[2] + d_ds_r_x_i_z*director[0], \
-        d_ds_r_x_m_z = d_ds_r_x_i_x*director[1] - d_ds_r_x_i_y*director[0], \
-        d_ds_r_x_len_k = inv_k*(d_ds_r_x_m_x*m_x + d_ds_r_x_m_y*m_y + d_ds_r_x_m_z*m_z), \
-        d_ds_r_x_inv_k = -(d_ds_r_x_len_k*inv_k*inv_k), \
-        d_ds_r_x_k_y = d_ds_r_x_inv_k*m_y + d_ds_r_x_m_y*inv_k, \
-        d_ds_r_x_k_z = d_ds_r_x_inv_k*m_z + d_ds_r_x_m_z*inv_k, \
-        d_ds_r_x_j_x = -d_ds_r_x_i_y*k_z + d_ds_r_x_i_z*k_y + d_ds_r_x_k_y*i_z - d_ds_r_x_k_z*i_y, \
-        d_ds_r_x_k_x = d_ds_r_x_inv_k*m_x + d_ds_r_x_m_x*inv_k, \
-        d_ds_r_x_j_y = d_ds_r_x_i_x*k_z - d_ds_r_x_i_z*k_x - d_ds_r_x_k_x*i_z + d_ds_r_x_k_z*i_x, \
-        d_ds_r_x_j_z = -d_ds_r_x_i_x*k_y + d_ds_r_x_i_y*k_x + d_ds_r_x_k_x*i_y - d_ds_r_x_k_y*i_x, \
-        d_ds_r_x_C_m1 = d_ds_r_x_j_x*r_p_x + d_ds_r_x_j_y*r_p_y + d_ds_r_x_j_z*r_p_z, \
-        d_ds_r_x_C_m2 = d_ds_r_x_k_x*r_p_x + d_ds_r_x_k_y*r_p_y + d_ds_r_x_k_z*r_p_z, \
+        d_ds_r_x_m_z = d_ds_r_x_i_x*director[1] - d_ds_r_x_i_y*director[0]; \
+    SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR \
+    const fu_real \
         d_ds_r_y_len_i = ds_r_y*inv_i, \
         d_ds_r_y_inv_i = -(d_ds_r_y_len_i*inv_i*inv_i), \
         d_ds_r_y_i_x = d_ds_r_y_inv_i*ds_r_x, \
@@ -314,36 +720,13 @@
         d_ds_r_y_C_l = d_ds_r_y_i_x*r_p_x + d_ds_r_y_i_y*r_p_y + d_ds_r_y_i_z*r_p_z, \
         d_ds_r_y_m_x = d_ds_r_y_i_y*director[2] - d_ds_r_y_i_z*director[1], \
         d_ds_r_y_m_y = -d_ds_r_y_i_x*director[2] + d_ds_r_y_i_z*director[0], \
-        d_ds_r_y_m_z = d_ds_r_y_i_x*director[1] - d_ds_r_y_i_y*director[0], \
-        d_ds_r_y_len_k = inv_k*(d_ds_r_y_m_x*m_x + d_ds_r_y_m_y*m_y + d_ds_r_y_m_z*m_z), \
-        d_ds_r_y_inv_k = -(d_ds_r_y_len_k*inv_k*inv_k), \
-        d_ds_r_y_k_y = d_ds_r_y_inv_k*m_y + d_ds_r_y_m_y*inv_k, \
-        d_ds_r_y_k_z = d_ds_r_y_inv_k*m_z + d_ds_r_y_m_z*inv_k, \
-        d_ds_r_y_j_x = -d_ds_r_y_i_y*k_z + d_ds_r_y_i_z*k_y + d_ds_r_y_k_y*i_z - d_ds_r_y_k_z*i_y, \
-        d_ds_r_y_k_x = d_ds_r_y_inv_k*m_x + d_ds_r_y_m_x*inv_k, \
-        d_ds_r_y_j_y = d_ds_r_y_i_x*k_z - d_ds_r_y_i_z*k_x - d_ds_r_y_k_x*i_z + d_ds_r_y_k_z*i_x, \
-        d_ds_r_y_j_z = -d_ds_r_y_i_x*k_y + d_ds_r_y_i_y*k_x + d_ds_r_y_k_x*i_y - d_ds_r_y_k_y*i_x, \
-        d_ds_r_y_C_m1 = d_ds_r_y_j_x*r_p_x + d_ds_r_y_j_y*r_p_y + d_ds_r_y_j_z*r_p_z, \
-        d_ds_r_y_C_m2 = d_ds_r_y_k_x*r_p_x + d_ds_r_y_k_y*r_p_y + d_ds_r_y_k_z*r_p_z, \
-        d_ds_r_z_len_i = ds_r_z*inv_i, \
-        d_ds_r_z_inv_i = -(d_ds_r_z_len_i*inv_i*inv_i), \
-        d_ds_r_z_i_x = d_ds_r_z_inv_i*ds_r_x, \
-        d_ds_r_z_i_y = d_ds_r_z_inv_i*ds_r_y, \
-        d_ds_r_z_i_z = d_ds_r_z_inv_i*ds_r_z + inv_i, \
-        d_ds_r_z_C_l = d_ds_r_z_i_x*r_p_x + d_ds_r_z_i_y*r_p_y + d_ds_r_z_i_z*r_p_z, \
+        d_ds_r_y_m_z = d_ds_r_y_i_x*director[1] - d_ds_r_y_i_y*director[0]; \
+    SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_2 \
+    const fu_real \
         d_ds_r_z_m_x = d_ds_r_z_i_y*director[2] - d_ds_r_z_i_z*director[1], \
         d_ds_r_z_m_y = -d_ds_r_z_i_x*director[2] + d_ds_r_z_i_z*director[0], \
-        d_ds_r_z_m_z = d_ds_r_z_i_x*director[1] - d_ds_r_z_i_y*director[0], \
-        d_ds_r_z_len_k = inv_k*(d_ds_r_z_m_x*m_x + d_ds_r_z_m_y*m_y + d_ds_r_z_m_z*m_z), \
-        d_ds_r_z_inv_k = -(d_ds_r_z_len_k*inv_k*inv_k), \
-        d_ds_r_z_k_y = d_ds_r_z_inv_k*m_y + d_ds_r_z_m_y*inv_k, \
-        d_ds_r_z_k_z = d_ds_r_z_inv_k*m_z + d_ds_r_z_m_z*inv_k, \
-        d_ds_r_z_j_x = -d_ds_r_z_i_y*k_z + d_ds_r_z_i_z*k_y + d_ds_r_z_k_y*i_z - d_ds_r_z_k_z*i_y, \
-        d_ds_r_z_k_x = d_ds_r_z_inv_k*m_x + d_ds_r_z_m_x*inv_k, \
-        d_ds_r_z_j_y = d_ds_r_z_i_x*k_z - d_ds_r_z_i_z*k_x - d_ds_r_z_k_x*i_z + d_ds_r_z_k_z*i_x, \
-        d_ds_r_z_j_z = -d_ds_r_z_i_x*k_y + d_ds_r_z_i_y*k_x + d_ds_r_z_k_x*i_y - d_ds_r_z_k_y*i_x, \
-        d_ds_r_z_C_m1 = d_ds_r_z_j_x*r_p_x + d_ds_r_z_j_y*r_p_y + d_ds_r_z_j_z*r_p_z, \
-        d_ds_r_z_C_m2 = d_ds_r_z_k_x*r_p_x + d_ds_r_z_k_y*r_p_y + d_ds_r_z_k_z*r_p_z;
+        d_ds_r_z_m_z = d_ds_r_z_i_x*director[1] - d_ds_r_z_i_y*director[0]; \
+    SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_3
 
 /* C_s, eq 23: of slide_cable12_rigid_constraint and 1 more */
 #define SLIDE_C_S_EQ_23_2 \

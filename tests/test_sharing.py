@@ -7,6 +7,9 @@ import pytest
 from funicular.derive import catalogue
 from funicular.derive.codegen import rendering as emit
 from funicular.derive.codegen import sharing
+from funicular.derive.codegen.family import Family
+from funicular.derive.codegen.loops import Section
+from funicular.derive.codegen.repeats import Item
 from funicular.derive.laws.kernels import Kernels
 from written_out import stages, written_out
 
@@ -17,6 +20,12 @@ HEADER = "cable8p_stages.h"
 @pytest.fixture(scope="module")
 def derived() -> list[emit.Derived]:
     return [emit.derive(family) for family in catalogue.named(NAMES).values()]
+
+
+def one_by_one(text: str) -> str:
+    """The text with each constant declared by itself: where a list of them ends makes no difference."""
+    lists = r"const fu_real\n((?:        .*,\n)*        .*;)"
+    return re.sub(lists, lambda found: re.sub(r" {8}(.*)[,;]", r"    const fu_real \1;", found[1]).lstrip(), text)
 
 
 def test_a_kernel_is_what_it_is_with_its_own_stages(derived, monkeypatch):
@@ -30,7 +39,7 @@ def test_a_kernel_is_what_it_is_with_its_own_stages(derived, monkeypatch):
         inside = written_out(shared[f"{name}.c"], stages(shared[HEADER]))
         inside = re.sub(r"^(    )?/\* .* \*/\n+(?=/\*|#ifndef|FU_KERNEL|void|    )", "", inside, flags=re.MULTILINE)
         kernels = r"^[A-Z_ ]*void .*?^}$"
-        found = [re.findall(kernels, text, re.MULTILINE | re.DOTALL) for text in (inside, without_titles)]
+        found = [re.findall(kernels, one_by_one(text), re.MULTILINE | re.DOTALL) for text in (inside, without_titles)]
         assert found[0] == found[1]
         assert len(found[0]) == len(next(d for d in derived if d.family.name == name).programs)
 
@@ -43,6 +52,26 @@ def test_a_stage_stands_once_and_is_used_twice_at_least(derived):
     assert all(len(re.findall(rf"^    {name}$", text, re.MULTILINE)) >= 2 for name in defined)
     bodies = [lines for name in files for lines in stages(files[name]).values()]
     assert len(set(bodies)) == len(bodies)
+
+
+def trial(kernels: dict[str, str]) -> tuple[dict, str]:
+    """Sections of one stage with these assignments to a, b, c, ... by kernel, after sharing; and the macros' text."""
+    family = Family("trial", "", list, ())
+    sections = {kernel: [Section("stage", [], [Item(f"{name} = x", name) for name in names])]
+                for kernel, names in kernels.items()}
+    found = sharing.share({"trial": family}, {"trial": sections})
+    return {kernel: " ".join(" ".join(of[0].lines).replace("const fu_real", "").replace(" = x", "").split())
+            for kernel, of in sections.items()}, "\n".join(stage.text for stage in found.get("trial", []))
+
+
+def test_a_part_that_stages_have_alike_is_cut_where_the_kernels_part(monkeypatch):
+    monkeypatch.setattr(sharing, "LEAST", len("const fu_real a = x;") + 1)
+    one, two, three = (f"TRIAL_PART_OF_STAGE{number}" for number in ("", "_2", "_3"))
+    kernels, macros = trial({"k": "abcdefg", "l": "abcdz", "m": "cdefy"})
+    assert kernels == {"k": f"{one} {two} {three} g;", "l": f"{one} {two} z;", "m": f"{two} {three} y;"}
+    assert f"/* part of stage: of k and 2 more */\n#define {two} " in macros
+    kernels, _ = trial({"k": "abcdefg", "l": "abcdz", "m": "cdefy", "n": "-dc"})  # c and d the other way round
+    assert kernels == {"k": f"{one} c, d; {two} g;", "l": f"{one} c, d, z;", "m": f"c, d; {two} y;", "n": "-, d, c;"}
 
 
 def test_families_of_no_group_have_no_header(derived):

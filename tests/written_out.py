@@ -18,8 +18,10 @@ def stages(text: str) -> dict[str, str]:
 
 def written_out(text: str, known: dict[str, str]) -> str:
     """Return a file's text with every stage in its place: its own, and those of a header."""
-    known = known | stages(text)
-    return re.sub(r"^    ([A-Z]\w*)$", lambda found: known[found[1]], STAGE.sub("", text), flags=re.MULTILINE)
+    known, text = known | stages(text), STAGE.sub("", text)
+    while (inside := re.sub(r"^    ([A-Z]\w*)$", lambda found: known[found[1]], text, flags=re.MULTILINE)) != text:
+        text = inside  # a stage may name a part of it
+    return text
 
 
 def copy_written_out(folder: Path) -> None:

@@ -38,10 +38,30 @@ Small kernels gain little, and compilers may make a few per cent more instructio
 
 @dataclass
 class Section:
-    """A titled part of a kernel: lines of C."""
+    """A titled part of a kernel: lines that declare arrays, assignments."""
 
     title: str
-    lines: list[str]
+    declared: list[str]
+    items: list[Item]
+
+    @property
+    def lines(self) -> list[str]:
+        """Return the lines of C."""
+        return [*self.declared, *lines_of(self.items)]
+
+
+def lines_of(items: Iterable[Item]) -> list[str]:
+    """Return the lines of C of assignments: constants in lists, all else line by line."""
+    lines: list[str] = []
+    for constant, run in groupby(items, key=lambda item: bool(item.constant)):
+        texts = [item.text for item in run] if constant else []
+        if len(texts) == 1:
+            lines.append(f"const fu_real {texts[0]};")
+        elif constant:
+            lines += ["const fu_real", *(f"    {text}," for text in texts[:-1]), f"    {texts[-1]};"]
+        for item in run if not constant else ():
+            lines += item.lines()
+    return lines
 
 
 @dataclass(eq=False)
@@ -102,7 +122,7 @@ class _Writer:
         arrays = fold(stages, sizes, taken, next(v for v in REPETITIONS if v not in taken))
         found = []
         for (title, _), items in zip(self.stages, stages, strict=True):
-            found.append(Section(title, [*self._declared(items, sizes, arrays), *self._lines(items)]))
+            found.append(Section(title, self._declared(items, sizes, arrays), items))
         return [section for section in found if section.lines]
 
     # --- what is a loop -------------------------------------------------------------------------------------------
@@ -300,20 +320,6 @@ class _Writer:
                 found.append(f"{name}[{len(entries)}]{sizes[entries[0]]}" if entries else name + sizes[name])
         text = f"fu_real {', '.join(found)};"
         return textwrap.wrap(text, WIDTH - 4, subsequent_indent="    ", break_long_words=False) if found else []
-
-    @staticmethod
-    def _lines(items: Iterable[Item]) -> list[str]:
-        """Return the lines of C, constants in lists, all else line by line."""
-        lines: list[str] = []
-        for constant, run in groupby(items, key=lambda item: bool(item.constant)):
-            texts = [item.text for item in run] if constant else []
-            if len(texts) == 1:
-                lines.append(f"const fu_real {texts[0]};")
-            elif constant:
-                lines += ["const fu_real", *(f"    {text}," for text in texts[:-1]), f"    {texts[-1]};"]
-            for item in run if not constant else ():
-                lines += item.lines()
-        return lines
 
 
 def _fixed(at: Index, turn: Sequence) -> list:

@@ -26,13 +26,15 @@ LEAST = 3
 class Item:
     """A text of one or more assignments, or a block of items, how often it repeats, and the variable for that.
 
-    constant: the name that is declared with its value, empty where it is an array's entry.
+    constant: the name that is declared with its value, empty where it is an array's entry; macro: whether the text is
+    the name of a macro, which stands for items.
     """
 
     text: str
     constant: str = ""
     block: list[Item] = field(default_factory=list)
     times: int = 0
+    macro: bool = False
 
     @cached_property
     def shape(self) -> tuple:
@@ -47,7 +49,8 @@ class Item:
     def lines(self) -> list[str]:
         """Lines of C."""
         if not self.times:
-            return [self.text if self.text.startswith("FU_") or self.text.endswith(";") else f"{self.text};"]
+            whole = self.macro or self.text.startswith("FU_") or self.text.endswith(";")
+            return [self.text if whole else f"{self.text};"]
         inner = [line for item in self.block for line in item.lines()]
         return [f"FU_EACH({self.text}, {self.times},", *(f"    {line}" for line in inner[:-1]), f"    {inner[-1]})"]
 
