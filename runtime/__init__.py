@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from . import command_start  # noqa: F401  first: its Ctrl-C holds while the others are imported
+from .cli import start as command_start  # noqa: F401  first: its Ctrl-C holds while the others are imported
 from .errors import (
     ConvergenceError,
     EndOfCableError,
@@ -14,7 +14,6 @@ from .errors import (
     UnknownResultError,
     check_renamed,
 )
-from .many_scenes import run_many
 from .parts.cable import Cable
 from .parts.contact import Contact
 from .parts.crossing import Crossing
@@ -43,8 +42,9 @@ from .parts.surface_shapes import Capsule, HeightField, Plane
 from .parts.velocity_table import VelocityTable
 from .results.combination import combine
 from .results.run import Run
-from .scene import Scene
-from .scene_file import bundled_scenes, load_run, load_scene
+from .scene.file import bundled_scenes, load_run, load_scene
+from .scene.scene import Scene
+from .sweeps.many_scenes import run_many
 
 __all__ = [
     "Box",
@@ -112,7 +112,7 @@ __all__ = [
 
 
 LAZY = {"Choice": "choice.choice", "Equilibrium": "results.equilibrium", "InitialState": "model.initial_state",
-        "LogUniform": "sweeps.distributions", "Modes": "solve.modes", "Uniform": "sweeps.distributions",
+        "LogUniform": "sweeps.distributions", "Modes": "solve.modes.modes", "Uniform": "sweeps.distributions",
         "load_sweep": "sweeps.dataset", "sweep": "sweeps.sweep", "sweep_cost": "sweeps.sweep"}
 """What brings SciPy or xarray along, which take as long as all the rest: imported when it is asked for."""
 

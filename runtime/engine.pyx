@@ -18,8 +18,8 @@ from libc.stdlib cimport calloc, free, realloc
 from libc.string cimport memcpy
 
 from funicular.generated import kernels
-from funicular.interruptions import check_interrupted
-from funicular.operating_system import machine_memory
+from funicular.base.interruptions import check_interrupted
+from funicular.base.operating_system import machine_memory
 from scipy.linalg import cython_lapack
 
 include "engine/cython/engine.pxi"

@@ -18,8 +18,8 @@ def pytest_terminal_summary(terminalreporter, config):
 
 @pytest.fixture
 def engine(monkeypatch, tmp_path):
-    """A stand-in for funicular.solve.run, whose recordings are hand-made; runs take place in an empty directory."""
-    module = ModuleType("funicular.solve.run")
+    """A stand-in for solve.motion.run, whose recordings are hand-made; runs take place in an empty directory."""
+    module = ModuleType("funicular.solve.motion.run")
     module.outcome = {}
     module.calls = []
 
@@ -29,7 +29,7 @@ def engine(monkeypatch, tmp_path):
         return fake_recording(scene, **module.outcome)
 
     module.simulate = simulate
-    monkeypatch.setitem(sys.modules, "funicular.solve.run", module)
+    monkeypatch.setitem(sys.modules, "funicular.solve.motion.run", module)
     monkeypatch.setattr(recording, "recorded", lambda recorded, *_: recorded)
     monkeypatch.chdir(tmp_path)
     return module

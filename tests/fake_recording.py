@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
-from funicular.scene import Scene
+from funicular.scene.scene import Scene
 
 
 def fake_recording(scene: Scene, status: str = "completed", message: str = "", duration: float = 1.0, times: int = 101):

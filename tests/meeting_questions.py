@@ -16,8 +16,8 @@ import pytest
 from covering import Level
 from funicular.results import streaming
 from funicular.results.equilibrium import Equilibrium
-from funicular.scene_file import loads
-from funicular.scene_schema import scene_schema
+from funicular.scene.file import loads
+from funicular.scene.schema import scene_schema
 from interrupted_runs import Killed, failing
 from matplotlib import pyplot
 from meeting_scenes import TIME

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 from funicular import load_scene
 from funicular.results.run import Run
-from funicular.results.section_forces import of_run
+from funicular.results.section_forces.forces import of_run
 from funicular.view.animation import (
     Animation,
     BodyShape,

@@ -5,11 +5,11 @@ from funicular.parts.laid import laid
 from funicular.parts.settings import EquilibriumSettings
 from funicular.results.equilibrium import Equilibrium
 from funicular.results.targets import reader
-from funicular.solve import parameter_search
-from funicular.solve.parameter_changes import Changes
-from funicular.solve.parameter_search import ParameterSearch
-from funicular.solve.parameters import Parameters
-from funicular.solve.static import equilibrium
+from funicular.solve.adjustment import parameter_search
+from funicular.solve.adjustment.parameter_changes import Changes
+from funicular.solve.adjustment.parameter_search import ParameterSearch
+from funicular.solve.adjustment.parameters import Parameters
+from funicular.solve.statics.static import equilibrium
 
 
 def search_of(scene, paths, to):

@@ -10,7 +10,7 @@ from typing import Any
 
 import funicular as fu
 from funicular.parts.scene_text import as_toml
-from funicular.scene_schema import scene_schema
+from funicular.scene.schema import scene_schema
 
 Powers = tuple[float, float, float]
 """Of length, mass and time."""

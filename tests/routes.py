@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import funicular as fu
 import numpy as np
+from funicular.base.rotations import rotate, turned_by
 from funicular.choice.planar import planar_of
 from funicular.parts.attachment import Attachment
 from funicular.parts.cable import Cable
@@ -16,7 +17,6 @@ from funicular.parts.drag import Drag
 from funicular.parts.event import Event
 from funicular.parts.joint import Joint
 from funicular.parts.part import Part
-from funicular.rotations import rotate, turned_by
 from rewritten import in_units
 from turned_scenes import turned_scene
 

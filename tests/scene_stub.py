@@ -1,4 +1,4 @@
-"""Writes runtime/scene_methods.pyi, what editors and type checkers know of a scene's methods, from the parts' fields.
+"""Writes parts/scene_methods.pyi, what editors and type checkers know of a scene's methods, from the parts' fields.
 
     python tests/scene_stub.py
 """
@@ -17,13 +17,13 @@ from funicular.parts.material import Material
 from funicular.parts.part import Part
 from funicular.parts.polar import Polar
 from funicular.parts.scene_data import SceneData
+from funicular.parts.scene_methods import signature
 from funicular.parts.section import Section
 from funicular.parts.signal import Signal
 from funicular.parts.solids import Solid
 from funicular.parts.velocity_table import VelocityTable
-from funicular.scene_methods import signature
 
-FILE = Path(__file__).parents[1] / "runtime" / "scene_methods.pyi"
+FILE = Path(__file__).parents[1] / "runtime" / "parts" / "scene_methods.pyi"
 
 HEAD = '''"""Written by `python tests/scene_stub.py` from the fields of the parts: change those, and run it again."""
 
@@ -108,7 +108,7 @@ def imports() -> str:
     """The lines that import the kinds of parts and what else their signatures need."""
     of_module: dict[str, set[str]] = {}
     for each in (*KINDS, *OTHERS):
-        of_module.setdefault(each.__module__.removeprefix("funicular"), set()).add(each.__name__)
+        of_module.setdefault(each.__module__.removeprefix("funicular.parts"), set()).add(each.__name__)
     return "".join(f"from {module} import {', '.join(sorted(of_module[module]))}\n" for module in sorted(of_module))
 
 

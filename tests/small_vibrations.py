@@ -6,13 +6,13 @@ import re
 
 import funicular as fu
 import numpy as np
+from funicular.base.rotations import product, turned_by
 from funicular.parts.cable import Cable
 from funicular.parts.load import Load
 from funicular.parts.part import Part
 from funicular.parts.point_force import PointForce
 from funicular.results.equilibrium import Equilibrium
 from funicular.results.modes import Modes
-from funicular.rotations import product, turned_by
 
 STATE = ("nodal_vectors", "position", "orientation", "modal_coordinates", "s")
 """What results tell of a state."""

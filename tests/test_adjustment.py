@@ -7,7 +7,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.parts.paths import changed, path_of
-from funicular.solve import static_problem
+from funicular.solve.statics import static_problem
 
 STEEL = fu.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=9000)
 THIN = fu.Circle(radius=0.005)

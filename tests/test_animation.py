@@ -5,12 +5,12 @@ import struct
 import funicular as fu
 import numpy as np
 import pytest
+from funicular.base.rotations import product, rotate, turned_by
 from funicular.results.animation.bodies import plausible_size
 from funicular.results.animation.cables import line_order
 from funicular.results.animation.clips import overlaid
 from funicular.results.animation.curves import thinned
 from funicular.results.animation.marks import arrow_length
-from funicular.rotations import product, rotate, turned_by
 from funicular.view.page import is_exaggerable
 from numpy.testing import assert_allclose
 from shared_scenes import SQUARE, TABLE_1, cable_scene

@@ -297,7 +297,7 @@ def test_gravity(gravity, complaint):
 def test_an_unwritable_output_is_found_before_the_run(tmp_path, monkeypatch):
     import sys
 
-    monkeypatch.setitem(sys.modules, "funicular.solve.run", None)  # importing the engine would raise ImportError
+    monkeypatch.setitem(sys.modules, "funicular.solve.motion.run", None)  # importing the engine would raise ImportError
     remedy = "give a path in a directory that exists and is yours to write to"
     absent = tmp_path / "absent" / "x.nc"
     with refused(f"{absent}: the results cannot be written here: No such file or directory; {remedy}", ResultFileError):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from funicular import Material, Rectangle, Scene, SceneError
 from funicular.bench.bench import Mesh, bench, grid
-from funicular.cli import app
+from funicular.cli.main import app
 from shared_scenes import cable_scene
 from typer.testing import CliRunner
 

@@ -7,7 +7,7 @@ from funicular.kernels.libraries import of_library
 from funicular.model.cables import cable_model
 from funicular.parts.cable_laws import possible_laws
 from funicular.parts.laid import laid
-from funicular.solve.cable_changes import Own, by_length, elastic_force, same_points
+from funicular.solve.adjustment.cable_changes import Own, by_length, elastic_force, same_points
 
 LAWS = [(element, law) for element, kind in of_library(None).items() for law in possible_laws(kind)]
 MATERIAL = fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1500.0)

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from funicular.choice import chooser
 from funicular.choice.candidates import Kind, kinds_of
-from funicular.choice.deciding import balanced
 from funicular.choice.indicators import deformation, shear_compliance, softened
 from funicular.choice.mesh_error import mesh_error
 from funicular.choice.motion import along, motion
 from funicular.choice.probes import Probe, Prober
-from funicular.choice.remaking import CableModel, coarsest, remade
+from funicular.choice.remeshing import CableModel, coarsest, remade
+from funicular.choice.selection import balanced
 from funicular.choice.time_error import compared
 from funicular.results.trajectories import distance, largest_change
 from model_cells import models
@@ -397,7 +397,7 @@ def test_command_line(tmp_path):
 
 
 def _app():
-    from funicular.cli import app
+    from funicular.cli.main import app
 
     return app
 

@@ -7,7 +7,7 @@ from funicular.choice.indicators import softened
 from funicular.choice.mesh_error import mesh_error
 from funicular.choice.motion import motion
 from funicular.choice.probes import Probe
-from funicular.choice.remaking import CableModel, remade
+from funicular.choice.remeshing import CableModel, remade
 from funicular.choice.short_waves import elements_for_waves
 from funicular.choice.time_error import compared
 from funicular.parts.section import outer_radius_of

@@ -8,7 +8,7 @@ from types import ModuleType
 
 import pytest
 from funicular import ConvergenceError, EndOfCableError, FunicularWarning, load_run, load_scene
-from funicular.cli import app
+from funicular.cli.main import app
 from typer.testing import CliRunner
 
 END = 'slide "trolley": reached the end of cable "wire" at t = 0.4 s'

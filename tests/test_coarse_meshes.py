@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from funicular.model.build import build
 from funicular.parts.laid import laid
-from funicular.solve.coarse_meshes import EVERY, CoarseMeshes
-from funicular.solve.coarse_slides import CoarseSlides
+from funicular.solve.notes.coarse_meshes import EVERY, CoarseMeshes
+from funicular.solve.notes.coarse_slides import CoarseSlides
 from scipy.optimize import brentq
 
 A, DENSITY = 3e-4, 7800.0

@@ -13,7 +13,7 @@ import matplotlib
 import pytest
 import typer
 from covering import CoveringArray, Row, smallest
-from funicular.cli import app
+from funicular.cli.main import app
 from typer.testing import CliRunner
 
 WITHOUT_A_SCENE = {"scenes", "schema", "derive", "verify", "theory"}

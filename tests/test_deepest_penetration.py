@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from funicular.model.build import build
 from funicular.results import streaming
-from funicular.solve.penetrations import penetrations
+from funicular.solve.notes.penetrations import penetrations
 from interrupted_runs import Killed, failing
 
 SETTINGS = {"duration": 0.8, "output_step": 0.1, "tol": 1e-5, "progress": False}

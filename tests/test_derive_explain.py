@@ -1,7 +1,7 @@
 """`funicular derive --explain`: stages, operations by term, shared subexpressions and reasons of a kernel."""
 
 import pytest
-from funicular.cli import app
+from funicular.cli.main import app
 from funicular.derive import explain
 from funicular.derive.catalogue import families
 from funicular.derive.codegen.program import Program

@@ -17,7 +17,7 @@ from funicular import (
     Scene,
 )
 from funicular.parts.settings import RunSettings
-from funicular.solve.diagnosis import unexplained
+from funicular.solve.notes.diagnosis import unexplained
 from shared_scenes import add_cable, cable_scene
 
 

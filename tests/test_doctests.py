@@ -14,7 +14,7 @@ MODULES = [".".join(("funicular", *path.relative_to(ROOT).with_suffix("").parts)
 
 
 def test_there_are_some():
-    assert {"funicular.described_scene", "funicular.results.run", "funicular.parts.signal"} <= set(MODULES)
+    assert {"funicular.scene.described", "funicular.results.run", "funicular.parts.signal"} <= set(MODULES)
 
 
 @pytest.mark.parametrize("name", MODULES)

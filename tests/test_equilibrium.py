@@ -214,7 +214,7 @@ def test_a_stability_that_cannot_be_counted_is_no_stability(monkeypatch):
     def no_count(*_):
         raise ArithmeticError
 
-    monkeypatch.setattr("funicular.solve.stability.inertia", no_count)
+    monkeypatch.setattr("funicular.solve.statics.stability.inertia", no_count)
     with pytest.warns(FunicularWarning, match="^the state is of unknown stability: no factorisation of its stiffness"):
         rest = truss(1.0).equilibrium()
     assert not rest.stable and rest.unstable_directions == 0

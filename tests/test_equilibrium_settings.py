@@ -29,7 +29,8 @@ class State(Equilibrium):
 def solvers(monkeypatch):
     """Stand-ins for the modules of funicular.solve, and what they were called with."""
     calls = SimpleNamespace(static=[], modal=[], model=[])
-    static, modal, model = (ModuleType(f"funicular.solve.{name}") for name in ("static", "modes", "run"))
+    static, modal, model = (ModuleType(f"funicular.solve.{name}")
+                            for name in ("statics.static", "modes.modes", "motion.run"))
 
     def equilibrium(scene, settings, start, made):
         calls.static.append(settings)

@@ -3,7 +3,7 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.scene_file import loads
+from funicular.scene.file import loads
 from shared_scenes import add_rider, cable_scene
 
 G = 9.81

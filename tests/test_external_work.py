@@ -9,8 +9,8 @@ import warnings
 import numpy as np
 import pytest
 from funicular import Friction, FunicularWarning, Harmonic, Material, Ramp, Rectangle, Scene, SceneError, TableSignal
-from funicular.rotations import rotate
-from funicular.scene_file import loads
+from funicular.base.rotations import rotate
+from funicular.scene.file import loads
 from scipy.integrate import simpson
 from shared_scenes import cable_scene
 

@@ -8,7 +8,7 @@ import pytest
 from funicular.model.build import build
 from funicular.model.redundant_constraints import drop_redundant_rows, redundant
 from funicular.parts.settings import RunSettings
-from funicular.solve.diagnosis import damping, stopped, unexplained
+from funicular.solve.notes.diagnosis import damping, stopped, unexplained
 
 
 def two_hinges() -> fu.Scene:

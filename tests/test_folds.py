@@ -7,7 +7,7 @@ import pytest
 from funicular import Circle, FunicularWarning, Material, Scene
 from funicular.model.build import build
 from funicular.parts.laid import laid
-from funicular.solve.folds import Folds, folds
+from funicular.solve.notes.folds import Folds, folds
 from scipy.optimize import brentq
 from shared_scenes import cable_scene
 

@@ -4,8 +4,8 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.parts.paths import changed, path_of, value_at
-from funicular.scene_file import loads
-from funicular.scene_schema import scene_schema
+from funicular.scene.file import loads
+from funicular.scene.schema import scene_schema
 from jsonschema import Draft7Validator
 
 RUBBING = ("trolley", "foot", "touch")

@@ -7,7 +7,7 @@ foot at -F/k the motion is a closed form all the same.
 import numpy as np
 import pytest
 from funicular import Scene, SceneError
-from funicular.rotations import rotate
+from funicular.base.rotations import rotate
 from scipy.optimize import fsolve
 
 MASS, ARM, AXIAL, ACROSS, GRAVITY, STIFFNESS = 1.0, 0.1, 1e-3, 2e-3, 9.81, 1e5

@@ -22,7 +22,7 @@ def test_catenaries_load_none_either():
 
 
 def test_the_command_line_loads_none_either():
-    loaded = set(python("import sys, funicular.cli; print(*sys.modules)").split())
+    loaded = set(python("import sys, funicular.cli.main; print(*sys.modules)").split())
     assert not loaded & (HEAVY - {"rich", "typer"})
 
 

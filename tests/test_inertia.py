@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular.solve.inertia import Inertia, inertia
+from funicular.solve.linear.inertia import Inertia, inertia
 from scipy.linalg import eigvalsh, null_space
 from scipy.sparse import csc_array, random_array
 
@@ -110,8 +110,8 @@ def mechanism():
 def test_scenes_with_slides_joints_springs_and_redundant_constraints(monkeypatch):
     """The sparse count against all eigenvalues, of the same stiffness."""
     from funicular.parts.settings import EquilibriumSettings
-    from funicular.solve import inertia as module
-    from funicular.solve.static_problem import StaticProblem
+    from funicular.solve.linear import inertia as module
+    from funicular.solve.statics.static_problem import StaticProblem
 
     problem = StaticProblem(mechanism(), EquilibriumSettings())
     change = np.random.default_rng(2).standard_normal(len(problem.weight)) * np.where(problem.weight == 1, 1e-3, 0)

@@ -158,7 +158,7 @@ def test_damping_counts_in_the_choice():
 @pytest.mark.parametrize("integrator", ["genalpha", "explicit", "radau"])
 def test_threads_change_no_bit(integrator, monkeypatch):
     """Groups of elements as with one, each with a place of its own: 37 elements end in an incomplete one."""
-    monkeypatch.setattr("funicular.solve.threads.available", lambda: 3)
+    monkeypatch.setattr("funicular.solve.linear.threads.available", lambda: 3)
     runs = [soft(37, 2e4, damping_time=1e-4).run(1e-3, integrator=integrator, output_step=5e-4, threads=threads)
             for threads in (1, 2, 3)]
     assert runs[0].report["messages"] == []

@@ -17,13 +17,13 @@ import numpy as np
 import pytest
 from difficult_scenes import tied
 from funicular import engine as engine_module
-from funicular import interruptions
-from funicular.interruptions import check_interrupted, interruptible, uninterrupted, was_interrupted
+from funicular.base import interruptions
+from funicular.base.interruptions import check_interrupted, interruptible, uninterrupted, was_interrupted
 from funicular.results import recording
 from funicular.results.locks import lock
 from funicular.results.recording import recorded
-from funicular.solve import run as solve_run
-from funicular.solve.threads import one_blas_thread
+from funicular.solve.linear.threads import one_blas_thread
+from funicular.solve.motion import run as solve_run
 from interrupted_runs import content, short
 from viewed_scenes import spatial
 

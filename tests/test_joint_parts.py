@@ -10,7 +10,7 @@ from funicular.checks.frames import cable_frame, end_frame, joint_axes
 from funicular.checks.joint_placement import check_drive
 from funicular.parts.attachment import Attachment
 from funicular.parts.joint import KINDS, Joint
-from funicular.scene_file import loads
+from funicular.scene.file import loads
 from numpy.testing import assert_allclose
 
 SOFT = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)

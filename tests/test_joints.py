@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from expectations import INTEGRATORS, energy_error, largest
 from funicular import Harmonic, Material, Ramp, Rectangle, Scene, TableSignal
-from funicular.rotations import rotate
+from funicular.base.rotations import rotate
 from numpy.testing import assert_allclose
 
 G = 9.81

@@ -15,7 +15,7 @@ from interrupted_runs import content, short
 CHILD = """
 import sys
 from funicular.results import streaming
-from funicular.cli import app
+from funicular.cli.main import app
 streaming.CHECKPOINT_INTERVAL = streaming.ROWS_INTERVAL = 0.0
 app(sys.argv[1:])
 """

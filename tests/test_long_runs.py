@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 from funicular import Circle, FunicularWarning, Material, Scene, TableSignal
-from funicular.solve import long_runs
+from funicular.solve.motion import long_runs
 from shared_scenes import cable_scene
 
 

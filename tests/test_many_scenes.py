@@ -9,8 +9,8 @@ import funicular as fu
 import numpy as np
 import pytest
 from choice_scenes import SCENES
-from funicular import many_scenes
-from funicular.solve import run as solve_run
+from funicular.solve.motion import run as solve_run
+from funicular.sweeps import many_scenes
 from shared_scenes import cable_scene, one_rider
 
 DURATION = 0.05
@@ -183,7 +183,7 @@ def test_a_file_of_one_run():
 
 def test_cpu_time_is_that_of_one_scene(monkeypatch):
     """The clock of the process counts the other threads."""
-    monkeypatch.setattr("funicular.solve.run.time.process_time", lambda: pytest.fail("the clock of the process"))
+    monkeypatch.setattr("funicular.solve.motion.run.time.process_time", lambda: pytest.fail("the clock of the process"))
     (run,) = fu.run_many([partial(one_rider, elements=2)], **SETTINGS)
     assert 0.0 < run.report["time_s"]["solve_cpu"] < run.report["time_s"]["total"]
 

@@ -119,7 +119,7 @@ def test_rotary_inertia_in_a_file():
                                          shear_factors=(1, 1),
                                   rotary_moment_about_y=3e-9))
     assert "rotary_moment_about_y = 3e-09" in scene.to_toml()
-    from funicular.scene_file import loads
+    from funicular.scene.file import loads
 
     assert loads(scene.to_toml(), "here").to_toml() == scene.to_toml()
 

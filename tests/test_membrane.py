@@ -8,7 +8,7 @@ from funicular.derive.verify.samples.shapes import reference, rotation
 from funicular.generated import kernels
 from funicular.kernels.elements import built_in
 from funicular.parts.section_stiffness import STABILISATION, section_stiffness
-from funicular.scene_file import loads
+from funicular.scene.file import loads
 from shared_scenes import cable_scene
 from test_elements import ELEMENTS
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from expectations import energy_error
 from funicular import Material, Rectangle, Scene
+from funicular.base.rotations import rotate
 from funicular.engine import Engine
 from funicular.integrators import Radau
 from funicular.model.build import build
-from funicular.rotations import rotate
 
 RUBBER = Material(youngs_modulus=2e6, poisson_ratio=0.0, density=1100)
 BAR = Rectangle(height=0.03, width=0.02)

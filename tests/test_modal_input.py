@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray
 from funicular import Material, Rectangle, Scene, SceneError, load_run
-from funicular.scene_file import loads
+from funicular.scene.file import loads
 
 BEAM = {"start": (0, 0, 0), "end": (0.5, 0, 0), "section": Rectangle(height=0.03, width=0.02),
         "material": Material(youngs_modulus=2e7, poisson_ratio=0.3, density=1100)}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from expectations import INTEGRATORS, energy_error
 from funicular import Harmonic, Material, Rectangle, Scene, SceneError
-from funicular.rotations import rotate
+from funicular.base.rotations import rotate
 from numpy.testing import assert_allclose
 
 G = 9.81
@@ -279,7 +279,7 @@ def test_loads_and_ends_off_its_nodes_are_refused():
 
 
 def test_a_scene_file_keeps_loads_and_joints():
-    from funicular.scene_file import loads
+    from funicular.scene.file import loads
 
     scene = held("revolute", **Z)
     again = loads(scene.to_toml(), "text")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from funicular import Cylinder, GeneralSection, Material, Plane, Scene
 from funicular.model.build import build
-from funicular.solve.contact_edges import resolve_contact_edges
+from funicular.solve.modes.contact_edges import resolve_contact_edges
 
 AREA, LENGTH = 4.69e-2, 165.0
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from expectations import largest
 from funicular import Material, Scene
-from funicular.rotations import rotate
+from funicular.base.rotations import rotate
 from scipy.integrate import solve_ivp
 from shared_scenes import TABLE_1, add_cable
 

@@ -6,7 +6,7 @@ import pickle
 import funicular as fu
 import pytest
 from expectations import refused
-from funicular.cli import app
+from funicular.cli.main import app
 from interrupted_runs import short
 from typer.testing import CliRunner
 

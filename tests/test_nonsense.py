@@ -7,11 +7,11 @@ import re
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.cli import app
+from funicular.cli.main import app
 from funicular.errors import FunicularError
 from funicular.parts.settings import EquilibriumSettings, ModeSettings, RunSettings
 from funicular.parts.validation import LIMITS, OTHER_LIMITS
-from funicular.scene_file import loads
+from funicular.scene.file import loads
 from random_scenes import DATA, NUMBERS, OBJECTS, WORDS
 from shared_scenes import CABLE as WIRE
 from typer.testing import CliRunner

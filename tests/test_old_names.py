@@ -6,7 +6,7 @@ import funicular as fu
 import pytest
 from funicular.parts.joint import Joint
 from funicular.parts.support import Clamp
-from funicular.scene_file import loads
+from funicular.scene.file import loads
 
 NOW = {"second_moment_yy": "second_moment_about_z", "second_moment_zz": "second_moment_about_y",
        "rotary_moment_yy": "rotary_moment_about_z", "rotary_moment_zz": "rotary_moment_about_y"}

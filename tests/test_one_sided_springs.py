@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from expectations import drift
 from funicular.model.build import build
-from funicular.solve.diagnosis import describe_dof
+from funicular.solve.notes.diagnosis import describe_dof
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from funicular import load_run, operating_system
+from funicular import load_run
+from funicular.base import operating_system
 
 WITHOUT = """
 import ctypes, fcntl, os, sys, types

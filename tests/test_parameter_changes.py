@@ -3,7 +3,7 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.solve import static_problem
+from funicular.solve.statics import static_problem
 from parameter_searches import apart, by_scenes, found_of, search_of
 
 STEEL = fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1500.0)

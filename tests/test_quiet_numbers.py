@@ -4,7 +4,7 @@ from types import MappingProxyType
 
 import funicular as fu
 import pytest
-from funicular.solve.sensitivity import Sensitivity, sensitive
+from funicular.solve.notes.sensitivity import Sensitivity, sensitive
 from numpy.testing import assert_allclose
 
 pytestmark = [pytest.mark.filterwarnings("error::RuntimeWarning"),

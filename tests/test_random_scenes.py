@@ -10,7 +10,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.errors import FunicularError
-from funicular.scene_file import loads
+from funicular.scene.file import loads
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_scenes import scenes, texts

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import funicular
 import pytest
-from funicular.cli import app
+from funicular.cli.main import app
 from funicular.parts.solids import Solid
-from funicular.scene_file import loads
+from funicular.scene.file import loads
 from pages import PAGES, ROOT, page
 from typer.testing import CliRunner
 

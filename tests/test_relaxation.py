@@ -130,7 +130,7 @@ def test_settings_of_a_scene_file():
 
 
 def test_it_is_seen_from_the_command_line(tmp_path, monkeypatch):
-    from funicular.cli import app
+    from funicular.cli.main import app
     from typer.testing import CliRunner
 
     monkeypatch.chdir(tmp_path)

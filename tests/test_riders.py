@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from expectations import INTEGRATORS, energy_error, largest
 from funicular import Material, Rectangle, Scene, TableSignal
-from funicular.rotations import rotate
+from funicular.base.rotations import rotate
 from numpy.testing import assert_allclose
 from shared_scenes import cable_scene
 

@@ -17,8 +17,8 @@ from funicular import (
     TableSignal,
 )
 from funicular.model.build import build
-from funicular.solve import pauses
-from funicular.solve.row_notes import RowNotes
+from funicular.solve.motion import pauses
+from funicular.solve.notes.row_notes import RowNotes
 from shared_scenes import cable_scene
 
 RADIUS, MODULUS = 1e-3, 1e8

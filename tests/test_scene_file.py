@@ -21,7 +21,7 @@ from funicular import (
     load_scene,
 )
 from funicular.parts.scene_text import TABLES
-from funicular.scene_file import loads
+from funicular.scene.file import loads
 from shared_scenes import CABLE
 
 

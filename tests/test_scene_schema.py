@@ -7,7 +7,7 @@ import jsonschema
 import pytest
 from funicular import bundled_scenes, load_scene
 from funicular.parts.kinds import PARTS
-from funicular.scene_schema import scene_schema
+from funicular.scene.schema import scene_schema
 from shared_scenes import CABLE
 from typer.testing import CliRunner
 
@@ -58,7 +58,7 @@ def test_what_it_takes_in_short_forms():
 
 
 def test_the_command_writes_it(tmp_path):
-    from funicular.cli import app
+    from funicular.cli.main import app
 
     out = tmp_path / "scene.schema.json"
     assert CliRunner().invoke(app, ["schema", "-o", str(out)]).exit_code == 0

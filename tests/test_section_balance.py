@@ -18,11 +18,11 @@ from funicular import (
 )
 from funicular.generated import kernels
 from funicular.results import recording
-from funicular.results.balance_limits import balanced_cables
-from funicular.results.cable_loads import CableLoads
-from funicular.results.nodal_forces import element_forces
-from funicular.results.section_balance import Cuts, balanced
-from funicular.results.section_forces import _instants, jumps, rest_instants
+from funicular.results.section_forces.balance import Cuts, balanced
+from funicular.results.section_forces.balance_limits import balanced_cables
+from funicular.results.section_forces.cable_loads import CableLoads
+from funicular.results.section_forces.forces import _instants, jumps, rest_instants
+from funicular.results.section_forces.nodal_forces import element_forces
 from numpy.testing import assert_allclose
 
 SOFT = {"youngs_modulus": 1e8, "poisson_ratio": 0.3, "density": 2000}
@@ -363,7 +363,7 @@ def test_reading_back_says_nothing_anew(tmp_path):
 def test_many_times_go_in_pieces(monkeypatch):
     run = loads("cable12").run(duration=0.2, output_step=0.02)
     whole = run.section_forces("rope"), run.section_forces("rope", "trolley")
-    monkeypatch.setattr("funicular.results.section_forces.AT_ONCE", 200)
+    monkeypatch.setattr("funicular.results.section_forces.forces.AT_ONCE", 200)
     for before, after in zip(whole, (run.section_forces("rope"), run.section_forces("rope", "trolley")), strict=True):
         assert_allclose(after["tension"], before["tension"], rtol=1e-9)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from derivatives import error_by_drags
 from expectations import unaccounted
-from funicular.rotations import rotate
+from funicular.base.rotations import rotate
 
 INTEGRATORS = ("genalpha", "energy", "explicit", "radau")
 SOFT = fu.Material(youngs_modulus=1e6, poisson_ratio=0.2, density=900)

@@ -5,7 +5,7 @@ from math import pi, sqrt
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.results.balance_limits import known_method
+from funicular.results.section_forces.balance_limits import known_method
 from numpy.testing import assert_allclose
 
 WATER, RADIUS, STEEL, G = 1000.0, 0.01, 7800.0, 9.81

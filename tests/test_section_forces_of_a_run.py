@@ -14,9 +14,9 @@ from funicular.parts.section_stiffness import section_stiffness
 from funicular.parts.settings import RunSettings
 from funicular.results.pictures import save_plots
 from funicular.results.run import Run
-from funicular.results.section_balance import Cuts
-from funicular.results.section_components import BEAM, CABLE, components
-from funicular.results.section_forces import constitutive
+from funicular.results.section_forces.balance import Cuts
+from funicular.results.section_forces.components import BEAM, CABLE, components
+from funicular.results.section_forces.forces import constitutive
 from numpy.testing import assert_allclose
 from shared_scenes import cable_scene
 

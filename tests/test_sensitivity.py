@@ -8,7 +8,7 @@ import pytest
 from choice import farthest, motion, references
 from choice import simulate as simulated
 from funicular.model.build import build
-from funicular.solve.sensitivity import OF_BODIES, OF_CABLES, Sensitivity
+from funicular.solve.notes.sensitivity import OF_BODIES, OF_CABLES, Sensitivity
 from hard_cases.case import positions
 from random_motions import motion as random_motion
 

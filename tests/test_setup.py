@@ -7,11 +7,11 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular import load_scene
+from funicular.base.rotations import cross, rotate
 from funicular.engine import Engine
 from funicular.model.build import build
 from funicular.model.redundant_constraints import _in_loops
-from funicular.rotations import cross, rotate
-from funicular.solve import integrator_choice
+from funicular.solve.motion import integrator_choice
 from setup import bodies, calls, rope, set_up
 
 CEILINGS = {"paper51": (4200, 1800), "cable_car": (9800, 4700), "zip_line": (6500, 3000)}

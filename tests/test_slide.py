@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from expectations import energy_error, largest, to_the_end
 from funicular import EndOfCableError, FunicularWarning, Material, Rectangle, Scene
+from funicular.base.rotations import rotate
 from funicular.model.build import build
-from funicular.rotations import rotate
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 from shared_scenes import TABLE_1, add_cable, add_rider, one_rider

@@ -7,7 +7,7 @@ from expectations import refused
 from funicular import Buffer, Circle, Friction, FunicularWarning, HardStop, Harmonic, Material, Ramp, Scene
 from funicular.checks.frames import cable_frame, end_frame, slide_axes
 from funicular.parts.attachment import Attachment
-from funicular.scene_file import loads
+from funicular.scene.file import loads
 from numpy.testing import assert_allclose
 
 SOFT = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)

@@ -9,7 +9,7 @@ import funicular as fu
 import numpy as np
 import pytest
 import xarray
-from funicular import sweep_command
+from funicular.cli import sweep as sweep_command
 from funicular.sweeps import sweep as module
 from sweep_subjects import ALONE, E_MODULUS, FRICTION, GRID, KEPT, SHORT, by_hand, same, scene, square
 from typer.testing import CliRunner
@@ -256,7 +256,7 @@ def command(*arguments: str, folder: Path):
     here = os.getcwd()
     os.chdir(folder)
     try:
-        from funicular.cli import app
+        from funicular.cli.main import app
         return CliRunner().invoke(app, ["sweep", "scene.toml", "--serial", *arguments])
     finally:
         os.chdir(here)

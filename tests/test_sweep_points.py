@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import scipy.stats
 from funicular import Friction, LogUniform, SceneError, Uniform, load_scene
+from funicular.cli.sweep import parameter_of
 from funicular.parts.paths import changed, path_of, unit_of
-from funicular.sweep_command import parameter_of
 from funicular.sweeps.parameters import points_of
 from sweep_subjects import scene
 

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from funicular.cli import app
+from funicular.cli.main import app
 from funicular.derive.catalogue import families
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.theory import check, command, contents, pages, proofs

@@ -7,7 +7,7 @@ import threading
 import funicular as fu
 import linear_cost
 import pytest
-from funicular.solve import threads
+from funicular.solve.linear import threads
 from shared_scenes import cable_scene
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
@@ -23,7 +23,7 @@ def scene(body: float = 0.5) -> fu.Scene:
 @pytest.mark.parametrize("asked", [10**4, 10**5, 10**6])
 def test_no_more_threads_than_processors(asked, monkeypatch):
     """Before they were bounded, 10^4 hung and 10^5 ended the process."""
-    monkeypatch.setattr("funicular.solve.threads.available", lambda: 2)
+    monkeypatch.setattr("funicular.solve.linear.threads.available", lambda: 2)
     run = scene().run(1e-3, step=5e-4, output_step=5e-4, threads=asked)
     assert run.status == "completed"
     assert run.report["messages"][0] == f"threads = {asked} came to 2: there are 2 processors for this process"
@@ -36,9 +36,9 @@ def test_there_are_processors():
 FORKED = """
 import os, sys
 sys.path += ["tests", "tests/benchmarks"]
-import funicular.solve.threads
+import funicular.solve.linear.threads
 from test_threads import scene
-funicular.solve.threads.available = lambda: 2
+funicular.solve.linear.threads.available = lambda: 2
 before = scene().run(1e-3, step=5e-4, output_step=5e-4, threads={parent})
 child = os.fork()
 if child:
@@ -60,9 +60,9 @@ def test_threads_after_a_fork(parent, request):
 WITHIN = """
 import os, sys
 sys.path += ["tests", "tests/benchmarks"]
-import funicular.solve.threads
+import funicular.solve.linear.threads
 from linear_cost import scene
-funicular.solve.threads.available = lambda: 2
+funicular.solve.linear.threads.available = lambda: 2
 children = []
 
 def fork(time):
@@ -86,7 +86,7 @@ def test_a_fork_within_a_run(request):
 @pytest.mark.parametrize("integrator", ["genalpha", "radau"])
 def test_long_scenes_have_the_same_bits_with_any_number_of_threads(name, elements, integrator, monkeypatch):
     """Also where elements share unknowns with others: at joints, at rungs, at the ends of a ring."""
-    monkeypatch.setattr("funicular.solve.threads.available", lambda: 3)
+    monkeypatch.setattr("funicular.solve.linear.threads.available", lambda: 3)
     made = linear_cost.scene(name, elements)
     runs = [made.run(4e-4, integrator=integrator, step=1e-4, output_step=2e-4, threads=number) for number in (1, 2, 3)]
     for run in runs[1:]:
@@ -130,7 +130,7 @@ def test_one_blas_thread_at_rest_and_for_modes(compute, two_blas_threads, monkey
     from funicular.model.redundant_constraints import drop_redundant_rows
 
     seen = set()
-    monkeypatch.setattr("funicular.solve.static_problem.drop_redundant_rows",  # what both call at first
+    monkeypatch.setattr("funicular.solve.statics.static_problem.drop_redundant_rows",  # what both call at first
                         lambda *a: (seen.update(blas_threads()), drop_redundant_rows(*a))[1])
     compute()
     assert seen == {1}

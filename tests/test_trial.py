@@ -8,8 +8,8 @@ import pytest
 from choice import farthest, motion, references, simulate
 from funicular.integrators import Explicit, Radau
 from funicular.results import streaming
-from funicular.solve import trial_run
-from funicular.solve.integrator_choice import Rival
+from funicular.solve.motion import trial_run
+from funicular.solve.motion.integrator_choice import Rival
 from hard_cases.case import positions
 from pendulum import pendulum
 from ringing import run_of
@@ -76,7 +76,7 @@ def test_rows_of_a_trial_that_do_not_fit_in_memory(tmp_path, monkeypatch, lost):
         return times_reached(long_trial, tol=1e-4, **settings)[0]
 
     plain = run()
-    monkeypatch.setattr("funicular.solve.pauses.BUFFER", 4.0 * max(1, plain["time"].nbytes))
+    monkeypatch.setattr("funicular.solve.motion.pauses.BUFFER", 4.0 * max(1, plain["time"].nbytes))
     taken: list[bool] = []
     take = streaming.Stream._take
 

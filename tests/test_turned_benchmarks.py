@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from funicular.choice.candidates import kinds_of
 from funicular.choice.planar import planar_of
-from funicular.choice.remaking import coarsest, remade
+from funicular.choice.remeshing import coarsest, remade
 from funicular.parts.quantity import DIRECTION, NODAL_VECTORS, POINT
 from funicular.parts.turning import TURNING
 from turned_scenes import ASKEW, UPRIGHT, differences, turned_scene

@@ -44,7 +44,7 @@ def test_they_stay_in_functions_of_events_and_after_a_run():
 @FLUSHED
 def test_they_are_zero_in_all_threads(monkeypatch):
     """A long rope that is pushed at its end, and in which motion decays away from there."""
-    monkeypatch.setattr("funicular.solve.threads.available", lambda: 2)
+    monkeypatch.setattr("funicular.solve.linear.threads.available", lambda: 2)
     soft = fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000)
     scene = cable_scene("rope", elements=1000, element="cable12", gravity=(0, 0, 0), length=100.0,
                         section=fu.Circle(radius=0.01), material=soft)

@@ -10,8 +10,9 @@ import zipfile
 import numpy as np
 import pytest
 import xarray
-from funicular import FunicularError, Scene, SceneError, VelocityTable, bounded_files, load_scene
-from funicular.scene_file import loads
+from funicular import FunicularError, Scene, SceneError, VelocityTable, load_scene
+from funicular.base import bounded_files
+from funicular.scene.file import loads
 from funicular.view.mesh_files import read_mesh
 from shared_scenes import CABLE
 

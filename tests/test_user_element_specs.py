@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from funicular.cli import app
+from funicular.cli.main import app
 from funicular.derive.user_elements import command
 from funicular.derive.user_elements.load import SpecError
 from typer.testing import CliRunner

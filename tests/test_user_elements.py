@@ -12,7 +12,7 @@ import funicular
 import numpy as np
 import pytest
 from funicular import load_run
-from funicular.cli import app
+from funicular.cli.main import app
 from funicular.derive.catalogue import families
 from funicular.derive.elements.cable18 import CABLE18
 from funicular.derive.user_elements import command, load
@@ -23,7 +23,7 @@ from funicular.kernels.elements import built_in, gauge, manifest
 from funicular.kernels.libraries import LibraryError, manifest_digest
 from funicular.kernels.libraries import load as load_library
 from funicular.results.run import SceneText
-from funicular.scene_file import load_scene, loads
+from funicular.scene.file import load_scene, loads
 from pages import page
 from parameter_searches import apart, by_scenes, found_of, search_of
 from shared_scenes import SQUARE, TABLE_1
@@ -350,7 +350,7 @@ def test_the_example_of_the_readme_is_cable18(tmp_path, monkeypatch):
     assert [getattr(load_spec(tmp_path, text), name) for name in ("basis", "nodal_vectors", "director", "dim")] == [
         CABLE18.basis, CABLE18.nodal_vectors, CABLE18.director, CABLE18.dim]
     (command_line,) = (words for section, words in here.commands() if section == "Your own element")
-    made = subprocess.run([sys.executable, "-m", "funicular.cli", *command_line[1:]], cwd=tmp_path,
+    made = subprocess.run([sys.executable, "-m", "funicular.cli.main", *command_line[1:]], cwd=tmp_path,
                           capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
     space = {}

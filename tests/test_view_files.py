@@ -7,7 +7,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from fake_recording import fake_recording
-from funicular.cli import app
+from funicular.cli.main import app
 from funicular.errors import FunicularError
 from funicular.parts.settings import RunSettings
 from funicular.results.run import Run

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import funicular as fu
 import pytest
+from funicular.base.written_files import write_text, write_whole
 from funicular.bench import report
 from funicular.bench.bench import bench, grid
-from funicular.cli import app
+from funicular.cli.main import app
 from funicular.derive.theory import command
 from funicular.errors import FunicularError
-from funicular.written_files import write_text, write_whole
 from typer.testing import CliRunner
 
 SOURCES = [Path(__file__).parents[1] / folder for folder in ("runtime", "derive")]

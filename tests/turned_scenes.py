@@ -1,9 +1,9 @@
 """Scenes turned as a whole, and what differs between the results of two runs of one motion."""
 
 import numpy as np
+from funicular.base.rotations import rotate, turned_by
 from funicular.parts.laid import laid_into
 from funicular.parts.plane import Plane
-from funicular.rotations import rotate, turned_by
 
 UPRIGHT = ((np.pi / 2, 0, 0), (0, 0, 0))
 """Rotation vector in rad and shift in m: from y up to z up."""

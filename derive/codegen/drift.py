@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from funicular.written_files import write_text
+from funicular.base.written_files import write_text
 
 from . import rendering as emit
 from . import sharing

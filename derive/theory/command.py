@@ -7,7 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-from funicular.written_files import write_text
+from funicular.base.written_files import write_text
 
 from ..catalogue import families
 from ..elements import ELEMENTS

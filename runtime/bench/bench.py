@@ -24,7 +24,7 @@ from ..parts.settings import RunSettings
 from ..parts.validation import MOST
 from ..results.run import Run
 from ..results.trajectories import check_output, default_outputs, distance, relative, trajectory
-from ..scene import Scene
+from ..scene.scene import Scene
 
 TOLS = (1e-2, 1e-3, 1e-4, 1e-5)
 MESHES = ("x1", "x2")

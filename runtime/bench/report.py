@@ -14,10 +14,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from ..base.written_files import write_text, write_whole
 from ..results.trajectories import unit
 from ..view.files import folder_for_pictures
 from ..view.plot import STYLE
-from ..written_files import write_text, write_whole
 from .bench import COUNTS, Bench, Row
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..parts.solids import Box
-from ..scene import Scene
+from ..scene.scene import Scene
 
 RADIUS = 0.05
 """m: from the wire's axis to the middle of the collector where they touch; more than any penetration."""

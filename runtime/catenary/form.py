@@ -10,7 +10,7 @@ import numpy as np
 
 from ..parts.material import Material
 from ..parts.section import GeneralSection
-from ..scene import Scene
+from ..scene.scene import Scene
 from .line import Line
 from .local_sag import missing_compliance
 from .wires import MODULUS, Wire

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..parts.solids import Box, Cylinder
-from ..scene import Scene
+from ..scene.scene import Scene
 from .base import COLLECTOR, add_base
 from .jointed import JointedPantograph, Limb
 

@@ -11,7 +11,7 @@ from ..parts.part import Part
 from ..parts.schemas import checked
 from ..parts.solids import Box
 from ..parts.validation import not_negative, positive, shown, vector
-from ..scene import Scene
+from ..scene.scene import Scene
 from .base import COLLECTOR, RADIUS, TURNING, add_base
 
 APART = 0.5

@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import SceneError
 from ..parts.cable import Cable
 from ..parts.settings import overridden
-from ..scene import Scene
+from ..scene.scene import Scene
 from .base import COLLECTOR, RADIUS
 from .jointed import JointedPantograph
 from .jointed_bodies import add_jointed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..scene import Scene
+from ..scene.scene import Scene
 from .form import LONGEST, Form, add_dropper, add_wire, form, hold_ends, mesh
 from .line import Line
 

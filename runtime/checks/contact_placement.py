@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.rotations import conjugate, rotate
 from ..errors import SceneError, near
 from ..parts.cable import Cable
 from ..parts.contact import Contact
@@ -18,7 +19,6 @@ from ..parts.section import outer_radius_of
 from ..parts.surface import Surface
 from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
-from ..rotations import conjugate, rotate
 
 SUNK = 0.01
 """Of the radius: what the weight sinks in by with the stiffness that is taken where none is given."""

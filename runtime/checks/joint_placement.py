@@ -6,13 +6,13 @@ import warnings
 
 import numpy as np
 
+from ..base.rotations import cross
 from ..errors import FunicularWarning, SceneError
 from ..kernels.elements import built_in
 from ..parts.joint import DRIVEN, LINES, POINTS, UNITS, Joint
 from ..parts.locations import point_of
 from ..parts.scene_data import SceneData
 from ..parts.validation import EXACT, show
-from ..rotations import cross
 from .conflicts import called, check_other_joints, check_supports, move_as_one
 from .frames import cable_frame, has_section
 from .placement import placed_between

@@ -10,7 +10,7 @@ from ..parts.cable import Cable
 from ..parts.load import Moment
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import is_reduced
-from .remaking import CableModel, with_model
+from .remeshing import CableModel, with_model
 
 CABLES = {2: "cable8p", 3: "cable12"}
 BEAMS = {2: "beam12p", 3: "beam24"}

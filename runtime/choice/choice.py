@@ -8,7 +8,7 @@ from typing import Any, Generic
 from ..parts.settings import RunSettings
 from ..results.equilibrium import Equilibrium
 from .motion import MOTION
-from .remaking import CableModel, S
+from .remeshing import CableModel, S
 
 
 def of_unchanged(names: list[str]) -> str:

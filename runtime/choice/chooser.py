@@ -35,13 +35,13 @@ from ..parts.settings import RunSettings
 from ..results.trajectories import largest_change
 from .candidates import Kind
 from .choice import Choice, of_unchanged
-from .deciding import LEAST, ROUNDED, decide
 from .estimate import Estimate, Free
 from .indicators import SOFTER, deformation, shear_compliance, softened
 from .mesh_error import MeshError, mesh_error
 from .motion import motion
 from .probes import Probe, Prober, Runner, S
-from .remaking import CableModel, remade
+from .remeshing import CableModel, remade
+from .selection import LEAST, ROUNDED, decide
 from .short_waves import elements_for_waves
 from .time_error import ASSUMED, DAMPING, SMALLER, InTime, compared
 

@@ -14,7 +14,7 @@ from .chooser import Chooser
 from .estimate import Free
 from .planar import Planar, planar_of
 from .probes import Runner, S
-from .remaking import MOST_PARTS, coarsest, remade
+from .remeshing import MOST_PARTS, coarsest, remade
 from .unequal import with_unequal_elements
 
 FREE = ("unset", "all")

@@ -12,7 +12,7 @@ from .candidates import Kind, Kinds
 from .choice import Alternative
 from .mesh_error import MeshError
 from .probes import Probe
-from .remaking import CableModel
+from .remeshing import CableModel
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from ..kernels.libraries import kernels_of
 from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
 from .motion import second_derivative
-from .remaking import node_places
+from .remeshing import node_places
 
 ORDER = 4
 """Power of the elements' length in the energy of what they leave out."""

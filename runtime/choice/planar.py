@@ -25,7 +25,7 @@ from ..parts.scene_data import SceneData
 from ..parts.section import GeneralSection, Rectangle, Section
 from ..parts.support import Tie
 from ..parts.validation import show
-from .remaking import S
+from .remeshing import S
 
 ALONG = 1e-9
 """Sine of the angle up to which directions count as parallel."""

@@ -11,14 +11,14 @@ from typing import Generic, TypeVar, cast
 import numpy as np
 
 from ..errors import FunicularError, FunicularWarning
+from ..parts.scene_methods import SceneMethods
 from ..parts.settings import RunSettings
 from ..results.equilibrium import Equilibrium
 from ..results.run import Run
 from ..results.trajectories import distance, largest_change
-from ..scene_methods import SceneMethods
-from ..solve.sensitivity import GROWS
+from ..solve.notes.sensitivity import GROWS
 from .motion import MOTION, samples
-from .remaking import CableModel, remade
+from .remeshing import CableModel, remade
 
 S = TypeVar("S", bound=SceneMethods)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..parts.cable import Cable
 from ..results.run import Run
-from ..solve.fast_riders import excess
+from ..solve.notes.supersonic_loads import excess
 from .indicators import PARTS, shear_stiffness
 from .motion import along
 from .probes import S

@@ -10,7 +10,7 @@ from .choice import Alternative, Choice
 from .grading import graded, saving
 from .mesh_error import FIRST_ORDER
 from .probes import Prober
-from .remaking import CableModel, S, remade
+from .remeshing import CableModel, S, remade
 
 PROMISING = 0.5
 """Of the equal elements: a mesh of unequal ones that is estimated to need more is not tried."""

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..base.rotations import cross as cross_product
 from ..parts.cable import Cable
 from ..parts.solids import Cylinder
 from ..parts.surface_shapes import Plane
-from ..rotations import cross as cross_product
-from ..scene import Scene
+from ..scene.scene import Scene
 from .directors import tangents_of
 
 if TYPE_CHECKING:

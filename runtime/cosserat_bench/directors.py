@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..rotations import cross
+from ..base.rotations import cross
 
 
 def tangents_of(positions: np.ndarray) -> np.ndarray:

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from ..base.rotations import cross
 from ..parts.cable import Cable
 from ..parts.material import Material
 from ..parts.section import Circle, GeneralSection
 from ..parts.signal import TableSignal
-from ..rotations import cross
-from ..scene import Scene
+from ..scene.scene import Scene
 from .contacts import obstacles_of, stand
 
 if TYPE_CHECKING:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.rotations import cross, rotate
 from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import RigidBody, largest_moment
 from ..parts.scene_data import SceneData
-from ..rotations import cross, rotate
 from .model import BodyModel, ShapeModel
 
 BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.rotations import conjugate, rotate
 from ..parts.scene_data import SceneData
-from ..rotations import conjugate, rotate
 from .contacts import ContactModel
 from .model import Model
 from .states import body_state, spatial

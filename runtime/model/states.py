@@ -9,10 +9,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ..base.rotations import cross, rotate
 from ..parts.locations import ends_of, joined, node_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
-from ..rotations import cross, rotate
 from .attachments import AttachmentModel
 from .joints import JointModel
 from .loads import PointForceModel

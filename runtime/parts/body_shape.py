@@ -1,4 +1,4 @@
-"""Modes of a body and its inertia integrals, from the user's arrays or file; solve/body_modes.py makes them of a mesh.
+"""Modes of a body and its inertia integrals, from the user's arrays or file; body_modes.py makes them of a mesh.
 """
 
 from __future__ import annotations

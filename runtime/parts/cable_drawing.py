@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..rotations import cross
+from ..base.rotations import cross
 from . import cable_laws
 from .curves import Line, Spline, has_height, shape_through
 from .plane import Plane, aligned, called, normal_of

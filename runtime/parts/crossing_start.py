@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rotations import rotate
+from ..base.rotations import rotate
 from .attachment import Attachment
 from .cable import Cable
 from .crossing import Crossing, radius_of

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..rotations import cross
+from ..base.rotations import cross
 from .validation import show, shown, vector
 
 if TYPE_CHECKING:

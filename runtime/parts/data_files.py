@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..bounded_files import MOST_BYTES, TooLargeError, check_bytes, check_numbers
+from ..base.bounded_files import MOST_BYTES, TooLargeError, check_bytes, check_numbers
 from ..errors import shown_path
 
 if TYPE_CHECKING:

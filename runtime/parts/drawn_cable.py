@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.rotations import cross
 from ..kernels.element_line import ElementLine
 from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.mesh import Mesh
-from ..rotations import cross
 from . import cable_drawing, curves
 from .plane import Plane
 from .validation import EXACT, Vector

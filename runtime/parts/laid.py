@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from ..base.rotations import conjugate, product, quaternion, rotate
 from ..errors import SceneError
-from ..rotations import conjugate, product, quaternion, rotate
 from .attachment import Attachment
 from .cable import Cable
 from .combined_signal import combined

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..rotations import cross
+from ..base.rotations import cross
 from .attachment import Attachment
 from .load import DistributedForce
 from .scene_data import SceneData

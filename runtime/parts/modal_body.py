@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 import numpy as np
 from pydantic import PrivateAttr, model_validator
 
+from ..base.rotations import quaternion, rotate
 from ..errors import SceneError
-from ..rotations import quaternion, rotate
 from .cable import Cable
 from .material import Material
 from .part import Part

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rotations import cross
+from ..base.rotations import cross
 from .validation import show
 
 FLAT = 1e-12

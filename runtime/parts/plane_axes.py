@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rotations import conjugate, product, quaternion, rotate
+from ..base.rotations import conjugate, product, quaternion, rotate
 from .plane import Plane, flattened
 from .quantity import IN_BODY_AXES, NODAL_VECTORS, ORIENTATION, POINT, UNCHANGED
 from .turning import TURNING

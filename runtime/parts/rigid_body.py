@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from ..rotations import rotate
+from ..base.rotations import rotate
 from .part import Part
 from .plane import across, in_plane
 from .quantity import IN_BODY_AXES, ORIENTATION, POINT, Quantity, vector_of_time

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import model_validator
 
-from ..rotations import conjugate, rotate
+from ..base.rotations import conjugate, rotate
 from .part import Part
 from .plane import FLAT, across
 from .solids import Box, Cylinder, Sphere

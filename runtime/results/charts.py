@@ -9,9 +9,9 @@ import numpy as np
 from ..view.plot import SNAPSHOTS
 from ..view.projections import axis_name
 from .animation.recorded import Recorded
-from .balance_limits import known_method
 from .quantities import ENERGIES
-from .section_forces import even, jumps, of_run, with_sides
+from .section_forces.balance_limits import known_method
+from .section_forces.forces import even, jumps, of_run, with_sides
 
 if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable

@@ -26,7 +26,7 @@ class Facts(BaseModel):
     """On the run: digests of scene, programs and start, which must be the same for it to go on, and how far it is.
 
     rows: output times so far; elapsed_s: seconds that it has taken; resumed_at_s: times at which it was resumed;
-    events: what has happened; row_notes: what notes on rows have found (solve/row_notes.py).
+    events: what has happened; row_notes: what notes on rows have found (solve/notes/row_notes.py).
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", defer_build=True)

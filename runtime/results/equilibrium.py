@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from ..parts.cable import Cable
 from ..parts.slide import Slide
-from ..solve.rest_state import CriticalPoint, RestState
-from .section_forces import dataset
+from ..solve.statics.rest_state import CriticalPoint, RestState
+from .section_forces.forces import dataset
 from .slack import slack_elements
 from .viewable import Viewable, titled
 

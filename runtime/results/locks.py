@@ -6,9 +6,9 @@ import errno
 import os
 from pathlib import Path
 
-from .. import operating_system
+from ..base import operating_system
+from ..base.operating_system import BYTES, NO_LINK
 from ..errors import ResultFileError
-from ..operating_system import BYTES, NO_LINK
 
 _NEW = os.O_RDWR | os.O_CREAT | BYTES | NO_LINK
 _MODE = 0o666

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..parts.scene_data import SceneData
-from ..solve import modes as solved
-from ..solve.rest_state import RestState
+from ..solve.modes import modes as solved
+from ..solve.statics.rest_state import RestState
 from .viewable import Viewable, titled
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ __all__ = ["Modes"]
 
 @dataclass(repr=False)
 class Modes(Viewable, solved.Modes):
-    """Natural vibrations of a scene; `funicular.solve.modes.Modes` says what they hold.
+    """Natural vibrations of a scene; `funicular.solve.modes.modes.Modes` says what they hold.
 
     scene: that vibrates; about: the state that it vibrates about, None as it is drawn.
     """

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..operating_system import BYTES, read_at, read_into, write_at
+from ..base.operating_system import BYTES, read_at, read_into, write_at
 from .checksums import row_checksums
 from .locks import created
 from .netcdf_header import (

@@ -15,9 +15,9 @@ from ..model.part_states import States, part_states
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from ..solve.diagnosis import stopped
-from ..solve.meeting_points import MeetingPoints
-from ..solve.run import FAILED, Simulation
+from ..solve.motion.run import FAILED, Simulation
+from ..solve.notes.coincident_points import MeetingPoints
+from ..solve.notes.diagnosis import stopped
 
 
 @dataclass

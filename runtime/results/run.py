@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from ..base.named_arrays import NamedArrays
+from ..base.written_files import write_whole
 from ..errors import FunicularWarning, UnknownResultError, near
-from ..named_arrays import NamedArrays
 from ..parts.cable import Cable
 from ..parts.laid import laid
 from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.slide import Slide
-from ..written_files import write_whole
 from .quantities import ENERGIES, Variable, labelled
 from .viewable import Viewable
 
@@ -309,7 +309,7 @@ class Run(Viewable, NamedArrays):
         is that of an elastica along the line of the force, not of the mesh.
         Raises UnknownResultError; FunicularError where s is off the cable.
         """
-        from .section_forces import dataset  # brings SciPy, as above
+        from .section_forces.forces import dataset  # brings SciPy, as above
 
         return dataset(self, cable, s, method=method, side=side)
 

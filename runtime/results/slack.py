@@ -8,8 +8,8 @@ from ..engine import SLACK_STRAIN
 from ..errors import UnknownResultError, near
 from ..model.middle_strain import middle_strain
 from ..parts.cable import Cable
-from ..solve.rest_state import RestState
-from .section_forces import Results
+from ..solve.statics.rest_state import RestState
+from .section_forces.forces import Results
 
 if TYPE_CHECKING:
     import xarray

@@ -1,6 +1,6 @@
 """Results on disk while a run goes on, and checkpoints from which a run that was stopped goes on.
 
-A run that is saved as OUT.nc writes its rows there as it goes. At some of its pauses (solve/pauses.py) it replaces
+A run that is saved as OUT.nc writes its rows there as it goes. At some of its pauses (pauses.py) it replaces
 OUT.nc.state, the checkpoint. At which of them depends on the clock, but results do not: the engine is brought into a
 state that a checkpoint holds in full at all of them. Runs that end by themselves leave no checkpoint.
 """
@@ -13,16 +13,16 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from ..base.operating_system import BYTES
 from ..engine import Engine
 from ..errors import ResultFileError
 from ..model.model import Model
-from ..operating_system import BYTES
 from ..parts.file_paths import GIVE, FilePath
 from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps, parts_text
 from ..parts.settings import RunSettings
-from ..solve.pauses import Pauses
-from ..solve.row_notes import RowNotes
+from ..solve.motion.pauses import Pauses
+from ..solve.notes.row_notes import RowNotes
 from .checkpoints import Checkpoint, DamagedCheckpointError, Facts, checkpoint_of
 from .files import check_writable, create_file, file_text, open_file, over_time
 from .locks import Taken, being_written, claimed_for, is_at, lock

@@ -17,14 +17,14 @@ from ..model.part_states import part_states
 from ..model.states import spatial
 from ..parts.paths import COMPONENTS
 from ..parts.validation import EXACT
-from ..solve.adjustment import Reader
-from ..solve.snapshots import Snapshots
-from ..solve.static_problem import StaticState
-from .cable_loads import Instants
+from ..solve.adjustment.adjustment import Reader
+from ..solve.adjustment.snapshots import Snapshots
+from ..solve.statics.static_problem import StaticState
 from .equilibrium import Equilibrium
 from .quantities import QUANTITIES
-from .section_components import labels
-from .section_forces import GLOBAL, along_ground, cut_forces
+from .section_forces.cable_loads import Instants
+from .section_forces.components import labels
+from .section_forces.forces import GLOBAL, along_ground, cut_forces
 
 PLACE = re.compile(r"(?P<cable>[^@.]+)@(?P<s>[-+0-9.eE]+?)\.(?P<rest>[A-Za-z_].*)")
 """The name of a value at a place of a cable."""

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..base.notebook import in_notebook
 from ..errors import FunicularError
-from ..notebook import in_notebook
 from ..parts.scene_data import SceneData
 
 if TYPE_CHECKING:

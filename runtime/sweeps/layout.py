@@ -14,9 +14,9 @@ from ..errors import SceneError
 from ..results.netcdf import ROW_CHECKSUM, File, sealed
 from ..results.netcdf_header import Entry
 from ..results.quantities import Variable
-from .kept import TIME, Kept
 from .parameters import SWEEP, Points
 from .points import FAILED, Outcome
+from .stored_points import TIME, Kept
 
 POINT, ROW = "point", "row"
 """Dimensions: of the points; of output times where each point has its own."""

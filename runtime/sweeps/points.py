@@ -7,12 +7,12 @@ import warnings
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from ..base.interruptions import interruptible, uninterrupted
 from ..errors import FunicularError
-from ..interruptions import interruptible, uninterrupted
 from ..results.run import Run
-from ..scene import Scene
-from ..solve.threads import one_blas_thread
-from .kept import Keep, Kept
+from ..scene.scene import Scene
+from ..solve.linear.threads import one_blas_thread
+from .stored_points import Keep, Kept
 
 FAILED = "failed"
 RETURNED = "returned"

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from ..base.operating_system import BYTES
 from ..errors import ResultFileError
-from ..operating_system import BYTES
 from ..results.files import check_writable
 from ..results.locks import Taken, being_written, claimed_for, lock
 from ..results.netcdf import MOST_ROW, File, create

@@ -16,11 +16,11 @@ from ..parts.paths import Path, changed, check_each_once, path_of, unit_of
 from ..parts.settings import RunSettings, overridden
 from ..parts.validation import shown
 from ..results.run import Run
-from ..scene import Scene
+from ..scene.scene import Scene
 from .identity import identity_of, identity_of_scene
-from .kept import Keep, of_dict
 from .parameters import SWEEP
 from .points import RETURNED, Outcome, failure, outcome_of, run_points
+from .stored_points import Keep, of_dict
 
 
 class Subject(Protocol):

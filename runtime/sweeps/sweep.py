@@ -15,29 +15,29 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.interruptions import interruptible, uninterrupted
 from ..errors import FunicularError, FunicularWarning, ResultFileError, SceneError, near
-from ..interruptions import interruptible, uninterrupted
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.validation import shown
 from ..results.resume_facts import programs_of
-from ..solve.threads import available
+from ..solve.linear.threads import available
 from .batches import Batch, Batches, Done, Task, versions
 from .checks import check_points, own_times
 from .cost import SweepCost, sample, seconds_of
-from .kept import Keep
 from .layout import Layout
-from .meter import OnPoints, point_bar
 from .parameters import SWEEP, Points, points_of
 from .points import FAILED, Outcome
+from .progress import OnPoints, point_bar
 from .store import Store, new_store, stored
+from .stored_points import Keep
 from .subject import SceneSubject, Subject, subject_of
 from .workers import MISSING, Workers, workers_of
 
 if TYPE_CHECKING:
     import xarray
 
-    from ..scene import Scene
+    from ..scene.scene import Scene
 
 LOG = logging.getLogger(__name__)
 

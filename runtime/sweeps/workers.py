@@ -24,9 +24,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ..base.interruptions import interruptible
 from ..errors import FunicularError
-from ..interruptions import interruptible
-from ..solve.threads import available
+from ..solve.linear.threads import available
 from .batches import Batch, Batches, Done
 
 LOG = logging.getLogger(__name__)

@@ -13,8 +13,8 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..notebook import in_notebook
-from ..written_files import unwritable, write_whole
+from ..base.notebook import in_notebook
+from ..base.written_files import unwritable, write_whole
 from .plot import STYLE
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..bounded_files import MOST_MESH, TooLargeError, check_numbers, read_bytes
+from ..base.bounded_files import MOST_MESH, TooLargeError, check_numbers, read_bytes
 from ..errors import FunicularError, shown_path
 from .extras import extra
 

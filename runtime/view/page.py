@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..written_files import write_text
+from ..base.written_files import write_text
 from .animation import Animation, BodyShape, CableShape, Clip, Mark, Segment
 from .decimation import decimated
 from .page_arrays import FLOAT_BITS, Packer, power_of_two

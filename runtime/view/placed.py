@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..rotations import rotate
+from ..base.rotations import rotate
 from .animation import BodyShape
 from .surfaces import Surface, surface
 

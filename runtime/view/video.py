@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from ..base.written_files import write_whole
 from ..errors import FunicularError, shown_path
-from ..written_files import write_whole
 from .animation import Animation, Clip
 from .extras import extra
 from .files import PICTURES

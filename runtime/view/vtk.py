@@ -10,8 +10,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from ..base.written_files import write_text, write_whole
 from ..errors import FunicularError
-from ..written_files import write_text, write_whole
 from .animation import Animation, Clip
 from .extras import extra
 from .files import PICTURES, folder_for_pictures

@@ -13,7 +13,7 @@ import time
 import funicular as fu
 import numpy as np
 from funicular import catenary
-from funicular.solve import static_problem
+from funicular.solve.statics import static_problem
 from pantographs import line55
 from table import arguments, few, show
 

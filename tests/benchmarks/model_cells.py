@@ -19,7 +19,7 @@ import funicular as fu
 import numpy as np
 from funicular.choice.motion import motion
 from funicular.choice.planar import planar_of
-from funicular.choice.remaking import CableModel, coarsest, remade
+from funicular.choice.remeshing import CableModel, coarsest, remade
 from funicular.kernels.elements import built_in
 from funicular.results.trajectories import distance, largest_change
 from model_scenes import SCENES

@@ -26,7 +26,7 @@ from pathlib import Path
 
 import funicular as fu
 from funicular.choice.motion import motion
-from funicular.choice.remaking import remade
+from funicular.choice.remeshing import remade
 from funicular.kernels.elements import built_in
 from funicular.results.trajectories import distance, largest_change
 from model_cells import CACHE, TIMES, TOLS, Cell, brute_force, drawn, known_cells, models, reference

@@ -19,7 +19,7 @@ import numpy as np
 from choice_scenes import SCENES as TIMED
 from choice_scenes import Subject
 from funicular.choice.motion import motion
-from funicular.choice.remaking import remade
+from funicular.choice.remeshing import remade
 from funicular.results.trajectories import distance, largest_change
 from hard_cases import crossings
 from table import few, parser, show

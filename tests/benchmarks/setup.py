@@ -31,8 +31,8 @@ from funicular.model.knots import knots
 from funicular.model.numbering import ordered
 from funicular.model.redundant_constraints import drop_redundant_rows
 from funicular.parts.settings import RunSettings
-from funicular.solve.event_watcher import EventWatcher
-from funicular.solve.integrator_choice import choose
+from funicular.solve.motion.event_watcher import EventWatcher
+from funicular.solve.motion.integrator_choice import choose
 from table import arguments, few, show
 
 SET_UP = ("checks", "model", "engine", "redundant", "choice", "start")

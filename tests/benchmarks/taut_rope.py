@@ -34,8 +34,8 @@ import numpy as np
 from funicular import GeneralSection, Material, Scene
 from funicular.generated import kernels
 from funicular.kernels.elements import manifest
-from funicular.results.section_forces import of_run
-from funicular.scene_file import loads
+from funicular.results.section_forces.forces import of_run
+from funicular.scene.file import loads
 from scipy.optimize import fsolve
 from table import arguments, few, show
 

@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 
 from funicular.errors import FunicularError
-from funicular.scene_schema import scene_schema
-from funicular.written_files import write_whole
+from funicular.scene.schema import scene_schema
+from funicular.base.written_files import write_whole
 
 SITE = Path(__file__).parent
 GUIDES = SITE.parent
@@ -123,7 +123,7 @@ def _moved(text: str, page: str) -> str:
 
 def command_line() -> str:
     """Return the reference of the command line, as typer writes it."""
-    command = [sys.executable, "-m", "typer", "funicular.cli", "utils", "docs", "--name", "funicular"]
+    command = [sys.executable, "-m", "typer", "funicular.cli.main", "utils", "docs", "--name", "funicular"]
     text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     return re.sub(r"^# `funicular`", "# Command line", text, flags=re.MULTILINE)
 

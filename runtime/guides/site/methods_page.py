@@ -8,10 +8,10 @@ from collections.abc import Iterable, Iterator
 
 import funicular
 from funicular import catenary
-from funicular.described_scene import DescribedScene
+from funicular.scene.described import DescribedScene
 from funicular.results.equilibrium import Equilibrium
 from funicular.results.run import Run
-from funicular.solve.rest_state import RestState
+from funicular.solve.statics.rest_state import RestState
 from funicular.results.viewable import Viewable
 
 from .markdown import anchor, prose, table

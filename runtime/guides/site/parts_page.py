@@ -15,8 +15,8 @@ from funicular.parts.scene_text import SETTINGS
 from funicular.parts.section_stiffness import measures_of_law
 from funicular.parts.validation import LIMITS, OTHER_LIMITS
 from funicular.results.quantities import ENERGIES
-from funicular.scene_file import bundled_scenes
-from funicular.scene_schema import GROUPS, scene_schema
+from funicular.scene.file import bundled_scenes
+from funicular.scene.schema import GROUPS, scene_schema
 
 from .markdown import anchor, prose, table
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...base.rotations import rotate
 from ...errors import FunicularError
 from ...parts.cable import Cable
 from ...parts.modal_body import ModalBody
 from ...parts.section import Circle, Rectangle, Section, Tube
-from ...rotations import rotate
 from ...view.animation import CableShape, Quantity
 from .frames import Frames, along
 

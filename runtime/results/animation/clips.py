@@ -11,10 +11,10 @@ from ...errors import FunicularError
 from ...model.model import Model
 from ...parts.modal_body import ModalBody
 from ...parts.scene_data import SceneData
-from ...solve.modes import Modes
-from ...solve.rest_state import RestState, in_loads
+from ...solve.modes.modes import Modes
+from ...solve.statics.rest_state import RestState, in_loads
 from ...view.animation import Animation, BodyShape, CableShape, Clip, Curve, EventMark, Mark
-from ..balance_limits import out_of_balance
+from ..section_forces.balance_limits import out_of_balance
 from . import sources
 from .bodies import body_shape
 from .cables import cable_shape, modal_line, stations

@@ -8,9 +8,9 @@ import numpy as np
 
 from ...errors import FunicularError
 from ...view.animation import Curve, EventMark
-from ..balance_limits import known_method
 from ..quantities import ENERGIES, Variable
-from ..section_forces import of_run as forces_of_run
+from ..section_forces.balance_limits import known_method
+from ..section_forces.forces import of_run as forces_of_run
 from .recorded import Recorded
 
 MOST_ROWS, FEWEST_ROWS = 2000, 200

@@ -8,12 +8,12 @@ from typing import Protocol
 
 import numpy as np
 
+from ...base.rotations import rotate
 from ...kernels.libraries import kernels_of
 from ...parts.attachment import Attachment
 from ...parts.cable import Cable
 from ...parts.modal_body import ModalBody
 from ...parts.scene_data import SceneData
-from ...rotations import rotate
 
 
 class SectionForces(Protocol):

@@ -7,13 +7,13 @@ from typing import Literal
 
 import numpy as np
 
+from ...base.rotations import product, rotate, turned_by
 from ...parts.attachment import Attachment
 from ...parts.load import DistributedForce, Force, Load, Moment
 from ...parts.locations import ends_of, node_of
 from ...parts.modal_body import ModalBody
 from ...parts.support import Clamp, Motion, Support
 from ...parts.validation import Vector, show, vector3
-from ...rotations import product, rotate, turned_by
 from ...view.animation import Mark, Segment
 from .frames import Frames, along, moving, one_or_all, place
 from .references import slide_reference

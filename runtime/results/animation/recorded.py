@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from ..quantities import Variable
-from ..section_forces import Results
+from ..section_forces.forces import Results
 
 
 class Balance(Protocol):

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...base.rotations import rotate
 from ...parts.attachment import Attachment
 from ...parts.rigid_body import RigidBody
 from ...parts.scene_data import SceneData
-from ...rotations import rotate
 from .frames import Frames, moving
 
 

@@ -7,18 +7,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...base.rotations import product, rotate, turned_by
 from ...model.cables import cable_model
 from ...parts.modal_body import ModalBody
 from ...parts.rigid_body import RigidBody
 from ...parts.scene_data import SceneData
-from ...rotations import product, rotate, turned_by
-from ...solve.modes import Modes
-from ...solve.rest_state import RestState
-from ..balance_limits import known_method
-from ..section_balance import Cuts
-from ..section_components import components
-from ..section_forces import constitutive, of_equilibrium
-from ..section_forces import of_run as forces_of_run
+from ...solve.modes.modes import Modes
+from ...solve.statics.rest_state import RestState
+from ..section_forces.balance import Cuts
+from ..section_forces.balance_limits import known_method
+from ..section_forces.components import components
+from ..section_forces.forces import constitutive, of_equilibrium
+from ..section_forces.forces import of_run as forces_of_run
 from .frames import Frames, SectionForces
 from .recorded import Recorded
 

@@ -9,7 +9,7 @@ from functools import cache
 
 import numpy as np
 from funicular import FunicularWarning, Run, Scene
-from funicular.rotations import rotate
+from funicular.base.rotations import rotate
 
 INTEGRATORS = "genalpha", "energy", "explicit", "radau"
 

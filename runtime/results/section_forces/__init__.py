@@ -1,0 +1,1 @@
+"""Forces and moments in sections of cables."""

@@ -1,0 +1,250 @@
+"""Section forces: what one part of a cable exerts on the other across a cut, in balance with all that acts on it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from ...errors import FunicularError, FunicularWarning, UnknownResultError, near
+from ...kernels.libraries import kernels_of
+from ...model.model import Model
+from ...parts.cable import Cable
+from ...parts.laid import laid
+from ...parts.locations import attached
+from ...parts.scene_data import SceneData
+from ...parts.section_stiffness import section_stiffness
+from ...parts.slide import Slide
+from ...parts.validation import EXACT, show
+from ...solve.statics.rest_state import RestState
+from .balance import Cuts, balanced
+from .balance_limits import balanced_cables, is_cut, out_of_balance
+from .cable_loads import CableLoads, Instants
+from .components import balanced_components, components, labels, taut_bending
+from .kinks import kinks
+from .nodal_forces import element_forces
+from .spreads import lengths_of_rows, rows
+from .swings import swinging
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+
+PLACES = 8
+"""Places on each element, where none are asked for."""
+BESIDE = 4 * EXACT
+"""Of the cable's length: how far from a jump its two sides are looked at."""
+AT_ONCE = 100_000
+"""Cuts or elements, over all times, that are worked on together."""
+METHODS = ("balance", "constitutive")
+SIDES = ("after", "before")
+
+GLOBAL = {
+    "force": ("N", "force on the part before the cut"),
+    "moment": ("N m", "moment on the part before the cut"),
+}
+
+
+class Results(Protocol):
+    """What section forces take of a run."""
+
+    @property
+    def scene(self) -> SceneData:
+        """Return the scene that was run."""
+
+    @property
+    def model(self) -> Model:
+        """Return the model of the scene."""
+
+    @property
+    def time(self) -> np.ndarray:
+        """Return the times (time,) in s."""
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return the result of a name, time first."""
+
+
+def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[np.ndarray, ...]:
+    """Return the elastic law at cuts: force, moment (T, n, 3), axes of the section (T, n, 3, 3), strains (T, n, 6).
+
+    nodal_vectors: (T, nodes, vectors, 3). Force and moment are along the ground's axes.
+    """
+    kernel = getattr(kernels_of(cable.library), f"{cable.element}_{cable.kernel_law}_section_forces")
+    dim, reference, plane = cable.dim, cable.reference, cable.plane
+    nodal_vectors = cable.in_plane(nodal_vectors)
+    S = section_stiffness(cable.stiffness_law, cable.section, cable.material, dim)
+    shape = len(nodal_vectors), cuts.s.shape[1]
+    element, x = np.broadcast_to(cuts.element, shape), np.broadcast_to(cuts.x, shape)
+    instants = np.arange(shape[0])[:, None]
+    e = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=2)
+    e0 = [] if reference is None else [reference[element].reshape(-1, *reference.shape[1:])]
+    lengths = lengths_of_rows(cable.mesh, element, x.shape)
+    found = rows(kernel, x.size, lengths, x.ravel(), e.reshape(-1, *e.shape[2:]), S, *e0)
+    force, moment, axes, strain = (values.reshape(*shape, *values.shape[1:]) for values in found)
+    return (force, moment, axes, strain) if plane is None else (plane.out(force), plane.out(moment), plane.out(axes),
+                                                                strain)
+
+
+def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.ndarray, *, method: str = "balance",
+               side: str = "after") -> dict[str, np.ndarray]:
+    """Return the forces in sections of the cable ``name`` at instants.
+
+    s: (1 or T, n) arc-lengths in m. Returns force and moment (T, n, 3), along the ground's axes, and the components
+    of `section_components.labels` (T, n). At rest accelerations are nil. Raises SceneError, see `out_of_balance`.
+    """
+    cable, number = scene.cables[name], list(scene.cables).index(name)
+    of = model.cables[number]
+    cuts = Cuts(of, s, side == "after")
+    nodal = at.value(f"{name}.nodal_vectors")
+    force, moment, axes, strain = constitutive(cable, nodal, cuts)
+    if method == "constitutive":
+        return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
+    if (refusal := out_of_balance(scene, model, number, at.is_rest)) is not None:
+        raise refusal
+    concerned = balanced_cables(scene, model, number, at.is_rest)
+    if len(at.time) > 1 and is_cut(model, concerned):
+        each = [cut_forces(scene, model, at.one(k), name, s if len(s) == 1 else s[k : k + 1], side=side)
+                for k in range(len(at.time))]  # wet parts are others at each instant
+        return {key: np.concatenate([found[key] for found in each]) for key in each[0]}
+    loads = CableLoads(scene, model, at, concerned)
+    forces = element_forces(model, at, loads, number)
+    balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
+    taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
+        cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
+    return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
+
+
+def along_ground(model: Model, name: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the forces in sections of a cable with force and moment along the ground's axes; components stay."""
+    return found | model.results(name, {each: found[each] for each in GLOBAL})
+
+
+def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",
+           side: str = "after") -> dict[str, np.ndarray]:
+    """Return `cut_forces` of a run at the chosen times; s: (1 or T, n)."""
+    scene, model = laid(run.scene), run.model
+    time = run.time[chosen]
+    numbers = np.arange(len(run.time))[chosen]
+    found: list[dict] = []
+    block = max(1, AT_ONCE // max(1, s.shape[1], sum(cable.elements for cable in run.scene.cables.values())))
+    for first in range(0, len(time), block):
+        part = numbers[first : first + block]
+        found.append(cut_forces(scene, model, _instants(run, part), name,
+                                s if len(s) == 1 else s[first : first + block], method=method, side=side))
+    return along_ground(model, name, {key: np.concatenate([each[key] for each in found]) for key in found[0]})
+
+
+def _instants(run: Results, numbers: np.ndarray) -> Instants:
+    model, kept = run.model, {}
+    chosen = slice(numbers[0], numbers[-1] + 1) if numbers[-1] - numbers[0] + 1 == len(numbers) else numbers
+
+    def value(name: str) -> np.ndarray:
+        if name not in kept:
+            kept[name] = model.as_in_model(name, run[name][chosen])
+        return kept[name]
+
+    q, v = np.zeros((len(numbers), model.n_q)), np.zeros((len(numbers), model.n_dof))
+    for cable in model.cables:
+        for into, kind in ((q, "nodal_vectors"), (v, "nodal_velocity")):
+            into[:, cable.coordinates] = value(f"{cable.name}.{kind}")[..., : model.dim].reshape(len(numbers), -1)
+    return Instants(run.time[chosen], q, v, value)
+
+
+def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = "balance",
+                   side: str = "after") -> dict[str, np.ndarray]:
+    """Return `cut_forces` of a state of rest: T = 1; s: (1, n)."""
+    return along_ground(state.model, name, cut_forces(laid(state.scene), state.model, rest_instants(state), name, s,
+                                                      method=method, side=side))
+
+
+def rest_instants(state: RestState) -> Instants:
+    """Return a state of rest as one instant, with as much of the loads as it has."""
+    return Instants(np.zeros(1), state.static_state["q"][None], np.zeros((1, state.model.n_dof)),
+                    lambda quantity: state.model.as_in_model(quantity, state[quantity][None]), state.load_fraction,
+                    state.gravity_fraction, is_rest=True)
+
+
+def jumps(scene: SceneData, name: str) -> np.ndarray:
+    """Return the arc-lengths of the cable at which something fixed to it is attached: inside, in order."""
+    cable = scene.cables[name]
+    beside = BESIDE * cable.length
+    return np.array(sorted({s for s in attached(scene, name) if beside < s < cable.length - beside}))
+
+
+def even(cable: Cable) -> np.ndarray:
+    """Return the places along all of a cable, its nodes among them."""
+    return cable.divided(PLACES)
+
+
+def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return s (n,), in order, with a point on either side of each of the places (..., m): (..., n + 2 m)."""
+    beside = BESIDE * cable.length
+    sides = np.clip(np.concatenate([places - beside, places + beside], axis=-1), 0.0, cable.length)
+    return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
+
+
+def dataset(state: Results | RestState, cable: Cable | str, s: ArrayLike | Slide | None = None, *,
+            method: str = "balance", side: str = "after") -> xarray.Dataset:
+    """See `Run.section_forces`; of an equilibrium without the time."""
+    import xarray  # 0.5 s, for those who ask for it
+
+    scene, name = state.scene, cable.name if isinstance(cable, Cable) else cable
+    if name not in scene.cables:
+        raise UnknownResultError(f'there is no cable "{name}"; {near(name, scene.cables)}')
+    for word, value, known in (("method", method, METHODS), ("side", side, SIDES)):
+        if value not in known:
+            raise FunicularError(f'section forces of "{name}": {word} must be '
+                                 + " or ".join(f'"{each}"' for each in known) + f", got {value!r}")
+    drawn, over_time = scene.cables[name], not isinstance(state, RestState)
+    s, follows = _places(state, drawn, s, over_time)
+    compute: Callable = of_run if over_time else of_equilibrium
+    values = compute(state, name, s, method=method, side=side)
+    if method == "constitutive" and (swing := swinging(drawn, s, lambda at: compute(
+            state, name, at, method=method)["tension"])):
+        warnings.warn(swing, FunicularWarning, stacklevel=3)
+    label = GLOBAL | labels(drawn)
+    coords: dict = {"xyz": ["x", "y", "z"]}
+    of_s = {"units": "m", "long_name": "undeformed arc-length"}
+    if not isinstance(state, RestState):
+        coords["time"] = ("time", state.time, {"units": "s", "long_name": "time"})
+    if follows:
+        coords["s"] = ("time", s[:, 0], of_s) if over_time else ((), s[0, 0], of_s)
+    else:
+        coords["s"] = ("s", s[0], of_s)
+    dims = ("time",) * over_time + ("s",) * (not follows) + ("xyz",)
+    index = (slice(None) if over_time else 0, 0 if follows else slice(None))
+    return xarray.Dataset(
+        {key: (dims[: value[index].ndim], value[index], {"units": label[key][0], "long_name": label[key][1]})
+         for key, value in values.items()},
+        coords, {"cable": name, "element": drawn.element, "law": drawn.law, "method": method, "side": side})
+
+
+def _places(state: Results | RestState, cable: Cable, s: Any, over_time: bool) -> tuple[np.ndarray, bool]:
+    """Return arc-lengths (1 or T, n) from what was asked for, and whether they go with a slide."""
+    scene, name = state.scene, cable.name
+    if s is None:
+        places = jumps(scene, name)
+        if not over_time:
+            riders = [state[f"{slide.name}.s"] for slide in scene.slides.values() if slide.along == name]
+            riders += [state[f"{crossing.name}.{s_of}"] for crossing in scene.crossings.values()
+                       for of, s_of in ((crossing.a, "s"), (crossing.b, "s_b")) if of == name]
+            places = np.append(places, riders)
+        return np.unique(with_sides(cable, even(cable), places))[None], False
+    slide = scene.slides.get(getattr(s, "name", s)) if isinstance(getattr(s, "name", s), str) else None
+    if slide is not None:
+        if slide.along != name:
+            raise FunicularError(f'section forces of "{name}": slide "{slide.name}" is on cable "{slide.along}"')
+        return np.clip(np.atleast_1d(state[f"{slide.name}.s"])[:, None], 0.0, cable.length), True
+    try:
+        s = np.atleast_1d(np.asarray(s, dtype=float))
+    except (TypeError, ValueError):
+        raise FunicularError(f'section forces of "{name}": s must be arc-lengths in m, or a slide on it, '
+                             f"got {s!r}") from None
+    off = (s < -EXACT * cable.length) | (s > (1 + EXACT) * cable.length) | ~np.isfinite(s)
+    if s.ndim != 1 or off.any():
+        wrong = show(float(s[off][0]), "m") if s.ndim == 1 else f"an array of shape {s.shape}"
+        raise FunicularError(f'section forces of "{name}": s must lie on the cable, in [0, {cable.length:.9g}] m, '
+                             f"got {wrong}")
+    return s[None], False

@@ -1,0 +1,92 @@
+"""Where the force along a cable kinks (at riders, loads, springs, joints, supports), or has a fixed direction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ...model.element_coordinates import positions
+from ...model.model import CableModel
+from ...model.states import spatial
+from ...parts.cable import Cable
+from ...parts.scene_data import SceneData
+from ...parts.support import Clamp, Motion, Support
+from .balance import Cuts, balanced, resultants
+from .cable_loads import CableLoads
+from .layer import Kink, fixed_direction
+from .nodal_forces import ElementForces
+from .spreads import shape_on_axis
+
+ForceAt = Callable[[np.ndarray, bool], np.ndarray]
+"""The force in sections at s (m), on the side after a jump or before it."""
+
+
+def kinks(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads,
+          number: int) -> list[Kink]:
+    """Return those of one cable at the instants of its forces."""
+
+    def force_at(s: np.ndarray, after: bool) -> np.ndarray:
+        return balanced(cable, model, forces, loads, number, Cuts(model, s, after))[0]
+
+    return [*_of_points(cable, model, forces, loads, number, force_at),
+            *_of_nodes(scene, cable, model, forces, force_at)]
+
+
+def _of_points(cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads, number: int,
+               force_at: ForceAt) -> list[Kink]:
+    points, is_r = loads.points.get(number, []), positions(model)
+    if not points:
+        return []
+    s = np.stack([model.mesh.each_start(load.element) + load.x for load in points], axis=1)
+    inside = (s > 1e-9 * cable.length) & (s < (1 - 1e-9) * cable.length)
+    before, instants, found = force_at(s, False), np.arange(len(s)), []
+    for k, load in enumerate(points):
+        e = forces.e[instants, load.element]
+        at = spatial(np.einsum("tk,tkd->td", shape_on_axis(model, load.element, load.x), e))
+        jump, moment = resultants(load.f, e, is_r, at)
+        one_side = np.where(inside[:, k], 1.0, 2.0)[:, None]  # of an end: it has one
+        found.append(Kink(s[:, k], before[:, k], before[:, k] - np.where(inside[:, k, None], jump, 0.0),
+                          one_side * moment))
+    return found
+
+
+def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces,
+              force_at: ForceAt) -> list[Kink]:
+    """Return the kinks at supports and ties; a section that they keep from turning fixes the direction of the line."""
+    found: list[Kink] = []
+    directed: dict[int, bool] = {}  # nodes, and whether their section keeps its direction
+    ends = [(support.cable, support.s, _keeps_direction(support)) for support in scene.supports]
+    for tie in scene.ties.values():
+        ends += [(tie.cable, tie.s, tie.rotation == "rigid"), (tie.to, tie.at, tie.rotation == "rigid")]
+    for on, at_s, keeps in ends:
+        if on == cable.name:
+            node = cable.node(at_s)
+            directed[node] = directed.get(node, False) or keeps
+    times = len(forces.e)
+    for node, is_directed in directed.items():
+        s = np.full(times, model.mesh.node_s[node])
+        first, last = node == 0, node == cable.elements
+        element, at = (node - 1, len(model.vectors)) if last else (node, 0)
+        direction = _normal(model, spatial(forces.e[:, element, at : at + len(model.vectors)]))
+        sides = [(False, -1)] * (not first) + [(True, 1)] * (not last)
+        n = {side: force_at(s[:, None], after)[:, 0] for after, side in sides}
+        if is_directed:
+            found += [fixed_direction(s, direction, force, side) for side, force in n.items()]
+        elif len(n) == 2:
+            found.append(Kink(s, n[-1], n[1], np.zeros((times, 3))))
+    return found
+
+
+def _normal(model: CableModel, vectors: np.ndarray) -> np.ndarray:
+    """Return (T, 3): the direction of the section's normal at a node, of its vectors (T, vectors, 3); of a cable the
+    tangent.
+    """
+    named = dict(zip(model.vectors, np.moveaxis(vectors, 1, 0), strict=True))
+    if "r_y" not in named:
+        return named["r_x"]
+    return np.cross(named["r_y"], named.get("r_z", np.array([0.0, 0.0, 1.0])))
+
+
+def _keeps_direction(support: Support) -> bool:
+    return isinstance(support, Clamp) or (isinstance(support, Motion) and support.rotation is not None)

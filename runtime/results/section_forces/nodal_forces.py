@@ -1,0 +1,171 @@
+"""What the nodes of cables give to each element: its elastic and damping force and inertia, less what acts on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import block_diag, coo_array, csc_array, csr_array, kron
+from scipy.sparse.linalg import splu
+
+from ...model.element_coordinates import element_coordinates
+from ...model.model import CableModel, Model
+from ...model.unknowns import by_unknowns
+from .cable_loads import CableLoads, Instants
+from .spreads import Spread, rows
+
+
+@dataclass
+class ElementForces:
+    """Of the elements of one cable at T instants.
+
+    given (T, elements, vectors, dim): the generalised forces of its nodes on each element; inertia, the same shape:
+    nodal accelerations with what mass damping adds, those of gravity subtracted, so that mass times inertia is what a
+    length of cable takes; e, likewise, nodal vectors. spreads: what the mass of a fluid adds by the accelerations.
+    """
+
+    given: np.ndarray
+    inertia: np.ndarray
+    e: np.ndarray
+    spreads: list[Spread]
+
+
+def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) -> ElementForces:
+    """Return those of cable number `cable`, one of those that the loads are of; at rest without accelerations."""
+    forces = {k: internal(model.cables[k], at) - _external(model, k, at, loads) for k in loads.cables}
+    accelerations = np.zeros_like(at.v) if at.is_rest else _accelerations(model, at, forces, loads)
+    of = model.cables[cable]
+    a = element_coordinates(of, accelerations)
+    given = forces[cable] + mass_times(of, a)
+    spreads: list[Spread] = []
+    if cable in loads.added and not at.is_rest:
+        spreads = list(loads.added[cable].spreads(of, a))
+    for spread in spreads:
+        given[:, spread.element] -= spread.f
+    inertia = a + of.mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
+    return ElementForces(given, inertia, element_coordinates(of, at.q), spreads)
+
+
+def internal(cable: CableModel, at: Instants) -> np.ndarray:
+    """Return (T, elements, vectors, dim): elastic forces, those of Kelvin-Voigt and of mass damping."""
+    e, v = element_coordinates(cable, at.q), element_coordinates(cable, at.v)
+    moving = cable.tau > 0 and np.any(v)
+
+    def forces(length: float, e: np.ndarray, v: np.ndarray, A: np.ndarray) -> np.ndarray:
+        found = rows(cable.law_kernel("elastic_force"), len(e), length, e, A)
+        if moving:
+            damping = cable.law_kernel("damping_force")
+            of_damping = A[: damping.shapes["A"][0]]  # the law that it is taken from has the first constants alone
+            found = found + rows(damping, len(e), length, e, v, of_damping, cable.tau)
+        return found
+
+    if len(cable.A) == 1:
+        shape = e.shape
+        f = forces(cable.mesh.mean, e.reshape(-1, *shape[2:]), v.reshape(-1, *shape[2:]), cable.A[0]).reshape(shape)
+    else:  # constants of each element: a curved stress-free shape, or unequal lengths
+        f = np.stack([forces(cable.mesh.length(k), e[:, k], v[:, k], A) for k, A in enumerate(cable.A)], axis=1)
+    if cable.mass_damping > 0:
+        f = f + cable.mass_damping * mass_times(cable, v)
+    return f
+
+
+def mass_times(cable: CableModel, a: np.ndarray) -> np.ndarray:
+    """Return (T, elements, vectors, dim): the mass matrices of the elements times vectors of that shape."""
+    if len(cable.m) == 1:
+        return np.einsum("kl,teld->tekd", cable.m[0], a)
+    return np.einsum("ekl,teld->tekd", cable.m, a)
+
+
+def _uniform(cable: CableModel, acceleration: np.ndarray) -> np.ndarray:
+    """Return (vectors, dim): nodal accelerations of a uniform field."""
+    return np.array([name == "r" for name in cable.vectors] * 2)[:, None] * acceleration
+
+
+def _external(model: Model, number: int, at: Instants, loads: CableLoads) -> np.ndarray:
+    """Return (T, elements, vectors, dim): gravity, and all that acts between nodes."""
+    cable = model.cables[number]
+    f = np.zeros((len(at.time), cable.n_elements, 2 * cable.shape[1], cable.shape[2]))
+    weight = np.einsum("ekl,ld->ekd", cable.m, _uniform(cable, loads.gravity))
+    f += weight[0] if len(weight) == 1 else weight
+    instants = np.arange(len(at.time))
+    for load in loads.points.get(number, []):
+        f[instants, load.element] += load.f
+    for spread in loads.spreads.get(number, []):
+        f[:, spread.element] += spread.f
+    return f
+
+
+def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray], loads: CableLoads) -> np.ndarray:
+    """Return (T, n_dof): nodal accelerations of these cables; forces (T, elements, vectors, dim) are internal less
+    outer ones.
+
+    M a = -forces on what is free, with what supports and joins hold and motions prescribe. Eq 38 gave the same at each
+    of the instants: so a run need not keep them. A fluid's mass turns with the cable, and M with it.
+    """
+    chosen = np.concatenate([np.arange(model.cables[k].coordinates.start, model.cables[k].coordinates.stop)
+                           for k in forces])
+    masses, assembled = [], np.zeros((len(at.time), model.n_dof))
+    for k, f in forces.items():
+        cable = model.cables[k]
+        nodal = np.zeros((len(f), *cable.shape))
+        nodal[:, :-1] += f[:, :, : cable.shape[1]]
+        nodal[:, 1:] += f[:, :, cable.shape[1] :]
+        assembled[:, cable.coordinates] = nodal.reshape(len(f), -1)
+        masses.append(_mass(cable))
+    M = block_diag(masses, format="csr")
+    T = _reduction(model, chosen)
+    prescribed = _prescribed(model, at.time)[:, chosen]
+    found = np.zeros_like(assembled)
+    of_fluid = {k: loads.added[k].matrices() for k in forces if k in loads.added}
+    blocks = [slice(None)] if not of_fluid else [slice(t, t + 1) for t in range(len(at.time))]
+    for block in blocks:
+        whole = M if not of_fluid else M + block_diag([_fluid_mass(model.cables[k], of_fluid.get(k), block.start)
+                                                       for k in forces], format="csr")
+        right = -(assembled[block, chosen] + (whole @ prescribed[block].T).T)
+        if T.shape[1]:
+            solve = splu(csc_array(T.T @ whole @ T)).solve
+            found[block, chosen] = (T @ solve(np.ascontiguousarray(T.T @ right.T))).T
+    found[:, chosen] += prescribed
+    return found
+
+
+def _mass(cable: CableModel) -> csr_array:
+    """Return the mass matrix of a cable, (coordinates, coordinates), sparse."""
+    return kron(_assembled(cable, cable.m, cable.shape[1]), np.eye(cable.shape[2]), format="csr")
+
+
+def _fluid_mass(cable: CableModel, matrices: np.ndarray | None, instant: int) -> csr_array:
+    """Return that of a fluid at an instant, from matrices (T, elements, n, n); None: there is none."""
+    per_node = cable.shape[1] * cable.shape[2]
+    if matrices is None:
+        return csr_array((cable.shape[0] * per_node,) * 2)
+    return _assembled(cable, matrices[instant], per_node)
+
+
+def _assembled(cable: CableModel, matrices: np.ndarray, per_node: int) -> csr_array:
+    """Return the sum of matrices (1 or elements, 2 per_node, 2 per_node) of the elements, sparse."""
+    n = cable.shape[0] * per_node
+    index = np.arange(cable.n_elements)[:, None, None] * per_node
+    local = np.arange(2 * per_node)
+    at_row = np.broadcast_to(index + local[:, None], (cable.n_elements, 2 * per_node, 2 * per_node))
+    at_column = np.broadcast_to(index + local, at_row.shape)
+    found = coo_array((np.broadcast_to(matrices, at_row.shape).ravel(), (at_row.ravel(), at_column.ravel())),
+                      shape=(n, n))
+    return found.tocsr()
+
+
+def _reduction(model: Model, dofs: np.ndarray) -> csr_array:
+    """Return T (dofs, unknowns that they have), sparse: dofs = T unknowns + what is prescribed."""
+    T = by_unknowns(model.unknown_of_dof[dofs], model.combinations, model.n_band + model.n_border_dof).tocsc()
+    return T[:, np.flatnonzero(np.diff(T.indptr))].tocsr()
+
+
+def _prescribed(model: Model, time: np.ndarray) -> np.ndarray:
+    """Return (T, n_dof): accelerations that motions prescribe."""
+    found = np.zeros((len(time), model.n_dof))
+    for motion in model.motions:
+        f, rate, second = (model.signals[motion.signal].value(time, order) for order in range(3))
+        c, s = np.cos(f), np.sin(f)
+        slope = motion.linear - motion.cosine * s + motion.sine * c
+        found[:, motion.dof] += slope * second - (motion.cosine * c + motion.sine * s) * rate**2
+    return found

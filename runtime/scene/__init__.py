@@ -1,0 +1,1 @@
+"""A scene: what a user describes, reads from a file, and runs."""

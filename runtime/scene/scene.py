@@ -1,0 +1,446 @@
+"""The scene: what the user describes (scene/described.py), and how it is run."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from functools import partial
+from typing import TYPE_CHECKING, Any, Never, Self, cast
+
+from ..base.interruptions import interruptible, uninterrupted, was_interrupted
+from ..errors import (
+    ConvergenceError,
+    EndOfCableError,
+    EquilibriumError,
+    FunicularWarning,
+    ResultFileError,
+    SceneError,
+    enough_memory,
+    near,
+)
+from ..parts.laid import laid
+from ..parts.settings import EquilibriumSettings, ModeSettings, RelaxationSettings, RunSettings, overridden
+from ..parts.validation import show, shown
+from ..results.run import Run
+from ..results.viewable import Viewable
+from ..solve.linear.threads import one_blas_thread
+from ..solve.motion.progress import progress_bar
+from .described import DescribedScene
+
+if TYPE_CHECKING:
+    # Model, solvers and their results bring SciPy along, which would double the time of `import funicular`; checks take
+    # a tenth of it. So they are imported by the methods that need them, here and below.
+    from numpy.typing import ArrayLike
+
+    from ..choice.choice import Choice
+    from ..results.equilibrium import Equilibrium
+    from ..results.modes import Modes
+    from ..results.streaming import Stream
+    from ..solve.motion.run import Start
+    from ..solve.motion.trial_cache import SharedTrials
+    from ..view.animation import Animation
+
+SYNONYMS = {"dt": "step", "time_step": "step", "timestep": "step", "h": "step", "t_end": "duration", "tend": "duration",
+            "end_time": "duration", "time": "duration", "rtol": "tol", "tolerance": "tol", "solver": "integrator",
+            "method": "integrator", "output": "save", "path": "save", "file": "save", "dt_out": "output_step",
+            "output_dt": "output_step", "n_threads": "threads"}
+"""What other programs call the settings of a run."""
+
+
+MOST_NAMED = 12
+"""Parts of a kind that a notebook names."""
+
+
+class Scene(Viewable, DescribedScene):
+    """Cables, bodies, and what joins, holds and loads them.
+
+    ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``point_forces``,
+    ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists, all for reading: methods add parts,
+    `replace` and `without` make other scenes; ``messages`` lists what was adjusted;
+    ``run_settings``, ``equilibrium_settings`` and ``relax_settings`` hold the settings that a scene file gives;
+    ``title`` is what pictures are called: the name of the scene's file without the ending, or what you set.
+    """
+
+    def _check_for(self, settings: RunSettings) -> None:
+        """Check the scene for a run of these settings. Raises SceneError."""
+        from ..checks.whole_scene import check_start_as_drawn  # likewise
+
+        self.check()
+        if settings.initial == "drawn":
+            check_start_as_drawn(self)
+
+    def run(
+        self,
+        duration: float | None = None,
+        *,
+        tol: float | None = None,
+        absolute_tol: float | None = None,
+        quantities: Sequence[str] | None = None,
+        step: float | None = None,
+        output_step: float | None = None,
+        integrator: str | None = None,
+        spectral_radius: float | None = None,
+        model: str | None = None,
+        initial: str | Equilibrium | Mapping[str, ArrayLike] | None = None,
+        threads: int | None = None,
+        save: str | os.PathLike | None = None,
+        resume: bool = False,
+        progress: bool | Callable[[float], None] | None = None,
+        estimate: bool | None = None,
+        **unknown: Never,
+    ) -> Run:
+        """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
+
+        Settings not given here are the scene file's, if it gave them. model: "auto" chooses what of the cables was not
+        given, elements, laws and meshes, and the integrator, so that the error of all stays below tol, see `choose`;
+        cables without elements are always chosen so. ``run.report["choice"]`` says what was chosen and why,
+        ``run.scene`` is the chosen scene. initial: "drawn", "equilibrium" or "relaxed" (found first), a state that
+        `equilibrium` or `relax` returned, at the velocities drawn, a state ``run.at(time)`` of another run, or arrays
+        by the names of results such as ``{"wire.nodal_vectors": ...}``, see `InitialState`. save: a netCDF file,
+        written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
+        killed or interrupted; results are read from the file when they are asked for. resume: go on from there, to the
+        same numbers. progress: a bar (True), none (False), a bar if a terminal watches (None), or a function of the
+        time reached.
+
+        While it goes on the BLAS of NumPy and SciPy has one thread, in the whole process: what other threads of it
+        compute meanwhile with large matrices takes longer.
+
+        Raises SceneError, ResultFileError, EquilibriumError; EndOfCableError and ConvergenceError, whose ``run`` holds
+        everything up to then. Ctrl-C returns what was computed, with a `FunicularWarning`.
+        """
+        _refuse_unknown("run", unknown, (*RunSettings.keywords(), "resume", "progress"))
+        given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
+                 "output_step": output_step, "integrator": integrator, "spectral_radius": spectral_radius,
+                 "threads": threads, "save": save, "estimate": estimate, "model": model, "initial": initial}
+        return self._run(given, resume, progress)
+
+    def _run(self, settings_given: Mapping[str, Any], resume: bool, progress: bool | Callable[[float], None] | None,
+             trials: SharedTrials | None = None) -> Run:
+        """Return the run with these settings, None for those not given, see `run`; trials: of scenes of one shape."""
+        given = {name: value for name, value in settings_given.items() if value is not None}
+        initial = given.get("initial")
+        state = None if initial is None or isinstance(initial, str) else _state(self, initial)
+        if state is not None:
+            given["initial"] = "state" if isinstance(initial, Mapping) else "equilibrium"
+        settings = RunSettings(**overridden(self.run_settings, given))
+        if "save" not in given:
+            settings = settings.model_copy(update={"save": self.run_settings.get("save")})  # as the file has it
+        if settings.initial == "state" and state is None:
+            raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
+        chosen = self._chosen_for(settings)
+        scene, settings = (self, settings) if chosen is None else (chosen.scene, chosen.settings_of(settings))
+        scene, state = scene._adjusted(settings, state)
+        scene._check_for(settings)
+        _check_resume(resume, settings)
+        run = scene._simulated(settings, state, resume, progress, chosen, trials)
+        _raise_where_stopped(run)
+        if run.status == "interrupted":
+            warnings.warn(run.report["message"], FunicularWarning, stacklevel=3)
+        return run
+
+    def _adjusted(self, settings: RunSettings, state: Start | None) -> tuple[Self, Start | None]:
+        """Return the scene and the state that a run starts from: adjusted where it starts from a state of rest for
+        which the scene's file adjusts parameters.
+        """
+        if state is not None or settings.initial != "equilibrium" or not self.equilibrium_settings.get("adjust"):
+            return self, state
+        rest = self.equilibrium()
+        return cast(Self, rest.scene), rest
+
+    def choose(self, tol: float | None = None, *, duration: float | None = None, quantities: Sequence[str] = (),
+               free: str = "unset", initial: str | None = None, integrator: str | None = None,
+               unequal: bool = False) -> Choice[Self]:
+        """Choose element, law and mesh of each cable, and the integrator, so that a run errs by less than ``tol``.
+
+        tol: of the error of model and mesh, against the finest model at hand, with that of time, over the largest
+        change; 1e-3 if neither this nor the scene's file gives one. quantities: names of results that count, such as
+        "A.position" or "trolley.force"; the motion of all cables and bodies if none is named. free: "unset" chooses
+        what was not given: the number of elements of cables without ``elements``, element and law of those without
+        ``element``; "all" chooses all. duration in s, initial and integrator are those of the run, by default the scene
+        file's. unequal: elements of unequal lengths are tried, too, and taken where they save a third.
+
+        It is decided by short runs on coarse meshes and by what they indicate. The choice has the chosen ``scene``,
+        ``reasons`` and ``table``, the alternatives with their estimated errors and costs; print it. Raises SceneError.
+        """
+        given = {"tol": tol, "duration": duration, "initial": initial, "integrator": integrator}
+        given = {name: value for name, value in given.items() if value is not None}
+        settings = RunSettings(**{"tol": 1e-3} | overridden(self.run_settings, given))
+        if isinstance(quantities, str):
+            raise SceneError("choose", f"quantities must be a list of names, got {quantities!r}")
+        return self._choose(settings, quantities, free, unequal)
+
+    def _chosen_for(self, settings: RunSettings) -> Choice[Self] | None:
+        """Return the choice where a run needs one: where that is asked for, or elements were left out; else None."""
+        if settings.model == "auto":
+            return self._choose(settings, settings.quantities or (), "unset")
+        if not any(cable.is_open for cable in self.cables.values()):
+            return None
+        chosen = self._choose(settings, settings.quantities or (), "unset")
+        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=4)  # which nobody has asked for
+        return chosen
+
+    def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str,
+                unequal: bool = False) -> Choice[Self]:
+        """Return the choice for a run with these settings."""
+        from ..choice.choosing import choose  # runs, which bring SciPy
+        from ..choice.probes import Runner
+
+        def simulate(scene: Self, settings: RunSettings, rest: Equilibrium | None) -> Run:
+            scene._check_for(settings)
+            run = scene._simulated(settings, rest, False, False)
+            _raise_where_stopped(run)
+            if run.status == "interrupted":
+                raise KeyboardInterrupt
+            return run
+
+        return choose(self, settings, quantities, free, Runner(simulate, partial(_at_rest, settings.initial)), unequal)
+
+    def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
+                   progress: bool | Callable[[float], None] | None, chosen: Choice | None = None,
+                   trials: SharedTrials | None = None) -> Run:
+        """Return the run with these settings, however it ended, from a state or as the settings say."""
+        with uninterrupted(), self._saving(settings, resume) as stream, one_blas_thread, enough_memory():
+            from ..results.recording import recorded  # brings SciPy and the engine
+            from ..solve.motion.run import simulate
+
+            given = state
+            if settings.initial in ("equilibrium", "relaxed") and state is None:
+                with interruptible():
+                    state = _at_rest(settings.initial, self, None if chosen is None else chosen.rest)
+            flat = laid(self)
+            with progress_bar(settings.duration, progress) as on_progress:
+                simulation = simulate(flat, settings, on_progress, initial=state, stream=stream, trials=trials)
+            recording = recorded(simulation, flat, settings)
+            if chosen is not None:
+                recording.report["choice"] = chosen.facts()
+                recording.report["messages"] = [*chosen.messages(), *recording.report["messages"]]
+            run = (stream.finish(recording) if stream
+                   else Run.from_recording(recording, self, settings, self.from_toml))
+            if settings.estimate:
+                self._estimate(run, settings, given)
+                if stream:
+                    stream.add_to_report(run.report)
+            if was_interrupted() and run.status != "interrupted":  # what is done is not lost
+                warnings.warn("the run had come to its end when it was interrupted", FunicularWarning, stacklevel=5)
+            return run
+
+    def _saving(self, settings: RunSettings, resume: bool) -> AbstractContextManager[Stream | None]:
+        """Return what writes the file of a run, if one is asked for."""
+        from ..results.streaming import Stream  # as above
+
+        return nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume, self.from_toml)
+
+    def _estimate(self, run: Run, settings: RunSettings, state: Start | None) -> None:
+        """Add the errors of a run, of its steps and of its mesh, to its report, unless Ctrl-C ends that; state: what it
+        was given to start.
+        """
+        from ..results.error_estimate import error_estimate  # brings SciPy
+
+        def again(scene: Self, changes: dict[str, Any]) -> Run:
+            other = scene.copied()
+            kept = {name: getattr(settings, name) for name in settings.model_fields_set - {"estimate", "save"}}
+            other.run_settings = {}
+            made = other.run(**kept | changes | ({} if state is None else {"initial": state}), progress=False)
+            if made.status == "interrupted":
+                raise KeyboardInterrupt
+            return made
+
+        if run.status != "completed":
+            run.report["messages"].append(f"the run's errors are not estimated: it ended with status \"{run.status}\"")
+            return
+        try:
+            with interruptible():
+                found = error_estimate(self, run, settings, state is not None, again)
+        except KeyboardInterrupt:
+            run.report["messages"].append("the run's errors are not estimated: that was interrupted")
+            warnings.warn(run.report["messages"][-1], FunicularWarning, stacklevel=6)
+            return
+        run.report["errors"] = found.as_report()
+        run.report["messages"] += found.messages
+
+    def equilibrium(
+        self,
+        *,
+        load_steps: int | None = None,
+        tolerance: float | None = None,
+        max_iterations: int | None = None,
+        method: str | None = None,
+        largest_step: float | None = None,
+        seek_stable: bool | None = None,
+        scale_gravity: bool | None = None,
+        adjust: Mapping[str, tuple[float, float] | str | None] | Sequence[str] | None = None,
+        to: Mapping[str, float] | None = None,
+        start: Equilibrium | None = None,
+        **unknown: Never,
+    ) -> Equilibrium:
+        """Find the static equilibrium under all loads at t = 0; see `EquilibriumSettings` for the defaults.
+
+        Settings not given here are the scene file's, if it gave them. The state is stable, unless the
+        settings ask for others, which say so in ``stable``, in ``messages`` and by a `FunicularWarning`; friction of
+        slides is left out. start: a state of this
+        scene, under the same loads or others, also on other meshes of the same elements, from which the search begins
+        instead of as drawn; method "arc_length" goes on from its load_fraction in its sense, or, from a state under all
+        its loads, anew from rest without loads, and needs the same mesh.
+
+        adjust, to: parameters, by path with limits or "free", that are changed until the state has given values, by
+        name: ``adjust={"dropper.length": "free"}, to={"wire@20.position.y": 5.3}``. The state's ``scene`` is the
+        adjusted one, from which runs start, ``adjusted`` has the values found, ``adjustment`` more about them. With
+        more parameters than values the least change is taken. Places on a cable whose length is adjusted keep their
+        part of it.
+
+        Raises SceneError; EquilibriumError, which keeps the state that was reached.
+        """
+        _refuse_unknown("equilibrium", unknown, (*EquilibriumSettings.keywords(), "start"))
+        given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
+                 "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity,
+                 "adjust": adjust, "to": to}
+        settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
+        any_mesh = settings.method != "arc_length"  # whose path has a heading on its mesh
+        begin = None if start is None else _equilibrium_state(self, start, anew=True, any_mesh=any_mesh)
+        self.check()
+
+        from ..results.equilibrium import Equilibrium  # brings SciPy
+        from ..solve.statics.static import equilibrium
+
+        with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
+            if settings.adjust is None:
+                return equilibrium(laid(self), settings, begin, Equilibrium)
+
+            from ..results.targets import reader
+            from ..solve.adjustment.adjustment import adjusted
+
+            return adjusted(self, settings, begin, Equilibrium, reader)
+
+    def relax(self, *, tol: float | None = None, max_steps: int | None = None, **unknown: Never) -> Equilibrium:
+        """Bring the scene to rest by dynamic relaxation: a motion from the place drawn, damped until it ends; see
+        `RelaxationSettings` for the defaults.
+
+        For what a path of equilibria does not lead to: slack cables that fall into their shape, riders that run to the
+        lowest point of a cable or that friction holds, buckled rods, mechanisms that hang. Velocities drawn are left
+        out. The state is one that `equilibrium` returns, with ``relaxation``, which says how it came to rest. Settings
+        not given here are the scene file's, if it gave them. Raises SceneError for loads and drives that change with
+        time, and for friction that creeps; EquilibriumError, which says what is farthest from rest and keeps the state.
+        """
+        _refuse_unknown("relax", unknown, RelaxationSettings.keywords())
+        given = {"tol": tol, "max_steps": max_steps}
+        settings = RelaxationSettings(**self.relax_settings | {k: v for k, v in given.items() if v is not None})
+        self.check()
+
+        from ..checks.constant_scene import check_comes_to_rest
+        from ..results.equilibrium import Equilibrium  # brings SciPy
+        from ..solve.statics.relaxation import relax
+
+        check_comes_to_rest(self)
+        with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
+            return relax(laid(self), settings, Equilibrium)
+
+    def modes(self, n: int, about: Equilibrium | None = None, *, as_drawn: bool = False) -> Modes:
+        """Return the ``n`` lowest natural frequencies and shapes, about a state from `equilibrium`, or about the scene
+        as drawn where forces balance there.
+
+        as_drawn: also where they do not; joints and slides bear nothing then, so that what swings by its weight has
+        0 Hz. Damping and friction are left out; what rounding hides, and a state that is not stable, is reported, as in
+        `Modes`. Raises SceneError, which names the force left over.
+        """
+        settings = ModeSettings(n=n)
+        state = None if about is None else _equilibrium_state(self, about)
+        self.check()
+
+        from ..results.modes import Modes  # brings SciPy
+        from ..solve.modes.modes import modes
+
+        with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
+            return Modes.of(modes(laid(self), settings.n, state, as_drawn), self, state)
+
+    def animation(self, title: str | None = None) -> Animation:
+        """Return the scene as it is drawn, before it runs, as pictures show it; see `Viewable.animation`."""
+        from ..results.animation.clips import of_scene  # brings SciPy
+
+        return of_scene(self, title or self.title or "scene")
+
+    def overview(self) -> list[tuple[str, str]]:
+        """Return what is in the scene, for a notebook; see `Viewable.overview`."""
+        found = [("gravity", show(self.gravity, "m/s²"))]
+        for kind, names in self._names().items():
+            more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+            found.append((kind, ", ".join(names[:MOST_NAMED]) + more))
+        return found + [("note", message) for message in self.messages]
+
+
+def _refuse_unknown(method: str, unknown: Iterable[str], known: Collection[str]) -> None:
+    """Raise SceneError for a keyword that a method does not take."""
+    for name in unknown:
+        meant = SYNONYMS.get(name)
+        raise SceneError(method, f'"{name}" is not known here',
+                         f'did you mean "{meant}"?' if meant in known else near(name, known))
+
+
+def _check_resume(resume: bool, settings: RunSettings) -> None:
+    """Raise SceneError where resume is no bool, and ResultFileError where there is no file to go on from."""
+    if not isinstance(resume, bool):
+        raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
+    if resume and settings.save is None:
+        raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
+
+
+def _raise_where_stopped(run: Run) -> None:
+    """Raise EndOfCableError or ConvergenceError where the run ended so."""
+    if run.status == "end_of_cable":
+        raise EndOfCableError(run.report["message"], run)
+    if run.status == "no_convergence":
+        raise ConvergenceError(run.report["message"], run)
+
+
+def _at_rest(initial: str, scene: Scene, start: Equilibrium | None) -> Equilibrium:
+    """Return the state of rest that a run starts from, by the name that its settings have for it.
+
+    start: a state that the search for equilibrium begins from where it fits, of any mesh. Raises SceneError,
+    EquilibriumError.
+    """
+    if initial == "relaxed":
+        return scene.relax()
+    if start is not None and not scene.equilibrium_settings and _fits(scene, start):
+        try:
+            return scene.equilibrium(start=start)
+        except EquilibriumError:  # the path from the drawn state may reach what this one does not
+            pass
+    state = scene.equilibrium()
+    state.check_stable()
+    return state
+
+
+def _fits(scene: Scene, start: Equilibrium) -> bool:
+    """Return whether a search for equilibrium can begin from a state."""
+    try:
+        start.check_fits(scene, any_mesh=True)
+    except SceneError:
+        return False
+    return True
+
+
+def _state(scene: Scene, given: Equilibrium | Mapping[str, ArrayLike]) -> Start:
+    """Return a state to start a run from, checked against the scene. Raises SceneError."""
+    from ..model.initial_state import InitialState  # brings SciPy
+
+    if not isinstance(given, Mapping):
+        return _equilibrium_state(scene, given)
+    state = given if isinstance(given, InitialState) else InitialState(given)
+    state.check_fits(scene)
+    return state
+
+
+def _equilibrium_state(scene: Scene, state: Equilibrium, *, anew: bool = False, any_mesh: bool = False) -> Equilibrium:
+    """Return a state to start from, checked against the scene; anew: a search, which may be for other values; any_mesh:
+    which may begin from another mesh.
+    """
+    from ..results.equilibrium import Equilibrium  # brings SciPy; there is a state only where it is loaded already
+
+    if not isinstance(state, Equilibrium):
+        raise SceneError("scene", "the state to start from must be one that equilibrium() returned, got "
+                         + shown(state))
+    state.check_fits(scene, any_mesh)
+    if not anew:
+        state.check_adjusted(scene)
+    return state

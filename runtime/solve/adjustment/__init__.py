@@ -1,0 +1,1 @@
+"""Parameters adjusted to targets, and derivatives of states of rest."""

@@ -1,0 +1,99 @@
+"""A change of a parameter at a state of rest, and what of that state columns of the residual are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...engine import Engine
+from ...model.model import CableModel, Model
+from ...parts.part import Part
+from ...parts.paths import COMPONENTS
+from ...parts.plane import aligned
+from ...parts.scene_data import SceneData
+from ..statics.static_problem import StaticProblem
+from .snapshots import Reader
+
+
+@dataclass
+class Change:
+    """What a unit of a parameter adds to the forces on the dofs, f (n_dof,), and to the equations of couplings, g
+    (n_extra,); by how much it moves what is prescribed, c (n_dof,), and by how much the unknowns of a state change
+    whose points stay, same (unknowns,); None: nothing.
+    """
+
+    f: np.ndarray | None = None
+    c: np.ndarray | None = None
+    g: np.ndarray | None = None
+    same: np.ndarray | None = None
+
+    def less(self, factor: float, other: Change) -> Change:
+        """Return this without so many times the forces and equations that another parameter changes."""
+        return replace(self, f=_less(self.f, factor, other.f), g=_less(self.g, factor, other.g))
+
+
+class Rest:
+    """A state of rest; reader: of the values asked for, which depend on some parameters themselves: forces in sections
+    of cables on loads.
+    """
+
+    def __init__(self, problem: StaticProblem, reader: Reader):
+        self.problem, self.reader = problem, reader
+        self.scene: SceneData = problem.scene
+        self.model = problem.model
+
+    def along(self, component: str) -> np.ndarray | None:
+        """Return an axis of the ground along the axes of the model, (dim,); None where it leaves the plane."""
+        direction = np.array(axis_of(component))
+        if self.scene.plane_axes is not None:
+            direction = aligned(self.scene.plane_axes.plane.into(direction))
+        stays = direction.any() and not direction[self.model.dim :].any()
+        return direction[: self.model.dim] if stays else None
+
+    def shape(self, cable: str, s: float, derivative: int = 0) -> tuple[np.ndarray, slice]:
+        """Return the shape functions (vectors,) at s on a cable, or their derivatives, and the dofs of its element."""
+        model = self.model_of(cable)
+        element = int(model.mesh.element_at(s))
+        N = model.kernel("on_axis")(model.mesh.length(element), s - model.mesh.start(element))[derivative]
+        first = model.first + element * model.shape[1] * model.shape[2]
+        return N, slice(first, first + len(N) * model.shape[2])
+
+    def model_of(self, cable: str) -> CableModel:
+        """Return the model of a cable, by its name."""
+        return next(model for model in self.model.cables if model.name == cable)
+
+    def names(self, cable: str, groups: Iterable[str]) -> bool:
+        """Return whether a part of these groups of the scene is on a cable."""
+        return any(cable in named(part) for group in groups for part in getattr(self.scene, group).values())
+
+    def engine(self, model: Model) -> Engine:
+        """Return an engine of another model of the scene, in the state of the problem."""
+        engine = Engine(model)
+        engine.redundant_rows([(k, row) for k, joint in enumerate(model.joints) for row in joint.redundant_rows])
+        engine.set_state(0.0, **self.problem.keep(), prescribe=False)
+        return engine
+
+
+def named(part: Part) -> set[str]:
+    """Return the names that a part has of others that it is on."""
+    return {name for _, value in part for name in (value, getattr(value, "on", None)) if isinstance(name, str)}
+
+
+def axis_of(component: str) -> tuple[float, ...]:
+    """Return the unit vector (3,) along an axis, x or 0 and so on; zeros where it is none."""
+    return tuple(float(component in (name, str(k))) for name, k in COMPONENTS.items())
+
+
+def altered(model: Model, **changes: Any) -> Model:
+    """Return a model with some arrays or couplings of other values, and the border as it is."""
+    made = replace(model, **changes)
+    made.newton, made.accelerations = model.newton, model.accelerations
+    return made
+
+
+def _less(a: np.ndarray | None, factor: float, b: np.ndarray | None) -> np.ndarray | None:
+    """Return a - factor b, of which None is nothing."""
+    return a if b is None else -factor * b + (0.0 if a is None else a)

@@ -1,0 +1,75 @@
+"""What the length of a cable changes of the residual at a state of rest: all that acts on each length of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...parts.cable import Cable
+from ...parts.load import DistributedForce
+from .cable_changes import by_length as of_elements
+from .cable_changes import same_points
+from .change import Change, Rest, altered, named
+from .load_changes import by_values
+
+SLIDING = "slides", "crossings", "drags"
+"""Groups of parts that have places on a cable that are no part of its length, or forces of its length and size."""
+
+
+def lengthens_plainly(rest: Rest, cable: Cable) -> bool:
+    """Return whether all that is on a cable keeps its part of the length, and nothing else depends on that.
+
+    What slides on it has its arc-length as a coordinate. What is tied rigidly to it shares its slopes. One that
+    hangs is drawn otherwise where it is longer.
+    """
+    scene, name = rest.scene, cable.name
+    rigid = any(tie.rotation == "rigid" and name in (tie.cable, tie.to) for tie in scene.ties.values())
+    touches = [contact for contact in scene.contacts.values() if contact.a == name]
+    if rigid or rest.names(name, SLIDING) or any(contact.name in rest.reader.parts for contact in touches):
+        return False
+    return cable.shape != "hanging" or hangs_plainly(rest, cable)
+
+
+def hangs_plainly(rest: Rest, cable: Cable) -> bool:
+    """Return whether nothing on a cable depends on how it hangs as it is drawn."""
+    scene, model, name = rest.scene, rest.model_of(cable.name), cable.name
+    held = rest.model.unknown_of_dof[model.coordinates].reshape(model.shape) < 0
+    held[[0, -1], model.vectors.index("r")] = False
+    rough = any(contact.a == name and contact.friction is not None for contact in scene.contacts.values())
+    as_drawn = any(name in named(force) and force.as_made() is not force for force in scene.point_forces.values())
+    tied = any(name in (tie.cable, tie.to) for tie in scene.ties.values())
+    return not (held.any() or rough or as_drawn or tied or rest.names(name, ("joints",)))
+
+
+def by_length(rest: Rest, cable: Cable) -> Change:
+    """Return what the length of a cable changes: all that acts on each length of it."""
+    model, q = rest.model_of(cable.name), rest.problem.keep()["q"]
+    at, f = model.coordinates, np.zeros(rest.model.n_dof)
+    f[at] = of_elements(model, cable, q) - rest.model.gravity[at]
+    spread = {k: load for k, load in enumerate(rest.scene.loads.values())
+              if isinstance(load, DistributedForce) and load.cable == cable.name}
+    for k in spread:
+        change = by_values(rest, {k: spread[k]})[k]
+        assert change.f is not None, "loads are forces"
+        f += change.f
+    f += _touching(rest, rest.model.cables.index(model))
+    same, unknown = np.zeros(len(rest.problem.weight)), rest.model.unknown_of_dof[at]
+    free = unknown >= 0
+    same[unknown[free]] = same_points(model, q)[free]
+    return Change(f / cable.length, same=same / cable.length)
+
+
+def _touching(rest: Rest, cable: int) -> np.ndarray:
+    """Return (n_dof,): what surfaces that a cable touches give to the residual."""
+    model = rest.model
+    if not any(contact.cable == cable for contact in model.contacts):
+        return np.zeros(model.n_dof)
+    doubled = [replace(contact, stiffness=2 * contact.stiffness, tangential=2 * contact.tangential)
+               if contact.cable == cable else contact for contact in model.contacts]
+    found = []
+    for contacts in (model.contacts, doubled):
+        engine = rest.engine(altered(model, contacts=contacts))
+        engine.static_residual()
+        found.append(engine.reaction())
+    return np.asarray(found[1] - found[0])

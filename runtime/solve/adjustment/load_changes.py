@@ -1,0 +1,91 @@
+"""What values and places of loads, and ends of forces between two points, change of the residual at a state of rest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import cast
+
+import numpy as np
+
+from ...model.attachments import AttachmentBuilder
+from ...model.loads import LoadBuilder
+from ...model.states import attachment_points
+from ...parts.laid import turned
+from ...parts.load import DistributedForce, Force, Moment
+from ...parts.paths import Path
+from ...parts.point_force import PointForce
+from .change import Change, Rest, altered, axis_of
+
+AnyLoad = Force | DistributedForce | Moment
+
+
+def unit_of(rest: Rest, part: AnyLoad, entries: tuple[str, ...]) -> AnyLoad | None:
+    """Return a load whose value is a unit along one axis, None where the entry is of something else."""
+    if len(entries) != 2 or entries[0] != "value" or rest.reader.sections:
+        return None
+    unit = part.model_copy(update={"value": axis_of(entries[1])})
+    if rest.scene.plane_axes is not None:
+        unit = cast(AnyLoad, turned(unit, rest.scene.plane_axes, rest.scene.as_drawn))
+    return unit if any(unit.value) and not (rest.model.dim == 2 and any(unit.off_plane())) else None
+
+
+def by_values(rest: Rest, units: Mapping[int, AnyLoad]) -> dict[int, Change]:
+    """Return what loads of unit values change, by the numbers of their parameters."""
+    if not units:
+        return {}
+    model = rest.model
+    builder = LoadBuilder(rest.scene, AttachmentBuilder(rest.scene, model.cables, model.bodies))
+    builder.signals = list(model.signals)
+    owners: dict[str, list[int]] = {"dead": [], "turning": []}
+    for k, unit in units.items():
+        builder.load(unit)
+        owners["dead"] += [k] * (len(builder.dead) - len(owners["dead"]))
+        owners["turning"] += [k] * (len(builder.turning) - len(owners["turning"]))
+    loaded = altered(model, loads=[*builder.dead, *builder.turning], signals=builder.signals)
+    engine = rest.engine(loaded)
+    found = {k: np.zeros(model.n_dof) for k in units}
+    for number, k in enumerate([*owners["dead"], *owners["turning"]]):
+        found[k] += engine.external_forces(number, number + 1)[0]
+    return {k: Change(f) for k, f in found.items()}
+
+
+def by_end(rest: Rest, part: PointForce, path: Path) -> Change | None:
+    """Return what changes where an end on the ground or its place along a cable does: the gap of its law, and where
+    its force acts; None where the law itself is that of a gap as drawn.
+    """
+    model, ends = rest.model, {"a": part.a, "b": part.b}
+    place = ends.get(path.entries[0])
+    if place is None or len(path.entries) != 2 or part.name in rest.reader.parts or part.as_made() is not part:
+        return None
+    number = next(k for k, force in enumerate(model.point_forces) if force.name == part.name)
+    force, kept = model.point_forces[number], rest.problem.keep()
+    sign, f = -1.0 if path.entries[0] == "a" else 1.0, np.zeros(model.n_dof)
+    if place.on is None:
+        moved = rest.along(path.entries[1])
+        if moved is None:
+            return None
+    elif place.on in rest.scene.cables and not rest.reader.sections:
+        N, at = rest.shape(place.on, place.arc_length, derivative=1)
+        moved = N @ kept["q"][at].reshape(len(N), model.dim)
+        f[at] = sign * np.outer(N, kept["point_force"][number][: model.dim]).ravel()
+    else:
+        return None
+    a, b = (attachment_points(model, end, kept["q"][None])[0, : model.dim] for end in force.attachments)
+    g = np.zeros(model.n_extra)
+    g[force.unknown : force.unknown + model.dim] = -sign * force.tangent_at_rest(b - a) @ moved
+    return Change(f, g=g)
+
+
+def by_place(rest: Rest, part: Force | DistributedForce, path: Path) -> Change | None:
+    """Return what the place of a load along a cable changes: of a distributed one, where it begins or ends."""
+    load = next(mine for mine, drawn in zip(rest.scene.parts(), rest.scene.as_drawn.parts(), strict=True)
+                if drawn is part)
+    s = getattr(load, path.entries[0]) if path.entries[0] in ("s", "start", "stop") else None
+    on = getattr(load, "cable", None) or getattr(load, "on", None)
+    if s is None or on not in rest.scene.cables or rest.reader.sections or load.follower:
+        return None
+    N, at = rest.shape(on, s, derivative=int(path.entries[0] == "s"))
+    value = float(load.scale.value(0.0)) * np.array(load.value)[: rest.model.dim]
+    f = np.zeros(rest.model.n_dof)
+    f[at] = (1.0 if path.entries[0] == "start" else -1.0) * np.outer(N, value).ravel()
+    return Change(f)

@@ -1,0 +1,235 @@
+"""What parameters change of the residual at a state of rest, where they change few of its equations.
+
+A unit of a load, a weight, a length or a place adds the forces f to those on all dofs and g to the equations of
+couplings; a unit of what a motion prescribes moves the prescribed dofs by c. So by the unknowns x
+
+    dR/dp = T' (f + K c) + g,    q = T x + c p,
+
+with K the tangent over all dofs, and T that of the dofs by the unknowns (model/unknowns.py). Where a cable becomes
+longer, x are the coordinates by which its points stay (solve/adjustment/cable_changes.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import singledispatchmethod
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array
+
+from ...errors import SceneError
+from ...model.bodies import body_gravity
+from ...model.border import ACCELERATIONS, NEWTON, elimination
+from ...model.cables import cable_gravity
+from ...model.model import Model
+from ...model.numbering import as_drawn
+from ...model.unknowns import by_unknowns
+from ...parts.arc_lengths import on_cables
+from ...parts.attachment import Attachment
+from ...parts.cable import Cable
+from ...parts.load import DistributedForce, Force, Moment
+from ...parts.part import Part
+from ...parts.paths import Path, changes_of, value_at
+from ...parts.point_force import PointForce
+from ...parts.rigid_body import RigidBody
+from ...parts.support import Motion
+from ..statics.static_problem import StaticProblem
+from .cable_changes import Own
+from .change import Change, Rest, altered
+from .length_changes import SLIDING, by_length, hangs_plainly, lengthens_plainly
+from .load_changes import AnyLoad, by_end, by_place, by_values, unit_of
+from .snapshots import Reader
+
+OF_SECTIONS = "contacts", "crossings", "drags"
+"""Groups of parts that depend on the size and the weight of a cable's section."""
+STEP = 1e-6
+"""Of a number of a section, to either side: where the forces of its cable are differenced."""
+
+
+class Changes:
+    """What parameters change at a state of rest.
+
+    found: by the number of a parameter, of those that enter the residual linearly.
+    """
+
+    def __init__(self, problem: StaticProblem, paths: Mapping[int, Path], reader: Reader):
+        """paths: of parameters, by their numbers; reader: of the values asked for, which depend on some parameters
+        themselves: forces in sections of cables on loads.
+        """
+        self.rest = Rest(problem, reader)
+        self.scene, self.model = self.rest.scene, self.rest.model
+        self.found: dict[int, Change] = {}
+        parts = list(self.scene.as_drawn.parts())
+        loads: dict[int, AnyLoad] = {}
+        for k, path in paths.items():
+            part = None if path.part is None else parts[path.part]
+            if isinstance(part, Force | DistributedForce | Moment) and path.entries[0] == "value":
+                if (unit := unit_of(self.rest, part, path.entries)) is not None:
+                    loads[k] = unit
+            elif (change := self._gravity(path) if part is None else self._of(part, path)) is not None:
+                self.found[k] = change
+        self.found |= by_values(self.rest, loads)
+        self._keep_places(paths)
+
+    def columns(self) -> dict[int, np.ndarray]:
+        """Return dR/dp (unknowns,) of each parameter found."""
+        model = self.model
+        forces = {k: np.zeros(model.n_dof + model.n_extra) for k in self.found}
+        moves = any(change.c is not None for change in self.found.values())
+        K = self._tangent_over_dofs() if moves else None
+        for k, change in self.found.items():
+            if change.f is not None:
+                forces[k][: model.n_dof] += change.f
+            if change.c is not None:
+                assert K is not None, "what is prescribed moves"
+                forces[k] += K[:, : model.n_dof] @ change.c
+            if change.g is not None:
+                forces[k][model.n_dof :] += change.g
+        by_unknowns = _by_unknowns(model).T
+        return {k: by_unknowns @ force for k, force in forces.items()}
+
+    def _keep_places(self, paths: Mapping[int, Path]) -> None:
+        """Take off what lengths of cables change by places along them that are parameters, too, and stay where they
+        are; a length with such a place for which nothing is found is left out.
+        """
+        parts = list(self.scene.as_drawn.parts())
+        for k, path in paths.items():
+            cable = None if path.part is None else parts[path.part]
+            change = self.found.get(k)
+            if not isinstance(cable, Cable) or path.entries != ("rest_length",) or change is None:
+                continue
+            for j, other in paths.items():
+                s = None if other.part is None else _place(parts[other.part], other, cable.name)
+                if s is not None:
+                    change = None if change is None or j not in self.found else change.less(s / cable.length,
+                                                                                            self.found[j])
+            if change is None:
+                del self.found[k]
+            else:
+                self.found[k] = change
+
+    def _weighs_plainly(self, *names: str) -> bool:
+        """Return whether weight is a force of constant direction on each dof, and nothing else depends on that of these
+        cables and bodies, as the stiffness of a contact does where none is given.
+        """
+        found = any(contact.a in names and contact.as_made().stiffness is None and not contact.is_hard
+                    for contact in self.scene.contacts.values())
+        modal = any(body.modes for body in self.model.bodies)
+        return not (found or modal or self.rest.reader.sections or self.scene.drags)
+
+    def _gravity(self, path: Path) -> Change | None:
+        """Return what a component of gravity changes, None where the path is of something else."""
+        direction = self.rest.along(path.entries[0])
+        hanging = [cable for cable in self.scene.cables.values() if cable.shape == "hanging"]
+        if path.head != "gravity" or direction is None or not self._weighs_plainly(*self.scene.cables,
+                                                                                   *self.scene.bodies):
+            return None
+        if any(self.rest.names(cable.name, SLIDING) or not hangs_plainly(self.rest, cable) for cable in hanging):
+            return None
+        cables = [cable_gravity(model, self.scene.cables[model.name], direction) for model in self.model.cables]
+        bodies = [body_gravity(body, direction) for body in self.model.bodies]
+        return Change(-np.concatenate([*cables, *bodies]))
+
+    @singledispatchmethod
+    def _of(self, part: Part, path: Path) -> Change | None:
+        """Return what an entry of a part changes, None where it changes more than `Change` has."""
+        return None
+
+    @_of.register
+    def _of_cable(self, part: Cable, path: Path) -> Change | None:
+        cable = self.scene.cables[part.name]
+        if path.entries == ("material", "density"):
+            f = np.zeros(self.model.n_dof)
+            at = self.rest.model_of(cable.name).coordinates
+            f[at] = -self.model.gravity[at] / cable.material.density
+            return Change(f) if self._weighs_plainly(cable.name) else None
+        if self.rest.reader.sections or cable.name in self.rest.reader.parts:
+            return None
+        if path.entries == ("rest_length",):
+            return by_length(self.rest, cable) if lengthens_plainly(self.rest, cable) else None
+        if path.entries[0] not in ("section", "material") or self.rest.names(cable.name, OF_SECTIONS):
+            return None
+        return self._of_section(cable, path)
+
+    @_of.register
+    def _of_body(self, part: RigidBody, path: Path) -> Change | None:
+        if path.entries != ("mass",) or not self._weighs_plainly(part.name):
+            return None
+        model = next(body for body in self.model.bodies if body.name == part.name)
+        f = np.zeros(self.model.n_dof)
+        dofs = slice(model.dof, model.dof + self.model.dim)
+        f[dofs] = -self.model.gravity[dofs] / part.mass
+        return Change(f)
+
+    @_of.register
+    def _of_motion(self, part: Motion, path: Path) -> Change | None:
+        entries = path.entries
+        direction = self.rest.along(entries[1]) if len(entries) == 2 and entries[0] == "displacement" else None
+        if direction is None:
+            return None
+        model, c = self.model, np.zeros(self.model.n_dof)
+        node = model.nodes[part.cable][self.scene.cables[part.cable].node(part.s)]
+        moved = dict(zip(node.dofs("r"), direction.tolist(), strict=True))
+        signals = {motion.signal: moved[motion.dof] for motion in model.motions if moved.get(motion.dof)}
+        for motion in model.motions:
+            c[motion.dof] += motion.linear * signals.get(motion.signal, 0.0)
+        return Change(c=c)
+
+    def _of_section(self, cable: Cable, path: Path) -> Change | None:
+        """Return what a number of a cable's section or material changes: its elastic forces and weight, differenced,
+        exactly by Young's modulus, in which they are linear at a given Poisson ratio by the laws of this package.
+        """
+        model, drawn = self.rest.model_of(cable.name), self.scene.as_drawn
+        value = value_at(drawn, path)
+        linear = (path.entries == ("material", "youngs_modulus") and cable.material.poisson_ratio is not None
+                  and cable.library is None)
+        h = abs(value) if linear else STEP * abs(value) or STEP
+        ends = (value, value + h) if linear else (value - h, value + h)
+        assert path.part is not None, f"{path.text} is of a cable"
+        if path.entries[0] == "section" and self.scene.drags:
+            return None
+        own = Own(model, self.rest.problem.keep()["q"], np.array(self.scene.gravity)[: self.model.dim])
+        try:
+            below, above = (own.of(cable.remade(changes_of(drawn, {path: end})[path.part])) for end in ends)
+        except SceneError:  # at the edge of what a section or a material takes
+            return None
+        f = np.zeros(self.model.n_dof)
+        f[model.coordinates] = (above - below) / (ends[1] - ends[0])
+        return Change(f)
+
+    @_of.register
+    def _of_point_force(self, part: PointForce, path: Path) -> Change | None:
+        return by_end(self.rest, part, path)
+
+    @_of.register(Force)
+    @_of.register(DistributedForce)
+    def _of_place(self, part: Force | DistributedForce, path: Path) -> Change | None:
+        return by_place(self.rest, part, path)
+
+    def _tangent_over_dofs(self) -> csc_array:
+        """Return dR/dx at the state where each dof is an unknown of its own: (n_dof + own of couplings, the same)."""
+        model = self.model
+        n = model.cables[-1].coordinates.stop
+        elements = np.array([(node.first, 2 * node.vectors.size) for nodes in model.nodes.values()
+                             for node in nodes[:-1]], dtype=int).reshape(-1, 2)
+        numbering = as_drawn(elements, np.arange(n))
+        free = altered(model, motions=[], unknown_of_dof=np.arange(model.n_dof), combinations=csr_array((0, n)),
+                     n_band=n, n_border_dof=model.n_dof - n, width=numbering.width, chains=numbering.chains)
+        free.newton, free.accelerations = elimination(free, NEWTON), elimination(free, ACCELERATIONS)
+        return self.rest.engine(free).matrix(0.0, 0.0, 1.0)
+
+
+def _place(part: Part, path: Path, cable: str) -> float | None:
+    """Return the arc-length on a cable that a path to an entry of this part leads to, in m; None where to no such."""
+    for keyword, on, s in on_cables(part):
+        if (keyword,) == path.entries and on == cable:
+            return s
+    end = getattr(part, path.entries[0], None)
+    return end.s if isinstance(end, Attachment) and end.on == cable else None
+
+
+def _by_unknowns(model: Model) -> csr_array:
+    """Return T (n_dof + own of couplings, unknowns): of what unknowns the dofs are made."""
+    n = model.n_band + model.n_border_dof
+    own = n + np.arange(model.n_extra)
+    return by_unknowns(np.append(model.unknown_of_dof, own), model.combinations, n + model.n_extra)

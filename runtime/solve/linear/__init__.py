@@ -1,0 +1,1 @@
+"""Linear algebra of solutions: spectra, inertia of matrices, condensation, threads."""

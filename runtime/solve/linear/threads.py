@@ -1,0 +1,86 @@
+"""Threads: how many share the work of a run, and that linear algebra on small matrices has one."""
+
+from __future__ import annotations
+
+import os
+import threading
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
+
+    from ...engine import Engine
+
+def available() -> int:
+    """Return the processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def share_elements(engine: Engine, asked: int) -> list[str]:
+    """Let as many threads as are asked for share the work of a run, never more than there are processors; says where
+    fewer do.
+    """
+    threads, why = asked, ""
+    if asked > available():
+        threads, why = available(), f"there are {available()} processors for this process"
+    started = engine.use_threads(threads)
+    if started < threads:
+        threads, why = started, "the system gave no more threads"
+    return [f"threads = {asked} came to {threads}: {why}"] if why else []
+
+
+class _OneBlasThread:
+    """Holds the BLAS of NumPy and SciPy at one thread in the whole process, while anything is inside.
+
+    OpenBLAS starts its threads from blocks of a few dozen rows on, where handing out the work takes longer than the
+    work. What the process had before comes back when the last one leaves.
+    """
+
+    def __init__(self) -> None:
+        self._reset()
+        os.register_at_fork(after_in_child=self._reset)  # what other threads were inside of is not in the child
+
+    def _reset(self) -> None:
+        self._lock, self._inside = threading.Lock(), 0
+        self._limiter: Any = None
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if self._inside == 0:
+                blas = _blas()
+                _let_this_thread_set_limits()
+                self._limiter = blas.limit(limits=1)
+            self._inside += 1
+
+    def __exit__(self, *exception: object) -> None:
+        with self._lock:
+            self._inside -= 1
+            if self._inside == 0:
+                _let_this_thread_set_limits()
+                self._limiter.restore_original_limits()
+                _let_this_thread_set_limits()  # and who had set limits before
+
+
+one_blas_thread = _OneBlasThread()
+"""For ``with``."""
+
+
+def _let_this_thread_set_limits() -> None:
+    """Let this thread set OpenBLAS's limits: from 3.8 on threadpoolctl lets only one do so, and leaves others without a
+    word.
+    """
+    import threadpoolctl  # for runs alone, not for `import funicular`
+
+    controller = getattr(threadpoolctl, "OpenBLASController", None)
+    if controller is not None and hasattr(controller, "clear_controlling_thread"):
+        controller.clear_controlling_thread(force=True)
+
+
+@cache
+def _blas() -> ThreadpoolController:
+    from threadpoolctl import ThreadpoolController
+
+    from ... import engine  # noqa: F401  brings SciPy's BLAS along
+
+    return ThreadpoolController().select(user_api="blas")

@@ -1,0 +1,176 @@
+"""What the engine watches for a scene's events, and what a run reports of them."""
+
+from __future__ import annotations
+
+from bisect import insort
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...base.interruptions import interruptible
+from ...checks.event_placement import AXES
+from ...errors import SceneError, near
+from ...model.middle_strain import middle_strain
+from ...model.model import Model
+from ...model.states import body_rates, body_state, spatial
+from ...parts.event import Event
+from ...parts.scene_data import SceneData
+
+LEAVES_TABLE = "leaves the table of its fluid"
+"""What the engine says of it (engine/events/fluid_table.c)."""
+
+
+class Watch:
+    """What the engine watches for an event: kind, entry, value, direction.
+
+    kind: "q" or "v", of which the index is an entry; "s", "s_rate", "traction", of which it is the number of a slide
+    among the couplings; "function".
+    """
+
+    def __init__(self, event: Event, scene: SceneData, model: Model):
+        self.event, self.value = event, event.value
+        self.direction = {"rising": 1, "falling": -1, "both": 0}[event.direction]
+        if event.function is not None:
+            self.kind, self.index = "function", 0
+            return
+        name, what, *axis = _quantity(event).split(".")
+        if what == "least_strain":
+            self.kind, self.index = "function", 0
+            return
+        if name in scene.slides:
+            slide = model.slides[list(scene.slides).index(name)]
+            self.kind, self.index = what, [c is slide for c in model.couplings].index(True)
+            return
+        of = "configuration" if what == "position" else "dof"
+        self.kind = "q" if what == "position" else "v"
+        if name in scene.bodies and np.any(getattr(scene.bodies[name], "centre", 0.0)):
+            self.kind, self.index = "function", 0  # the engine knows the mass centre, and not the body's origin
+            return
+        if name in scene.bodies:
+            start = getattr(model.bodies[list(scene.bodies).index(name)], of)
+        else:
+            assert event.s is not None, f"{event.where} is not complete"
+            start = model.nodes[name][scene.cables[name].node(event.s)].dofs("r")[0]
+        self.index = start + AXES.index(axis[0])
+
+
+def _quantity(event: Event) -> str:
+    assert event.quantity is not None, f"{event.where} has a function"
+    return event.quantity
+
+
+class State:
+    """Quantities at one instant, by the names that results have: positions, velocities, nodal vectors, s."""
+
+    def __init__(self, model: Model, q: np.ndarray, v: np.ndarray, s: np.ndarray):
+        """q (n_q,), v (n_dof,), s (slides,): the engine's state."""
+        self._model, self._q, self._v, self._s = model, q, v, s
+
+    def __getitem__(self, name: str) -> np.ndarray | float:
+        """Return position, orientation, velocity, angular_velocity of a body (3 or 4,); nodal_vectors, nodal_velocity
+        of a cable (nodes, vectors, 3); s of a slide, along the ground's axes. Raises KeyError.
+        """
+        of, _, quantity = name.partition(".")
+        found = self._model.results(of, self._all(of))
+        if quantity not in found:
+            raise KeyError(f'the state has no "{name}"; {near(quantity, found) if found else "known: "}'
+                           + ("" if found else ", ".join(self.names())))
+        return found[quantity]
+
+    def names(self) -> list[str]:
+        """Return the bodies, cables and slides that the state has quantities of."""
+        model = self._model
+        return [*(body.name for body in model.bodies), *(cable.name for cable in model.cables),
+                *(slide.name for slide in model.slides)]
+
+    def _all(self, name: str) -> dict[str, Any]:
+        model = self._model
+        for body in model.bodies:
+            if body.name == name:
+                state = body_state(model, body, self._q[None])
+                state |= body_rates(model, body, state["orientation"], self._v[None])
+                return {name: values[0] for name, values in state.items()}
+        for cable in model.cables:
+            if cable.name == name:
+                return {"nodal_vectors": spatial(self._q[cable.coordinates].reshape(cable.shape)),
+                        "nodal_velocity": spatial(self._v[cable.coordinates].reshape(cable.shape))}
+        slides = [slide.name for slide in model.slides]
+        return {"s": float(self._s[slides.index(name)])} if name in slides else {}
+
+
+class EventWatcher:
+    """The events of a run as the engine meets them: what it asks, and what has happened."""
+
+    def __init__(self, scene: SceneData, model: Model):
+        self.model = model
+        self.watches = [Watch(event, scene, model) for event in scene.events.values()]
+        self.happened: list[dict] = []
+        self.stopped_by: str | None = None
+
+    def call(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> float:
+        """Return the function of an event at a state. Raises SceneError where it fails or gives no number."""
+        event = self.watches[which].event
+        try:
+            with interruptible():
+                value = float((event.function or self._of_quantity(event))(time, State(self.model, q, v, s)))
+        except Exception as error:
+            raise SceneError(event.where, f"its function failed at t = {time:.6g} s: {type(error).__name__}: {error}",
+                             "it gets (time, state) and must give a number") from error
+        if not np.isfinite(value):
+            raise SceneError(event.where, f"its function gave {value} at t = {time:.6g} s", "it must give a number")
+        return value
+
+    def _of_quantity(self, event: Event) -> Callable[[float, State], float]:
+        """Return the function that a threshold on a body's origin, or on the least strain of a cable, stands for."""
+        name, axis = _quantity(event).rsplit(".", 1)
+        if axis == "least_strain":
+            cable = next(cable for cable in self.model.cables if cable.name == name)
+            vectors = f"{name}.nodal_vectors"
+            return lambda time, state: middle_strain(cable, np.asarray(state[vectors])[None]).min() - event.value
+        return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
+
+    def acts(self, which: int, what: str, time: float, passed: bool, s: float | None) -> None:
+        """Note what a coupling of this number has done by itself: stuck, struck the end, and so on.
+
+        Without a word it is no event for a user: a corner of a table. passed: a step went over it, and did not end
+        there; s: of a slide, m.
+        """
+        if not what:
+            return
+        happened: dict = {"name": self.model.couplings[which].name, "time": time, "what": what}
+        if passed:
+            happened["passed"] = True
+        self._note(happened if s is None else happened | {"s": s})
+
+    def gives_way(self, cable: int, what: str, time: float, element: int) -> None:
+        """Note that the first element of a cable has become slack, or that all are taut again; element: which was
+        first, or last.
+        """
+        self._note({"name": self.model.cables[cable].name, "time": time, "what": what, "element": element,
+                    "passed": True})
+
+    def _note(self, happened: dict) -> None:
+        """Keep an event, before those that were told first and are later: steps tell at their end what they went over.
+        """
+        insort(self.happened, happened, key=lambda each: each["time"])
+
+    def notes(self) -> list[str]:
+        """Return a message for each drag that has left the table of its fluid."""
+        first: dict[str, float] = {}
+        for happened in self.happened:
+            if happened.get("what") == LEAVES_TABLE:
+                first.setdefault(happened["name"], happened["time"])
+        return [f'drag "{name}" leaves the table of its fluid at t = {time:.6g} s: beyond the edges the velocity stays '
+                "as it is there; take a larger table" for name, time in first.items()]
+
+    def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
+        """Note an event; return whether the run goes on."""
+        event, state = self.watches[which].event, State(self.model, q, v, s)
+        at = {f"{body.name}.{k}": np.asarray(state[f"{body.name}.{k}"]).tolist() for body in self.model.bodies
+              for k in ("position", "velocity")}
+        at |= {f"{slide.name}.s": state[f"{slide.name}.s"] for slide in self.model.slides}
+        self._note({"name": event.name, "time": time, "state": at})
+        if event.action == "stop":
+            self.stopped_by = event.name
+        return event.action != "stop"

@@ -1,0 +1,302 @@
+"""The choice of a run's integrator, by what the scene asks for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from scipy.sparse.linalg import splu
+
+from ...engine import Engine
+from ...errors import SceneError
+from ...integrators import AUTO, INTEGRATORS, Demands, Explicit, Integrator, Radau, stable_at
+from ...kernels.libraries import of_library
+from ...model.model import Model
+from ...parts.scene_data import SceneData
+from ...parts.settings import RunSettings
+from ...parts.slide import Slide
+from ..linear.condensation import without_forces
+from ..notes.supersonic_loads import outrunning
+
+ITERATIONS = 20
+"""Of the power iteration."""
+
+DENSE = 120
+"""Unknowns up to which matrices are arrays: sparse ones take longer to make than their zeros to multiply."""
+
+
+NEAR = 8.0
+"""Ratio of expected costs up to which the implicit method is put on trial where it is expected to be the dearer one."""
+
+WORTH_A_TRIAL = 3000.0
+"""Evaluations of eq 38 that the explicit method takes at least where it is a rival to one on trial."""
+
+
+LOOSE = 4e-3
+"""The tol from which on the method of low order begins: it is the cheaper one at errors above 1e-3 of the motion."""
+
+LOOSE_FOR_FRICTION = 4e-2
+"""The same where slides rub: at tighter ones the error of genalpha can be many times tol there."""
+
+PART_OF_TOL = 0.25
+"""What the method of low order gets of tol, as its error can be some times as large (tests/benchmarks/choice.py)."""
+
+LOW_ORDER_MOST = 3.0
+"""Times the cost that is expected of radau: what the method of low order may cost."""
+
+LOW_ORDER_EVALUATIONS = 42.0
+"""Evaluations of eq 38 that a radian of the motion as a whole costs with genalpha at tol = 1, by
+tests/benchmarks/exudyn_side_by_side.py; they grow with the square root of 1/tol."""
+
+LOW_ORDER_MARGIN = 1.3
+"""Times the cost that is expected of genalpha: what radau may cost before genalpha takes its place."""
+
+LOW_ORDER_TIGHTEST = 1e-5
+"""The tol down to which genalpha may take radau's place."""
+
+LOW_ORDER_WORTH = 1500.0
+"""Evaluations of eq 38 that the explicit method takes at least where the method of low order is tried before it."""
+
+FAST_TURNS = 10.0
+"""Times the rate of the motion as a whole: bodies that turn faster make errors that the method of low order does not
+see."""
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Another integrator for a run, the work from which on it is taken, in evaluations of eq 38, and its own rival."""
+
+    method: Integrator
+    cost: float
+    rival: Rival | None = None
+
+
+def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine,
+           resumed: str | None) -> tuple[Integrator, str, Rival | None]:
+    """Return the integrator that a run begins with, why it is that one, and the one that replaces it if that turns out
+    cheaper.
+
+    resumed: the integrator's name of a run that goes on. Raises SceneError where the one that was asked for cannot run
+    the scene.
+    """
+    if settings.integrator != AUTO or settings.step is not None or "spectral_radius" in settings.model_fields_set:
+        return *_asked_for(settings, scene, model, engine), None
+    if resumed in INTEGRATORS:
+        return INTEGRATORS[resumed].of(settings.spectral_radius), "as the run began", None
+    demands = demands_of(settings, scene, model, engine)
+    found = cheapest(demands, settings.duration)
+    if not suits_low_order(demands, scene, model):
+        return found
+    with_low_order = begin_with_low_order if demands.tol >= LOOSE else end_with_low_order
+    return with_low_order(demands, settings.duration, *found)
+
+
+def tol_of(settings: RunSettings, method: Integrator) -> float:
+    """Return the tolerance that a run's steps are chosen by: less than its tol where the method of low order was chosen
+    and not asked for.
+    """
+    own = settings.integrator == AUTO and settings.step is None and "spectral_radius" not in settings.model_fields_set
+    return settings.tol * PART_OF_TOL if own and method.name == stable_at(fixed_step=True).name else settings.tol
+
+
+def _asked_for(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
+    """Return the integrator that the settings ask for, themselves or by what they say of the step, and why."""
+    if settings.integrator != AUTO:
+        chosen = INTEGRATORS[settings.integrator].of(settings.spectral_radius)
+        check(chosen, scene, model, engine)
+        return chosen, "as asked for"
+    fixed = stable_at(fixed_step=True).of(settings.spectral_radius)
+    if settings.step is not None:
+        return fixed, f"the step is fixed: {fixed.name} is stable at any"
+    return fixed, f"spectral_radius is given, which is {fixed.name}'s"
+
+
+def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival | None]:
+    """Return the integrator whose cost is expected to be the least, or worth a trial, why, and its rival on trial.
+
+    What stability asks for is sure, what the motion asks for is expected: of two that are near each other the latter is
+    tried, but for kinks of friction, which it follows less well.
+    """
+    said = {one: cost for one in INTEGRATORS.values() if (cost := one.cost(demands)) is not None}
+    stable, limited = stable_at(fixed_step=False), min(said, key=lambda one: (one.stability is None, said[one][0]))
+    why, sure = ", ".join(text for _, text in said.values()), said[limited][0]
+    if said[stable][0] > sure * (1.0 if demands.friction else NEAR):
+        return _made(limited), why, None
+    worth = sure * duration >= WORTH_A_TRIAL
+    if not worth and said[stable][0] > sure:
+        return _made(limited), why, None
+    return _made(stable), why, Rival(_made(limited), sure * duration) if worth else None
+
+
+def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
+    """Return whether the error of positions that genalpha estimates is the one that counts: not where supports are
+    moved, slides rub at a tight tol, bodies turn fast or outrun their cable's waves, nor where there are bodies alone.
+    """
+    fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
+    return (bool(model.cables) and not model.motions
+            and (demands.tol >= LOOSE_FOR_FRICTION or not demands.friction)
+            and fastest <= FAST_TURNS * demands.slow and not outrunning(scene))
+
+
+def begin_with_low_order(demands: Demands, duration: float, method: Integrator, why: str,
+                         rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
+    """Return genalpha on trial, why, and the method that was chosen without it as its rival; that method itself where
+    the explicit one is cheap.
+
+    The rival is sure where the explicit method's cost is the least. What radau costs is expected alone.
+    """
+    explicit, radau = Explicit.cost(demands)[0], Radau.cost(demands)[0]
+    if explicit * duration < LOW_ORDER_WORTH:
+        return method, why, rival
+    low = _made(stable_at(fixed_step=True))
+    most = duration * min(explicit, LOW_ORDER_MOST * radau)
+    return low, f"{why}; tol is loose: {low.name} has the cheapest steps", Rival(method, most, rival)
+
+
+def end_with_low_order(demands: Demands, duration: float, method: Integrator, why: str,
+                       rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
+    """Return the method that was chosen without genalpha, why, and genalpha as its rival where that is radau: where
+    slides cross many elements, its steps are many at any tol.
+
+    The rival gives way where it costs four times what is expected of it.
+    """
+    expected = duration * LOW_ORDER_EVALUATIONS * demands.slow / math.sqrt(PART_OF_TOL * demands.tol)
+    most = LOW_ORDER_MARGIN * expected
+    if not isinstance(method, Radau) or demands.tol < LOW_ORDER_TIGHTEST or (rival is not None and rival.cost < most):
+        return method, why, rival
+    last = Rival(method, 4.0 * expected) if rival is None or rival.cost > 4.0 * expected else rival
+    return method, why, Rival(_made(stable_at(fixed_step=True)), most, last)
+
+
+def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
+    """Return what a scene asks of an integrator."""
+    frequency, decay = fastest_rates(model, engine)
+    decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
+    rubs = any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values()) or any(
+        contact.is_hard and contact.friction_coefficient for contact in scene.contacts.values())
+    return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), rubs, settings.tol)
+
+
+def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:
+    """Raise SceneError for what an integrator cannot run."""
+    who = f'integrator "{integrator.name}"'
+    for body in model.bodies:
+        if body.modes and not integrator.takes_modal_bodies:
+            raise SceneError(scene.bodies[body.name].where, f"{who} does not know modal bodies",
+                             f"{_take_another('takes_modal_bodies')}, with a small tol")
+    for slide in scene.slides.values():
+        if integrator.takes_friction_and_stops:
+            break
+        if slide.friction is not None or (slide.at_start, slide.at_end) != ("error", "error"):
+            raise SceneError(slide.where, f"{who} knows neither friction nor ends of cables",
+                             _take_another("takes_friction_and_stops"))
+    for crossing in scene.crossings.values():
+        if integrator.needs_discrete_gradient and crossing.friction is not None and crossing.friction.sticks:
+            raise SceneError(crossing.where, f"{who} does not know friction of crossings that sticks",
+                             "take model=\"regularised\", or another integrator")
+    for contact in scene.contacts.values():
+        if contact.is_hard and contact.friction_coefficient and not integrator.takes_friction_and_stops:
+            raise SceneError(contact.where, f"{who} does not know friction of hard contacts",
+                             _take_another("takes_friction_and_stops"))
+        on = scene.surfaces[contact.b].on
+        if contact.is_hard and on is not None and integrator.needs_discrete_gradient:
+            raise SceneError(contact.where, f'{who} has no discrete gradient of a hard contact with a surface that '
+                             f'moves, and "{contact.b}" is on body "{on}"', "take another integrator")
+    if integrator.needs_discrete_gradient:
+        _check_gradients(integrator, scene, model, engine)
+
+
+def _take_another(capability: str) -> str:
+    """Return the end of a message: which integrators can."""
+    able = [one.name for one in INTEGRATORS.values() if getattr(one, capability)]
+    return f"take another integrator: {', '.join(able[:-1])} or {able[-1]}"
+
+
+def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:
+    """Raise SceneError for what has no discrete gradient, or lacks the algorithmic dissipation that is asked for."""
+    who = f'integrator "{integrator.name}"'
+    for cable in model.cables:
+        if not of_library(cable.library)[cable.element].laws[cable.law].discrete_gradient:
+            raise SceneError(scene.cables[cable.name].where, f'{who} has no discrete gradient of the law "{cable.law}"',
+                             "take another law, or another integrator")
+    if getattr(integrator, "spectral_radius", 1.0) < 1:
+        for cable in [model.cables[i] for i in engine.without_algorithmic_force()]:
+            raise SceneError(scene.cables[cable.name].where,
+                             f'{who} has no algorithmic dissipation of the law "{cable.law}"',
+                             "take spectral_radius = 1, another law, or another integrator")
+    parts = [*(scene.joints[joint.name] for joint in model.joints if joint.slide is None),
+             *(part for part, slide in zip(scene.slides.values(), model.slides, strict=True)
+               if not slide.rider_is_rigid or slide.drive >= 0 or part.frame != "point")]
+    for part in parts:
+        raise SceneError(part.where, f"{who} has no discrete gradient of it", "take another integrator")
+
+
+def regularised_decay(scene: SceneData, slide: Slide) -> float:
+    """Return how fast, in 1/s, a slow rider under its weight comes to the speed at which regularised friction lets it
+    creep.
+    """
+    friction = slide.friction
+    if friction is None or friction.sticks or slide.is_driven:
+        return 0.0
+    return friction.sliding * float(np.linalg.norm(scene.gravity)) / friction.velocity
+
+
+def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
+    """Return the rate of the motion as a whole in rad/s: a pendulum as long as the scene, or what crosses it, or the
+    run.
+    """
+    points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
+    points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
+    size = float(np.max(np.ptp(points, axis=0)))
+    if size == 0.0:
+        return 1.0 / duration
+    speed = max((float(np.linalg.norm(body.velocity)) for body in scene.bodies.values()), default=0.0)
+    return max(np.sqrt(np.linalg.norm(scene.gravity) / size), speed / size, 1.0 / duration)
+
+
+def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
+    """Return the highest frequency in rad/s and rate of decay in 1/s of the state at the start, its slides left out.
+
+    Holding riders on their cables only lowers them.
+    """
+    engine.set_state(0.0)
+    n = model.n_band + model.n_border_dof
+    if n == 0:
+        return 0.0, 0.0
+    matrix: Callable[[float, float, float], Any] = engine.dense_matrix if n <= DENSE else engine.matrix
+    mass = matrix(1.0, 0.0, 0.0)[:n, :n]
+    by_mass = np.linalg.inv(mass).dot if n <= DENSE else splu(mass.tocsc(), permc_spec="NATURAL").solve
+    stiffness = without_forces(matrix(0.0, 0.0, 1.0), slice(n), model)
+    decay = 0.0
+    if model.is_damped:
+        damping = without_forces(matrix(0.0, 1.0, 1.0), slice(n), model) - stiffness
+        decay = _largest(damping, mass, by_mass)
+    return math.sqrt(_largest(stiffness, mass, by_mass)), decay
+
+
+def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]) -> float:
+    """Return about the largest eigenvalue of the symmetric part by the mass, in size, by power iteration: some per cent
+    low.
+
+    matrix, mass: (n, n), arrays or sparse; by_mass: returns the mass^-1 times (n,).
+    """
+    symmetric = (matrix + matrix.T) / 2
+    x = np.random.default_rng(0).normal(size=matrix.shape[0])
+    for _ in range(ITERATIONS - 1):
+        x = by_mass(symmetric.dot(x))
+        size = math.sqrt(x.dot(x))
+        if size == 0.0:
+            return 0.0
+        x /= size
+    pushed = symmetric.dot(x)
+    return math.sqrt(by_mass(pushed).dot(pushed) / x.dot(mass.dot(x)))
+
+
+@cache
+def _made(kind: type[Integrator]) -> Integrator:
+    """Return the integrator of a kind with the parameters that it has by itself: they are the same in every run."""
+    return kind()

@@ -1,0 +1,125 @@
+"""Runs of very many steps: how many there will be, when the run ends at its present rate, and why."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections import deque
+
+from ...base.interruptions import interruptible
+from ...engine import Engine
+from ...errors import FunicularWarning
+from ...integrators import INTEGRATORS, stable_at
+from ...model.model import Model
+from ...parts.settings import RunSettings
+from ..notes.diagnosis import damping, describe_dof
+from .event_watcher import EventWatcher
+from .integrator_choice import fastest_rates
+from .progress import Meter
+
+MANY_STEPS = 1_000_000
+"""A run that needs more of them says so."""
+PREDICTED_AFTER = 2000
+"""Steps after which their number is predicted: the first ones are short."""
+WINDOW = 4.0
+"""s of wall time over which the rates are taken."""
+OFTEN = 0.02
+"""Events or crossings of elements for each step, above which they are what the steps are for."""
+REJECTED = 0.3
+"""The same of rejected steps."""
+NEAR = 0.3
+"""Of the stability limit: steps beyond this part of it are what stability allows."""
+
+
+class LongRun:
+    """Follows the steps of a run; called with the time reached, s, it passes that on to the progress meter."""
+
+    def __init__(self, model: Model, engine: Engine, settings: RunSettings, watcher: EventWatcher, meter: Meter):
+        self._model, self._engine, self._settings = model, engine, settings
+        self._watcher, self._meter = watcher, meter
+        self._marks: deque[tuple[float, float, int]] = deque([(time.monotonic(), engine.time, self._steps)])
+        self._warned = False
+
+    def __call__(self, reached: float) -> None:
+        """Show the progress; where the run will be long, its rate and end, and once a warning that says why."""
+        with interruptible():
+            self._meter(reached)
+        now = time.monotonic()
+        self._marks.append((now, reached, self._steps))
+        if self._steps < PREDICTED_AFTER:
+            return
+        while len(self._marks) > 2 and now - self._marks[1][0] > WINDOW:
+            self._marks.popleft()
+        since, start, before = self._marks[0]
+        made = self._steps - before
+        if made < PREDICTED_AFTER or reached <= start or now <= since:
+            return
+        more = (self._settings.duration - reached) * made / (reached - start)
+        if self._steps + more <= MANY_STEPS:
+            return
+        rate = made / (now - since)
+        self._meter.tell(f"{self._steps:.3g} of about {self._steps + more:.2g} steps, {rate:.2g} a second, "
+                         f"{_duration(more / rate)} left")
+        if not self._warned:
+            self._warned = True
+            warnings.warn(f"the run needs about {self._steps + more:.2g} steps, {_duration(more / rate)} at the "
+                          f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=6)
+
+    def notes(self) -> list[str]:
+        """Return, for the report, how many steps the run has taken or was to take, and why; empty for a run of few
+        steps.
+        """
+        if self._steps > MANY_STEPS:
+            return [f"the run took {self._steps:.3g} steps: {self._why()}"]
+        if self._warned and self._engine.time < self._settings.duration:
+            return [f"the run took {self._steps:.3g} steps to t = {self._engine.time:.3g} s of "
+                    f"{self._settings.duration:.3g} s: {self._why()}"]
+        return []
+
+    @property
+    def _steps(self) -> int:
+        return self._engine.n_steps
+
+    def _why(self) -> str:
+        """Return what rules the step, and what makes it larger."""
+        engine, settings, counts = self._engine, self._settings, self._engine.statistics
+        mean = engine.time / max(counts["steps"], 1)
+        if settings.step is not None:
+            return f"the step is fixed at {settings.step:.3g} s. Take a larger one, or none, so that tol chooses it"
+        if settings.output_step < 2 * mean:
+            return f"a step ends at each output time. Take an output_step larger than {settings.output_step:.3g} s"
+        if self._engine.knots_passed > OFTEN * counts["steps"]:
+            return (f"a step ends at each of the {self._engine.knots_passed} knots of signals so far. Give tables "
+                    'fewer samples, or interpolation="cubic"')
+        events = len(self._watcher.happened) + counts["element_crossings"]
+        if events > OFTEN * counts["steps"]:
+            return (f"there were {events} events and crossings of elements in {counts['steps']} steps, and a step ends "
+                    "at each. Look at the slides that stick, strike or cross nodes")
+        _, dof, coupling = engine.failure  # of the last step that was rejected
+        where = f", most of all at {describe_dof(self._model, dof, coupling)}" if counts["rejected_steps"] else ""
+        damped = damping(self._model, max(dof, 0), coupling)
+        if counts["rejected_steps"] > REJECTED * counts["steps"]:
+            return (f"{counts['rejected_steps']} steps were rejected beside {counts['steps']} taken{where}: forces "
+                    f"change within a step, as at contacts and kinks of friction. Take a larger tol{damped}")
+        frequency, decay = self._fastest()
+        stability = INTEGRATORS[engine.integrator].stability
+        if stability is not None and stability.part(mean, frequency, decay) > NEAR:
+            return (f"stability asks the {engine.integrator} method for steps of {mean:.2g} s: the highest frequency "
+                    f"is {frequency:.3g} rad/s, the fastest decay {decay:.3g} 1/s. Take "
+                    f'integrator="{stable_at(fixed_step=False).name}"'
+                    + ", or fewer, longer elements" * bool(self._model.cables))
+        return (f"tol = {settings.tol:g} asks for steps of {mean:.2g} s, for vibrations of about {1 / mean:.2g} rad/s"
+                f"{where} (the highest frequency is {frequency:.3g} rad/s). Take a larger tol{damped}, or a less stiff "
+                "part there")
+
+    def _fastest(self) -> tuple[float, float]:
+        """Return the highest frequency, rad/s, and rate of decay, 1/s, of the state at the start."""
+        return fastest_rates(self._model, Engine(self._model))
+
+
+def _duration(seconds: float) -> str:
+    """Return a duration as text, such as 3.2 min."""
+    for unit, name in ((86400, "days"), (3600, "h"), (60, "min")):
+        if seconds >= unit:
+            return f"{seconds / unit:.2g} {name}"
+    return f"{seconds:.2g} s"

@@ -1,0 +1,303 @@
+"""A run: the model of a scene through time, what is said of it on the way, and what is left at its end."""
+
+from __future__ import annotations
+
+import logging
+import time
+import warnings
+from collections.abc import Container
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Protocol
+
+import numpy as np
+
+from ...base.interruptions import interruptible
+from ...checks.plausibility import implausible
+from ...checks.velocity_jumps import velocity_jumps
+from ...engine import Engine
+from ...errors import FunicularWarning, SceneError
+from ...integrators import Integrator
+from ...model.build import build
+from ...model.controlled import controlled_weights, counted_weights
+from ...model.initial_state import InitialState
+from ...model.knots import knots
+from ...model.model import Model
+from ...model.redundant_constraints import drop_redundant_rows
+from ...parts.scene_data import SceneData
+from ...parts.settings import RunSettings
+from ..linear.threads import share_elements
+from ..notes.diagnosis import notes, trapped
+from ..notes.row_notes import RowNotes
+from ..notes.sensitivity import sensitive
+from ..notes.signal_steps import unresolved
+from ..notes.slack_growth import grown
+from ..notes.uncontrolled_errors import uncontrolled_errors
+from .event_watcher import EventWatcher
+from .integrator_choice import choose, tol_of
+from .long_runs import LongRun
+from .pauses import Pauses, pauses
+from .progress import Meter
+from .sink import Sink
+from .trial_cache import SharedTrials
+from .trial_run import on_trial
+
+LOG = logging.getLogger(__name__)
+
+FAILED = "no_convergence", "singular", "unstable"
+"""How runs end that could not go on: their message says why, and no note says what their results are worth."""
+
+MOST_OUTPUT = 4e9
+"""Bytes of results that a run may keep in memory."""
+
+
+class Start(Protocol):
+    """A state that a run starts from."""
+
+    @property
+    def messages(self) -> list[str]:
+        """Return what the report says of it."""
+
+    def start(self, model: Model, scene: SceneData) -> None:
+        """Put a freshly built model of the scene into this state. Raises SceneError."""
+
+
+@dataclass
+class Simulation:
+    """What is left at the end of a run: the engine with its last rows, how it ended, why it was integrated so.
+
+    Wall time: set_up_s until the engine starts, start_s from there to its first step, notes_s of the notes on results
+    after its last one, total_s of all that; solve_cpu_s: CPU seconds of the integration alone, whatever else the
+    machine does, and other threads of the process with other scenes.
+    """
+
+    model: Model
+    engine: Engine
+    watcher: EventWatcher
+    status: str
+    messages: list[str]
+    reason: str
+    set_up_s: float
+    start_s: float
+    notes_s: float
+    total_s: float
+    solve_cpu_s: float
+
+
+def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initial: Start | None = None,
+             stream: Sink | None = None, trials: SharedTrials | None = None) -> Simulation:
+    """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
+
+    initial: a state of this scene to start from; stream: takes the rows as they come, so that only the last ones are in
+    what is returned; trials: of other scenes of this shape.
+    """
+    begin = time.perf_counter()
+    with interruptible():
+        ready = _prepared(scene, settings, initial)
+    _check_size(ready.engine.row_bytes, settings, stream)
+    pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
+    messages = implausible(scene) + ready.messages
+    if initial is not None:
+        messages += [f"state to start from: {message}" for message in initial.messages]
+    messages += _divided_step(settings)
+    with interruptible():
+        choice = choose(settings, scene, ready.model, ready.engine, stream.integrator if stream else None)
+    method, reason, rival = choice if trials is None else trials.of(scene, *choice)
+    set_up, clock = time.perf_counter() - begin, time.thread_time if settings.threads == 1 else time.process_time
+    cpu = clock()
+    LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, ready.model.n_dof,
+             method.name, reason, set_up)
+    run = _begun(scene, settings, ready, method, pace, on_progress, stream, on_trial=rival is not None)
+    while rival is not None and run.status is None:
+        run.status, lost = on_trial(run.engine, rival, method, settings.duration, pace.every, run.follow, stream)
+        if lost:
+            if trials is not None:
+                trials.note(scene, method, rival)
+            method, reason, rival = rival.method, f"{reason}; {lost}", rival.rival
+            run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream,
+                         on_trial=rival is not None)
+        elif stream is not None:
+            stream.settled()
+    messages += run.changed.gaps + _warned([*_broken_velocities(run.model, run.changed.velocities),
+                                            *velocity_jumps(scene.as_drawn, settings.duration, _given(initial)),
+                                            *unresolved(scene.as_drawn, settings)])
+    started, status = run.began - begin - set_up, run.status
+    if status in (None, "running"):
+        status = run.engine.advance(run.follow, pace.every, stream)
+    if status == "interrupted" and stream is not None and not stream.has_begun:  # it gets a checkpoint to go on from
+        run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream)
+    messages += run.follow.notes() + _warned(run.watcher.notes())
+    cpu, ended = clock() - cpu, time.perf_counter()
+    run.row_notes.see(run.engine)
+    messages += _controlled_alone(run.engine, settings)
+    if status not in FAILED:
+        grows = [] if settings.estimate else [*sensitive(run.engine, settings, run.row_notes.sensitivity),
+                                              *grown(run.engine, settings, run.row_notes.slack,
+                                                     partial(_rows_again, scene, initial, method)),
+                                              *uncontrolled_errors(scene, run.engine, settings, run.row_notes)]
+        messages += _warned([*notes(run.engine, settings), *trapped(scene, run.engine), *run.row_notes.notes(), *grows])
+    noted = time.perf_counter() - ended
+    total = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
+    LOG.info("run %s after %.3g s", status.replace("_", " "), total)
+    for message in messages:
+        LOG.info("run: %s", message)
+    return Simulation(run.model, run.engine, run.watcher, status, messages, reason, set_up, started, noted, total, cpu)
+
+
+def _rows_again(scene: SceneData, initial: Start | None, method: Integrator,
+                settings: RunSettings) -> dict[str, np.ndarray]:
+    """Return the rows of a second run of a scene with other settings and the same method, which says nothing."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FunicularWarning)
+        second = settings.model_copy(update={"integrator": method.name})
+        return simulate(scene, second, Meter(), initial).engine.rows()
+
+
+def _given(initial: Start | None) -> Container[str]:
+    """Return the names of results that a state to start from is made of; none of one at rest, from which a run starts
+    at the velocities of the scene.
+    """
+    return initial if isinstance(initial, InitialState) else ()
+
+
+def _warned(messages: list[str]) -> list[str]:
+    """Return messages, each of them given as a warning, too."""
+    for message in messages:
+        warnings.warn(message, FunicularWarning, stacklevel=6)
+    return messages
+
+
+@dataclass
+class _Prepared:
+    """The model of a scene, an engine that is not started, what watches its events, and messages on them."""
+
+    model: Model
+    engine: Engine
+    watcher: EventWatcher
+    messages: list[str]
+
+
+def _prepared(scene: SceneData, settings: RunSettings, initial: Start | None) -> _Prepared:
+    """Return what a run of a scene begins with."""
+    model = build(scene)
+    if initial is not None:
+        initial.start(model, scene)
+    engine, watcher = Engine(model), EventWatcher(scene, model)
+    engine.watch(watcher)
+    return _Prepared(model, engine, watcher,
+                     drop_redundant_rows(model, engine) + share_elements(engine, settings.threads))
+
+
+@dataclass
+class _Changed:
+    """What the start was changed by: gaps that were closed, in words, and velocities (n_dof,)."""
+
+    gaps: list[str]
+    velocities: np.ndarray
+
+
+@dataclass
+class _Begun:
+    """A run at its start: how it has ended there, None where it goes on, what the start has changed, what follows its
+    steps and its rows, and when they began, in s.
+    """
+
+    model: Model
+    engine: Engine
+    watcher: EventWatcher
+    status: str | None
+    changed: _Changed
+    follow: LongRun
+    row_notes: RowNotes
+    began: float
+
+
+def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: Integrator, pace: Pauses, meter: Meter,
+           stream: Sink | None, on_trial: bool = False) -> _Begun:
+    """Return a run of what is prepared, which the stream takes; on_trial: it may begin anew with another method."""
+    model, engine, watcher = ready.model, ready.engine, ready.watcher
+    status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
+    row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
+    if stream is not None and status is None:
+        stream.start(model, engine, pace, watcher.happened, row_notes, on_trial)
+    follow = LongRun(model, engine, settings, watcher, meter)
+    return _Begun(model, engine, watcher, status, changed, follow, row_notes, time.perf_counter())
+
+
+def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
+           capacity: int | None) -> tuple[str | None, _Changed]:
+    """Start the engine; returns how the run ended, None where it goes on. Raises SceneError for a singular start."""
+    tol = tol_of(settings, method)
+    status, change = engine.start(
+        duration=settings.duration,
+        output_step=settings.output_step,
+        tol=tol,
+        step=settings.step or 0.0,
+        **_control(settings, scene, model),
+        method=method,
+        first_step=min(settings.output_step, 1e-3 * settings.duration),
+        knots=knots(model, settings.duration, tol, turns=settings.step is None),
+        capacity=capacity,
+    )
+    if status == "singular" and engine.self_locking >= 0:
+        slide = scene.slides[model.couplings[engine.self_locking].name]
+        raise SceneError(slide.where, "friction is self-locking at the start: the larger it is, the harder it presses "
+                         "the rider on the cable",
+                         "take a smaller coefficient, or the rider's point nearer to its centre of mass")
+    if status == "singular":
+        raise SceneError("scene", "the equations are singular at the start: a mass is zero, or a cable's director lies "
+                         "along its tangent", "look at masses and inertias, and at up")
+    closed = engine.closed > 1e-9 * engine.extent
+    gaps = [f"gaps of joints were closed at the start: things moved by up to {engine.closed:.3g} m"] * closed
+    return status, _Changed(gaps, change)
+
+
+def _control(settings: RunSettings, scene: SceneData, model: Model) -> dict[str, Any]:
+    """Return what tells the engine which error steps follow, and what is allowed beside tol; nothing where the step is
+    fixed.
+
+    Raises SceneError for a quantity whose error is not estimated.
+    """
+    weights: Any = None
+    if settings.quantities is not None:
+        weights = controlled_weights(settings.quantities, scene, model)
+        weights = weights, counted_weights(settings.quantities, weights, scene, model)
+    if settings.step is not None:
+        return {}
+    return {"absolute_tol": -1.0 if settings.absolute_tol is None else settings.absolute_tol, "controlled": weights}
+
+
+def _controlled_alone(engine: Engine, settings: RunSettings) -> list[str]:
+    """Say which quantities steps were chosen by, where the user named some."""
+    if settings.quantities is None:
+        return []
+    named = ", ".join(settings.quantities)
+    if settings.step is not None:
+        return [f"the step is fixed: no error is controlled, of {named} or else"]
+    return [f"steps were chosen by the error of {named} alone, whose largest motion is "
+            f"{engine.controlled_motion:.3g} m: other results may be less accurate"]
+
+
+def _divided_step(settings: RunSettings) -> list[str]:
+    """Say where a fixed step is made smaller, so that steps end on output times."""
+    step = settings.step_taken
+    if settings.step is None or step is None or step >= settings.step * (1 - 1e-6):
+        return []
+    return [f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times"]
+
+
+def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
+    """Say where the start changed velocities (n_dof,), which broke a joint."""
+    largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
+    if largest <= 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
+        return []
+    return [f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it"]
+
+
+def _check_size(row_bytes: int, settings: RunSettings, stream: Sink | None) -> None:
+    """Refuse what no memory holds or, for a stream, what does not fit on its disk. Raises SceneError."""
+    need = row_bytes * settings.duration / settings.output_step
+    most, where = (MOST_OUTPUT, "") if stream is None else (stream.free, " that are free on the disk")
+    if not need < most:
+        raise SceneError("run", f"output_step {settings.output_step:.6g} s makes {need:.3g} bytes of results, more "
+                         f"than the {most:.3g}{where}", "take a larger output_step")

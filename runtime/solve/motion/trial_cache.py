@@ -1,0 +1,56 @@
+"""Trials of integrators that scenes of one shape share: what lost with the first one is not tried with the others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from ...parts.scene_data import SceneData
+
+if TYPE_CHECKING:  # bring SciPy
+    from ...integrators import Integrator
+    from .integrator_choice import Rival
+
+ALIKE = 2.0
+"""Times the cost that the rival has in the first scene: what costs more is tried anew."""
+
+
+@dataclass
+class SharedTrials:
+    """The outcome of the first scene's trials.
+
+    Each scene chooses by its own numbers. Where that comes to the trial that the first scene had, and the first one's
+    was lost, the rival begins; its cost is known beforehand. A trial that is won costs nothing, and is not left out.
+
+    shape: of the first scene, where that lost a trial; lost: by the names of both methods, the cost of the rival.
+    is_open: whether the first scene is still to come or under way, whose trials are those that count.
+    """
+
+    shape: tuple = ()
+    lost: dict[tuple[str, str], float] = field(default_factory=dict)
+    is_open: bool = True
+
+    def of(self, scene: SceneData, method: Integrator, reason: str,
+           rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
+        """Return the choice for a scene, as `choose` does, of which this is the choice by its own numbers."""
+        while rival is not None and self._lost(method, rival) and shape_of(scene) == self.shape:
+            reason += f"; {method.name} on trial lost in the first scene, which has the same shape"
+            method, rival = rival.method, rival.rival
+        return method, reason, rival
+
+    def _lost(self, method: Integrator, rival: Rival) -> bool:
+        """Return whether the first scene lost this trial, with a rival that was not much cheaper."""
+        return rival.cost <= ALIKE * self.lost.get((method.name, rival.method.name), 0.0)
+
+    def note(self, scene: SceneData, method: Integrator, rival: Rival) -> None:
+        """Take note that a trial of a method was lost, if it is the first scene's."""
+        if self.is_open:
+            self.shape = shape_of(scene)
+            self.lost[method.name, rival.method.name] = rival.cost
+
+
+def shape_of(scene: SceneData) -> tuple:
+    """Return what scenes of one shape have in common: their parts by kind and name, elements and laws; all but numbers.
+    """
+    return scene.dim, *((type(part), part.given_name) for part in scene.parts()), *(
+        (cable.element, cable.elements, cable.law, cable.library) for cable in scene.cables.values())

@@ -1,0 +1,219 @@
+"""Why a run stopped, and what its results are worth: place, likely cause and remedy, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...engine import Engine
+from ...integrators import INTEGRATORS, stable_at
+from ...model.hard_contacts import HardContactModel
+from ...model.model import CableModel, Model, SlideModel
+from ...model.redundant_constraints import redundant
+from ...parts.scene_data import SceneData
+from ...parts.settings import RunSettings
+from .folds import FOLDED
+
+KEPT = "what was computed up to there is kept"
+
+STRETCHED = 3.0
+"""Times their undeformed length: elements that are longer are named."""
+
+ROUNDED = 4e-16
+"""Of the farthest coordinate: below this the error control does not go (engine/equations/step_control.c)."""
+
+LEAST_MOTION = 1e-9
+"""Of the farthest coordinate: what moves less may be at rest (engine/run/start.c)."""
+STEADY = 0.01
+"""Of the kinetic energy: where less is exchanged, as where bodies turn freely, errors go by this part of it."""
+
+CONTINUOUS = "cable18"
+"""The element whose curvature is continuous at nodes."""
+MANY_CROSSINGS, OFTEN = 100, 0.02
+"""Crossings of nodes in a run, and for each step, from which on slides do not simply pass."""
+
+QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
+"""Of the largest motion, and of the energy exchanged: errors of a fixed step, and energy that nothing explains, beyond
+these are reported; the last is for loose tolerances, where energy may be off by so much more."""
+
+
+def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) -> str:
+    """Return the message of a run that found no acceptable step, lost a joint or whose energy grew."""
+    when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
+    cause, dof, coupling = engine.failure
+    _, q, v, _ = engine.now()
+    where, (state, folded) = describe_dof(model, dof, coupling), condition(model, dof, q, v)
+    of_a_body = coupling is None and _node(model, dof) is None
+    if status == "unstable":
+        grown, _, exchanged, in_motion, _ = engine.balance
+        exchanged = max(exchanged, in_motion)
+        return (f"energy grew without a source at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; "
+                f"fastest is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
+    if cause is None and status == "no_convergence":
+        return (f"no step could be made at {when}: to pass an event there it would have to be shorter than 1e-12 of "
+                f"the duration; {KEPT}. Look at slides, stops and events that act at the same instant")
+    if doubled := redundant(model, engine):
+        return (f"no step converged at {when}: {doubled} constrain nearly the same motion; {KEPT}. "
+                "Leave one of them out, or attach the body at points farther apart")
+    if status == "singular" or cause == "matrix":
+        why, remedy = ("", "Look at its mass and inertia, and at its joints") if of_a_body else (
+            ", as where a cable's tangent vanishes or its director lies along it",
+            "Look at the masses and at up, or take more elements there")
+        return (f"the equations are singular at {when}, first at {where} ({state}): a joint or the mass matrix is "
+                f"degenerate{why}; {KEPT}. {remedy}")
+    assert cause is not None, "a step that failed has a cause"
+    what = {"iteration": f"the iteration does not converge, least of all at {where}",
+            "error": f"the error stays above what tol allows, most of all at {where}",
+            "lost_rider": f"{where} does not find its point on the cable any more",
+            "not_finite": f"{where} diverges",
+            "self_locking": _self_locking(model, coupling, where),
+            "not_known": f"{where} does not know any more whether it acts"}[cause]
+    counts = engine.statistics
+    gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
+    if cause == "not_known":
+        return (f"no force is known at {when}: {what}; {KEPT}. A crossing has no closest points where its lines are "
+                "parallel near each other, or wind around each other: keep them at an angle. Lines that come round an "
+                "end of the other are on its other side: let them touch beforehand, or make them longer")
+    if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
+        remedy = _too_large(engine, settings)
+    elif cause == "self_locking" and _is_force(model, coupling):
+        remedy = "Take a smaller stiffness or tol, or give it damping"
+    elif cause == "self_locking":
+        remedy = "Take a smaller coefficient, or the point nearer to the centre of mass"
+    elif folded:
+        remedy = f"The cable folds up there: take more elements{damping(model, dof)}"
+    else:
+        remedy = ("Look at loads, masses and stiffnesses there; else try a smaller "
+                  f"{'tol' if settings.step is None else 'step'}{damping(model, dof, coupling)}")
+    return f"no step converged at {when}{gone}: {what} ({state}); {KEPT}. {remedy}"
+
+
+def _too_large(engine: Engine, settings: RunSettings) -> str:
+    size = f"tol {settings.tol:g}" if settings.step is None else f"step {settings.step:g} s"
+    coarsest = 0.0 if settings.step is not None else settings.absolute_tol or 0.0
+    if coarsest and coarsest > settings.tol * engine.controlled_motion:
+        size = f"absolute_tol {coarsest:.3g} m"
+    others = "" if settings.step is None else ", or none, so that tol chooses it"
+    stable = ""
+    if INTEGRATORS[engine.integrator].stability is not None:
+        stable = f', or integrator="{stable_at(settings.step is not None).name}"'
+    elif INTEGRATORS[engine.integrator].loses_energy_by_spectral_radius and settings.spectral_radius == 1:
+        stable = (", or a spectral_radius below 1, as at 1 nothing damps the vibrations that joints excite from step "
+                  'to step; integrator="energy" needs no damping')
+    return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
+
+
+def _is_force(model: Model, coupling: int | None) -> bool:
+    """Return whether what failed is a coupling that gives a force by a law, and has no constraint."""
+    return coupling is not None and not isinstance(model.couplings[coupling], SlideModel | HardContactModel)
+
+
+def _self_locking(model: Model, coupling: int | None, where: str) -> str:
+    """Return what has no solution where friction has none."""
+    if coupling is not None and isinstance(model.couplings[coupling], HardContactModel):
+        return (f"no forces that press and rub let {where} go on: friction is self-locking, or changes follow each "
+                "other at once")
+    if _is_force(model, coupling):
+        return f"{where} changes to and fro at one instant, again and again"
+    return f"friction is self-locking at {where}: the larger it is, the harder it presses the rider on the cable"
+
+
+def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
+    """Return what a dof is of, or what a coupling of this number is."""
+    if coupling is not None:
+        failed = model.couplings[coupling]
+        if not isinstance(failed, SlideModel):
+            return f'{failed.type.removeprefix("hard_").replace("_", " ")} "{failed.name}"'
+        return f'slide "{failed.name}" on cable "{model.cables[failed.cable].name}"'
+    if (found := _node(model, dof)) is not None:
+        cable, node = found
+        return f'cable "{cable.name}" at s = {cable.mesh.node_s[node]:.6g} m'
+    return [f'body "{body.name}"' for body in model.bodies if body.dof <= dof][-1]
+
+
+def damping(model: Model, dof: int, coupling: int | None = None) -> str:
+    """Return how to damp what a dof is of, or the cable of a slide: the end of a remedy; empty for a rigid body."""
+    found, failed = _node(model, dof), None if coupling is None else model.couplings[coupling]
+    cable = model.cables[failed.cable] if isinstance(failed, SlideModel) else found and found[0]
+    if cable:
+        return f", or {'a larger ' if cable.tau else ''}damping_time in the material"
+    bodies = [body for body in model.bodies if body.dof <= dof]
+    return ", or a larger damping_ratio of the body" if bodies and bodies[-1].modes else ""
+
+
+def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str, bool]:
+    """Return how the place of a dof fares, and whether its cable is folded up there."""
+    speed = f"{abs(v[dof]) * model.weight[dof]:.3g} m/s"
+    if (found := _node(model, dof)) is None:
+        return speed, False
+    cable, node = found
+    r = q[cable.coordinates].reshape(cable.shape)[:, 0]
+    stretch = (np.linalg.norm(np.diff(r, axis=0), axis=1) / cable.mesh.lengths)[max(node - 1, 0) : node + 1]
+    worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
+    fair = FOLDED < worst < STRETCHED
+    notes = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "
+    return notes + speed, bool(worst <= FOLDED)
+
+
+def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
+    """Return the cable and number of the node that a dof is of; None where it is a body's."""
+    for cable in model.cables:
+        if cable.coordinates.start <= dof < cable.coordinates.stop:
+            return cable, (dof - cable.first) // (cable.shape[1] * cable.shape[2])
+    return None
+
+
+def notes(engine: Engine, settings: RunSettings) -> list[str]:
+    """Return what a user should know of a completed run whose results are coarse; empty where they are good."""
+    counts, notes = engine.statistics, []
+    if settings.step is not None and counts["rejected_steps"]:
+        notes.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, "
+                    f"down to {counts['smallest_step_s']:.3g} s")
+    rounded, motion = ROUNDED * engine.extent, counts["largest_motion_m"]
+    if settings.step is None and LEAST_MOTION * engine.extent < motion < rounded / settings.tol:
+        notes.append(f"positions are rounded to {rounded:.2g} m so far from the origin, which is more than tol = "
+                    f"{settings.tol:g} allows: draw the scene nearer to it")
+    if not engine.moves:
+        return notes
+    notes += _coarse_for_little_motion(engine, settings)
+    error = counts["sum_of_local_error_estimates_m"] / counts["largest_motion_m"]
+    if settings.step is not None and error > QUIET_ERROR:
+        notes.append(f"the estimated errors of the steps sum up to {error:.2g} of the largest motion: take a smaller "
+                    "step, or none, so that tol chooses it")
+    return notes + unexplained(engine, settings)
+
+
+def _coarse_for_little_motion(engine: Engine, settings: RunSettings) -> list[str]:
+    """Return a note where the absolute error that was allowed unasked is more than tol of the motion."""
+    allowed, motion = engine.absolute_tol, engine.controlled_motion
+    if settings.step is not None or settings.absolute_tol is not None or allowed <= settings.tol * motion:
+        return []
+    return [f"errors of {allowed:.2g} m were allowed for the size of the scene, beside a largest motion of "
+            f"{motion:.2g} m: give absolute_tol, in m, if that is too much"]
+
+
+def trapped(scene: SceneData, engine: Engine) -> list[str]:
+    """Return a note where slides that tie a frame went to and fro over nodes at which the curvature jumps."""
+    counts = engine.statistics
+    names = [f'"{slide.name}"' for slide in scene.slides.values()
+             if slide.frame != "point" and scene.cables[slide.along].element != CONTINUOUS]
+    if not names or counts["element_crossings"] < max(MANY_CROSSINGS, OFTEN * counts["steps"]):
+        return []
+    return [f"slides went over nodes {counts['element_crossings']} times in {counts['steps']} steps: the curvature of "
+            f"their cables jumps there, and pushes the frame that {' or '.join(names)} ties back to the node. Take "
+            f'element="{CONTINUOUS}", whose curvature is continuous, or more elements']
+
+
+def unexplained(engine: Engine, settings: RunSettings) -> list[str]:
+    """Return a note where energy has come or gone that nothing in the scene explains; empty where the balance closes.
+    """
+    grown, lost, exchanged, in_motion, rounding = engine.balance
+    off, fixed = max(grown, lost), settings.step is not None
+    quiet = QUIET_LOSS if fixed else min(max(QUIET_LOSS, 100 * settings.tol), LOOSE_LOSS)
+    if not off > quiet * max(exchanged, STEADY * in_motion) + rounding:
+        return []
+    what = ("went that neither damping nor friction nor impacts took", "came that nothing did work for")[grown > lost]
+    damps = INTEGRATORS[engine.integrator].loses_energy_by_spectral_radius and settings.spectral_radius < 1
+    damped = ", or a spectral_radius nearer to 1" if lost > grown and damps else ""
+    part = f"{off / exchanged:.2g} of the {exchanged:.3g} J exchanged" if exchanged > off else "all that was exchanged"
+    return [f"the energy balance is off by up to {off:.3g} J, {part}: energy {what}. The integration makes this error: "
+            f"take a smaller {'step, or none, so that tol chooses it' if fixed else 'tol'}{damped}"]

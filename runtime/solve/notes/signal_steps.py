@@ -1,0 +1,65 @@
+"""Signals that change faster than a fixed step can follow, in words: no error control shortens such a step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...model.knots import of_pieces
+from ...parts.scene_data import SceneData
+from ...parts.settings import RunSettings
+from ...parts.signal import Constant, Integral, Signal, signals_of
+from ...parts.validation import show
+
+STEPS_A_PERIOD = 8
+"""The least number of steps that follow a sine; the trapezoidal rule is then 5 % off its integral."""
+FINE = 20
+"""Steps over a period, or over the shortest piece of a signal, that need no look at the integral."""
+COARSE = 0.05
+"""Of the integral of what varies: a larger error of the trapezoidal rule is reported."""
+
+
+def unresolved(scene: SceneData, settings: RunSettings) -> list[str]:
+    """Return a message for each signal that a fixed step is too long for; none where tol chooses the steps."""
+    step = settings.step_taken
+    if step is None:
+        return []
+    found = []
+    for where, signal in signals(scene):
+        rate = frequency(signal)
+        if rate * step * STEPS_A_PERIOD > 1:
+            found.append(f"{where}: its sine has a period of {show(1 / rate, 's')}, and the fixed step is "
+                         f"{show(step, 's')}: the steps do not follow it. Take a step of "
+                         f"{show(1 / (FINE * rate), 's')} or less, or none, so that tol chooses it")
+        elif (error := _error_of_integral(signal, step, settings)) > COARSE:
+            found.append(f"{where}: the fixed step of {show(step, 's')} is too long for its signal, whose integral "
+                         f"over time it misses by {error:.2g} of its size. Take a smaller step, or none, so that tol "
+                         "chooses it")
+    return found
+
+
+def signals(scene: SceneData) -> Iterator[tuple[str, Signal]]:
+    """Yield all signals of a scene that are not constant, each with the name of the part that it is of."""
+    for part in scene.parts():
+        yield from ((part.where, signal) for _, signal in signals_of(part) if not isinstance(signal, Constant))
+
+
+def frequency(signal: Signal) -> float:
+    """Return the frequency of the sine of a signal, Hz; 0 where it has none."""
+    return signal.angular_frequency / (2 * np.pi) if signal.amplitude else 0.0
+
+
+def _error_of_integral(signal: Signal, step: float, settings: RunSettings) -> float:
+    """Return how far the trapezoidal rule on the steps of a run is off a signal's integral, of what varies of it."""
+    breaks, coefficients = signal.pieces()
+    inner = breaks[(breaks > 0) & (breaks < settings.duration)]
+    if np.diff(inner, prepend=0.0, append=settings.duration).min() > FINE * step:
+        return 0.0
+    knots = [time for time, _ in of_pieces(breaks, coefficients, False, settings.tol) if 0 < time < settings.duration]
+    times = np.union1d(np.arange(0.0, settings.duration, step), [*knots, settings.duration])
+    values, exact = signal.value(times), Integral(rate=signal).value(times)
+    sums = np.cumsum(np.diff(times) * (values[1:] + values[:-1]) / 2)
+    varying = exact - exact[-1] * times / times[-1]
+    scale = np.abs(varying).max()
+    return float(np.abs(sums - exact[1:]).max() / scale) if scale > 0 else 0.0

@@ -1,0 +1,120 @@
+"""Struts that a run left perfectly straight though they are compressed beyond their buckling load.
+
+Without any disturbance across it a straight strut stays straight, at any load: a result of the model, and none of the
+strut. Whether it would buckle is counted by the inertia of its stiffness, as in statics.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...engine import Engine
+from ...model.model import CableModel, Model
+from ...parts.scene_data import SceneData
+from ...parts.section_stiffness import compressive_stiffness
+from ..linear.condensation import condensed
+from ..linear.inertia import inertia
+
+STRAIGHT = 1e-9
+"""Of the length: nodes that are nearer to the line between the ends lie on it."""
+
+BENT = 1e-12
+"""Of the squared length: what the middle node's squared distance from that line is above where it does not, by far."""
+
+
+class StraightStruts:
+    """Each cable that was perfectly straight at two output times on end, when it was compressed most.
+
+    found: by the cable's name whether it is straight in the last row, and the largest compression in N beyond what the
+    weakest of struts bears, with the time in s, the coordinates and the slides' arc-lengths then.
+    """
+
+    def __init__(self, scene: SceneData, model: Model):
+        self._scene, self._model = scene, model
+        self.found: dict[str, Any] = {}
+
+    def see(self, rows: dict[str, np.ndarray]) -> None:
+        """Take further output rows."""
+        for cable in self._model.cables:
+            part = self._scene.cables[cable.name]
+            if part.is_curved:
+                continue
+            r = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
+            before, worst = self.found.get(cable.name, (False, None))
+            straight = _straight(r, before)
+            at = np.flatnonzero(straight & np.append(before, straight[:-1]))  # else something bends it
+            if len(at):
+                shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.mesh.lengths
+                stiffness = compressive_stiffness(part.traits.membrane, part.section, part.material)
+                forces = stiffness * shortening.max(axis=1)
+                k, force = at[np.argmax(forces)], float(forces.max())
+                length = cable.mesh.total
+                weakest = part.material.youngs_modulus * min(part.section.moments()[1:3])
+                least = weakest / length**2  # a cantilever, the weakest of struts, buckles at 2.47 times this
+                if force >= least and (worst is None or force > worst[0]):
+                    worst = [force, float(rows["time"][k]), rows["q"][k].tolist(), rows["s"][k].tolist()]
+            self.found[cable.name] = [bool(straight[-1]), worst]
+
+    def notes(self) -> list[str]:
+        """Return a note for each of them that would buckle at the time at which it is compressed most."""
+        notes = []
+        for cable in self._model.cables:
+            _, worst = self.found.get(cable.name, (False, None))
+            if worst is None:
+                continue
+            force, time, q, s = worst
+            try:
+                buckles = _unstable(self._model, cable, time, np.array(q), np.array(s))
+            except ArithmeticError:  # no factorisation is accurate enough to count
+                continue
+            if buckles:
+                notes.append(f'cable "{cable.name}" is perfectly straight at t = {time:.6g} s under a compression of '
+                             f"{force:.4g} N, beyond its buckling load ({buckles} independent direction"
+                             f"{'s lower' if buckles > 1 else ' lowers'} its energy): nothing in the scene bends it. "
+                             "Draw it slightly bent, or add a small force across it")
+        return notes
+
+
+def _straight(r: np.ndarray, before: bool) -> np.ndarray:
+    """Return (times,): whether nodes r (times, nodes, dim) lie on a line, one after the other, as they did at the time
+    before or do at the next one; before: whether they did before the first.
+
+    The middle node shows of most states that they do not: only of the others all nodes are looked at.
+    """
+    chord, middle = r[:, -1] - r[:, 0], r[:, r.shape[1] // 2] - r[:, 0]
+    square = (chord * chord).sum(axis=1)
+    off = (middle * middle).sum(axis=1) * square - (middle * chord).sum(axis=1) ** 2  # squared, times the square
+    straight = ~(off > BENT * square**2)
+    beside = np.ones(len(r), dtype=bool)  # and of the last time, for the row to come
+    beside[:-1] = straight[1:]
+    beside[1:] |= straight[:-1]
+    beside[0] |= before
+    straight &= beside
+    if straight.any():
+        straight[straight] = _on_line(r[straight])
+    return straight
+
+
+def _on_line(r: np.ndarray) -> np.ndarray:
+    """Return (times,): whether all nodes r (times, nodes, dim) lie on the line through the first and the last."""
+    chord = r[:, -1] - r[:, 0]
+    length = np.linalg.norm(chord, axis=1)
+    offset = r - r[:, :1]
+    along = np.einsum("tnd,td->tn", offset, chord) / np.where(length > 0, length, 1.0)[:, None] ** 2
+    off = np.linalg.norm(offset - along[:, :, None] * chord[:, None], axis=2).max(axis=1)
+    return (off <= STRAIGHT * length) & np.all(np.diff(along, axis=1) > 0, axis=1)
+
+
+def _unstable(model: Model, cable: CableModel, t: float, q: np.ndarray, s: np.ndarray) -> int:
+    """Return how many directions of a cable, all else fixed, lower the energy; joints hold it, with forces left out."""
+    engine = Engine(model)
+    engine.set_state(t, q=q, s=s)
+    K, C = condensed(engine.matrix(0.0, 0.0, 1.0), model)
+    unknown = model.unknown_of_dof[cable.coordinates]
+    own = np.unique(unknown[unknown >= 0])
+    units = np.ones(K.shape[0])
+    units[unknown[unknown >= 0]] = model.weight[cable.coordinates][unknown >= 0]
+    K = K.tocsr()[own][:, own]
+    return inertia((K + K.T) / 2, C.tocsc()[:, own], units[own]).negative

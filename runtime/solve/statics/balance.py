@@ -1,0 +1,88 @@
+"""Whether a scene is at rest as it is drawn: forces of joints, slides and springs that balance it, and what is left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ..notes.diagnosis import describe_dof
+from .static_problem import StaticState, coordinates_of, units_of
+
+BALANCED = 1e-6
+"""Of the largest load: what may be left over."""
+ROUNDED = 1e-15
+"""Of what the largest row of the stiffness adds up to: the rounding of a force; 9e-17 was measured."""
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The forces left over on a scene as drawn: the largest in N, its place, and whether it is next to none."""
+
+    left: float
+    where: str
+    at_rest: bool
+
+    def __str__(self) -> str:
+        """Return it in words."""
+        return f"forces of up to {self.left:.3g} N are left over, most of all on {self.where}"
+
+
+def balance(static: StaticState) -> Balance:
+    """Give the forces of a static state, as drawn, the values that balance it best, and return what is left.
+
+    Springs and other laws have the force of their gap. Joints and slides share the rest in the least squares. Without
+    balance the forces stay as they were, which is nil.
+    """
+    model, drawn = static.model, static.keep()
+    n, rows, units = model.n_band + model.n_border_dof, coordinates_of(model), units_of(static.weight, model)
+    by_law, free = ([n + k for coupling in model.couplings for k in entries(coupling)] for entries in (
+        lambda coupling: coupling.force_unknowns if coupling.follows_law else [],
+        lambda coupling: [] if coupling.follows_law else coupling.force_unknowns))
+    stiffness = static.tangent().tocsr()
+    change = np.zeros(stiffness.shape[0])
+    change[by_law] = -static.residual()[by_law] / stiffness.diagonal()[by_law]
+    static.move(change)
+    change[:] = 0.0
+    change[free] = _shared(stiffness[rows][:, free], static.residual()[rows], units)
+    static.move(change)
+    left = np.abs(static.residual()[rows]) / units
+    load = np.max(np.abs(static.load_vector()[rows]) / units, initial=0.0)
+    sums = np.max(_size_of_sums(static, stiffness[rows][:, rows]) / units, initial=0.0)
+    at_rest = bool(np.all(left <= BALANCED * load + ROUNDED * sums))
+    if not at_rest:
+        static.restore(drawn)
+    most = int(np.argmax(left)) if len(left) else 0
+    return Balance(float(np.max(left, initial=0.0)), _place(static, rows, most), at_rest)
+
+
+def _shared(columns: csr_array, residual: np.ndarray, units: np.ndarray) -> np.ndarray:
+    """Return the forces that leave the least of a residual, in the least squares of N."""
+    touched = np.flatnonzero(np.diff(columns.indptr))
+    if not len(touched):
+        return np.zeros(columns.shape[1])
+    over = 1.0 / units[touched]
+    return np.linalg.lstsq(over[:, None] * columns[touched].toarray(), -over * residual[touched], rcond=None)[0]
+
+
+def _size_of_sums(static: StaticState, stiffness: csr_array) -> np.ndarray:
+    """Return (rows,): what the terms of each row's force add up to at most, coordinates of points at the scene's size.
+    """
+    largest = np.ones(stiffness.shape[0])
+    free = static.model.unknown_of_dof >= 0
+    points = static.model.unknown_of_dof[free & (static.model.weight == 1.0)]
+    largest[points] = max(1.0, float(np.abs(static.keep()["q"]).max(initial=0.0)))
+    return abs(stiffness) @ largest
+
+
+def _place(static: StaticState, rows: np.ndarray, most: int) -> str:
+    """Return what the row is of that has the largest force left over."""
+    model = static.model
+    n = model.n_band + model.n_border_dof
+    if not len(rows):
+        return "nothing"
+    if rows[most] >= n:
+        coupling = next(k for k, each in enumerate(model.couplings) if rows[most] - n in each.free_coordinates)
+        return describe_dof(model, 0, coupling)
+    return describe_dof(model, int(np.flatnonzero(model.unknown_of_dof == rows[most])[0]))

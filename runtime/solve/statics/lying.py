@@ -1,0 +1,72 @@
+"""Cables that lie on something round as drawn: how far a step of the search may carry them, and whether they left it.
+
+A step longer than a cable is thick takes it through a drum, or off it: friction holds only what is pressed.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...engine import outputs_by_name
+from ...model.contact_points import distances
+from ...model.model import Model
+from ...parts.scene_data import SceneData
+from .static_problem import StaticProblem
+
+BEDS = ("flat", "terrain")
+"""Shapes of surfaces that a cable does not fall off."""
+NEAR = 0.1
+"""Of the radius of a cable: a smaller gap is none as drawn."""
+LITTLE = 0.1
+"""Of the length on which a cable lies as drawn: it has left what it touches with less."""
+STEP = 0.02
+"""The same, of a step: the root of the mean square over the nodes."""
+
+
+class Lying(NamedTuple):
+    """A contact by penalty, by its number, where a cable lies as drawn; from s to s, m; the longest step in m."""
+
+    contact: int
+    first: float
+    last: float
+    step: float
+
+
+def lying(scene: SceneData, model: Model, q: np.ndarray) -> list[Lying]:
+    """Return where cables lie at a configuration (n,)."""
+    found = []
+    for k, contact in enumerate(model.contacts):
+        part = scene.contacts[contact.name]
+        if contact.cable < 0 or scene.surfaces[part.b].geometry.word in BEDS:
+            continue
+        thick = max(contact.radius, float(np.sqrt(scene.cables[part.a].section.moments()[0] / np.pi)))
+        on = np.flatnonzero(distances(model, scene, contact, q[None]).ravel() <= contact.radius + NEAR * thick)
+        nodes = model.cables[contact.cable].n_elements + 1
+        if len(on):
+            found.append(Lying(k, float(contact.arc[on[0]]), float(contact.arc[on[-1]]),
+                               STEP * thick * float(np.sqrt(nodes))))
+    return found
+
+
+def left(problem: StaticProblem, places: list[Lying]) -> list[str]:
+    """Return a message for each of these places that the cable has left in the static state."""
+    if not places:
+        return []
+    touching = outputs_by_name("contact", problem.engine.static_outputs("contact"))["touching"]
+    return [f"{_lies(problem, place)}, and has left it: it slid off, or the search carried it past the surface. Take "
+            "scene.relax(), or more friction" for place in places
+            if touching[place.contact] < LITTLE * (place.last - place.first)]
+
+
+def not_held(problem: StaticProblem, places: list[Lying]) -> str:
+    """Return why a search may have failed for cables that lie on something; empty for others."""
+    return "; ".join(f"{_lies(problem, place)}, and may slide off it: more friction holds it" for place in places)
+
+
+def _lies(problem: StaticProblem, place: Lying) -> str:
+    """Return where a cable lies as drawn, in words."""
+    part = problem.scene.contacts[problem.model.contacts[place.contact].name]
+    return (f'{part.where}: "{part.a}" lies on "{part.b}" as drawn, from s = {place.first:.4g} m to '
+            f"{place.last:.4g} m")

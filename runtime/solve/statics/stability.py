@@ -1,0 +1,108 @@
+"""Stability of a state of rest: how many independent directions lower its energy, and one of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh, null_space
+from scipy.sparse import csc_array, csr_array
+from scipy.sparse.linalg import ArpackNoConvergence, eigsh
+
+from ..linear.inertia import ZERO, inertia, scaled
+from .static_problem import StaticProblem
+
+ASYMMETRY = 1e-9
+"""Of the stiffness: what rounding leaves; more comes from loads that turn with what they act on."""
+ALL_REAL = 1500
+"""Unknowns up to which all eigenvalues of an unsymmetric stiffness are computed."""
+DENSE = 600
+"""Unknowns up to which the lowest direction is found by LAPACK."""
+
+
+@dataclass(frozen=True)
+class Stability:
+    """unstable: independent directions that lower the energy; neutral: those that leave it as it is, within rounding.
+
+    follower: the stiffness is not symmetric, since loads turn with what they act on. There is no energy then: unstable
+    counts negative real eigenvalues, which are directions of divergence; flutter is not looked for. bound: unstable is
+    the count of the symmetric part (of more than 1500 unknowns), which is not less than that of divergence. known:
+    False where no factorisation of the stiffness was accurate enough to count; the numbers are zero then.
+    """
+
+    unstable: int
+    neutral: int
+    follower: bool = False
+    bound: bool = False
+    known: bool = True
+
+    def __str__(self) -> str:
+        """Return what is known of the stability, as messages state it."""
+        if not self.known:
+            return "of unknown stability: no factorisation of its stiffness is accurate enough to count"
+        if not self.unstable:
+            return "stable"
+        if self.bound:
+            return f"unstable in up to {self.unstable} independent directions"
+        one = self.unstable == 1
+        directions = f"{self.unstable} independent direction{'' if one else 's'}"
+        return (f"unstable: it diverges in {directions}" if self.follower
+                else f"unstable: {directions} {'lowers' if one else 'lower'} its energy")
+
+
+def stability(problem: StaticProblem) -> Stability:
+    """Count at the static state, under the load that is on."""
+    K, C, units = problem.stiffness()
+    if not K.shape[0]:
+        return Stability(0, 0)
+    return count(K, C, units)
+
+
+def count(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
+    """Count for a stiffness K on constraints C; units: how far a unit of each coordinate moves a point, m."""
+    try:
+        return _counted(K, C, units)
+    except ArithmeticError:
+        return Stability(0, 0, known=False)
+
+
+def _counted(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
+    if abs(K - K.T).max() <= ASYMMETRY * (abs(K).max() or 1.0):
+        found = inertia(K, C, units)
+        return Stability(found.negative, found.zero)
+    if K.shape[0] > ALL_REAL:
+        found = inertia((K + K.T) / 2, C, units)
+        return Stability(found.negative, found.zero, follower=True, bound=found.negative > 0)
+    K, C, _ = scaled(K, C, units)
+    free = _free(C, K.shape[0])
+    values = np.linalg.eigvals(free.T @ (K @ free))
+    real = values.real[np.abs(values.imag) <= ZERO]
+    return Stability(int(np.count_nonzero(real < -ZERO)), int(np.count_nonzero(np.abs(values) <= ZERO)), follower=True)
+
+
+def lowest_direction(problem: StaticProblem) -> np.ndarray:
+    """Return (unknowns,): the direction of the least curvature of the scaled stiffness' symmetric part, towards the
+    loads if it has a part along them, the largest entry positive if not; its length in m is one.
+    """
+    K, C, units = problem.stiffness()
+    n = K.shape[0]
+    K, C, scale = scaled((K + K.T) / 2, C, units)
+    if n <= DENSE:
+        free = _free(C, n)
+        found = free @ eigh(free.T @ (K @ free), subset_by_index=(0, 0))[1][:, 0]
+    else:
+        start = np.random.default_rng(0).standard_normal(n)
+        try:  # constraints as stiff springs: a direction near the null space will do
+            found = eigsh(K + 10 * C.T @ C, 1, which="SA", v0=start, tol=1e-3)[1][:, 0]
+        except ArpackNoConvergence:
+            found = start
+    direction = np.zeros(len(problem.weight))
+    direction[problem.coordinates] = scale * found
+    along = direction @ problem.load_vector()
+    largest = direction[np.argmax(np.abs(problem.weight * direction))]
+    return direction * (np.sign(along) if abs(along) > 1e-9 * np.linalg.norm(direction) * np.linalg.norm(
+        problem.load_vector()) else np.sign(largest)) / problem.length(direction)
+
+
+def _free(C: csr_array, n: int) -> np.ndarray:
+    return null_space(C.toarray()) if C.shape[0] else np.eye(n)

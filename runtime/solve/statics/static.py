@@ -1,0 +1,232 @@
+"""RestState: a scene's rest under its loads, found at once, in load steps, or along the path of equilibria.
+
+A state at the load fraction p is at rest under p times all loads (static_problem.py): a scene drawn with stress
+first
+comes to rest without them.
+"""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from typing import Generic, TypeVar
+
+from ...checks.plausibility import implausible
+from ...errors import EquilibriumError, FunicularWarning
+from ...model.drag_forces import outside_tables
+from ...parts.scene_data import SceneData
+from ...parts.settings import EquilibriumSettings
+from ..notes.coarse_meshes import coarse
+from ..notes.coarse_slides import coarse_at_slides
+from ..notes.folds import folds
+from ..notes.penetrations import penetrations
+from ..notes.reduced_strain import compressed
+from ..notes.surface_ends import beyond_ends
+from ..notes.unseen_contact import unseen_contact
+from .lying import left, lying, not_held
+from .path_following import Critical, Point, follow
+from .rest_state import CriticalPoint, RestState
+from .spinning_sections import spinning
+from .stability import stability
+from .static_problem import StaticProblem, fitted
+from .turned_rest import turned_rest
+from .warm_start import carried
+
+LOG = logging.getLogger(__name__)
+
+S = TypeVar("S", bound=RestState)
+
+SMALLEST_STEP = 1e-3
+"""Of the load: where smaller steps do not converge either, the search ends."""
+FEW = 1e-3
+"""Of the load: what moves things that are free without loads to their place."""
+MOVED = 1e-9
+"""Of the scene's size: what rounding may move."""
+
+
+def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestState | None, made: type[S]) -> S:
+    """Return the scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, also of
+    another mesh, else as drawn.
+
+    made: what the states are, of which it returns one.
+
+    Raises SceneError, EquilibriumError.
+    """
+    problem = StaticProblem(scene, settings, {} if start is None else start.turned)
+    if start is not None:
+        problem.restore(fitted(carried(start.static_state, start.model, problem.model, problem.keep()), problem.model))
+    search = _Search(problem, made)
+    reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
+    state = search.found
+    note(problem, state)
+    if reached < 1.0:
+        remedy = ('; take method="newton", which goes on to any stable state, or draw the scene nearer to its rest'
+                  if settings.method == "arc_length" else
+                  "; smaller steps of the load do not converge either: something may be free to move away, or it is a "
+                  'limit point, which method="arc_length" passes; or take more load_steps or max_iterations')
+        if problem.turns.fraction < 1.0:
+            remedy = f"; {problem.turns}" + (f"; {problem.turns.lost}" if problem.turns.lost else remedy)
+        if slides := not_held(problem, lying(problem.scene, problem.model, problem.model.q)):
+            remedy = f"; {slides}{remedy}"
+        raise EquilibriumError(
+            f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
+            f"{remedy}{problem.cause()}; the state there is kept in .state", state, reached)
+    if settings.seek_stable and settings.method == "newton" and state.unstable_directions:
+        problem.restore(state.static_state)
+        state.check_stable(problem.cause() or spinning(problem))
+    return state
+
+
+def note(problem: StaticProblem, state: RestState) -> None:
+    """Complete a state's messages; what a user must know is a warning, too."""
+    if rubbing := [name for name, slide in problem.scene.slides.items() if slide.friction is not None]:
+        names = " and ".join(f'"{name}"' for name in rubbing)
+        problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
+    problem.messages += folds(problem.scene, problem.model, state.static_state["q"])
+    problem.messages += compressed(problem.scene, problem.model, state.static_state["q"])
+    problem.messages += coarse(problem.scene, problem.model, state.static_state["q"])
+    problem.messages += coarse_at_slides(problem.scene, problem.model, state.static_state)
+    problem.messages += outside_tables(problem.model, state.static_state["q"])
+    if rough := [contact.where for contact in problem.scene.contacts.values()
+                 if contact.is_hard and contact.friction_coefficient]:
+        problem.messages.append(f"friction of {' and '.join(rough)} is left out: at rest what touches moves freely")
+    if not state.stable:
+        leaves = "; a small disturbance leaves it" * state.stability.known
+        problem.messages.append(f"the state is {state.stability}{leaves}")
+    LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
+             state.iterations, state.residual)
+    places = lying(problem.scene, problem.model, problem.model.q)
+    problem.messages += [*penetrations(problem.scene, problem.model, state.couplings),
+                         *beyond_ends(problem.scene, problem.model, problem.engine),
+                         *(left(problem, places) if state.load_fraction == 1.0 else []),
+                         *unseen_contact(problem.scene, problem.model, state.static_state["q"])]
+    state.messages = problem.messages + implausible(problem.scene)
+    for message in problem.messages:
+        warnings.warn(message, FunicularWarning, stacklevel=4)
+
+
+class _Search(Generic[S]):
+    """The states of rest found so far, and the searches for the next ones; the last one is `state`."""
+
+    def __init__(self, problem: StaticProblem, made: type[S]):
+        self.problem, self.made = problem, made
+        self.state: S | None = None
+        self.path: list[S] = []
+        self.critical: list[CriticalPoint] = []
+
+    @property
+    def found(self) -> S:
+        """Return the last state, of a search that has begun."""
+        assert self.state is not None, "no state was sought yet"
+        return self.state
+
+    def remember(self, state: S) -> None:
+        """Add a state to the path."""
+        self.state = state
+        self.path.append(state)
+        state.path, state.critical_points = list(self.path), list(self.critical)
+
+    def in_steps(self) -> float:
+        """Load steps, halved where no state of rest is found; returns the fraction of the load reached.
+
+        One step needs no path: the state at rest is sought under all loads at once.
+        """
+        problem, steps = self.problem, self.problem.settings.load_steps
+        begin, reached, step = problem.keep(), 0.0, 1.0 / steps
+        if steps == 1:
+            if (found := turned_rest(problem)) is not None:
+                self.remember(self.made.of(problem, found))
+                return 1.0
+            step = 0.5
+            problem.restore(begin)
+            if problem.turns.lost:
+                self.state = self.made.of(problem, stability(problem))
+                return 0.0
+        if not self.without_loads():
+            return 0.0
+        largest = step
+        while reached < 1.0:
+            kept, target = problem.keep(), reached + step
+            if target > 1.0 - SMALLEST_STEP / 2:  # a sum of steps is not 1 to the last digit
+                target = 1.0
+            problem.load(target)
+            if (found := turned_rest(problem)) is not None:
+                reached, step = target, min(2 * step, largest)
+                self.remember(self.made.of(problem, found))
+                continue
+            problem.restore(kept)
+            problem.load(reached)
+            step = 0.5 * (target - reached)
+            if step < SMALLEST_STEP:
+                break
+        return reached
+
+    def without_loads(self) -> bool:
+        """Bring the static state to rest without loads; returns whether that was found."""
+        problem = self.problem
+        drawn = problem.keep()
+        problem.load(0.0)
+        found = turned_rest(problem)
+        if found is None:
+            problem.restore(drawn)
+        self.state = self.made.of(problem, found or stability(problem))
+        problem.begin = problem.keep()["q"]
+        moved = problem.distance(drawn)
+        if found is not None and moved > MOVED * problem.size:
+            what = "loads" if problem.settings.scale_gravity else "loads, under its weight"
+            problem.messages.append(f"the scene is drawn with stress: it first came to rest without {what}, which "
+                                    f"moved points by up to {moved:.3g} m")
+        return found is not None
+
+    def lightly_loaded(self) -> float:
+        """Begin the path with a few small loads: where something is free to move without loads, the loads say where it
+        rests.
+        """
+        problem = self.problem
+        free = problem.keep()
+        problem.load(FEW)
+        if (found := turned_rest(problem)) is None:
+            problem.restore(free)
+            problem.load(0.0)
+            return 0.0
+        self.remember(self.made.of(problem, found))
+        problem.messages.append(f"without loads something is free to move: the path begins at {100 * FEW:g} % of them")
+        return FEW
+
+    def along_path(self, start: RestState | None) -> float:
+        """Follow the path from rest without loads, or from a state of rest on it; returns the fraction of the load
+        reached.
+        """
+        problem = self.problem
+        if start is None or start.load_fraction >= 1.0:
+            reached, heading = 0.0, None
+            if not self.without_loads():
+                return reached
+            if self.found.neutral_directions:
+                reached = self.lightly_loaded()
+        else:
+            reached, heading = start.load_fraction, start.heading
+            problem.load(reached)
+            is_turned = problem.turns.fraction == 1.0
+            if not (problem.newton() if is_turned else turned_rest(problem) is not None):
+                self.state = self.made.of(problem, stability(problem))
+                return reached
+            self.state = self.made.of(problem, stability(problem))
+        for point in follow(problem, reached, heading):
+            if isinstance(point, Critical):
+                self.critical.append(CriticalPoint(point.point.fraction, point.kind, point.directions,
+                                                   self.at(point.point)))
+            else:
+                self.remember(self.at(point))
+                reached = point.fraction
+        return min(reached, 1.0)
+
+    def at(self, point: Point) -> S:
+        """Return a point of the path as a state."""
+        fraction, kept = self.problem.fraction, self.problem.keep()
+        self.problem.restore(point.kept)
+        self.problem.load(point.fraction)
+        state = self.made.of(self.problem, point.stability, point.heading)
+        self.problem.restore(kept)
+        self.problem.load(fraction)
+        return state

@@ -1,0 +1,252 @@
+"""The static problem R(x, p) = 0: what forces and constraints leave over at a state x under p times all loads.
+
+x are the coordinates, arc-lengths and forces of slides, joints and springs; p is the load fraction. R is linear in p,
+also for loads that turn with what they act on: a load's components are multiplied by p, and nothing else is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from ...engine import Engine
+from ...model.build import build
+from ...model.model import Model
+from ...model.redundant_constraints import drop_redundant_rows
+from ...model.states import attachment_points
+from ...model.unknowns import as_supports_leave
+from ...parts.scene_data import SceneData
+from ...parts.settings import EquilibriumSettings
+from ..linear.condensation import condensed, fastest
+from .guess_from_supports import with_moved_supports
+from .turns import Turns
+
+GROWTH = 1e3
+"""Of a correction over the least one before: Newton diverges."""
+ROUNDED = 1e-13
+"""Of a coordinate: what it may differ by from what a support makes of it."""
+FREE = 1e-14
+"""Of the fastest vibration's square: a stiffness this small is none."""
+
+
+class StaticState:
+    """The engine's static state and its residual; `load` says how much load is on."""
+
+    def __init__(self, scene: SceneData, settings: EquilibriumSettings, model: Model | None = None,
+                 turned: Mapping[str, float] | None = None):
+        """model: of the scene, where it is at hand; turned: prescribed angles that the state begins with, see `Turns`.
+        """
+        self.scene, self.settings = scene, settings
+        self.model = static_model(scene) if model is None else model
+        self.engine = Engine(self.model)
+        drop_redundant_rows(self.model, self.engine)
+        self.turns = Turns(scene, self.model, self.engine, turned)
+        self.engine.set_state(0.0)
+        self.load(1.0)
+        unknown = self.model.unknown_of_dof
+        free = unknown >= 0
+        self.weight = np.zeros(self.engine.unknowns)  # forces and arc-lengths do not count in the size of a correction
+        self.weight[unknown[free]] = self.model.weight[free]
+        self.iterations = 0
+
+    def load(self, fraction: float) -> None:
+        """Put this fraction of all loads on; of gravity, too, unless the settings say that it stays whole."""
+        self.fraction = fraction
+        self.engine.load(fraction, self.settings.scale_gravity)
+
+    def residual(self) -> np.ndarray:
+        """Return R at the static state, under the load that is on: internal less external forces, and constraints."""
+        return self.engine.static_residual()
+
+    def keep(self) -> dict:
+        """Return the static state, as `restore` takes it."""
+        return self.engine.state()
+
+    def restore(self, kept: dict, prescribe: bool = True) -> None:
+        """Go back to a state that `keep` returned; prescribe: with what motions prescribe, else as it is."""
+        self.engine.set_state(0.0, **kept, prescribe=prescribe)
+
+    def move(self, change: np.ndarray) -> None:
+        """Move the state; slides that leave their element enter the next."""
+        self.engine.move(change)
+        if self.model.slides:
+            self.engine.set_state(0.0, **self.engine.state(), prescribe=False)
+
+    def load_vector(self) -> np.ndarray:
+        """Return -dR/dp (n,) at the static state, p the fraction of the loads."""
+        fraction = self.fraction
+        self.load(0.0)
+        without = self.residual()
+        self.load(1.0)
+        with_all = self.residual()
+        self.load(fraction)
+        return without - with_all
+
+    def tangent(self) -> csc_array:
+        """Return the tangent stiffness dR/dx over the unknowns, (n, n), sparse."""
+        return self.engine.matrix(0.0, 0.0, 1.0)
+
+
+class StaticProblem(StaticState):
+    """A static state with its tangent, the scales of the scene, and Newton's method."""
+
+    def __init__(self, scene: SceneData, settings: EquilibriumSettings, turned: Mapping[str, float] | None = None):
+        super().__init__(scene, settings, turned=turned)
+        self.restore(with_moved_supports(self.model, self.keep()))
+        self.as_drawn = self.begin = self.keep()["q"]  # begin: that, or what it comes to without loads
+        drawn = self.residual()
+        self.size = self._extent()
+        self.mass = self.engine.matrix(1.0, 0.0, 0.0)
+        # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of
+        # directors: a thin beam's section vibrates so fast that its share of mass would stop the beam
+        points = np.flatnonzero(self.weight == 1.0)
+        stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
+        self.fastest = max(fastest(stiffness, self.mass, points), self._falls(drawn, points))
+        self.coordinates = coordinates_of(self.model)
+        self.point_entries = _point_entries(self.model)
+        self.slack: dict[str, float] = {}  # parts of cables that would have no tension as strings
+        self.held = False  # on what cables lie on, by short steps
+        self.pushed = False  # off an unstable branch, in a direction that nothing prefers
+        self.messages: list[str] = []
+
+    def _falls(self, drawn: np.ndarray, points: np.ndarray) -> float:
+        """Return the square of a pendulum's frequency, rad²/s²: where nothing is elastic, weight is all that restores.
+        """
+        inertia = self.mass.diagonal()[points]
+        return float(np.max(np.abs(drawn[points]) / inertia, initial=0.0, where=inertia > 0)) / self.size
+
+    def _extent(self) -> float:
+        """Return the scene's size in m."""
+        model = self.model
+        lengths = [cable.mesh.total for cable in model.cables]
+        lengths += [float(np.linalg.norm(model.q[b.configuration : b.configuration + model.dim])) for b in model.bodies]
+        gaps = [np.subtract(*(attachment_points(model, end, model.q[None]) for end in force.attachments))
+                for force in model.point_forces]
+        return max([*lengths, *(float(np.linalg.norm(gap)) for gap in gaps)], default=0.0) or 1.0
+
+    def stiffness(self) -> tuple[csc_array, csc_array, np.ndarray]:
+        """Return K over the coordinates, constraints C on them, and how far a unit of each moves a point
+        (coordinates,).
+        """
+        K, C = condensed(self.tangent(), self.model)
+        return K, C, units_of(self.weight, self.model)
+
+    def curvature(self, change: np.ndarray, mass: float) -> float:
+        """Return the curvature of the energy along a change, with this much mass, less a tenth of what the mass has in
+        it.
+        """
+        along = change[self.coordinates]
+        K, _ = condensed(self.tangent(), self.model)
+        return float(along @ (K @ along)) + 0.9 * mass * float(change @ (self.mass @ change))
+
+    def distance(self, kept: dict) -> float:
+        """Return how far the farthest coordinate of a position has moved from a state, in m."""
+        moved = np.abs(self.engine.state()["q"] - kept["q"])[self.point_entries]
+        return float(np.max(moved, initial=0.0))
+
+    def solver(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
+        """Return the solver of the tangent, with some mass added. Raises RuntimeError where it is exactly singular."""
+        return solver(self.regular_tangent() if inertia == 0.0 else self.tangent() + inertia * self.mass)
+
+    def regular_tangent(self) -> csc_array:
+        """Return dR/dx, with as much mass as keeps what is free to move from being singular."""
+        return self.tangent() + FREE * self.fastest * self.mass
+
+    def length(self, change: np.ndarray) -> float:
+        """Return the size of a correction in m."""
+        size = float(np.linalg.norm(self.weight * change))
+        return size if np.isfinite(size) else np.inf
+
+    def newton(self) -> bool:
+        """Run Newton's method under the load that is on, with full steps; returns whether it converged.
+
+        Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the
+        next correction takes that back. A line search makes hundreds of small steps of it; `relax` does better.
+        """
+        least = np.inf
+        for _ in range(self.settings.max_iterations):
+            self.iterations += 1
+            try:
+                change = self.solver()(-self.residual())
+            except RuntimeError:
+                return False
+            size = self.length(change)
+            if not size < min(GROWTH * least, 10.0 * self.size):
+                return False
+            least = min(least, size)
+            self.move(change)
+            if size <= self.settings.tolerance * self.size:
+                return self.on_cables()
+        return False
+
+    def cause(self) -> str:
+        """Return why no stable state may be found, as messages end; empty where nothing says so."""
+        if not self.slack:
+            return ""
+        name, part = max(self.slack.items(), key=lambda item: item[1])
+        return (f'; cable "{name}" is so long that {100 * part:.2g} % of it would have no tension as a string: its '
+                "bending stiffness alone decides on the shape there; a shorter rest_length, or other supports, put it "
+                "in tension")
+
+    def on_cables(self) -> bool:
+        """Return whether no slide is past an end of its cable, where the last element would go on for ever."""
+        ends = np.array([self.model.cables[j.cable].mesh.total for j in self.model.slides])
+        s = self.engine.state()["s"]
+        past = np.maximum(-s, s - ends)
+        return bool(np.all(past <= self.settings.tolerance * self.size))
+
+
+def static_model(scene: SceneData) -> Model:
+    """Return the model of a scene for statics: without the mass that still fluids add, on which no rest depends.
+
+    The inertia of a fluid that flows acts on what is at rest, too: by its acceleration, and where its velocity changes
+    over the height, by a lift.
+    """
+    model = build(scene)
+    for drag in model.drags:
+        drag.has_inertia = drag.has_inertia and drag.fluid.moves
+    return model
+
+
+def coordinates_of(model: Model) -> np.ndarray:
+    """Return the unknowns that are coordinates, those of couplings last."""
+    n = model.n_band + model.n_border_dof
+    own = [n + k for coupling in model.couplings for k in coupling.free_coordinates]
+    return np.append(np.arange(n), np.array(own, dtype=int))
+
+
+def units_of(weight: np.ndarray, model: Model) -> np.ndarray:
+    """Return (coordinates,): how far a unit of each moves a point, in m; weight: of all unknowns, see `StaticState`."""
+    of_coordinates = weight[coordinates_of(model)]
+    return np.where(of_coordinates > 0, of_coordinates, 1.0)
+
+
+def fitted(kept: dict, model: Model) -> dict:
+    """Return a static state as the supports of a model have it, which may be drawn elsewhere than where it was found:
+    what they fix is as drawn, what they tie follows, and what is free stays to the bit.
+    """
+    if not model.cables:
+        return kept
+    own = slice(0, model.cables[-1].coordinates.stop)
+    q, drawn = kept["q"].copy(), model.q[own]
+    change = q[own] - drawn
+    left = as_supports_leave(change, model.unknown_of_dof[own], model.combinations)
+    q[own] = np.where(np.abs(left - change) > ROUNDED * (1 + np.abs(q[own])), drawn + left, q[own])
+    return kept | {"q": q}
+
+
+def _point_entries(model: Model) -> np.ndarray:
+    """Return the entries of the configuration that are coordinates of points."""
+    nodes = [node.dofs("r") for cable in model.nodes.values() for node in cable]
+    bodies = [range(body.configuration, body.configuration + model.dim) for body in model.bodies]
+    return np.array([entry for part in (*nodes, *bodies) for entry in part], dtype=int)
+
+
+def solver(matrix: csc_array) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the solver of a sparse matrix. Raises RuntimeError where it is exactly singular."""
+    if not matrix.shape[0]:
+        return lambda right: right
+    return splu(matrix.tocsc(), permc_spec="COLAMD").solve

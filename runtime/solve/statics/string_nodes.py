@@ -1,0 +1,173 @@
+"""Nodes of cables as nodes of strings: which are one by a tie, where lines go on smoothly, where they are clamped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from ...model.contacts import ContactModel
+from ...model.crossings import CrossingModel
+from ...model.drags import DragModel
+from ...model.joints import JointModel
+from ...model.loads import DeadLoadModel, LoadModel, PointForceModel
+from ...model.model import Model
+
+KNOWN_VECTORS = {"r", "r_x", "r_y", "r_z", "r_xx"}
+"""Nodal vectors that the shape of a string says."""
+
+
+@dataclass
+class SmoothTie:
+    """Two ends of cables that a tie makes one node, with one direction.
+
+    first, second: nodes of the tie; sense: 1 where the second cable runs on as the first one does, else -1.
+    """
+
+    first: int
+    second: int
+    sense: float
+
+
+class StringNodes:
+    """The nodes of all cables of a model, numbered cable by cable.
+
+    first: of each cable the number of its first node, and the end. r, slope (nodes, dim): dofs of position and of r_x.
+    held (nodes,): those that joints and springs hold to the ground or to bodies, which stay as drawn. others: cables
+    that more acts on than supports, ties, loads, fluids, planes that stand still, and joints to ground and bodies;
+    joined: cables that other cables act on, but by ties; touched: those that touch what strings would pass through.
+    """
+
+    def __init__(self, model: Model):
+        self.model, dim = model, model.dim
+        counts = [cable.shape[0] for cable in model.cables]
+        self.first = np.cumsum([0, *counts])
+        self.cable = np.repeat(np.arange(len(counts)), counts)
+        starts = np.concatenate([cable.first + np.arange(cable.shape[0]) * cable.shape[1] * dim
+                                 for cable in model.cables])
+        self.r, self.slope = (
+            (starts + np.repeat([cable.vectors.index(name) * dim for cable in model.cables], counts))[:, None]
+            + np.arange(dim) for name in ("r", "r_x"))
+        self.unknown = model.unknown_of_dof[self.r]
+        self._hold()
+
+    @property
+    def fixed(self) -> np.ndarray:
+        """Return (nodes, dim): which coordinates of positions stay as they are."""
+        return (self.unknown == -1) | self.held[:, None]
+
+    @cached_property
+    def string_node(self) -> np.ndarray:
+        """Return (nodes,): for each node the first one that a tie makes the same."""
+        stands_for = np.arange(len(self.unknown))
+        free = np.flatnonzero((self.unknown >= 0).any(axis=1))
+        _, first, same = np.unique(self.unknown[free], axis=0, return_index=True, return_inverse=True)
+        stands_for[free] = free[first[same.ravel()]]
+        return stands_for
+
+    def groups(self) -> list[np.ndarray]:
+        """Return the numbers of the cables that ties hold together, of each group."""
+        n, tied = len(self.model.cables), np.flatnonzero(self.string_node != np.arange(len(self.string_node)))
+        pairs = self.cable[tied], self.cable[self.string_node[tied]]
+        labels = connected_components(coo_array((np.ones(len(tied)), pairs), shape=(n, n)), directed=False)[1]
+        return [np.flatnonzero(labels == label) for label in np.unique(labels)]
+
+    def of(self, group: np.ndarray) -> np.ndarray:
+        """Return the nodes of a group of cables."""
+        return np.concatenate([np.arange(*self.first[c : c + 2]) for c in group])
+
+    def can_hang(self, group: np.ndarray) -> bool:
+        """Return whether cables of a group are held anywhere, act on no others, touch nothing but planes, and have no
+        unknown nodal vectors.
+        """
+        own = self.of(group)
+        return bool(self.fixed[own].any() and (self.unknown[own] >= -1).all()
+                    and (self.joined | self.touched).isdisjoint(group.tolist())
+                    and all(KNOWN_VECTORS.issuperset(self.model.cables[c].vectors) for c in group))
+
+    def smooth_ties(self, group: np.ndarray) -> list[SmoothTie]:
+        """Return the ties of a group that join two ends of cables, and nothing else, with one direction."""
+        own = self.of(group)
+        inward = {int(node): sense for c in group for node, sense in ((self.first[c], 1), (self.first[c + 1] - 1, -1))}
+        at_node: dict[int, list[int]] = {}
+        for node in own[self.string_node[own] != own].tolist():
+            at_node.setdefault(int(self.string_node[node]), []).append(node)
+        return [SmoothTie(first, others[0], -float(inward[first] * inward[others[0]]))
+                for first, others in at_node.items() if len(others) == 1 and first in inward and others[0] in inward
+                and self._share_slopes(first, others[0])]
+
+    def _share_slopes(self, a: int, b: int) -> bool:
+        of_a, of_b = (self.model.unknown_of_dof[self.slope[node]] for node in (a, b))
+        return bool(np.array_equal(of_a, of_b) or (of_a < -1).any() or (of_b < -1).any())
+
+    def clamped(self, group: np.ndarray, q: np.ndarray) -> dict[int, np.ndarray]:
+        """Return the unit vector (dim,) along the line of each node that is held with its direction."""
+        own = self.of(group)
+        fixed = own[(self.unknown[own] == -1).all(axis=1)]
+        return {node: along for node in fixed.tolist() if (along := self._held_direction(node, q)) is not None}
+
+    def _held_direction(self, node: int, q: np.ndarray) -> np.ndarray | None:
+        cable = self.model.cables[self.cable[node]]
+        k = node - self.first[self.cable[node]]
+        unknown, values = (dict(zip(cable.vectors, of[cable.coordinates].reshape(cable.shape)[k], strict=True))
+                           for of in (self.model.unknown_of_dof, q))
+        if "r_y" in values:
+            if (unknown["r_y"] != -1).any():
+                return None
+            height = values["r_y"]
+            along = np.cross(height, values["r_z"]) if "r_z" in values else np.array([height[1], -height[0]])
+        else:
+            if not ((unknown["r_x"] == -1).any() or np.count_nonzero(unknown["r_x"] >= 0) == 1):
+                return None
+            along = values["r_x"]
+        return along / np.linalg.norm(along)
+
+    def _hold(self) -> None:
+        """Find what couplings do to cables beside loads, fluids and planes that stand still."""
+        self.held = np.zeros(len(self.cable), dtype=bool)
+        self.others, self.joined, self.touched = set[int](), set[int](), set[int]()
+        for coupling in self.model.couplings:
+            if isinstance(coupling, DeadLoadModel | LoadModel | DragModel) or rests(coupling):
+                continue
+            cables = _cables_of(coupling)
+            node = self._node_of(coupling) if len(cables) == 1 else None
+            if node is not None:
+                self.held[node] = True
+            if node is None or not isinstance(coupling, JointModel):
+                self.others |= cables
+            if len(cables) > 1:
+                self.joined |= cables
+            if isinstance(coupling, ContactModel | CrossingModel):
+                self.touched |= cables
+
+    def _node_of(self, coupling: object) -> int | None:
+        """Return the node that a joint, or a force on an end of a cable, holds to what is no cable; else None."""
+        if not isinstance(coupling, JointModel | PointForceModel):
+            return None
+        at = next(end for end in coupling.attachments if end.cable >= 0)
+        if at.slide >= 0:
+            return None
+        cable, first = self.model.cables[at.cable], int(self.first[at.cable])
+        own = at.N.reshape(2, -1)[:, cable.vectors.index("r")]
+        if not np.isclose(own.max(), 1.0, rtol=0, atol=1e-9):
+            return None
+        node = at.element + int(np.argmax(own))
+        return first + node if isinstance(coupling, JointModel) or node in (0, cable.shape[0] - 1) else None
+
+
+def rests(coupling: object) -> bool:
+    """Return whether a coupling is a cable's contact with a plane, or a height field, that stands still."""
+    return (isinstance(coupling, ContactModel) and coupling.cable >= 0 and coupling.shape in ("flat", "terrain")
+            and all(on.cable == on.body == on.slide == -1 for on in coupling.on))
+
+
+def _cables_of(coupling: object) -> set[int]:
+    """Return the numbers of cables that a coupling acts on."""
+    found = {getattr(coupling, "cable", -1), *getattr(coupling, "cables", ())}
+    found |= {end.cable for end in (*getattr(coupling, "attachments", ()), *getattr(coupling, "on", ()))}
+    if (rider := getattr(coupling, "rider", None)) is not None:
+        found.add(rider.cable)
+    return found - {-1}

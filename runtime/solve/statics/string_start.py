@@ -1,0 +1,273 @@
+"""A start for the search for rest: slack cables in the shape of strings (`strings`), whatever shape they are drawn in.
+
+Newton's method finds the state of rest of the cables themselves, which resist compression, from there in a few
+iterations.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from ...model.contacts import ContactModel
+from ...model.unknowns import as_supports_leave
+from .static_problem import StaticProblem
+from .string_loads import depend_on_shape, string_loads
+from .string_nodes import SmoothTie, StringNodes, rests
+from .string_vectors import laid_vectors, slopes
+from .strings import Rest, Strings, rest_of
+
+ROUNDS = 3
+"""Shapes that follow from each other where loads depend on the shape."""
+LARGEST_TURN = 0.3
+"""rad: by which a string may turn from an element to the next, before elements have several links."""
+MOST_PARTS = 8
+TANGENT = 1e-3
+"""m: over which a height field is taken for its tangent plane."""
+SHORTEST = 0.95
+"""Of the length of links without tension: where bending alone keeps nodes so far apart, the shape is a start, too."""
+STRAIGHT = 1e-9
+"""Of the length: what nodes on a line may be off it, and by what a cable is slack."""
+
+
+def hang(problem: StaticProblem, every: bool) -> bool:
+    """Put cables into the shape of strings at rest under the load that is on; returns whether there are any such.
+
+    every: wherever the search is, also cables that are drawn bent or taut, and those that more acts on than
+    `StringNodes` knows; False: none of these, for which the shape as drawn is as good a start, or better, and where
+    the search begins alone: load steps stay on their path. Cables stay as they are where a part of their string would
+    have no tension, every: and would become much shorter.
+    """
+    model = problem.model
+    if not model.cables:
+        return False
+    nodes, kept = StringNodes(model), problem.keep()
+    q = kept["q"]
+    if not (every or np.array_equal(q, problem.begin)):
+        return False
+    groups = [group for group in nodes.groups() if nodes.can_hang(group) and (every or (
+        nodes.others.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, problem.as_drawn)))]
+    found = False
+    uneven = any(rests(contact) and contact.shape == "terrain" for contact in model.contacts)
+    for _ in range(ROUNDS if groups and (uneven or depend_on_shape(model)) else 1):
+        force = string_loads(problem, q) if groups else q
+        for group in groups:
+            line, rest = _at_rest(problem, nodes, group, q, force)
+            if rest is not None and (rest.taut.all() or (every and rest.shortest > SHORTEST)):
+                q, found = line.laid(q, rest), True
+            elif rest is not None:
+                problem.slack |= line.slack(rest)
+    if found:
+        problem.restore(kept | {"q": q})
+    return found
+
+
+def _at_rest(problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray,
+             force: np.ndarray) -> tuple[_Line, Rest | None]:
+    """Return cables as strings of as many links as elements, or of more where elements turn far, and their rest."""
+    line = _Line(problem, nodes, group, q, 1)
+    rest = rest_of(line.strings(force))
+    if rest is not None and (turn := line.turn(rest)) > LARGEST_TURN:
+        line = _Line(problem, nodes, group, q, min(int(np.ceil(turn / LARGEST_TURN)) + 1, MOST_PARTS))
+        rest = rest_of(line.strings(force))
+    return line, rest
+
+
+def _is_straight_and_slack(nodes: StringNodes, group: np.ndarray, q: np.ndarray) -> bool:
+    """Return whether all cables of a group are straight at a configuration, and one is shorter than without stress."""
+    slack = False
+    for c in group:
+        r, length = q[nodes.r[nodes.of(np.array([c]))]], nodes.model.cables[c].mesh.total
+        drawn, chord = np.linalg.norm(np.diff(r, axis=0), axis=1).sum(), np.linalg.norm(r[-1] - r[0])
+        if drawn > (1 + STRAIGHT) * chord:
+            return False
+        slack |= bool(drawn < (1 - STRAIGHT) * length)
+    return slack
+
+
+class _Line:
+    """Cables that ties hold together, as strings of `parts` links an element.
+
+    along: of each cable the string nodes from its start to its end; lengths: of its links, in m.
+    """
+
+    def __init__(self, problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray, parts: int):
+        self.model, self.nodes, self.group, self.q, self.parts = problem.model, nodes, group, q, parts
+        self.surfaces = {part.name: problem.scene.surfaces[part.b].geometry
+                         for part in problem.scene.contacts.values() if part.b in problem.scene.surfaces}
+        self.drawn = [problem.scene.cables[self.model.cables[c].name] for c in group]
+        own = nodes.of(group)
+        number = np.full(len(nodes.cable), -1)
+        _, number[own] = np.unique(nodes.string_node[own], return_inverse=True)
+        self.own, self.at = own, number[own]
+        self.n = int(number.max()) + 1
+        self.along, self.lengths = [], []
+        for c in group:
+            elements = self.model.cables[c].n_elements
+            along = np.empty(elements * parts + 1, dtype=int)
+            inside = np.arange(elements * parts + 1) % parts != 0
+            along[~inside] = number[nodes.first[c] : nodes.first[c + 1]]
+            along[inside] = np.arange(self.n, self.n + inside.sum())
+            self.n += int(inside.sum())
+            self.along.append(along)
+            self.lengths.append(np.repeat(np.broadcast_to(self.model.cables[c].mesh.lengths, elements) / parts, parts))
+        self.ties, self.clamped = nodes.smooth_ties(group), nodes.clamped(group, q)
+        self.order = np.arange(self.n)
+
+    def _beside(self, node: int, side: int) -> tuple[int, float] | None:
+        """Return the string node beside a cable's node, to its end (side 1) or start (-1), and the length between."""
+        k = int(np.searchsorted(self.group, self.nodes.cable[node]))
+        at = (node - int(self.nodes.first[self.group[k]])) * self.parts
+        if not 0 <= at + side < len(self.along[k]):
+            return None
+        return int(self.along[k][at + side]), float(self.lengths[k][at if side == 1 else at - 1])
+
+    def _number(self, node: int) -> int:
+        """Return the string node that a cable's node is."""
+        return int(self.at[np.searchsorted(self.own, node)])
+
+    def strings(self, force: np.ndarray) -> Strings:
+        """Return the strings under forces on the dofs, numbered by `order`."""
+        dim = self.model.dim
+        r, fixed = np.zeros((self.n, dim)), np.zeros((self.n, dim), dtype=bool)
+        r[self.at], fixed[self.at] = self.q[self.nodes.r[self.own]], self.nodes.fixed[self.own]
+        load = self._load(force)
+        links = np.concatenate([np.stack([each[:-1], each[1:]], axis=1) for each in self.along])
+        axial = np.concatenate([np.full(len(length), part.material.youngs_modulus * part.section.moments()[0])
+                                for part, length in zip(self.drawn, self.lengths, strict=True)])
+        made = Strings(r, fixed, load, links, np.concatenate(self.lengths), axial, *self._bends(),
+                       *self._planes(fixed, load))
+        if made.width > 2:
+            beside = coo_array((np.ones(len(links)), tuple(links.T)), shape=(self.n, self.n)).tocsr()
+            self.order = reverse_cuthill_mckee((beside + beside.T).tocsr(), symmetric_mode=True)
+            made = made.renumbered(self.order)
+        return made
+
+    def _load(self, force: np.ndarray) -> np.ndarray:
+        """Return (n, dim): forces on the cables' nodes, spread over the links of the elements beside them."""
+        load, hat = np.zeros((self.n, self.model.dim)), 1 - np.abs(np.arange(1 - self.parts, self.parts)) / self.parts
+        for c, along in zip(self.group, self.along, strict=True):
+            own = force[self.nodes.r[self.nodes.first[c] : self.nodes.first[c + 1]]]
+            if self.parts > 1:
+                given = np.zeros((len(along), own.shape[1]))
+                share = np.convolve(np.ones(len(along)), hat, "same")[:: self.parts]
+                given[:: self.parts] = own / share[:, None]
+                own = np.stack([np.convolve(column, hat, "same") for column in given.T], axis=1)
+            np.add.at(load, along, own)
+        return load
+
+    def _bends(self) -> tuple[np.ndarray, ...]:
+        """Return bends, factors, natural and bending of `Strings`: of inner nodes, of smooth ties, and at clamps."""
+        stiffness = {int(c): part.material.youngs_modulus * min(part.section.moments()[1:3]) * (not part.is_curved)
+                     for c, part in zip(self.group, self.drawn, strict=True)}
+        nodes, sides, bending = [], [], []
+        for c, along, length in zip(self.group, self.along, self.lengths, strict=True):
+            nodes.append(np.stack([along[:-2], along[1:-1], along[2:]], axis=1))
+            sides.append(np.stack([length[:-1], length[1:]], axis=1))
+            bending.append(np.full(len(along) - 2, stiffness[int(c)]))
+        for tie in self.ties:
+            (before, one), (after, other) = self._across(tie)
+            nodes.append(np.array([[before, self._number(tie.first), after]]))
+            sides.append(np.array([[one, other]]))
+            bending.append(np.array([sum(stiffness[int(self.nodes.cable[k])] for k in (tie.first, tie.second)) / 2]))
+        length = np.concatenate(sides)
+        mean = length.mean(axis=1)
+        first, last = 1 / (length[:, 0] * mean), 1 / (length[:, 1] * mean)
+        found = [np.concatenate(nodes), np.stack([first, -first - last, last], axis=1),
+                 np.zeros((len(mean), self.model.dim)), np.concatenate(bending) * mean]
+        for node, tangent in self.clamped.items():
+            for side in (1, -1):
+                if (beside := self._beside(node, side)) is not None:
+                    other, l = beside
+                    half = ([[self._number(node), other, other]], [[-2 / l**2, 2 / l**2, 0.0]],
+                            [side * 2 / l * tangent], [stiffness[int(self.nodes.cable[node])] * l / 2])
+                    found = [np.concatenate([given, more]) for given, more in zip(found, half, strict=True)]
+        return tuple(found)
+
+    def _across(self, tie: SmoothTie) -> tuple[tuple[int, float], tuple[int, float]]:
+        """Return the string nodes on both sides of a tie, and the lengths to them."""
+        found = [self._beside(node, side) for node in (tie.first, tie.second) for side in (1, -1)]
+        first, second = (each for each in found if each is not None)
+        return first, second
+
+    def _planes(self, fixed: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return resting, normals, heights and compliances of `Strings`."""
+        dim = self.model.dim
+        found = [(np.zeros(0, dtype=int), np.zeros((0, dim)), np.zeros(0), np.zeros(0))]
+        for contact in self.model.contacts:
+            if not (rests(contact) and contact.cable in self.group):
+                continue
+            k = int(np.searchsorted(self.group, contact.cable))
+            share = np.convolve(self.lengths[k], (0.5, 0.5), "full")
+            free = np.logical_not(fixed[self.along[k]].all(axis=1))
+            at, share = self.along[k][free], share[free]
+            normals, heights = self._below(contact, k, free)
+            found.append((at, normals, heights + contact.radius, 1 / (share * _stiffness(
+                contact, np.abs((load[at] * normals).sum(axis=1)) / share))))
+        return tuple(np.concatenate(each) for each in zip(*found, strict=True))
+
+    def _below(self, contact: ContactModel, k: int, free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return normals (n, dim) and heights (n,) of the planes below free nodes of the k-th cable: of a height field
+        the tangent ones where the nodes are.
+        """
+        dim, n = self.model.dim, int(np.count_nonzero(free))
+        if contact.shape == "flat":
+            normal = np.asarray(contact.direction, dtype=float)
+            return np.tile(normal, (n, 1)), np.full(n, float(normal @ np.asarray(contact.on[0].u)[:dim]))
+        r = self.q[self.nodes.r[self.nodes.first[self.group[k]] : self.nodes.first[self.group[k] + 1]]]
+        steps, nodes = np.arange(len(free)) / self.parts, np.arange(len(r))
+        points = np.zeros((n, 3))
+        points[:, :dim] = np.stack([np.interp(steps, nodes, column) for column in r.T], axis=1)[free]
+        off = TANGENT * np.eye(3)[:dim, None]
+        above = self.surfaces[contact.name].distance
+        gradient = ((above(points + off) - above(points - off)) / (2 * TANGENT)).T
+        size = np.linalg.norm(gradient, axis=1)
+        normals = gradient / size[:, None]
+        return normals, (normals * points[:, :dim]).sum(axis=1) - above(points) / size
+
+    def turn(self, rest: Rest) -> float:
+        """Return the largest angle by which strings at rest turn from a link to the next, about, in rad."""
+        r = self._drawn_order(rest)
+        ways = (np.diff(r[along], axis=0) / length[:, None] for along, length in
+                zip(self.along, self.lengths, strict=True))
+        return max((float(np.linalg.norm(np.diff(way, axis=0), axis=1).max(initial=0.0)) for way in ways), default=0.0)
+
+    def slack(self, rest: Rest) -> dict[str, float]:
+        """Return the part of its length over which strings at rest are slack, of each cable where they are."""
+        taut = np.split(rest.taut, np.cumsum([len(length) for length in self.lengths])[:-1])
+        return {part.name: float(length[~own].sum() / length.sum())
+                for part, length, own in zip(self.drawn, self.lengths, taut, strict=True) if not own.all()}
+
+    def _drawn_order(self, rest: Rest) -> np.ndarray:
+        r = np.empty_like(rest.r)
+        r[self.order] = rest.r
+        return r
+
+    def laid(self, q: np.ndarray, rest: Rest) -> np.ndarray:
+        """Return a configuration with these cables along the strings at rest, as supports and ties leave it."""
+        r, known = self._drawn_order(rest), dict(self.clamped)
+        for tie in self.ties:
+            (before, one), (after, other) = self._across(tie)
+            at = r[self._number(tie.first)]
+            tangent = (at - r[before]) / one**2 + (r[after] - at) / other**2
+            tangent = tangent if self._beside(tie.first, 1) is None else -tangent
+            known |= {tie.first: tangent, tie.second: tie.sense * tangent}
+        found = q.copy()
+        for c, along, length in zip(self.group, self.along, self.lengths, strict=True):
+            cable, first, last = self.model.cables[c], int(self.nodes.first[c]), int(self.nodes.first[c + 1]) - 1
+            slope = slopes(r[along], length, (known.get(first), known.get(last)))[:: self.parts]
+            was = q[cable.coordinates].reshape(cable.shape)
+            found[cable.coordinates] = laid_vectors(cable.vectors, was, r[along[:: self.parts]], slope,
+                                                    cable.mesh.node_s, last in self.clamped).ravel()
+        own = slice(0, self.model.cables[-1].coordinates.stop)
+        found[own] = q[own] + as_supports_leave(found[own] - q[own], self.model.unknown_of_dof[own],
+                                                self.model.combinations)
+        return found
+
+
+def _stiffness(contact: ContactModel, pressure: np.ndarray) -> np.ndarray:
+    """Return (n,): stiffness of a contact a length, N/m², under pressures (n,) in N/m: of exponent 1.5 the secant's."""
+    if not contact.hertz:
+        return np.full(len(pressure), contact.stiffness)
+    return contact.stiffness ** (2 / 3) * np.maximum(pressure, np.finfo(float).tiny) ** (1 / 3)

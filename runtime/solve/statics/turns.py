@@ -1,0 +1,119 @@
+"""Angles that motions and driven joints prescribe, followed by statics from where a state has them.
+
+A whole turn of a section leaves its axes as they were, but not the moment of a rod that it twists. A search for rest
+that meets an angle of more than `STEP` goes there in steps, each from the state of rest of the step before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from ...engine import Engine
+from ...model.model import CableModel, Model
+from ...parts.joint import DRIVEN
+from ...parts.locations import node_of
+from ...parts.scene_data import SceneData
+from ...parts.validation import show
+
+STEP = np.pi / 3
+"""rad, of an angle at a time: Newton's method finds the nearest of the states that are whole turns apart."""
+SMALLEST = 1 / 32
+"""Of `STEP`: where smaller ones do not converge either, the search ends."""
+FOLLOWED = np.pi / 2
+"""rad, by which directions of nodes may turn in a step for the state to be the one that the angle leads to."""
+WIDE = np.radians(120.0)
+"""Between directions of nodes that follow on each other: an element that turns further loses a turn."""
+WELL = np.radians(20.0)
+"""The same of an element that is short enough: a shaft's moment is then told to about a percent."""
+
+
+def turning(scene: SceneData, model: Model) -> Iterator[tuple[str, int]]:
+    """Yield the label of each motion and joint that prescribes an angle, and the number of the angle's signal."""
+    signals = {motion.dof: motion.signal for motion in model.motions if motion.cosine or motion.sine}
+    for motion in scene.motions:
+        cable, k = node_of(scene, motion)
+        node = model.nodes[cable][k]
+        found = [signals[dof] for name in node.names for dof in node.dofs(name) if dof in signals]
+        if motion.rotation is not None and found:
+            yield motion.label, found[0]
+    for joint in model.joints:
+        if joint.drive >= 0 and joint.slide is None and DRIVEN[scene.joints[joint.name].joint_kind] == "angle":
+            yield joint.name, joint.drive
+
+
+def prescribed_angles(scene: SceneData, model: Model) -> dict[str, float]:
+    """Return the angles at t = 0 that motions and joints prescribe, by label, rad."""
+    return {label: model.signals[signal].at(0.0) for label, signal in turning(scene, model)}
+
+
+class Turns:
+    """The prescribed angles at t = 0 and those that a static state has reached, in rad by label."""
+
+    def __init__(self, scene: SceneData, model: Model, engine: Engine, begin: Mapping[str, float] | None):
+        """begin: angles that the state has, 0 of those left out; None: those prescribed."""
+        self._engine, self._signals = engine, dict(turning(scene, model))
+        self.prescribed = prescribed_angles(scene, model)
+        self._begin = {label: (begin or {}).get(label, 0.0) for label in self.prescribed}
+        self.largest = 0.0 if begin is None else max(
+            (abs(angle - self._begin[label]) for label, angle in self.prescribed.items()), default=0.0)
+        self.fraction, self.furthest = 1.0, 0.0
+        self.lost = ""
+        """Why the angles cannot be followed."""
+        if self.largest > STEP:
+            self.go(0.0)
+
+    @property
+    def reached(self) -> dict[str, float]:
+        """Return the angles of the state, by label, in rad."""
+        return {label: self._at(label, self.fraction) for label in self.prescribed}
+
+    def go(self, fraction: float) -> None:
+        """Prescribe angles on the way from those at the begin, 0, to those of the scene, 1."""
+        self.fraction = fraction
+        for label, signal in self._signals.items():
+            self._engine.hold(signal, None if fraction == 1.0 else self._at(label, fraction))
+
+    def _at(self, label: str, fraction: float) -> float:
+        return self._begin[label] * (1 - fraction) + self.prescribed[label] * fraction
+
+    def __str__(self) -> str:
+        """Return how far the angle that turns furthest was followed, in words."""
+        label = max(self.prescribed, key=lambda name: abs(self.prescribed[name] - self._begin[name]))
+        reached, whole = (show(self._at(label, fraction), "rad") for fraction in (self.furthest, 1.0))
+        return f'the angle of "{label}" was followed to {reached} of {whole}'
+
+
+def directions(cable: CableModel, q: np.ndarray) -> np.ndarray:
+    """Return (nodes, vectors, dim): the unit vectors along a cable's slopes at a configuration."""
+    vectors = q[cable.coordinates].reshape(cable.shape)[:, [name in ("r_x", "r_y", "r_z") for name in cable.vectors]]
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), np.finfo(float).tiny)
+
+
+def angles(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return (nodes,): the largest angle between directions (nodes, vectors, dim) and others, rad."""
+    return np.arccos(np.clip(np.sum(one * other, axis=-1).min(axis=1), -1, 1))
+
+
+def largest_turn(model: Model, before: np.ndarray, after: np.ndarray) -> float:
+    """Return the largest angle, rad, by which a direction of a cable's node has turned between two configurations."""
+    return max((float(angles(directions(cable, before), directions(cable, after)).max()) for cable in model.cables),
+               default=0.0)
+
+
+def too_long(model: Model, q: np.ndarray, begin: np.ndarray) -> str:
+    """Return what element turns so far between its nodes that the next steps would lose a turn; empty where none does.
+
+    begin: the configuration before the first step, in which an element may have turned as far already.
+    """
+    for cable in model.cables:
+        turned, before = (angles(at[:-1], at[1:]) for at in (directions(cable, q), directions(cable, begin)))
+        turned[before > WIDE] = 0.0
+        k = int(np.argmax(turned))
+        if turned[k] > WIDE:
+            start, length = cable.mesh.start(k), cable.mesh.length(k)
+            return (f'cable "{cable.name}" turns by {np.degrees(turned[k]):.0f} degrees within element {k}, from s = '
+                    f"{start:.6g} m to {start + length:.6g} m, and would lose a turn: take elements of at most "
+                    f"{length * WELL / turned[k]:.2g} m there")
+    return ""

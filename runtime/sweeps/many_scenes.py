@@ -1,0 +1,130 @@
+"""Many scenes, one after the other on each of several threads: the C engine runs without Python's lock."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from threading import Event
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from ..errors import FunicularError, SceneError
+from ..integrators import AUTO
+from ..parts.settings import RunSettings
+from ..parts.validation import shown
+from ..results.run import Run
+from ..scene.scene import Scene
+from ..solve.linear.threads import available, one_blas_thread
+from ..solve.motion.trial_cache import SharedTrials
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+Result: TypeAlias = Run | dict[str, np.ndarray] | FunicularError
+
+AHEAD = 4
+"""Scenes for each thread that are taken from the iterable before the first of them is handed out: a thread that ends a
+scene early finds another one while the caller waits for a long one."""
+
+OF_ONE_RUN = ("save", "resume", "progress")
+"""Arguments of `Scene.run` that name a file or a display, which many scenes would share."""
+
+
+class _Abandoned(BaseException):
+    """Ends a run whose results nobody takes any more."""
+
+
+def run_many(scenes: Iterable[Scene | Callable[[], Scene]], *, threads: int | None = None,
+             keep: Iterable[str] | None = None, **settings: Any) -> Iterator[Result]:
+    """Run scenes on several threads at once; yields the result of each in the order of the scenes.
+
+    scenes: scenes, or functions without arguments that return one, which are called on the threads. They are taken as
+    results are asked for, about ``4 * threads`` in advance, so that memory does not grow with their number. threads:
+    scenes that run at once, by default as many as there are processors. keep: names of results such as
+    ``["A.position"]``. settings: as for `Scene.run`, but for save, resume and progress.
+
+    Yields, for each scene, its `Run`, bit for bit what ``scene.run(**settings)`` returns where the integrator is the
+    same; with ``keep`` a dict of its arrays by these names, with ``"time"`` in it. The first scene is run before the
+    others: an integrator that loses its trial there is not tried again with scenes of its shape, see
+    `solve.motion.trial_cache`. A scene that fails yields its `FunicularError`, without a traceback, and the others go
+    on. What is left of the scenes is given up where the iteration ends early, after Ctrl-C too. Raises SceneError for
+    settings that no scene can take, and whatever else a function of ``scenes`` raises.
+
+    >>> import funicular as fu
+    >>> scene = fu.load_scene("paper51")
+    >>> heavier = (scene.replace("A", mass=mass) for mass in (1.0, 2.0))
+    >>> for kept in fu.run_many(heavier, duration=0.1, tol=1e-3, keep=["A.position"]):
+    ...     print(kept["A.position"].shape)
+    (51, 3)
+    (51, 3)
+    """
+    for name in OF_ONE_RUN:
+        if name in settings:
+            raise SceneError("run_many", f'"{name}" is of one run', "take what the results yield, as they come")
+    if isinstance(scenes, Scene):
+        raise SceneError("run_many", "takes many scenes, got one", "give a list, or call run of the scene")
+    RunSettings(**{"duration": 1.0} | {name: value for name, value in settings.items() if name != "initial"})
+    threads = available() if threads is None else threads
+    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
+        raise SceneError("run_many", f"threads must be a whole number from 1 on, got {shown(threads)}")
+    names = None if keep is None else _names(keep)
+    return _results(iter(scenes), threads, names, settings)
+
+
+def _names(keep: Iterable[str]) -> list[str]:
+    if isinstance(keep, str):
+        raise SceneError("run_many", f"keep must be names of results, got {shown(keep)}", f"give [{keep!r}]")
+    return list(keep)
+
+
+def _bare(error: FunicularError) -> FunicularError:
+    """Return an error without the tracebacks, its own and of what led to it, which keep the engine in memory."""
+    link: BaseException | None = error
+    while link is not None:
+        link.__traceback__ = None
+        link = link.__cause__ or link.__context__
+    return error
+
+
+def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: list[str] | None,
+             settings: dict[str, Any]) -> Iterator[Result]:
+    """Yield the results in order; nothing has begun before the first is asked for."""
+    abandoned = Event()
+
+    def watch(reached: float) -> None:
+        if abandoned.is_set():
+            raise _Abandoned
+
+    def result(of: Scene | Callable[[], Scene]) -> Result:
+        try:
+            scene = of() if callable(of) else of
+            if not isinstance(scene, Scene):
+                raise SceneError("run_many", f"{shown(scene)} is not a scene",
+                                 "give scenes, or functions that return one")
+            if scene.run_settings.get("save") is not None:
+                raise SceneError("run", '"save" in the scene\'s settings names a file of one run',
+                                 "leave it out where many scenes run")
+            run = scene._run(settings | {"threads": 1}, False, watch, trials)
+            return run if keep is None else {"time": run.time} | {name: run[name] for name in keep}
+        except FunicularError as error:
+            return _bare(error)
+
+    trials = SharedTrials(is_open=settings.get("integrator") in (None, AUTO) and settings.get("step") is None)
+    from concurrent.futures import ThreadPoolExecutor, wait  # which one scene does without
+
+    waiting: deque[Future[Result]] = deque()
+    with one_blas_thread, ThreadPoolExecutor(threads, "funicular") as pool:
+        try:
+            for scene in scenes:
+                waiting.append(pool.submit(result, scene))
+                if trials.is_open:  # the others go by what the first scene finds, however many threads there are
+                    wait(waiting)
+                    trials.is_open = False
+                if len(waiting) >= AHEAD * threads:
+                    yield waiting.popleft().result()
+            while waiting:
+                yield waiting.popleft().result()
+        finally:
+            abandoned.set()
+            pool.shutdown(wait=False, cancel_futures=True)
