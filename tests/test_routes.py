@@ -31,8 +31,6 @@ LONGEST = 1.0
 
 
 SILENT = {
-    (40, "explicit"): "friction that sticks at a crossing", (40, "genalpha"): "the same", (40, "turned"): "the same",
-    (62, "explicit"): "the same", (62, "genalpha"): "the same",
     (49, "energy"): "its steps do not see the angular velocity that short contact gives a body",
     **dict.fromkeys(((16, name) for name in ("explicit", "genalpha", "energy", "turned", "moved", "later")),
                     "friction of contact whose direction turns while it slides"),
