@@ -7,6 +7,9 @@ import pytest
 from fake_recording import fake_recording
 from funicular.results import recording, streaming
 from interrupted_runs import SETTINGS, WRITES, Killed, content, failing, short
+from validation import pytest_addoption, validated
+
+__all__ = ["pytest_addoption", "validated"]
 
 
 def pytest_terminal_summary(terminalreporter, config):

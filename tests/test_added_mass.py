@@ -44,13 +44,15 @@ def taut(coefficient, element="cable12"):
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
-def test_a_taut_cable_vibrates_slower_in_water(element):
+def test_a_taut_cable_vibrates_slower_in_water(element, validated):
     """Transverse frequencies fall by sqrt(m/(m + C rho A)), but for sections that turn, which no water does."""
     dry, still, wet = (taut(coefficient, element) for coefficient in (None, 0.0, 1.3))
     found = [scene.modes(2, about=scene.equilibrium()).frequency for scene in (dry, still, wet)]
     assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-6)
     turns = 1e-4 if "beam" in element else 1e-7
-    assert found[2][-1] / found[0][-1] == pytest.approx(sqrt(STEEL / (STEEL + 1.3 * WATER)), rel=turns)
+    validated("Fluid", "taut cable in water, added mass", "frequency over that in air",
+              sqrt(STEEL / (STEEL + 1.3 * WATER)), float(found[2][-1] / found[0][-1]), bound=turns, source="closed form",
+              variant=element)
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
@@ -99,7 +101,7 @@ def test_a_sphere_begins_to_fall_with_the_mass_of_half_the_water(integrator):
 
 
 @pytest.mark.parametrize("integrator", FOR_JOINTS_AND_MODES)
-def test_a_pendulum_in_water_swings_with_the_weight_and_the_inertia_that_the_water_leaves(integrator):
+def test_a_pendulum_in_water_swings_with_the_weight_and_the_inertia_that_the_water_leaves(integrator, validated):
     """A ball on a massless rod from 60 degrees: the period of a pendulum, an elliptic integral, with its weight there.
     """
     length, angle = 1.0, pi / 3
@@ -113,7 +115,9 @@ def test_a_pendulum_in_water_swings_with_the_weight_and_the_inertia_that_the_wat
     quarter = quad(lambda x: 1 / sqrt(1 - (np.sin(angle / 2) * np.sin(x)) ** 2), 0, pi / 2)[0]
     period = 4 * sqrt(length / effective) * quarter
     run = scene.run(period, tol=1e-7, integrator=integrator, output_step=period / 4)
-    assert np.abs(run["ball.position"][-1] - run["ball.position"][0]).max() < 1e-5
+    validated("Fluid", "pendulum in water, from 60 degrees", "position after a period", run["ball.position"][0],
+              run["ball.position"][-1], unit="m", scale=1.0, bound=1e-5, source="closed form, elliptic integral",
+              variant=integrator)
     assert run["ball.position"][2, 0] == pytest.approx(-run["ball.position"][0, 0], abs=1e-5)
     assert unaccounted(run) < 1e-5
     rest = scene.equilibrium()

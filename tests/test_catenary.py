@@ -36,17 +36,19 @@ def line55(spans=2, bending=1.0, damping=0.0, **changes):
 TWO_MASSES = catenary.Pantograph(masses=[7.2, 15], stiffness=[4200, 50], damping=[10, 90], uplift=120)
 
 
-def test_strings_of_the_55_m_line():
+def test_strings_of_the_55_m_line(validated):
     strings = line55().strings
     assert strings.forces[[0, 8]] == pytest.approx(191.35, abs=0.01)
     assert strings.forces[1:8] == pytest.approx(51.46, abs=0.01)
     assert strings.forces.sum() == pytest.approx(742.9, abs=0.1)
-    assert strings.distances[:5] == pytest.approx(PUBLISHED, abs=1e-3)
+    validated("Catenaries", "form of the 55 m line, wires as strings", "lengths of droppers 1 to 5", PUBLISHED,
+              strings.distances[:5], unit="m", scale=1.0, bound=1e-3, source="published study")
 
 
-def test_lengths_of_the_55_m_line():
+def test_lengths_of_the_55_m_line(validated):
     form = catenary.form(line55(), FINE)
-    assert form.lengths[:5] == pytest.approx(PUBLISHED, abs=1e-3)
+    validated("Catenaries", "form of the 55 m line", "lengths of droppers 1 to 5", PUBLISHED, form.lengths[:5], unit="m",
+              scale=1.0, bound=1e-3, source="published study")
     assert form.lengths == pytest.approx(form.lengths[::-1], abs=1e-8)
     # bending rounds the kinks at the outer droppers off: these bear 0.6 % more, their neighbours 2.3 % less
     strings = form.line.strings.forces

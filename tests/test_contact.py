@@ -52,13 +52,18 @@ def end_of_mooring(friction=0.0):
 
 
 @pytest.mark.parametrize("element", ["cable8p", "cable12"])
-def test_a_mooring_line_lifts_off_the_bed_as_the_catenary(element):
+def test_a_mooring_line_lifts_off_the_bed_as_the_catenary(element, validated):
     """What differs is the bending that the catenary leaves out: it moves the touch-down by about sqrt(EI/H)."""
     state = mooring(60, element=element).equilibrium()
     end, tension = end_of_mooring()
-    assert np.abs(state["line.position"][-1, :2] - [0, R] - end).max() < 5e-4
-    assert abs(state["contact_1.last"] - (L - LIFTED)) < sqrt(E * pi * R**4 / 4 / H)
-    assert abs(-state["line@0.force"][0] - tension) < 1e-9 * H
+    given = {"source": "elastic catenary on a rigid bed", "variant": element, "mesh": "60 elements"}
+    validated("Contact", "mooring line on its bed", "place of the upper end", end,
+              state["line.position"][-1, :2] - [0, R], unit="m", scale=1.0, bound=5e-4, **given)
+    validated("Contact", "mooring line on its bed", "arc-length of the touch-down", L - LIFTED,
+              float(state["contact_1.last"]), unit="m", scale=1.0, bound=sqrt(E * pi * R**4 / 4 / H),
+              note="bending of the line, √(EI/H)", **given)
+    validated("Contact", "mooring line on its bed", "tension at the anchor", tension, float(-state["line@0.force"][0]),
+              unit="N", scale=H, bound=1e-9, **given)
     assert abs(state["contact_1.force"][1] + state["line@0.force"][1] - W * (L - LIFTED)) < 1e-6
     assert state["contact_1.penetration"] < 0.02 * R and state.stable
 
@@ -81,15 +86,17 @@ def test_a_mooring_with_friction_can_be_adjusted_for_a_force_in_a_section():
     assert float(rest.section_forces("line", s=there)["tension"][0]) == pytest.approx(wanted, rel=1e-6)
 
 
-def test_the_beds_friction_takes_mu_w_a_length_of_the_tension():
+def test_the_beds_friction_takes_mu_w_a_length_of_the_tension(validated):
     state = mooring(60, friction=0.3).equilibrium()
     end, tension = end_of_mooring(0.3)
-    assert abs(-state["line@0.force"][0] - tension) < 0.3 * W * 0.05  # friction on 5 cm of the bed
+    validated("Contact", "mooring line on its bed, friction 0.3", "tension at the anchor", tension,
+              float(-state["line@0.force"][0]), unit="N", scale=1.0, bound=0.3 * W * 0.05, mesh="60 elements",
+              source="elastic catenary on a rigid bed", note="friction on 5 cm of the bed")
     assert np.abs(state["line.position"][-1, :2] - [0, R] - end).max() < 5e-4
     assert abs(state["contact_1.friction_force"][0] + 0.3 * W * (L - LIFTED)) < 0.3
 
 
-def test_an_elastic_rod_is_lifted_off_a_plane_as_the_beam():
+def test_an_elastic_rod_is_lifted_off_a_plane_as_the_beam(validated):
     """A force V at its end lifts a = 2 V/w of it by w a^4/(24 EI): no moment where it begins to touch."""
     radius, modulus, density, a = 0.005, 1e9, 2000.0, 0.5
     w, EI = density * pi * radius**2 * G, modulus * pi * radius**4 / 4
@@ -104,9 +111,10 @@ def test_an_elastic_rod_is_lifted_off_a_plane_as_the_beam():
         scene.contact(rod, "table", stiffness=stiffness)
         scene.force(rod, s=2, value=(0, w * a / 2, 0))
         state = scene.equilibrium()
-        errors.append((state["rod.position"][-1, 1] - radius) / (w * a**4 / 24 / EI) - 1)
+        errors.append((state["rod.position"][-1, 1] - radius) / (w * a**4 / 24 / EI))
     # the foundation's length is (4 EI/k)^(1/4), 37 and 19 mm
-    assert np.abs(errors).max() < 1e-3, errors
+    validated("Contact", "rod lifted off a plane by its end", "lift over w a⁴/(24 E I)", 1.0, errors, bound=1e-3,
+              source="closed form, Euler and Bernoulli's beam", mesh="80 elements")
 
 
 DRUM, ROPE_RADIUS, LIGHT = 0.05, 0.001, 0.15
@@ -162,7 +170,7 @@ def ball(damping=0.0, exponent=1.0, stiffness=1e4, gravity=(0, 0, 0), height=0.2
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5])
 @pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_a_ball_bounces_with_the_restitution_that_damping_gives(integrator, exponent):
+def test_a_ball_bounces_with_the_restitution_that_damping_gives(integrator, exponent, validated):
     """v - ln(1 + c v)/c is the same before and after, which no exponent changes (Hunt & Crossley 1975)."""
     c = 0.4
     run = ball(c, exponent).run(0.4, output_step=0.01, tol=1e-7, integrator=integrator)
@@ -171,7 +179,9 @@ def test_a_ball_bounces_with_the_restitution_that_damping_gives(integrator, expo
         return v - log(1 + c * v) / c
 
     after = brentq(lambda v: conserved(-v) - conserved(1.0), 0.1, 1.0)
-    assert abs(run["ball.velocity"][-1, 1] - after) < 2e-5
+    validated("Contact", f"ball that bounces, damped, exponent {exponent:g}", "speed after the impact", after,
+              float(run["ball.velocity"][-1, 1]), unit="m/s", scale=1.0, bound=2e-5, variant=integrator,
+              source="Hunt & Crossley 1975, closed form")
     assert unaccounted(run) < (1e-14 if integrator == "energy" else 1e-6)
     events = [event["what"] for event in run.report["events"]]
     assert events == ["came into contact", "lost contact"]
@@ -197,11 +207,12 @@ def block(slope, friction, speed=0.0):
     return scene
 
 
-def test_a_block_slides_down_a_slope_and_sticks_on_a_lesser_one():
+def test_a_block_slides_down_a_slope_and_sticks_on_a_lesser_one(validated):
     slope = 0.4
     slides = block(slope, 0.2).run(0.4, output_step=0.1, tol=1e-6, integrator="radau")
     exact = G * (sin(slope) - 0.2 * cos(slope)) * slides.time**2 / 2
-    assert np.abs(slides["block.position"][:, 0] - exact).max() < 2e-4
+    validated("Contact", "block that slides down a slope, friction 0.2", "position", exact,
+              slides["block.position"][:, 0], unit="m", scale=1.0, bound=2e-4, source="closed form", variant="radau")
     assert abs(slides["contact_1.touching"][-1] - 4) < 1e-12
     for friction in (0.45, 0.6):  # above tan(slope) = 0.423
         sticks = block(slope, friction).run(0.4, output_step=0.1, tol=1e-6, integrator="radau")
@@ -209,9 +220,11 @@ def test_a_block_slides_down_a_slope_and_sticks_on_a_lesser_one():
         assert np.ptp(x) < 3e-6 and np.abs(x).max() < 1e-4
 
 
-def test_a_sliding_block_comes_to_rest_after_its_way():
+def test_a_sliding_block_comes_to_rest_after_its_way(validated):
     run = block(0.0, 0.3, speed=1.0).run(0.6, output_step=0.05, tol=1e-6, integrator="radau")
-    assert abs(run["block.position"][-1, 0] - 1 / (2 * 0.3 * G)) < 2e-4
+    validated("Contact", "block that slides until it rests, friction 0.3", "distance", 1 / (2 * 0.3 * G),
+              float(run["block.position"][-1, 0]), unit="m", scale=1.0, bound=2e-4, source="closed form",
+              variant="radau")
     assert unaccounted(run) < 3e-4
 
 

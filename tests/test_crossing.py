@@ -63,14 +63,16 @@ def total(run) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("speed", "errors"), [(0.0, (0.0105, 0.0055)), (60.0, (0.017, 0.0085))])
-def test_a_pushed_head_lifts_the_wire_as_a_moving_force_lifts_a_string(speed, errors):
+def test_a_pushed_head_lifts_the_wire_as_a_moving_force_lifts_a_string(speed, errors, validated):
     found = []
     for elements, most in zip((40, 80), errors, strict=True):
         run = collector(elements, speed).run(duration=0.08, output_step=0.01, integrator="explicit", tol=1e-6)
         expected = rising(run.time, 0.5, 5.0)[:, 0]
         height = run["head.position"][:, 1] - run["head.position"][0, 1]
         found.append(np.abs(height - expected).max() / expected[-1])
-        assert found[-1] < most  # measured: 0.0097 and 0.0051 at rest, 0.0161 and 0.0081 at 60 m/s; waves have 94 m/s
+        validated("Contact", f"head pushed against a wire, {speed:g} m/s", "lift of the head", expected, height, unit="m",
+                  scale=float(expected[-1]), bound=most, source="d'Alembert, moving force on a string",
+                  mesh=f"{elements} elements")  # waves have 94 m/s
         assert unaccounted(run) < 1e-9 * run["energy.kinetic"].max()
     assert 1.7 < found[0] / found[1] < 2.3  # of first order: contact is at a point
 
@@ -313,10 +315,12 @@ def crossing_ropes(drop: float, elements: int) -> fu.Scene:
 
 
 @pytest.mark.parametrize(("drop", "force"), [(0.05, 0.188161), (0.1, 0.266793)])
-def test_ropes_that_cross(drop, force):
+def test_ropes_that_cross(drop, force, validated):
     """Force by an elastica boundary value problem, cosseratbench 0.3.0, experiment crossing."""
     rest = crossing_ropes(drop, 40).equilibrium(seek_stable=False)
-    assert rest["contact.normal_force"] == pytest.approx(force, rel=1e-4)  # measured: 2.4e-5, 3.9e-5
+    validated("Contact", f"two ropes that cross, {drop:g} m apart", "force between them", force,
+              float(rest["contact.normal_force"]), unit="N", bound=1e-4, mesh="40 elements a rope",
+              source="elastica, boundary value problem (cosseratbench 0.3.0, crossing)")
     assert rest["contact.s"] == pytest.approx(0.5, abs=1e-9)
 
 

@@ -27,7 +27,7 @@ def rope(scene, element="cable12", end=(2, 0, 0), elements=4, **more):
 
 @pytest.mark.parametrize("element", ELEMENTS)
 @pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_a_horizontal_cable_falls_as_the_closed_form(integrator, element):
+def test_a_horizontal_cable_falls_as_the_closed_form(integrator, element, validated):
     """v = v_t tanh(g' t/v_t), with the weight in water over the mass, g', and the terminal velocity v_t."""
     scene = fu.Scene()
     rope(scene, element)
@@ -38,7 +38,8 @@ def test_a_horizontal_cable_falls_as_the_closed_form(integrator, element):
     terminal = sqrt(weight / drag)
     exact = -terminal * np.tanh(run.time * weight / (2000 * AREA) / terminal)
     assert exact[-1] < -0.999 * terminal
-    assert np.abs(run["wire.nodal_velocity"][:, :, 0, 1] - exact[:, None]).max() < 1e-7
+    validated("Fluid", "horizontal cable that sinks", "velocity", exact[:, None], run["wire.nodal_velocity"][:, :, 0, 1],
+              unit="m/s", scale=1.0, bound=1e-7, source="closed form", variant=f"{element}, {integrator}")
     assert np.abs(run["drag_1.force"][-1] - [0, 2 * 2000 * AREA * G, 0]).max() < 1e-2
     assert unaccounted(run) < (2e-14 if integrator == "energy" else 1e-6)
     assert run["energy.dissipated"][-1] > 1.0
@@ -80,7 +81,7 @@ def test_a_planar_cable_in_another_plane_has_the_wind_of_its_height():
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
-def test_a_towed_cable_is_straight_at_the_critical_angle(element):
+def test_a_towed_cable_is_straight_at_the_critical_angle(element, validated):
     """Weight across it and drag across it balance, w cos(angle) = q sin^2(angle), whatever the drag along it."""
     speed, radius, density = 3.0, 0.005, 5000
     scene = fu.Scene()
@@ -93,9 +94,12 @@ def test_a_towed_cable_is_straight_at_the_critical_angle(element):
     weight, across = (density - 1025) * pi * radius**2 * G, 1025 / 2 * 2 * radius * 1.2 * speed**2
     cosine = (sqrt(weight**2 + 4 * across**2) - weight) / (2 * across)
     along = (state["wire.position"] - state["wire.position"][0])[1:]
-    assert np.abs(along[:, 0] / np.linalg.norm(along, axis=1) - cosine).max() < 1e-7
+    given = {"source": "closed form, critical angle", "variant": element}
+    validated("Fluid", "towed cable", "cosine of its angle", cosine, along[:, 0] / np.linalg.norm(along, axis=1),
+              scale=1.0, bound=1e-7, **given)
     tension = 20 * (weight * sin(acos(cosine)) + 1025 / 2 * pi * 2 * radius * 0.02 * (speed * cosine) ** 2)
-    assert np.linalg.norm(state["wire@0.force"]) == pytest.approx(tension, rel=1e-6)
+    validated("Fluid", "towed cable", "tension at its top", tension, float(np.linalg.norm(state["wire@0.force"])),
+              unit="N", bound=1e-6, **given)
     own = [0, -density * pi * radius**2 * 20 * G, 0]
     assert np.abs(state["wire@0.force"] + state["drag_1.force"] + own).max() < 1e-6
 
@@ -146,15 +150,15 @@ def current_scene(elements, element="cable12", **more):
     return scene
 
 
-def test_a_cable_in_a_cross_current_hangs_as_the_boundary_value_problem():
+def test_a_cable_in_a_cross_current_hangs_as_the_boundary_value_problem(validated):
     state = current_scene(48).equilibrium()
     sol = string_in_current(12.0, 10.0, 1e9 * 1e-4, (3000 - 1025) * 1e-4 * G,
                             lambda y: 1.5 * (1 + 0.1 * y), 1025 / 2 * 0.02 * 1.2, 1025 / 2 * pi * 0.02 * 0.05)
     s = np.linspace(0, 12.0, 49)
     exact = sol(s)
-    error = np.abs(state["wire.position"] - exact[:3].T).max()
     assert np.abs(exact[2]).max() > 1.0  # it is blown well out of its plane
-    assert error < 1e-6
+    validated("Fluid", "cable in a current across it", "position", exact[:3].T, state["wire.position"], unit="m", scale=1.0,
+              bound=1e-6, source="string in a current, boundary value problem", mesh="48 elements")
     assert np.abs(state["wire@0.force"] + exact[3:, 0]).max() < 1e-7 * np.linalg.norm(exact[3:, 0])
     cut = state.section_forces("wire", [3.0, 6.0])["force"]
     assert np.abs(np.array(cut) - sol([3.0, 6.0])[3:].T).max() < 1e-6 * np.linalg.norm(exact[3:, 0])
@@ -199,7 +203,7 @@ def test_newtons_matrix_is_the_derivative_of_its_residual(dim):
     assert error_by_drags(swimming(dim)) < 1e-6
 
 
-def test_a_sphere_falls_at_its_terminal_speed_and_floats_where_it_displaces_its_mass():
+def test_a_sphere_falls_at_its_terminal_speed_and_floats_where_it_displaces_its_mass(validated):
     scene = fu.Scene()
     scene.fluid("sea", density=WATER)
     for name, volume in (("falls", 1e-3), ("floats", 2e-3)):
@@ -207,13 +211,14 @@ def test_a_sphere_falls_at_its_terminal_speed_and_floats_where_it_displaces_its_
         scene.drag(name, area=0.01, coefficient=0.5, volume=volume)
     run = scene.run(3.0, tol=1e-8, output_step=0.5)
     weight, drag = (2.0 - WATER * 1e-3) * G, WATER / 2 * 0.01 * 0.5
-    assert run["falls.velocity"][-1, 1] == pytest.approx(-sqrt(weight / drag), rel=1e-6)
+    validated("Fluid", "body that sinks", "terminal velocity", -sqrt(weight / drag), float(run["falls.velocity"][-1, 1]),
+              unit="m/s", bound=1e-6, source="closed form")
     assert np.abs(run["floats.position"] - run["floats.position"][0]).max() < 1e-12
     assert run["drag_2.force"][-1] == pytest.approx([0, 2 * G, 0])
 
 
 @pytest.mark.parametrize("integrator", ["genalpha", "explicit", "radau"])
-def test_a_pendulum_rests_aslant_in_the_wind(integrator):
+def test_a_pendulum_rests_aslant_in_the_wind(integrator, validated):
     """tan(angle) = drag/weight, where both act at the same point."""
     scene = fu.Scene()
     scene.rigid_body("ball", mass=2.0, inertia=(1e-3, 1e-3, 1e-3), position=(0, -1, 0))
@@ -223,7 +228,8 @@ def test_a_pendulum_rests_aslant_in_the_wind(integrator):
     state = scene.equilibrium()
     force = 1.2 / 2 * 0.2 * (10 * 0.1**0.2) ** 2  # below the least height of the profile, 1 m
     x, y, _ = state["ball.position"]
-    assert -x / y == pytest.approx(force / (2.0 * G), rel=1e-7)
+    validated("Fluid", "pendulum in the wind", "tangent of its angle", force / (2.0 * G), float(-x / y), bound=1e-7,
+              source="closed form, drag over weight")
     assert state["drag_1.force"] == pytest.approx([force, 0, 0])
     run = scene.run(0.2, initial=state, tol=1e-8, integrator=integrator)
     assert np.abs(run["ball.position"] - run["ball.position"][0]).max() < 1e-6
@@ -342,7 +348,7 @@ def moored(elements, element="cable12"):
 
 
 @pytest.mark.parametrize("element", ["cable12", "cable8p"])
-def test_a_mooring_in_a_current_stands_as_the_boundary_value_problem(element):
+def test_a_mooring_in_a_current_stands_as_the_boundary_value_problem(element, validated):
     state = moored(24, element).equilibrium()
     weight = (1400 - 1025) * pi * 0.03**2 / 4 * G
     normal, tangential = 1025 / 2 * 0.03 * 1.2, 1025 / 2 * pi * 0.03 * 0.02
@@ -368,6 +374,7 @@ def test_a_mooring_in_a_current_stands_as_the_boundary_value_problem(element):
     assert found.success
     exact = found.sol(np.linspace(0, 60, 25))
     assert exact[0, -1] > 20.0  # it is carried far
-    assert np.abs(state["line.position"][:, :2] - exact[:2].T).max() < 2e-6
+    validated("Fluid", "moored buoy in a current", "position of the line", exact[:2].T, state["line.position"][:, :2],
+              unit="m", scale=1.0, bound=2e-6, source="boundary value problem", variant=element, mesh="24 elements")
     assert state["buoy.position"][:2] == pytest.approx(exact[:2, -1], abs=1e-6)
     assert np.abs(state["line@0.force"][:2] + exact[2:, 0]).max() < 1e-5

@@ -49,15 +49,18 @@ def test_a_buoy_above_the_sea_falls_freely_and_comes_to_float(integrator):
 
 
 @pytest.mark.parametrize("shift", [0.0, 137.5])
-def test_a_sphere_floats_where_it_displaces_its_mass_and_heaves_by_its_waterplane(shift):
+def test_a_sphere_floats_where_it_displaces_its_mass_and_heaves_by_its_waterplane(shift, validated):
     scene = buoy(-0.05, level=shift, added_mass=0.5)
     rest = scene.equilibrium()
     draught = draught_of_sphere(MASS / WATER, RADIUS)
-    assert rest["buoy.position"] == pytest.approx([0, shift + RADIUS - draught, 0], abs=1e-9)
+    given = {"source": "closed form, spherical cap"}
+    validated("Fluid", "floating sphere", "position", [0, shift + RADIUS - draught, 0], rest["buoy.position"], unit="m",
+              scale=1.0, bound=1e-9, **given)
     assert rest["drag_1.force"] == pytest.approx([0, MASS * G, 0])
     below, waterplane = segment(draught, RADIUS)
     heave = sqrt(WATER * G * waterplane / (MASS + 0.5 * WATER * below))
-    assert scene.modes(6, about=rest).angular_frequency[-1] == pytest.approx(heave, rel=1e-8)
+    validated("Fluid", "floating sphere", "angular frequency of heave", heave,
+              float(scene.modes(6, about=rest).angular_frequency[-1]), unit="rad/s", bound=1e-8, **given)
 
 
 @pytest.mark.parametrize("dim", [2, 3])

@@ -22,10 +22,11 @@ def stick(coefficient: float, **given) -> Friction:
 
 @every_integrator
 @pytest.mark.parametrize("dim", [2, 3])
-def test_a_block_slides_down(integrator, dim):
+def test_a_block_slides_down(integrator, dim, validated):
     run = block(0.3, dim=dim, friction=stick(0.2)).run(1.0, integrator=integrator, tol=1e-6)
     t = run.time
-    np.testing.assert_allclose(run["trolley.s"], 0.3 + (DOWN - 0.2 * ACROSS) * t**2 / 2, atol=2e-11)  # measured 8e-12
+    validated("Slides", "slide with friction 0.2 down a wire", "arc-length", 0.3 + (DOWN - 0.2 * ACROSS) * t**2 / 2,
+              run["trolley.s"], unit="m", scale=1.0, bound=2e-11, source="closed form", variant=f"{integrator}, dim {dim}")
     force = np.broadcast_to(MASS * ACROSS * np.array([-0.2, 1, 0]), (len(t), 3))
     np.testing.assert_allclose(run["trolley.force"], force, atol=1e-9)
     np.testing.assert_allclose(run["trolley.traction"], -0.2 * MASS * ACROSS, atol=1e-9)
@@ -81,11 +82,12 @@ def test_it_breaks_loose_where_the_force_exceeds_the_grip(integrator):
 
 
 @every_integrator
-def test_viscous_friction_ends_at_a_terminal_speed(integrator):
+def test_viscous_friction_ends_at_a_terminal_speed(integrator, validated):
     run = block(0, slope=0.1, friction=Friction(viscous=20.0)).run(3.0, integrator=integrator, tol=1e-6)
     speed, T, t = MASS * G * np.sin(0.1) / 20, MASS / 20, run.time
     np.testing.assert_allclose(run["trolley.s"], speed * (t - T * (1 - np.exp(-t / T))), atol=1e-6)  # tol of the motion
-    assert run["trolley.s_rate"][-1] == pytest.approx(speed, rel=1e-8)
+    validated("Slides", "slide with viscous friction down a wire", "terminal speed", speed,
+              float(run["trolley.s_rate"][-1]), unit="m/s", bound=1e-8, source="closed form", variant=integrator)
 
 
 def test_rolling_resistance_stops_a_wheel():

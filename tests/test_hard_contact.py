@@ -99,14 +99,16 @@ def test_a_block_slides_up_a_slope_and_sticks_or_slides_back(friction, points, i
 
 @pytest.mark.parametrize("integrator", WITH_FRICTION)
 @pytest.mark.parametrize("friction", [0.1, 0.3])
-def test_a_ball_rolls_or_slips_down_a_slope(friction, integrator):
+def test_a_ball_rolls_or_slips_down_a_slope(friction, integrator, validated):
     """It rolls with 5/7 of g sin a where 2/7 tan a of friction holds it, else it slips."""
     angle = 0.5
     scene, up = slope(angle, friction, radius=0.1)
     run = scene.run(duration=1.0, output_step=0.1, integrator=integrator, tol=1e-7)
     rolls = friction > 2 / 7 * tan(angle)
     acceleration = 5 / 7 * G * sin(angle) if rolls else G * (sin(angle) - friction * cos(angle))
-    assert run["box.position"] @ -up == pytest.approx(acceleration * run.time**2 / 2, abs=1e-11)
+    validated("Contact", f"ball that {'rolls' if rolls else 'slips'} down a slope, rigid contact", "distance",
+              acceleration * run.time**2 / 2, run["box.position"] @ -up, unit="m", scale=1.0, bound=1e-11,
+              source="closed form", variant=integrator)
     if rolls:
         assert -run["box.velocity"][-1] @ up == pytest.approx(0.1 * run["box.angular_velocity"][-1, 2], abs=1e-8)
     assert drift(run) < 1e-11
@@ -114,13 +116,15 @@ def test_a_ball_rolls_or_slips_down_a_slope(friction, integrator):
 
 @pytest.mark.parametrize("friction", [0.05, 0.25])
 @pytest.mark.parametrize("integrator", WITH_FRICTION)
-def test_an_impact_with_friction_slips_or_rolls_on(friction, integrator):
+def test_an_impact_with_friction_slips_or_rolls_on(friction, integrator, validated):
     """Impulses across the normal: friction times (1 + e) m v, or 2/7 of what stops the slip, if that is less."""
     scene = ball(0.5, 0.7, 0.1, friction=friction, velocity=(1, 0, 0), angular_velocity=(0, 0, 30.0))
     run = scene.run(duration=0.4, output_step=0.4, integrator=integrator, tol=1e-7)
     speed, slip = sqrt(2 * G * 0.5), 1.0 + 30.0 * 0.1
     jump = min(friction * 1.7 * speed, 2 / 7 * slip)
-    assert run["ball.velocity"][-1, 0] == pytest.approx(1.0 - jump, abs=1e-12)
+    validated("Contact", f"spinning ball that hits the ground, friction {friction:g}", "speed along it afterwards",
+              1.0 - jump, float(run["ball.velocity"][-1, 0]), unit="m/s", scale=1.0, bound=1e-12, source="closed form",
+              variant=integrator)
     assert run["ball.angular_velocity"][-1, 2] == pytest.approx(30.0 - jump / 0.04, abs=1e-10)
     lost = 0.51 * speed**2 + 1 + 0.4 * 9 - (1 - jump) ** 2 - 0.004 * (30 - jump / 0.04) ** 2
     assert run["energy.dissipated"][-1] == pytest.approx(lost, abs=1e-11)
@@ -128,7 +132,7 @@ def test_an_impact_with_friction_slips_or_rolls_on(friction, integrator):
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_a_ball_leaves_a_dome_where_it_no_longer_presses(integrator):
+def test_a_ball_leaves_a_dome_where_it_no_longer_presses(integrator, validated):
     """At two thirds of the height that it began at (frictionless)."""
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("dome", fu.Sphere(radius=1.0))
@@ -139,13 +143,15 @@ def test_a_ball_leaves_a_dome_where_it_no_longer_presses(integrator):
                      events=lambda t, y: cos(y[0]) - 2 / 3 * cos(0.2)).t_events[0][0]
     what, times = happened(run)
     assert what == ["lost contact"]
-    assert times[0] == pytest.approx(left, abs=1e-9 if integrator in ("explicit", "radau") else 3e-8)
+    validated("Contact", "ball that leaves a dome", "instant", left, float(times[0]), unit="s", scale=1.0,
+              bound=1e-9 if integrator in ("explicit", "radau") else 3e-8, source="closed form, two thirds of the height",
+              variant=integrator)
     assert run["foot.touching"][run.time > left].max() == 0
     assert drift(run) < (1e-9 if integrator != "genalpha" else 2e-6)
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_a_bead_slides_in_a_bowl_as_by_quadrature(integrator):
+def test_a_bead_slides_in_a_bowl_as_by_quadrature(integrator, validated):
     """In y = c x^2 a quarter of the period is the integral of sqrt(1 + (2 c x)^2)/sqrt(2 g (y0 - y))."""
     c, x0, x = 0.4, 0.5, np.linspace(-1.5, 1.5, 121)
     scene = fu.Scene(gravity=(0, -G, 0))
@@ -156,7 +162,8 @@ def test_a_bead_slides_in_a_bowl_as_by_quadrature(integrator):
     size = {"tol": 1e-8} if integrator in ("explicit", "radau") else {"step": 2e-4}
     run = scene.run(duration=period, output_step=period / 4, integrator=integrator, **size)
     exact = [[x0, c * x0**2, 0], [0, 0, 0], [-x0, c * x0**2, 0], [0, 0, 0], [x0, c * x0**2, 0]]
-    assert np.abs(run["bead.position"] - exact).max() < 1e-6
+    validated("Contact", "bead that slides in a parabola", "position in each quarter of a period", exact,
+              run["bead.position"], unit="m", scale=1.0, bound=1e-6, source="quadrature", variant=integrator)
     assert happened(run)[0] == []
     assert np.abs(run["foot.gap"]).max() < 1e-10
     assert drift(run) < {"genalpha": 1e-7, "energy": 1e-11}.get(integrator, 1e-8)

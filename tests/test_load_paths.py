@@ -98,7 +98,7 @@ def test_gravity_may_stay_whole():
 
 
 @pytest.mark.parametrize("settings", [{"load_steps": 10}, {"method": "arc_length"}])
-def test_a_moment_bends_to_an_arc_at_every_part_of_it(settings):
+def test_a_moment_bends_to_an_arc_at_every_part_of_it(settings, validated):
     """(sin a, 1 - cos a)/a with a = p M L/EI; at a tenth the tip stood 1.2 m off before loads were scaled."""
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), elements=16, element="beam24", law="structural",
@@ -107,9 +107,11 @@ def test_a_moment_bends_to_an_arc_at_every_part_of_it(settings):
     scene.moment("beam", s=1.0, value=(0, 0, 4.0 * 1e7 * 0.02**4 / 12))
     state = scene.equilibrium(**settings)
     assert len(state.path) >= 10
-    for each in state.path:
-        a = 4.0 * each.load_fraction
-        assert_allclose(each["beam.position"][-1, :2], np.array([np.sin(a), 1 - np.cos(a)]) / a, atol=2e-4)
+    a = 4.0 * np.array([each.load_fraction for each in state.path])
+    validated("Statics", "beam rolled up by parts of an end moment", "place of the end",
+              np.transpose([np.sin(a) / a, (1 - np.cos(a)) / a]), [each["beam.position"][-1, :2] for each in state.path],
+              unit="m", scale=1.0, bound=2e-4, source="closed form, arc of a circle", variant="beam24, structural",
+              mesh="16 elements")
 
 
 def lees_frame(load: float, follower: bool, elements: int, beam: bool = False) -> Scene:
@@ -129,7 +131,7 @@ def lees_frame(load: float, follower: bool, elements: int, beam: bool = False) -
 
 @pytest.mark.parametrize(("follower", "load", "nominal"), [
     (False, 18532, 2e4), (False, 18532, 1e6), (True, 35447, 4e4), (True, 35447, 1e6)])
-def test_lees_frame(follower, load, nominal):
+def test_lees_frame(follower, load, nominal, validated):
     """Lee, Manuel & Rossow, J. Eng. Mech. Div. 94 (1968) 417-442; both limit loads as others compute them."""
     with warnings.catch_warnings():
         warnings.simplefilter("error", FunicularWarning)
@@ -137,7 +139,9 @@ def test_lees_frame(follower, load, nominal):
         state = lees_frame(nominal, follower, 10).equilibrium(method="arc_length")
     high, low = state.critical_points
     assert (high.kind, low.kind, high.directions, low.directions) == ("limit", "limit", 1, -1)
-    assert high.load_fraction * nominal == pytest.approx(load, rel=3e-3)
+    validated("Statics", f"Lee's frame, {'follower' if follower else 'fixed'} force", "limit load", load,
+              high.load_fraction * nominal, bound=3e-3, source="Lee, Manuel & Rossow 1968, as others compute it",
+              variant="cable8p", mesh="10 elements a leg")
     assert high.state.load_fraction == high.load_fraction
     fractions = np.array([each.load_fraction for each in state.path])
     unstable = np.array([each.unstable_directions for each in state.path])
@@ -148,7 +152,7 @@ def test_lees_frame(follower, load, nominal):
 
 @pytest.mark.parametrize("elements", [10, pytest.param(40, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("follower", "load"), [(False, 18544.8), (True, 35393.0)])
-def test_lees_frame_that_shears(follower, load, elements):
+def test_lees_frame_that_shears(follower, load, elements, validated):
     """Against Reissner's frame with the shear factor 10 (1 + nu)/(12 + 11 nu), the follower turning with the section.
 
     From two-node elements with one point of integration, 40 and 80 a leg (18560.01, 18548.57; 35454.7, 35408.42),
@@ -158,7 +162,9 @@ def test_lees_frame_that_shears(follower, load, elements):
     nominal = 4e4 if follower else 2e4
     high = lees_frame(nominal, follower, elements, beam=True).equilibrium(method="arc_length").critical_points[0]
     assert high.kind == "limit"
-    assert high.load_fraction * nominal == pytest.approx(load, rel=1e-4)
+    validated("Statics", f"Lee's frame with shear, {'follower' if follower else 'fixed'} force", "limit load", load,
+              high.load_fraction * nominal, bound=1e-4, source="Reissner's frame of two-node elements, extrapolated",
+              variant="beam12p, structural", mesh=f"{elements} elements a leg")
 
 
 def test_critical_loads_do_not_depend_on_the_nominal_one_or_the_density_of_the_path():
@@ -178,11 +184,13 @@ def strut(load: float, element="cable8p") -> Scene:
 EULER = np.pi**2 * STIFFNESS / (4 * LENGTH**2)
 
 
-def test_eulers_loads_are_bifurcations():
+def test_eulers_loads_are_bifurcations(validated):
     with pytest.warns(FunicularWarning, match="the state is unstable: 4 independent directions lower its energy"):
         state = strut(10 * EULER, "cable12").equilibrium(method="arc_length")
     assert [(point.kind, point.directions) for point in state.critical_points] == [("bifurcation", 2)] * 2
-    assert_allclose([10 * point.load_fraction for point in state.critical_points], [1, 9], rtol=2e-3)
+    validated("Statics", "cantilever that buckles", "loads over Euler's first", [1, 9],
+              [10 * point.load_fraction for point in state.critical_points], bound=2e-3, source="closed form",
+              variant="cable12")
     for each in state.path:
         assert each.unstable_directions == 2 * (each.load_fraction > 0.1) + 2 * (each.load_fraction > 0.9)
     assert not state.stable
@@ -190,14 +198,16 @@ def test_eulers_loads_are_bifurcations():
 
 
 @pytest.mark.parametrize("element", ["cable8p", "cable12", "beam12p", "beam24"])
-def test_a_strut_beyond_eulers_load_buckles(element):
+def test_a_strut_beyond_eulers_load_buckles(element, validated):
     """Load over Euler's 1/cos-like: tip of the elastica at P/Pe = 1.1517, turned by 60 degrees (Timoshenko & Gere,
     Theory of Elastic Stability, table 2-4: x 0.741, y 0.593)."""
     with pytest.warns(FunicularWarning, match="the search went on to a stable one; nothing says to which side"):
         state = strut(1.1517 * EULER, element).equilibrium()
     x, y, z = state["strut.position"][-1]
     assert state.stable
-    assert (x, np.hypot(y, z)) == pytest.approx((0.741, 0.593), abs=2e-3)
+    validated("Statics", "strut beyond Euler's load, P/P_E 1.152", "place of the end", (0.741, 0.593),
+              (x, np.hypot(y, z)), unit="m", scale=1.0, bound=2e-3, variant=element,
+              source="Timoshenko & Gere, Theory of Elastic Stability, table 2-4")
     assert state.neutral_directions == (1 if element in ("cable12", "beam24") else 0), "it may turn about its axis"
     below = strut(0.9 * EULER, element).equilibrium()
     assert below.stable

@@ -60,14 +60,15 @@ def squeezer() -> Scene:
 
 
 @pytest.mark.parametrize(("integrator", "tol", "off"), [("explicit", 1e-5, 3e-9), ("radau", 1e-6, 1e-8)])
-def test_andrews_squeezer(integrator, tol, off):
+def test_andrews_squeezer(integrator, tol, off, validated):
     """The crank turns 2.5 times in 30 ms."""
     run = squeezer().run(0.03, tol=tol, integrator=integrator, output_step=1e-4)
     turn = [np.unwrap(2 * np.arctan2(run[f"K{k}.orientation"][:, 3], run[f"K{k}.orientation"][:, 0]),
                       period=2 * np.pi)[-1] for k in range(1, 8)]
     beta, to_crank, gamma, to_5, delta, to_7, epsilon = turn
     found = [beta, to_crank - beta, gamma, to_5 - delta, delta, to_7 - epsilon, epsilon]
-    assert_allclose(found, SQUEEZED, rtol=0, atol=off)  # measured 1.4e-9, 4.9e-9
+    validated("Bodies and mechanisms", "Andrews' squeezer, at 30 ms", "seven angles", SQUEEZED, found, unit="rad", scale=1.0,
+              bound=off, source="IVP test set", variant=f"{integrator}, tol {tol:g}")
     assert max(run[f"{name}.residual"].max() for name in run.scene.joints) < 1e-11
     assert len(run.report["messages"]) == 3  # in space, each of three loops has three equations too many
 
@@ -94,10 +95,12 @@ def four_bars(n: int, speed=1.0, angle=np.pi / 2) -> Scene:
 
 
 @pytest.mark.parametrize(("integrator", "tol", "off"), [("explicit", 1e-7, 3e-7), ("radau", 1e-5, 1e-5)])
-def test_two_four_bars_pass_singular_positions(integrator, tol, off):
+def test_two_four_bars_pass_singular_positions(integrator, tol, off, validated):
     """IFToMM benchmark A02; all bars are in one line several times in 10 s."""
     run = four_bars(2).run(10, tol=tol, integrator=integrator, output_step=0.1)
-    assert_allclose(run["bar0.position"][-1] - [0.5, 0, 0], [0.3284581115, 0.9445185382, 0], atol=off)
+    validated("Bodies and mechanisms", "two four-bars through singular positions, at 10 s", "position of the coupler",
+              [0.3284581115, 0.9445185382, 0], run["bar0.position"][-1] - [0.5, 0, 0], unit="m", scale=1.0, bound=off,
+              source="IFToMM benchmark A02", variant=f"{integrator}, tol {tol:g}")
     assert np.sum(np.diff(np.sign(run["bar0.position"][:, 1])) != 0) >= 6
     energy = run["energy.kinetic"] + run["energy.potential"]
     assert np.ptp(energy) < 1e-5 * run["energy.kinetic"].max()
@@ -108,13 +111,15 @@ def test_two_four_bars_pass_singular_positions(integrator, tol, off):
 
 
 @pytest.mark.parametrize(("integrator", "tol", "off"), [("explicit", 1e-8, 3e-9), ("radau", 1e-6, 3e-7)])
-def test_a_pendulum_after_10_s(integrator, tol, off):
+def test_a_pendulum_after_10_s(integrator, tol, off, validated):
     """IFToMM benchmark A01: a point mass, 1 m from its pivot, released level."""
     scene = Scene()
     scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(-1, 0, 0))
     scene.joint("distance", "A", (0, 0, 0), name="string")
     run = scene.run(10, tol=tol, integrator=integrator, output_step=0.1)
-    assert_allclose(run["A.position"][-1], [-0.2750874626, -0.9614192051, 0], atol=off)
+    validated("Bodies and mechanisms", "pendulum released level, at 10 s", "position",
+              [-0.2750874626, -0.9614192051, 0], run["A.position"][-1], unit="m", scale=1.0, bound=off,
+              source="IFToMM benchmark A01", variant=f"{integrator}, tol {tol:g}")
     # string: its force on the ground is 3 m g sin at a fall of sin, as energy and centripetal force have it
     pull = 3 * G * run["A.position"] * -run["A.position"][:, 1:2]
     assert_allclose(run["string.force"], pull, atol=1e-4)

@@ -22,13 +22,15 @@ def kinked_rope(elements):
 
 
 @pytest.mark.parametrize("elements", [12, 24, 25])
-def test_a_sharp_kink(elements):
+def test_a_sharp_kink(elements, validated):
     """The tension in each half is the side of the triangle of forces."""
     rest = kinked_rope(elements)
     for side, support in (("before", "rope@0"), ("after", "rope@12")):
         pull = np.linalg.norm(rest[f"{support}.force"])
         tension = rest.section_forces("rope", [5.2, 6.21, 7.2], side=side)["tension"].values
-        assert tension[1] == pytest.approx(pull, rel=1e-4)
+        validated("Section forces", "rope under a point force", f"tension {side} the force", float(pull),
+                  float(tension[1]), unit="N", bound=1e-4, source="triangle of forces", variant="cable8p",
+                  mesh=f"{elements} elements")
         assert tension[0 if side == "before" else 2] == pytest.approx(pull, rel=1e-5)
         law = rest.section_forces("rope", [6.21], method="constitutive", side=side)
         assert abs(law["tension"].values[0] - pull) > 0.07 * pull
@@ -66,7 +68,7 @@ class TestTautBending:
         assert_allclose(self.moments(990, "cable8p", "constitutive"), self.CONVERGED, atol=0.05)
 
     @pytest.mark.parametrize("elements", [24, 48])
-    def test_moment_of_a_kink(self, elements):
+    def test_moment_of_a_kink(self, elements, validated):
         """2 sqrt(N E I) sin(theta/4) under a force that turns the rope's by theta, 69 degrees: 17.6 N m."""
         rest = kinked_rope(elements)
         before, after = (rest.section_forces("rope", [6.21], side=side) for side in ("before", "after"))
@@ -74,8 +76,10 @@ class TestTautBending:
         theta = np.arccos(one @ other / np.linalg.norm(one) / np.linalg.norm(other))
         exact = 2 * np.sqrt(np.sqrt(np.linalg.norm(one) * np.linalg.norm(other))) * np.sin(theta / 4)
         assert 17 < exact < 18
-        for side in (before, after):
-            assert side["moment"].values[0, 2] == pytest.approx(exact, rel=0.05)
+        for name, side in (("before", before), ("after", after)):
+            validated("Section forces", "rope under a point force", f"moment {name} the force", exact,
+                      float(side["moment"].values[0, 2]), unit="N m", bound=0.05, variant="cable8p",
+                      source="closed form, 2 √(N E I) sin(θ/4)", mesh=f"{elements} elements")
 
 
 BEAMS = [("cable12", None), ("cable18", None), ("cable8p", None), ("beam24", "structural"), ("beam24", "continuum"),
@@ -90,7 +94,7 @@ def beam(element, law, elements, **given):
 
 @pytest.mark.parametrize("elements", [3, 8])
 @pytest.mark.parametrize(("element", "law"), BEAMS)
-def test_a_cantilever_with_a_load_inside_an_element(element, law, elements):
+def test_a_cantilever_with_a_load_inside_an_element(element, law, elements, validated):
     scene, at = beam(element, law, elements), 1.3
     scene.clamp("beam", s=0)
     scene.force("beam", s=at, value=(0, -LOAD, 0))
@@ -98,7 +102,9 @@ def test_a_cantilever_with_a_load_inside_an_element(element, law, elements):
     rest = scene.equilibrium()
     forces = rest.section_forces("beam", s, side="before")
     assert_allclose(forces["force"][:, 1], np.where(s <= at, -LOAD, 0), atol=1e-9 * LOAD)
-    assert_allclose(forces["moment"][:, 2], np.where(s <= at, -LOAD * (at - s), 0), atol=1e-5 * LOAD * at)
+    validated("Section forces", "cantilever, load inside an element", "moment", np.where(s <= at, -LOAD * (at - s), 0),
+              forces["moment"].values[:, 2], unit="N m", scale=LOAD * at, bound=1e-5, source="closed form",
+              variant=f"{element}{', ' + law if law else ''}", mesh=f"{elements} elements")
     assert_allclose(forces["shear"], np.where(s <= at, LOAD, 0), atol=1e-4 * LOAD)
     assert_allclose(forces["moment"][0], -rest["beam@0.moment"], atol=1e-6 * LOAD)
 

@@ -37,8 +37,12 @@ def hangs(scene, end, length, **settings):
 
 @pytest.mark.parametrize("element", ["cable12", "cable8p"])
 @pytest.mark.parametrize(("end", "length"), CASES)
-def test_drawn_straight(end, length, element):
-    hangs(rope(end, length, element=element), end, length)
+def test_drawn_straight(end, length, element, validated):
+    state = hangs(rope(end, length, element=element), end, length)
+    H, V = end_forces(*end, length, WEIGHT, AXIAL)
+    validated("Statics", f"slack rope of {length} m to ({end[0]}, {end[1]}) m, drawn straight", "force on its end", [-H, V],
+              state["rope@0.force"][:2], unit="N", scale=np.hypot(H, V), bound=1e-3, variant=element, mesh="20 elements",
+              source="elastic catenary")
 
 
 @pytest.mark.parametrize("membrane", ["assumed", "reduced"])
@@ -124,9 +128,11 @@ def elastica(end, length) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize(("end", "length"), CASES[:1] + CASES[2:])
-def test_where_bending_counts(end, length):
+def test_where_bending_counts(end, length, validated):
     """The rope as it is, 20 mm thick: its own bending stiffness takes a third off the catenary's force."""
     H, V = elastica(end, length)
     state = rope(end, length, section=Circle(radius=0.01)).equilibrium()
     assert state.stable and not state.messages
-    assert_allclose(state["rope@0.force"], [-H, V, 0], atol=1e-3 * np.hypot(H, V))
+    validated("Statics", f"slack rope of {length} m that resists bending, to ({end[0]}, {end[1]}) m", "force on its end",
+              [-H, V], state["rope@0.force"][:2], unit="N", scale=np.hypot(H, V), bound=1e-3, variant="cable12",
+              source="heavy elastica, boundary value problem", mesh="20 elements")

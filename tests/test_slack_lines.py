@@ -24,12 +24,15 @@ def pull(rest: fu.Equilibrium, cable: str) -> float:
 
 @pytest.mark.parametrize("mesh", [100, 200, *(pytest.param(n, marks=pytest.mark.slow) for n in (450, 600, 1000))])
 @pytest.mark.parametrize("name", LAZY_WAVES)
-def test_lazy_waves(name, mesh):
+def test_lazy_waves(name, mesh, validated):
     """Another program's forces and curvatures; 450 and 600 elements had ended at unstable states."""
     data = LAZY_WAVES[name]
     rest = lazy_wave(data, MESHES[mesh]).equilibrium()
-    assert pull(rest, "upper") == pytest.approx(data.force, rel=1e-3)
-    assert largest_curvature(rest) == pytest.approx(data.curvature, rel=5e-3)
+    given = {"source": "another program, converged", "variant": "cable12", "mesh": f"{mesh} elements"}
+    validated("Statics", f"lazy-wave cable, {name}", "force at the top", data.force, pull(rest, "upper"), unit="N",
+              bound=1e-3, **given)
+    validated("Statics", f"lazy-wave cable, {name}", "largest curvature", data.curvature, largest_curvature(rest),
+              unit="1/m", bound=5e-3, **given)
 
 
 @pytest.mark.parametrize("fractions", [(0.4, 0.5), (0.3, 0.7)])
@@ -86,13 +89,15 @@ def test_the_state_depends_on_no_added_mass():
 
 
 @pytest.mark.parametrize("elements", [30, pytest.param(150, marks=pytest.mark.slow)])
-def test_two_tied_ropes(elements):
+def test_two_tied_ropes(elements, validated):
     """As one rope of 140 m: Irvine's catenary, off which bending takes 1e-4 of the force; 150 had 1,373,955 N."""
     weight = 9.81 * 5000 * np.pi * 0.05**2
     expected = np.hypot(*end_forces(100, 0, 140, weight, 1e9 * np.pi * 0.05**2))
     found = pull(tied_ropes(elements).equilibrium(), "a")
     assert found == pytest.approx(expected, rel=5e-3)
-    assert found == pytest.approx(29953.453, rel=1e-4 if elements == 30 else 1e-7)
+    validated("Statics", "two tied ropes, slack, drawn straight", "force on the end", 29953.453, found, unit="N",
+              bound=1e-4 if elements == 30 else 1e-7, source="elastic catenary that bends, converged", variant="cable12",
+              mesh=f"{2 * elements} elements")
 
 
 def catenary_to_bed(H: float, hanging: float, weight: float, axial: float) -> tuple[float, float]:

@@ -157,9 +157,9 @@ def main() -> None:
     options = arguments(__doc__, most=(30, "spans"))
     adjusted("droppers", 1, "z = 0")  # imports
     show([row(case, spans) for case in few(CASES) for spans in (1, 3, 10, 30, 100)
-          if spans <= options.most and (spans > 1 or case != "supports")], options.out)
+          if spans <= options.most and (spans > 1 or case != "supports")], options.out, "line")
     show([wires(case, size) for case, sizes in few((("form", (1.0, 0.5, 0.25)), ("ropes", (3, 10))))
-          for size in few(sizes)])
+          for size in few(sizes)], table="wires")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Published cases of elements: what each element finds with each elastic law, against the published numbers.
+"""Published cases of elements: figures of each element with each elastic law beside the published numbers.
 
     python tests/benchmarks/cases.py [--out FILE.csv]
 

@@ -1,4 +1,4 @@
-"""How true integrator="auto" is to tol, and what it costs: every scene of choice_scenes.py with every tol.
+"""Error of integrator="auto" over tol, and its cost: every scene of choice_scenes.py with every tol.
 
     python tests/benchmarks/choice.py [--only WORDS] [--every] [--repetitions N] [--out FILE.csv]
     python tests/benchmarks/choice.py --references
@@ -79,6 +79,18 @@ def cell(name: str, tol: float, integrator: str = "auto") -> dict:
             "CPU s": report["time_s"]["solve_cpu"]}
 
 
+def by_tolerance(rows: list[dict]) -> list[dict]:
+    """How many runs are within a tolerance, and the largest error."""
+    found = []
+    for tol in {row["tol"]: 0 for row in rows}:
+        of = [row for row in rows if row["tol"] == tol]
+        worst = max(of, key=lambda row: row["error/tol"])
+        found.append({"tol": tol, "runs": len(of), "within tol": sum(row["error/tol"] <= 1 for row in of),
+                      "median error/tol": statistics.median(row["error/tol"] for row in of),
+                      "largest error/tol": worst["error/tol"], "of": f"{worst['scene']}, {worst['integrator']}"})
+    return found
+
+
 def main() -> None:
     """Measure and print."""
     options = parser(__doc__, repetitions=(1, "runs of each, of which the median of the CPU time counts"))
@@ -99,6 +111,7 @@ def main() -> None:
                 row |= {f"{integrator} {figure}": other[figure] for figure in ("error/tol", "CPU s")}
             rows.append(row)
     show(rows, options.out)
+    show(by_tolerance(rows), table="by tolerance")
     errors = np.array([row["error/tol"] for row in rows])
     print(f"{np.mean(errors <= 1):.1%} of {len(errors)} cells within tol, the largest error {errors.max():.2g} tol")
 

@@ -140,10 +140,10 @@ def main() -> None:
     rows = [line(n, 0.0, 2.4e5) for n in few((30, 60, 120, 240))]
     rows += [line(120, 0.0, k) for k in few((2.4e4, 2.4e6))]
     rows += [line(n, 0.3, 2.4e5) for n in few((30, 60, 120))]
-    show(rows, options.out)
-    show([drum(mu) for mu in few((0.1, 0.3))])
-    show(cost())
-    show(far())
+    show(rows, options.out, "mooring")
+    show([drum(mu) for mu in few((0.1, 0.3))], table="drum")
+    show(cost(), table="forces")
+    show(far(), table="far apart")
 
 
 if __name__ == "__main__":

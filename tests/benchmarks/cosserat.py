@@ -103,4 +103,5 @@ if __name__ == "__main__":
     command.add_argument("--solvers", default=",".join(SOLVERS), help="names, by commas (default: all)")
     command.add_argument("--meshes", action="store_true", help="funicular with half, once and twice the elements")
     given = command.parse_args()
-    show(rows(few(given.experiments.split(",")), few(given.solvers.split(",")), given.meshes), given.out)
+    show(rows(few(given.experiments.split(",")), few(given.solvers.split(",")), given.meshes), given.out,
+         "meshes" if given.meshes else "peers")

@@ -1,4 +1,4 @@
-"""Error against time, side by side with Exudyn, interleaved in one run, one thread each.
+"""Error against time of funicular and Exudyn, interleaved in one run, one thread each.
 
     pip install '.[bench]' && python tests/benchmarks/exudyn_side_by_side.py [--out FILE.csv] [--plot FILE.png]
         [--cases pendulum] [--elements 8] [--repetitions 3] [--limit 20] [--resume]
@@ -223,7 +223,7 @@ def row_of(case: Case, target: float, ours: dict[str, list[Point]], theirs: list
     own, own_there = found[AUTO]
     return {"case": case.name, "elements": case.elements, "error": target,
             **{f"{name} / s": _bracketed(*found[name]) for name in found},
-            "exudyn / s": _bracketed(peer_seconds, there), "best": best,
+            "exudyn / s": _bracketed(peer_seconds, there), "best": best, "best / s": seconds,
             "setting": setting_to(ours[best], target) if best else np.nan,
             "their steps": DURATION / setting_to(theirs, target),
             "times faster": peer_seconds / seconds, "auto/best": own / seconds if own_there else np.nan}
@@ -320,6 +320,8 @@ def main() -> None:
     options.add_argument("--resume", action="store_true", help="leave out the cases that FILE.csv of --out has")
     options.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the picture")
     options = options.parse_args()
+    if options.resume and options.json:
+        raise SystemExit("--json takes a whole run: give it without --resume")
     warnings.simplefilter("ignore", FunicularWarning)  # coarse steps are meant
     before = done(options.out) if options.resume else set()
     if options.out is not None and not options.resume:
@@ -336,8 +338,8 @@ def main() -> None:
                 print(f"  left out: {error}; give a larger --limit", flush=True)
                 continue
             curves[case.name, case.elements] = each
-            show(rows)
-            show([check])
+            show(rows, table="times")
+            show([check], table="convergence")
             if options.out is not None:
                 append(rows, options.out)
                 append(points_of(case, each), options.out.with_suffix(".points.csv"))

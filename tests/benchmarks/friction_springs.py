@@ -98,9 +98,10 @@ def main() -> None:
     """Print the tables."""
     given = arguments(__doc__ or "", scenes=(len(SCENES), "the first of the scenes"))
     warnings.simplefilter("ignore")
-    show([row for name in list(SCENES)[: given.scenes] for row in in_tol(name)], given.out)
+    show([row for name in list(SCENES)[: given.scenes] for row in in_tol(name)], given.out,
+         "tolerances")
     if given.scenes == len(SCENES):
-        show([in_fixed_steps(integrator) for integrator in ("radau", "genalpha", "explicit", "energy")])
+        show([in_fixed_steps(integrator) for integrator in ("radau", "genalpha", "explicit", "energy")], table="steps")
 
 
 if __name__ == "__main__":

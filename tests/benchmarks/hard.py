@@ -1,8 +1,8 @@
-"""Figures of the hard cases, every one with every integrator: (!) where a bound is broken, and CPU seconds.
+"""Errors, energy balances and joint residuals of the hard cases with every integrator, and CPU seconds.
 
     python tests/benchmarks/hard.py [--out FILE.csv] [--only WORDS]
 
-tests/hard asserts the bounds. Errors are over the largest motion, `balance` over the energy exchanged, distances in m.
+(!) marks a broken bound; tests/hard asserts the bounds. Errors are over the largest motion, `balance` over the energy exchanged, distances in m.
 """
 
 import os

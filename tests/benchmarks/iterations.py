@@ -72,6 +72,14 @@ def cell(subject: Subject, exact: np.ndarray, settings: dict[str, float]) -> dic
             "factored": report["factorisations"] / report["steps"], "CPU s": report["time_s"]["solve_cpu"]}
 
 
+def medians(rows: list[dict]) -> list[dict]:
+    """The medians of iterations and factorisations of a step by setting, of all scenes."""
+    found = {setting: [row for row in rows if row["setting"] == setting] for setting in {r["setting"]: 0 for r in rows}}
+    return [{"setting": setting, "scenes": len(of), "largest error": max(row["error"] for row in of),
+             **{key: statistics.median(row[key] for row in of) for key in ("iterations", "factored")}}
+            for setting, of in found.items()]
+
+
 def main() -> None:
     """Measure and print."""
     options = parser(__doc__)
@@ -84,10 +92,7 @@ def main() -> None:
             exact = positions(simulate(subject, integrator="radau", tol=1e-7)) if known is None else known
             rows += [{"scene": name} | cell(subject, exact, settings) for settings in SETTINGS]
     show(rows, options.out)
-    for settings in SETTINGS:
-        (setting, value), = settings.items()
-        found = [row["iterations"] for row in rows if row["setting"] == f"{setting} {value:g}"]
-        print(f"{setting} {value:g}: {statistics.median(found):.2f} iterations a step in the median")
+    show(medians(rows), table="medians")
     print(f"all: {statistics.median(row['iterations'] for row in rows):.2f}")
 
 

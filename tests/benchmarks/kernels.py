@@ -75,11 +75,11 @@ def main() -> None:
                         derivations=(1, "of every family", 0), builds=(1, "of a clean clone", 0))
     print("compiled with", *compiler(), *options())
     table = rows(given.repetitions)
-    show(table, given.out)
+    show(table, given.out, "kernels")
     over = [f"{row['kernel']} {row['us'] / row['aim']:.2g}" for row in table if row["aim"] and row["us"] > row["aim"]]
     print("over its aim, times:", ", ".join(over) or "none")
     if several := blocks.rows(given.repetitions):
-        show(several)
+        show(several, table="blocks")
     if given.derivations:
         taken = [making.derivation() for _ in range(given.derivations)]
         least = {name: min(times[name] for times in taken) for name in taken[0]}

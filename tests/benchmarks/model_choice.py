@@ -1,4 +1,4 @@
-"""How true the choice of a model is to its tolerance, and what it costs: every scene of model_scenes.py with every tol.
+"""Error of the chosen model over its tolerance, and the cost of the choice: every scene of model_scenes.py, every tol.
 
     python tests/benchmarks/model_choice.py [--only WORDS] [--cache DIR] [--brute-force none|cached|all] [--full-length]
         [--out FILE.csv]
@@ -148,7 +148,7 @@ def main() -> None:
         options.cache, options.brute_force = Path(tempfile.mkdtemp(prefix="funicular-")), "none"
     if options.full_length:
         rows = [full_length(name, tol) for name in BUNDLED if options.only in name for tol in TOLS[:2]]
-        show(rows, options.out)
+        show(rows, options.out, "full length")
         return
     rows = []
     for name in few(name for name in SCENES if options.only in name):

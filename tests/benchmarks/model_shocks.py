@@ -1,5 +1,5 @@
-"""How true the choice of a model is on scenes that it was not made for: riders near and above the wave speed of their
-cable, impacts, contact, crossings, one-sided springs, friction, slack cables, water.
+"""Error of the chosen model on other scenes: riders near and above the wave speed of their cable, impacts, contact,
+crossings, one-sided springs, friction, slack cables, water.
 
     python tests/benchmarks/model_shocks.py [--only WORDS] [--tols 1e-2,1e-3] [--finer 3] [--out FILE.csv]
 

@@ -216,7 +216,7 @@ def main() -> None:
     given = command.parse_args()
     rows = {"reference": reference_rows, "data": data_rows, "line55": line55_rows, "kinds": kinds_rows,
             "cost": cost_rows}[given.what]()
-    show(rows, given.out)
+    show(rows, given.out, given.what)
 
 
 if __name__ == "__main__":

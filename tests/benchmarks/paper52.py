@@ -1,4 +1,4 @@
-"""Example 5.2 of the paper: three kinds of link below one cable, the paper's Figs. 7, 8 and 9, and what they cost.
+"""Example 5.2 of the paper: three kinds of link below one cable, figures 7, 8 and 9 of the paper, and their cost.
 
     python tests/benchmarks/paper52.py [--out FILE.csv] [--plots FOLDER] [--tol 1e-4]
 

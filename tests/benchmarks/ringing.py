@@ -1,4 +1,4 @@
-"""What steps cost where a scene rings: error first, then steps and CPU time, beside the best fixed step.
+"""Cost of steps where a scene rings: error, steps and CPU time, beside the best fixed step.
 
     python tests/benchmarks/ringing.py [--only WORDS] [--out FILE.csv] [--repetitions N]
 

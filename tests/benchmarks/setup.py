@@ -1,4 +1,4 @@
-"""What a run takes beside its steps, by part: the scene, its checks, the model, the engine, the start, the results.
+"""CPU time of a run beside its steps, by part: the scene, its checks, the model, the engine, the start, the results.
 
     python tests/benchmarks/setup.py [--out FILE.csv] [--repetitions 15]
 

@@ -170,7 +170,7 @@ def main() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
         if options.random:
-            show(random_rows(options.random, options.integrator, options.tol), options.out)
+            show(random_rows(options.random, options.integrator, options.tol), options.out, "random")
             return
         for name in few(options.scene):
             reference = simulate(name, integrator="radau", tol=1e-5 if name.startswith("catenary") else 1e-9)[0]
@@ -181,8 +181,9 @@ def main() -> None:
                 by_tol += [row(name, reference, of | {"tol": tol}) for tol in few(options.tol)]
                 if integrator != "explicit" and not name.startswith("catenary"):
                     by_step += [row(name, reference, of | {"step": step}) for step in few(options.steps)]
-    for rows in filter(None, (by_tol, by_step)):
-        show(rows, options.out if rows is by_tol else None)
+    for rows, out, table in ((by_tol, options.out, "tolerances"), (by_step, None, "steps")):
+        if rows:
+            show(rows, out, table)
 
 
 if __name__ == "__main__":

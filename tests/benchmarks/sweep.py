@@ -91,18 +91,18 @@ def main() -> None:
         opening = time.process_time() - begin
         scenes = [of_scene(cluster, batch, given.scenes, Path(folder) / f"scene{batch}.nc") for batch in (1, 5, 15)]
     print("\nPoints that take no time:")
-    show(rows, given.out)
+    show(rows, given.out, "empty points")
     cpu = np.array([row["CPU ms a task, here"] for row in rows])
     a, b = np.polynomial.polynomial.polyfit([row["batch"] for row in rows], cpu, 1, w=1 / cpu)
     print(f"\nscheduler and writer: {a:.2f} ms a task and {1e3 * b:.0f} µs a point; {row_bytes} bytes a point; "
           f"opening with all checksums: {1e-9 * size / opening:.2g} GB a CPU second")
     print("\nFirst scene, tol 1e-3:")
-    show(scenes)
+    show(scenes, table="first scene")
     print(f"\n{MILLION:,} points, extrapolated: file {MILLION * row_bytes / 1e9:.2f} GB; cores that one scheduler and "
           "one writer keep busy:")
     show([{"batch": batch, "s of scheduler and writer": 1e-3 * MILLION * (a / batch + b),
            **{f"cores at {ms:g} ms a point": round(ms / (a / batch + b)) for ms in (5.0, 20.0, 200.0)}}
-          for batch in (1, 10, 25, 100)])
+          for batch in (1, 10, 25, 100)], table="million points")
 
 
 if __name__ == "__main__":

@@ -1,16 +1,20 @@
-"""What benchmarks share: their command lines, and tables that are printed and written as CSV.
+"""What benchmarks share: their command lines, and tables that are printed, and written as CSV and JSON.
 
 Every script takes --smallest: it runs with numbers of 1 and the first of its cases alone, in seconds, to show that it
-still runs; what it then prints is no measurement. A list of cases goes through `few` for that.
+still runs; what it then prints is no measurement. A list of cases goes through `few` for that. With --json every table
+goes to tests/benchmarks/measured (records.py), from which the pages are printed (print_pages.py).
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TypeVar
+
+import records
 
 T = TypeVar("T")
 
@@ -21,15 +25,28 @@ class Parser(argparse.ArgumentParser):
     smallest = False
     """Whether the script that runs is to run at its smallest size."""
 
+    json: Path | None = None
+    """Where the script that runs records its tables."""
+    recorded: list[str] = []
+    """Tables of this process in the record: the next rows of one of them are added to it."""
+
     least: dict[str, int]
 
     def parse_args(self, args: Sequence[str] | None = None, namespace=None) -> argparse.Namespace:
         """Return what was given; with --smallest the numbers of `parser` are least."""
         found = super().parse_args(args, namespace)
         Parser.smallest = found.smallest
+        Parser.json = records.FOLDER / f"{Path(sys.argv[0]).stem}.json" if found.json == HERE else found.json
+        Parser.recorded = []
+        if found.smallest and found.json == HERE:
+            self.error("--smallest measures nothing: give --json a FILE")
         if found.smallest:
             vars(found).update(self.least)
         return found
+
+
+HERE = Path("tests/benchmarks/measured")
+"""What --json stands for without a file."""
 
 
 def few(cases: Iterable[T]) -> list[T]:
@@ -38,12 +55,14 @@ def few(cases: Iterable[T]) -> list[T]:
 
 
 def parser(description: str, **numbers: tuple[int, str] | tuple[int, str, int]) -> Parser:
-    """A command line: --out FILE.csv, --smallest, and integers by name with default, help and least value, 1 if not
+    """A command line: --out FILE.csv, --json FILE, --smallest, and integers by name with default, help and least value, 1 if not
     given.
     """
     made = Parser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     made.least = {name: least[0] if least else 1 for name, (_, _, *least) in numbers.items()}
     made.add_argument("--out", type=Path, metavar="FILE.csv", help="write the table here as well")
+    made.add_argument("--json", type=Path, nargs="?", const=HERE, metavar="FILE",
+                      help=f"record the tables in this file (without a name: that of the script in {HERE})")
     made.add_argument("--smallest", action="store_true", help="run the least that there is, to show that it runs")
     for name, (default, text, *_) in numbers.items():
         made.add_argument(f"--{name}", type=int, default=default, help=f"{text} (default {default})")
@@ -55,17 +74,20 @@ def arguments(description: str, **numbers: tuple[int, str] | tuple[int, str, int
     return parser(description, **numbers).parse_args()
 
 
-def show(rows: list[dict], out: Path | None = None) -> None:
-    """Print rows of equal keys; write them to ``out`` if given."""
+def show(rows: list[dict], out: Path | None = None, table: str = "measured") -> None:
+    """Print rows of equal keys; write them to ``out`` if given, and record them as a table of this name."""
     cells = [list(rows[0])] + [[f"{v:.3g}" if isinstance(v, float) else str(v) for v in row.values()] for row in rows]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     for line in cells:
         print("  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)))
-    write(rows, out)
+    write(rows, out, table)
 
 
-def write(rows: list[dict], out: Path | None) -> None:
-    """Write rows of equal keys to ``out`` if given."""
+def write(rows: list[dict], out: Path | None, table: str = "measured") -> None:
+    """Write rows of equal keys to ``out`` if given, and record them as a table of this name with --json."""
+    if Parser.json is not None:
+        records.record(Parser.json, table, rows, add=table in Parser.recorded)
+        Parser.recorded.append(table)
     if out is not None:
         with out.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, rows[0])

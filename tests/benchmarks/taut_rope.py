@@ -174,16 +174,16 @@ def main() -> None:
             rows.append({"element": element, "rider at": part, "membrane": membrane, "elements": elements, **found,
                          **orders})
             before = found
-    show(rows, options.out)
+    show(rows, options.out, "rest")
     print()
     show([{"membrane": membrane, "elements": elements, **in_motion(elements, membrane)}
-          for elements in meshes if elements >= 12 for membrane in few(MEMBRANES)])
+          for elements in meshes if elements >= 12 for membrane in few(MEMBRANES)], table="motion")
     print()
     modes = {"0": [1], "0..1": [1, 1], "0..1, and 1 % of 2 (reduced)": [1, 1, 0.01], "0..2 (assumed)": [1, 1, 1]}
     show([{"modes": name, "motions without energy": motions_without_energy(stiffness)}
-          for name, stiffness in modes.items()])
+          for name, stiffness in modes.items()], table="modes")
     print()
-    show([operations(element, law) for element in ("cable8p", "cable12") for law in LAWS])
+    show([operations(element, law) for element in ("cable8p", "cable12") for law in LAWS], table="operations")
 
 
 def operations(element: str, law: str) -> dict[str, object]:

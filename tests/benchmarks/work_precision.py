@@ -1,4 +1,4 @@
-"""Work and precision of the integrators: the README's figure and table, by `funicular.bench`.
+"""Work and precision of the integrators on two scenes, by `funicular.bench`.
 
     python tests/benchmarks/work_precision.py [--out FILE.csv] [--plot FILE.png] [--repetitions 3]
 
@@ -54,7 +54,7 @@ def main() -> None:
         results[name] = bench(described, grid(described, tols=few(TOLS), duration=1.0, repetitions=options.repetitions))
         console.print(name)
         print_table(results[name], console)
-    if options.out:
+    if options.out or options.json:
         show([{"scene": name} | record(result, row) for name, result in results.items() for row in result.rows],
              options.out)
     if options.plot:

@@ -1,0 +1,134 @@
+"""The pages Validation and Speed say what their records say, and each row of Validation has its test."""
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+import records
+import table
+import validation
+from print_pages import BEGIN, END, PAGES, SUBJECTS
+from printed import FOLDER, cell, markdown, scripts
+from speed_page import SPEED
+from validation_page import STUDIES
+
+ROOT = Path(__file__).parents[1]
+SECTIONS = [*SPEED, *STUDIES]
+TABLES = [of for section in SECTIONS for of in section.tables]
+ROWS = validation.recorded()
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_is_what_its_records_say(name):
+    assert (FOLDER / name).read_text(encoding="utf-8") == PAGES[name](), "python tests/benchmarks/print_pages.py"
+
+
+@cache
+def functions(file: str) -> dict[str, ast.FunctionDef]:
+    """Tests of a file by name, those of a class with the class."""
+    found = {}
+    for node in ast.parse((ROOT / file).read_text(encoding="utf-8")).body:
+        inside = node.body if isinstance(node, ast.ClassDef) else [node]
+        before = f"{node.name}::" if isinstance(node, ast.ClassDef) else ""
+        found |= {before + each.name: each for each in inside if isinstance(each, ast.FunctionDef)}
+    return {name: each for name, each in found.items() if "validated" in [given.arg for given in each.args.args]}
+
+
+def test_each_row_of_validation_names_a_test_and_each_test_has_a_row():
+    named = {tuple(row["test"].partition("[")[0].split("::", 1)) for row in ROWS}
+    there = {(f"tests/{file.name}", name) for file in (ROOT / "tests").glob("test_*.py")
+             for name in functions(f"tests/{file.name}") if name.rpartition("::")[2].startswith("test_")}
+    assert named == there
+    assert len(named) > 40
+
+
+@pytest.mark.slow
+def test_each_row_of_validation_is_a_test_that_pytest_collects():
+    """With its parameters, which a change may have renamed."""
+    files = sorted({row["test"].partition("::")[0] for row in ROWS})
+    found = subprocess.run([sys.executable, "-m", "pytest", "-n", "0", "-m", "", "--collect-only", "-q", *files], cwd=ROOT,
+                           capture_output=True, text=True, check=True).stdout
+    assert {row["test"] for row in ROWS} <= set(found.splitlines())
+
+
+def test_rows_of_validation_keep_their_bounds():
+    for row in ROWS:
+        assert row["subject"] in SUBJECTS
+        assert row["source"] and row["quantity"]
+        expected, _, part = row["bound"].partition(" ± ")
+        if part:
+            assert row["error"] == pytest.approx(float(expected), rel=0.01 * float(part.removesuffix(" %")) + 5e-3)
+        else:
+            assert row["error"] <= float(expected) * 1.05  # two digits are on record
+
+
+def test_a_comparison_fails_beyond_its_bound_and_without_a_record(request, monkeypatch):
+    check = request.getfixturevalue("validated")
+    with pytest.raises(AssertionError, match="1.2, not 1 to 0.1"):
+        check("Statics", "a case", "a quantity", 1.0, 1.2, bound=0.1, source="closed form")
+    with pytest.raises(AssertionError, match="--record-validation tests/test_measured_pages.py"):
+        check("Statics", "a case", "a quantity", 1.0, 1.0, bound=0.1, source="closed form")
+    made = validation.row(request.node.nodeid, "Statics", "a case", "q", 1.0, 1.0, bound=0.1, source="closed form")
+    monkeypatch.setattr(validation, "recorded", lambda: [made])
+    check("Statics", "a case", "q", 1.0, 1.05, bound=0.1, source="closed form")
+    for changed in ({"bound": 0.2}, {"source": "another"}):
+        with pytest.raises(AssertionError, match="record it"):
+            check("Statics", "a case", "q", 1.0, 1.05, **{"bound": 0.1, "source": "closed form"} | changed)
+    with pytest.raises(AssertionError, match="record it"):
+        check("Statics", "a case", "q", 1.01, 1.05, bound=0.1, source="closed form")
+
+
+def test_of_arrays_the_largest_error_is_compared(request):
+    made = validation.row("t", "Statics", "c", "q", [1.0, 2.0], [1.01, 2.1], bound=0.1, source="s")
+    assert (made["reference"], made["ours"], made["error"]) == ("2", "2.1", 0.05)
+
+
+def test_scripts_of_pages_exist_and_records_are_of_scripts():
+    assert {of.script for of in TABLES} <= set(scripts())
+    assert {file.stem for file in records.FOLDER.glob("*.json")} <= {*scripts(), "validation"}
+    for section in SECTIONS:
+        assert not section.test or (ROOT / section.test).is_file(), section.title
+
+
+def test_readme_lists_every_script_and_is_short():
+    text = (FOLDER / "README.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"^\| \[(\w+)\]\(\1\.py\) \| \S", text, re.MULTILINE)) == set(scripts())
+    by_hand = text.partition(BEGIN)[0] + text.partition(END)[2]
+    assert len(by_hand.split()) < 900
+
+
+def test_pages_tell_of_today():
+    for name in PAGES:
+        assert not re.search(r"\b(before|was tried|no longer)\b", (FOLDER / name).read_text(encoding="utf-8").replace(
+            "tension before the force", "").replace("moment before the force", "")), name
+
+
+def test_show_records_tables_and_adds_to_those_of_its_own_run(tmp_path, monkeypatch, capsys):
+    file = tmp_path / "script.json"
+    records.save(file, {"one": {"measured": "2020-01-01", "conditions": "", "rows": [{"a": 0}]},
+                        "other": {"measured": "2020-01-01", "conditions": "", "rows": [{"b": 0}]}})
+    monkeypatch.setattr(sys, "argv", ["script.py", "--json", str(file), "--smallest"])
+    table.arguments("A script.")
+    table.show([{"a": 1.23456, "b": float("nan"), "c": "x|y"}], table="one")
+    table.show([{"a": 2}], table="one")
+    found = json.loads(file.read_text(encoding="utf-8"))
+    assert found["one"]["rows"] == [{"a": 1.235, "b": None, "c": "x|y"}, {"a": 2}]
+    assert found["other"]["rows"] == [{"b": 0}]
+    assert found["one"]["measured"] != "2020-01-01" and "cores" in found["one"]["conditions"]
+    monkeypatch.setattr(table.Parser, "json", None)
+    monkeypatch.setattr(sys, "argv", ["script.py", "--json", "--smallest"])
+    with pytest.raises(SystemExit):
+        table.arguments("A script.")
+    assert "--smallest measures nothing" in capsys.readouterr().err
+
+
+def test_cells():
+    found = [cell(value) for value in (None, True, 12, 12345, 0.0, 1e-3, 1.26e-12, 0.0123, 12.345, 2.5e6, "a|b")]
+    assert found == ["", "yes", "12", "12,345", "0", "1e-3", "1.3e-12", "0.0123", "12.3", "2.5e6", "a\\|b"]
+    assert markdown(["a", "b", "c"], [["x", "1", ""], ["x", "2", "3"]]) == [
+        "| a | b | c |", "|---|---|---|", "| x | 1 | |", "| | 2 | 3 |"]
