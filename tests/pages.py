@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[1]
 SUBJECTS = tuple(sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "runtime/guides/pages").glob("*.md")))
 """A page a subject, by hand or printed."""
 PAGES = ("README.md", "derive/README.md", "runtime/README.md", "tests/benchmarks/README.md",
-         "tests/reference/README.md", *SUBJECTS)
+         "tests/reference/README.md", "tests/benchmarks/validation.md", "tests/benchmarks/speed.md", *SUBJECTS)
 
 
 @dataclass

@@ -51,7 +51,8 @@ def test_a_taut_cable_vibrates_slower_in_water(element, validated):
     assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-6)
     turns = 1e-4 if "beam" in element else 1e-7
     validated("Fluid", "taut cable in water, added mass", "frequency over that in air",
-              sqrt(STEEL / (STEEL + 1.3 * WATER)), float(found[2][-1] / found[0][-1]), bound=turns, source="closed form",
+              sqrt(STEEL / (STEEL + 1.3 * WATER)), float(found[2][-1] / found[0][-1]), bound=turns,
+              source="closed form",
               variant=element)
 
 

@@ -128,7 +128,8 @@ def said(case, kind) -> dict:
         return f"{case.count(kind)} element{'s' * (case.count(kind) > 1)}{order}"
 
     return {"subject": "Elements", "case": f"{case.name}: {case.title}", "variant": str(kind), "source": case.source,
-            "quantity": quantity.name, "unit": "" if quantity.unit == "1" else quantity.unit, "reference": quantity.reference, "ours": value,
+            "quantity": quantity.name, "unit": "" if quantity.unit == "1" else quantity.unit,
+            "reference": quantity.reference, "ours": value,
             "scale": quantity.scale, "note": lookup(case.notes, kind, ""),
             "worst": True, "mesh": mesh}
 

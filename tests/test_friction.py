@@ -26,7 +26,8 @@ def test_a_block_slides_down(integrator, dim, validated):
     run = block(0.3, dim=dim, friction=stick(0.2)).run(1.0, integrator=integrator, tol=1e-6)
     t = run.time
     validated("Slides", "slide with friction 0.2 down a wire", "arc-length", 0.3 + (DOWN - 0.2 * ACROSS) * t**2 / 2,
-              run["trolley.s"], unit="m", scale=1.0, bound=2e-11, source="closed form", variant=f"{integrator}, dim {dim}")
+              run["trolley.s"], unit="m", scale=1.0, bound=2e-11, source="closed form",
+              variant=f"{integrator}, dim {dim}")
     force = np.broadcast_to(MASS * ACROSS * np.array([-0.2, 1, 0]), (len(t), 3))
     np.testing.assert_allclose(run["trolley.force"], force, atol=1e-9)
     np.testing.assert_allclose(run["trolley.traction"], -0.2 * MASS * ACROSS, atol=1e-9)

@@ -51,7 +51,8 @@ def test_each_row_of_validation_names_a_test_and_each_test_has_a_row():
 def test_each_row_of_validation_is_a_test_that_pytest_collects():
     """With its parameters, which a change may have renamed."""
     files = sorted({row["test"].partition("::")[0] for row in ROWS})
-    found = subprocess.run([sys.executable, "-m", "pytest", "-n", "0", "-m", "", "--collect-only", "-q", *files], cwd=ROOT,
+    found = subprocess.run([sys.executable, "-m", "pytest", "-n", "0", "-m", "", "--collect-only", "-q", *files],
+    cwd=ROOT,
                            capture_output=True, text=True, check=True).stdout
     assert {row["test"] for row in ROWS} <= set(found.splitlines())
 
@@ -69,9 +70,9 @@ def test_rows_of_validation_keep_their_bounds():
 
 def test_a_comparison_fails_beyond_its_bound_and_without_a_record(request, monkeypatch):
     check = request.getfixturevalue("validated")
-    with pytest.raises(AssertionError, match="1.2, not 1 to 0.1"):
+    with pytest.raises(AssertionError, match=r"1\.2, not 1 to 0\.1"):
         check("Statics", "a case", "a quantity", 1.0, 1.2, bound=0.1, source="closed form")
-    with pytest.raises(AssertionError, match="--record-validation tests/test_measured_pages.py"):
+    with pytest.raises(AssertionError, match=r"--record-validation tests/test_measured_pages\.py"):
         check("Statics", "a case", "a quantity", 1.0, 1.0, bound=0.1, source="closed form")
     made = validation.row(request.node.nodeid, "Statics", "a case", "q", 1.0, 1.0, bound=0.1, source="closed form")
     monkeypatch.setattr(validation, "recorded", lambda: [made])

@@ -40,8 +40,10 @@ def hangs(scene, end, length, **settings):
 def test_drawn_straight(end, length, element, validated):
     state = hangs(rope(end, length, element=element), end, length)
     H, V = end_forces(*end, length, WEIGHT, AXIAL)
-    validated("Statics", f"slack rope of {length} m to ({end[0]}, {end[1]}) m, drawn straight", "force on its end", [-H, V],
-              state["rope@0.force"][:2], unit="N", scale=np.hypot(H, V), bound=1e-3, variant=element, mesh="20 elements",
+    validated("Statics", f"slack rope of {length} m to ({end[0]}, {end[1]}) m, drawn straight", "force on its end",
+              [-H, V],
+              state["rope@0.force"][:2], unit="N", scale=np.hypot(H, V), bound=1e-3, variant=element,
+              mesh="20 elements",
               source="elastic catenary")
 
 
@@ -133,6 +135,7 @@ def test_where_bending_counts(end, length, validated):
     H, V = elastica(end, length)
     state = rope(end, length, section=Circle(radius=0.01)).equilibrium()
     assert state.stable and not state.messages
-    validated("Statics", f"slack rope of {length} m that resists bending, to ({end[0]}, {end[1]}) m", "force on its end",
+    validated("Statics", f"slack rope of {length} m that resists bending, to ({end[0]}, {end[1]}) m",
+              "force on its end",
               [-H, V], state["rope@0.force"][:2], unit="N", scale=np.hypot(H, V), bound=1e-3, variant="cable12",
               source="heavy elastica, boundary value problem", mesh="20 elements")

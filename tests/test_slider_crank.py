@@ -73,7 +73,8 @@ def test_the_scene_ends_where_it_was_published(tmp_path, validated):
     q = engine.rows()["q"][-1]
     given = {"source": "IVP test set, slider crank", "variant": "explicit"}
     validated("Bodies and mechanisms", "slider crank with a flexible rod, at 0.1 s", "angle of the rod", END["angle"],
-              float(turned(q[rod.configuration + 3 : rod.configuration + 7])), unit="rad", scale=1.0, bound=2e-10, **given)
+              float(turned(q[rod.configuration + 3 : rod.configuration + 7])), unit="rad", scale=1.0, bound=2e-10,
+              **given)
     validated("Bodies and mechanisms", "slider crank with a flexible rod, at 0.1 s", "position of the slider",
               END["slider"], float(q[slider.configuration]), unit="m", scale=1.0, bound=2e-10, **given)
     validated("Bodies and mechanisms", "slider crank with a flexible rod, at 0.1 s", "modal coordinates", END["modes"],

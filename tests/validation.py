@@ -32,7 +32,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
                      help="write what tests with the fixture `validated` find to tests/benchmarks/measured")
 
 
-def row(node: str, subject: str, case: str, quantity: str, reference: Numbers, ours: Numbers, *, bound: float, source: str,
+def row(node: str, subject: str, case: str, quantity: str, reference: Numbers, ours: Numbers, *, bound: float,
+        source: str,
         unit: str = "", scale: float | None = None, stays: float | None = None, worst: bool = False, variant: str = "",
         note: str = "", mesh: str | Callable[[], str] = "") -> dict[str, Any]:
     """Return a row of the record.

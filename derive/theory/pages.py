@@ -72,7 +72,7 @@ def _convergence(name: str) -> str:
              "results, to rounding.\n" if name in COUNTERPART else "")
     return ("# Convergence\n\nError against the published or converged value, with the number of elements in "
             f"brackets, then the order in the mesh.\n{other}\n{table}\n\nOrigin: "
-            f"`{cases()['origin'].split(',')[0]}`, where the references and the command are.\n")
+            f"`{cases()['origin']}`, which names references and tests.\n")
 
 
 def _cost(element: Element) -> str:

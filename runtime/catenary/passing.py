@@ -20,7 +20,7 @@ RUN = {"initial": "equilibrium", "integrator": "genalpha", "spectral_radius": 0.
        "quantities": ["contact.position.y"], "output_step": 0.004}
 """Settings of a run where no others are given. The droppers' stiffness makes vibrations that a larger radius would let
 grow from step to step; absolute_tol is such that the standard deviation of the contact force is converged in time
-to less than 1 %, see tests/benchmarks/README.md, and tol adds nothing to it."""
+to less than 1 %, see tests/benchmarks/pantographs.py, and tol adds nothing to it."""
 
 ERROR_RATE = 1.2e-3
 """m/s: what absolute_tol is at the most for the duration of a run, all of which shares in it."""

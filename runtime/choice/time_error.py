@@ -23,7 +23,7 @@ SHARE = 0.5
 """Of the tolerance, at most, for the error of generalised-alpha in time; model and mesh get what it leaves."""
 
 ASSUMED = 0.2
-"""Of the tolerance: the error in time of the automatic choice, which is seldom more (tests/benchmarks/README.md)."""
+"""Of the tolerance: the error in time of the automatic choice, seldom more (tests/benchmarks/model_choice.py)."""
 
 LOOSER = 4.0
 """Times the tolerance of the run: that of its first probes. With friction it is the run's, since the error of
@@ -51,7 +51,7 @@ the run: each finer mesh brings faster vibrations, which radau follows and the e
 
 OF_AUTO, OF_DAMPING = 0.22, 0.5
 """Powers of 1 / tolerance that the work of integrators grows with: as measured on the scenes of the table
-(tests/benchmarks/README.md), and of second order."""
+(tests/benchmarks/model_choice.py), and of second order."""
 
 UNHURRIED, LABOURED = 3.0, 4.0
 """Steps to an output time below which, and iterations a step above which, steps are bounded by other things than

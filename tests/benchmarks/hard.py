@@ -2,7 +2,8 @@
 
     python tests/benchmarks/hard.py [--out FILE.csv] [--only WORDS]
 
-(!) marks a broken bound; tests/hard asserts the bounds. Errors are over the largest motion, `balance` over the energy exchanged, distances in m.
+(!) marks a broken bound; tests/hard asserts the bounds. Errors are over the largest motion,
+`balance` over the energy exchanged, distances in m.
 """
 
 import os

@@ -72,7 +72,8 @@ class Section:
     def lines(self) -> list[str]:
         """Return the section."""
         asserted = [f"`{self.test}` asserts it.", ""] if self.test else []
-        return [f"## {self.title}", "", paragraphs(self.text), "", *asserted, *(line for t in self.tables for line in t.lines())]
+        head = [f"## {self.title}", "", paragraphs(self.text), ""]
+        return [*head, *asserted, *(line for table in self.tables for line in table.lines())]
 
 
 def paragraphs(text: str) -> str:

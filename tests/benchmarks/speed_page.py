@@ -36,144 +36,225 @@ def rods(rows: list[Row]) -> list[Row]:
 PEERS = [
     Section(
         "Side by side with Exudyn",
-        "CPU time in s until the path of the tip or of the mass has the error at the head of the column: funicular / "
-        "Exudyn, and in brackets their ratio. Both codes run interleaved on one thread each, set-up excluded, Exudyn "
-        "with its fast build. A time in brackets was not reached and is extrapolated. With 32 and 128 elements both "
-        "codes converge to the same motion to 1e-6; with fewer, the quadrature of the bending differs, and each is "
-        "measured against its own converged motion. At 1e-2 and 1e-3 a sliding mass takes hardly more steps than there "
-        "are outputs, which funicular's time contains and Exudyn's does not. Exudyn's sliding joint is of first order "
-        "in the step, the slide of funicular of second.",
-        [Table("exudyn_side_by_side", {"case": "scene", "elements": "elements"}, "times",
-               by=("error", "{best / s} / {exudyn / s} ({times faster})"), options="--limit 6"),
-         Table("exudyn_side_by_side", {"case": "scene", "elements": "elements"}, "times",
-               by=("error", "{best} {setting}; {their steps}; {auto/best}"), options="--limit 6",
-               text="The settings: integrator and `tol` (or fixed step in s) of funicular; steps of Exudyn; time of "
-                    "`integrator=\"auto\"` over that of the best other integrator.\n\n"
-                    "![Error over CPU time of both, case by case](exudyn_side_by_side.png)")]),
+        """CPU time in s until the path of the tip or of the mass has the error at the head of the column: funicular
+/ Exudyn, and in brackets their ratio. Both codes run interleaved on one thread each, set-up excluded, Exudyn with
+its fast build. A time in brackets was not reached and is extrapolated. With 32 and 128 elements both codes converge
+to the same motion to 1e-6; with fewer, the quadrature of the bending differs, and each is measured against its own
+converged motion. At 1e-2 and 1e-3 a sliding mass takes hardly more steps than there are outputs, which funicular's
+time contains and Exudyn's does not. Exudyn's sliding joint is of first order in the step, the slide of funicular of
+second.""",
+        [Table("exudyn_side_by_side",
+               {"case": "scene", "elements": "elements"},
+               table="times",
+               by=("error", "{best / s} / {exudyn / s} ({times faster})"),
+               options="--limit 6"),
+         Table("exudyn_side_by_side",
+               {"case": "scene", "elements": "elements"},
+               table="times",
+               by=("error", "{best} {setting}; {their steps}; {auto/best}"),
+               options="--limit 6",
+               text="""The settings: integrator and `tol` (or fixed step in s) of funicular; steps of Exudyn; time
+of `integrator="auto"` over that of the best other integrator.
+
+![Error over CPU time of both, case by case](exudyn_side_by_side.png)""")]),
     Section(
         "Rods beside PyElastica and MuJoCo",
-        "The experiments of [cosseratbench](https://pypi.org/project/cosseratbench): the error that each experiment "
-        "scores and CPU time. All codes have the number of elements that the experiment asks for; the crossing is run "
-        "with 50, too, because its metric gives 2.5e-4 to the exact shape on 51. The reference of the catenary leaves "
-        "bending out. The second figure of the crossing is the lift; the capstan's error is a slide in m, nil by "
-        "theory. [The solver](../../runtime/README.md#solver-of-cosseratbench) is part of the package.",
-        [Table("cosserat", {"experiment": "experiment", "elements": "elements"}, "peers", rows=rods,
-               by=("solver", "{figures}")),
-         Table("cosserat", {"experiment": "experiment", "elements": "elements", "error": "error"}, "meshes",
-               options="--meshes", text="The error with half, once and twice the elements. A constant error belongs to "
-               "the reference (bending of the catenary, linear theory of cantilever and pendulum) or to the contact "
-               "stiffness.")]),
+        """The experiments of [cosseratbench](https://pypi.org/project/cosseratbench): the error that each
+experiment scores and CPU time. All codes have the number of elements that the experiment asks for; the crossing is
+run with 50, too, because its metric gives 2.5e-4 to the exact shape on 51. The reference of the catenary leaves
+bending out. The second figure of the crossing is the lift; the capstan's error is a slide in m, nil by theory. [The
+solver](../../runtime/README.md#solver-of-cosseratbench) is part of the package.""",
+        [Table("cosserat",
+               {"experiment": "experiment", "elements": "elements"},
+               table="peers",
+               by=("solver", "{figures}"),
+               rows=rods),
+         Table("cosserat",
+               {"experiment": "experiment", "elements": "elements", "error": "error"},
+               table="meshes",
+               options="--meshes",
+               text="""The error with half, once and twice the elements. A constant error belongs to the reference
+(bending of the catenary, linear theory of cantilever and pendulum) or to the contact stiffness.""")]),
     Section(
         "Many scenes",
-        "Variants of a scene of 3 elements, with riders of 0.5 to 2 kg, one second each, `tol=1e-3`. Description, "
-        "set-up, run and results count. The last column is the time with Python's lock, which bounds what further "
-        "threads give.",
-        [Table("many_scenes", {"scene": "scene", "method": "method", "error": "error", "CPU ms a scene": "CPU ms a scene",
-                               "of them locked": "of them locked"})]),
+        """Variants of a scene of 3 elements, with riders of 0.5 to 2 kg, one second each, `tol=1e-3`. Description,
+set-up, run and results count. The last column is the time with Python's lock, which bounds what further threads
+give.""",
+        [Table("many_scenes",
+               {"scene": "scene", "method": "method", "error": "error", "CPU ms a scene": "CPU ms a scene",
+                "of them locked": "of them locked"})]),
     Section(
         "Kernels",
-        "One call of a generated kernel. Project Chrono differentiates the forces of its cable numerically and "
-        "integrates its 24 coordinates by a reduced quadrature; Exudyn's time contains the assembly. Kernels are exact "
-        "to rounding: `funicular verify` prints the error of each.",
-        [Table("kernels", {"kernel": "kernel", "operations": "operations", "us": "µs", "others_us": "others, µs"}, "kernels",
+        """One call of a generated kernel. Project Chrono differentiates the forces of its cable numerically and
+integrates its 24 coordinates by a reduced quadrature; Exudyn's time contains the assembly. Kernels are exact to
+rounding: `funicular verify` prints the error of each.""",
+        [Table("kernels",
+               {"kernel": "kernel", "operations": "operations", "us": "µs", "others_us": "others, µs"},
+               table="kernels",
                rows=kernels),
-         Table("blocks", {"kernel": "kernel", "ns_block": "ns an element", "ns_single": "one by one", "gain": "ratio",
-                          "of_peak": "of peak"}, rows=kernels,
-               text="With AVX2, forces and most tangents are evaluated for four elements at once, with the same bits. "
-                    "The peak counts fused multiply-adds, which the kernels do not use.")]),
+         Table("blocks",
+               {"kernel": "kernel", "ns_block": "ns an element", "ns_single": "one by one", "gain": "ratio",
+                "of_peak": "of peak"},
+               rows=kernels,
+               text="""With AVX2, forces and most tangents are evaluated for four elements at once, with the same
+bits. The peak counts fused multiply-adds, which the kernels do not use.""")]),
 ]
 
 ALONE = [
-    Section("First scene", "Example 5.1 of the paper, one second. `motion` is against steps of 10 µs; the other errors are "
-            "against an independent solution, over the range of each quantity. The release excites a vibration of the "
-            "section (0.3 ms, 1e-7 m), which is a tenth of the range of accelerations.",
-            [Table("first_scene", {"setting": "setting", "integrator": "integrator", "steps": "steps",
-                                   "motion": "error of the motion", "y": "of y", "y_acceleration": "of y-acceleration",
-                                   "energy": "energy", "cpu_s": "CPU s"})], "tests/test_first_scene.py"),
-    Section("Work and precision", "`funicular bench SCENE` measures error against time on a user's own scene. The picture "
-            "shows example 5.1, and the same with 5 kg on a cable of 2 MPa.\n\n"
-            "![Time error over CPU time of two scenes, mesh errors marked](work_precision.png)\n\n"
-            "    .venv/bin/python tests/benchmarks/work_precision.py --plot work_precision.png"),
-    Section("Scenes that ring", "Vibrations that a tolerance need not resolve: rods turned beyond their critical twist, a "
-            "stretched cable let go. Beside each run stands the cheapest fixed step with no larger an error. The limit "
-            "is `tol` and `absolute_tol` over the motion of what counts.",
-            [Table("ringing", {"scene": "scene", "tol": "tol", "limit": "limit", "error": "error",
-                               "integrator": "integrator", "steps": "steps", "CPU s": "CPU s",
-                               "best fixed": "best fixed step", "its error": "its error", "its CPU s": "its CPU s"})],
-            "tests/test_ringing.py"),
-    Section("Cost against elements", "CPU time in µs a step and an element. Steps of 20 µs of generalised-alpha with one "
-            "matrix for all steps. LAPACK factors the band of a cable; riders, slides and shared nodes are its border.",
-            [Table("linear_cost", {"scene": "scene"}, by=("elements", "{us_per_step_and_element}"),
-                   text="![Time and memory of a step against elements](linear_cost.png)")], "tests/test_linear_cost.py"),
-    Section("Cost against bodies", "Rods of 0.1 kg let go level, generalised-alpha with steps of 1 ms. The error is against "
-            "a quarter of the step. Unknowns are eliminated front by front in the order of the scene's graph; chains and "
-            "trees fill in no more than a joint, loops fill in more.",
-            [Table("bodies", {"scene": "scene", "bodies": "bodies", "error": "error", "us_per_step": "µs a step",
-                              "us_per_step_and_body": "µs a step and body", "iterations_per_step": "iterations a step",
-                              "multiplications": "multiplications a body", "set_up_s": "set-up, s"})]),
-    Section("Threads", "Wall time of a step with one thread over that with two, `genalpha`, `cable12`, with the same bits. "
-            "Steps of 20 µs keep one matrix; steps for `tol=1e-3` take a new one in every tenth step. Fewer than 250 "
-            "elements are not shared.",
-            [Table("threads", {"scene": "scene", "steps": "steps"}, by=("elements", "{ratio}"))], "tests/test_threads.py"),
-    Section("Iterations of a step", "Newton iterations and factorisations a step of generalised-alpha, medians over scenes; "
-            "the record has each scene.",
-            [Table("iterations", {"setting": "setting", "scenes": "scenes", "largest error": "largest error",
-                                  "iterations": "iterations", "factored": "factorisations"}, "medians")]),
-    Section("Slack and taut", "Springs that pull alone become slack and taut. `passed` counts events inside of a step; the "
-            "other events end one. Errors are against radau with a tolerance of 1e-9, over the largest motion; on "
-            "catenaries tolerance and error are in m.",
-            [Table("slack_events", {"scene": "scene", "integrator": "integrator", "tol": "tol", "error": "error",
-                                    "iterations": "iterations", "evaluations": "evaluations",
-                                    "factorisations": "factorisations", "passed": "passed"}, "tolerances",
-                   options="--scene overhead_span thrown table ropes catenary_1 catenary_3 catenary_10"),
-             Table("slack_events", {"integrator": "integrator", "tol": "tol", "median": "median error/tol",
-                                    "largest": "largest error/tol", "newton_iterations": "iterations",
-                                    "evaluations": "evaluations", "factorisations": "factorisations",
-                                    "passed": "passed"}, "random", options="--random 25",
-                   text="Bodies on five ropes and a spring, of random mass, stiffnesses and velocities, 0.3 s each.")]),
-    Section("Contact", "An evaluation of all forces of a cable of 1,000 elements; then pairs that are far apart.",
-            [Table("contact", {"1,000 elements": "1,000 elements", "touching, m": "touching, m", "forces, us": "forces, µs"},
-                   "forces"),
-             Table("contact", {"far apart": "far apart", "add, s": "adding, s", "run but steps, s": "run without steps, s",
-                               "forces, us": "forces, µs", "step, us more": "a step, µs more than without pairs"},
-                   "far apart")]),
-    Section("Contact force below a catenary, cost", "Ten spans at 300 km/h, CPU seconds a simulated second. The error is "
-            "that of σ in time, against a tolerance of 0.001 m. No setting has an error below 1 % for less than 1 s.",
-            [Table("pantographs", {"what": "setting", "sigma": "σ, N", "error of sigma %": "error of σ, %",
-                                   "min": "least force, N", "steps": "steps", "cpu s/s": "CPU s/s"}, "cost",
-                   options="--what cost"),
-             Table("pantographs", {"what": "pantograph", "mean": "mean, N", "sigma": "σ, N", "max": "max, N", "min": "min, N",
-                                   "uplift": "uplift, mm", "unknowns": "unknowns", "cpu s/s": "CPU s/s"}, "kinds",
-                   options="--what kinds", text="Kinds of pantographs on the reference model at 300 km/h.")]),
-    Section("A state with given values", "`scene.equilibrium(adjust=, to=)`: lengths of droppers to heights of the contact "
-            "wire, heights of supports, loads; spans of 55 m with nine droppers and 22 elements a span in each wire. CPU "
-            "time in s.",
-            [Table("adjusting", {"adjusted": "adjusted", "spans": "spans", "parameters": "parameters",
-                                 "seconds, z = 0": "in the plane z = 0", "seconds, y = 0": "in the plane y = 0",
-                                 "iterations": "iterations", "misfit": "misfit"}, "line"),
-             Table("adjusting", {"adjusted": "adjusted", "size": "size", "parameters": "parameters", "seconds": "CPU s",
-                                 "scenes": "scenes built", "iterations": "iterations", "misfit": "misfit"}, "wires",
-                   text="The form of the 55 m line by the length of its elements in m, and ropes from post to post, by "
-                        "their number.")], "tests/test_adjusted_line.py"),
-    Section("To rest", "`scene.relax` from the place drawn, beside `scene.equilibrium`; CPU time in ms. `apart` is the largest "
-            "distance of both states in m. The last column is the kinetic energy, over the energy lost, without resets of "
-            "velocities.",
-            [Table("relaxation", {"scene": "scene", "steps": "steps", "resets": "resets", "ms": "ms",
-                                  "equilibrium_ms": "equilibrium, ms", "apart_m": "apart, m",
-                                  "kinetic_left": "kinetic energy without resets"})], "tests/test_relaxation.py"),
-    Section("Set-up", "CPU time in ms of a run beside its steps. Calls are those of Python and C functions, which do not "
-            "depend on the machine.",
-            [Table("setup", {"name": "scene", "scene": "scene made", "checks": "checks", "model": "model", "engine": "engine",
-                             "choice": "choice of the integrator", "start": "start", "set-up": "set-up", "calls": "calls"})],
-            "tests/test_setup.py"),
-    Section("Sweeps", "Points that take no time, with results of 606 numbers each, on worker processes. Results are those of "
-            "a plain loop bit for bit.",
-            [Table("sweep", {"batch": "points in a batch", "CPU ms a task, here": "CPU ms a task, here",
-                             "ms a task and worker": "ms a task and worker", "points a second": "points a second"},
-                   "empty points")], "tests/test_sweep_workers.py"),
-    Section("The 3D page", "Drawn by software, without a graphics card.",
-            [Table("page", {"page": "page", "stations": "stations", "frames": "frames", "MB": "MB", "written s": "written, s",
-                            "frames per second": "frames per second"})]),
+    Section(
+        "First scene",
+        """Example 5.1 of the paper, one second. `motion` is against steps of 10 µs; the other errors are against an
+independent solution, over the range of each quantity. The release excites a vibration of the section (0.3 ms, 1e-7
+m), which is a tenth of the range of accelerations.""",
+        [Table("first_scene",
+               {"setting": "setting", "integrator": "integrator", "steps": "steps", "motion": "error of the motion",
+                "y": "of y", "y_acceleration": "of y-acceleration", "energy": "energy", "cpu_s": "CPU s"})],
+        test="tests/test_first_scene.py"),
+    Section(
+        "Work and precision",
+        """`funicular bench SCENE` measures error against time on a user's own scene. The picture shows example 5.1,
+and the same with 5 kg on a cable of 2 MPa.
+
+![Time error over CPU time of two scenes, mesh errors marked](work_precision.png)
+
+    .venv/bin/python tests/benchmarks/work_precision.py --plot work_precision.png"""),
+    Section(
+        "Scenes that ring",
+        """Vibrations that a tolerance need not resolve: rods turned beyond their critical twist, a stretched cable
+let go. Beside each run stands the cheapest fixed step with no larger an error. The limit is `tol` and `absolute_tol`
+over the motion of what counts.""",
+        [Table("ringing",
+               {"scene": "scene", "tol": "tol", "limit": "limit", "error": "error", "integrator": "integrator",
+                "steps": "steps", "CPU s": "CPU s", "best fixed": "best fixed step", "its error": "its error",
+                "its CPU s": "its CPU s"})],
+        test="tests/test_ringing.py"),
+    Section(
+        "Cost against elements",
+        """CPU time in µs a step and an element. Steps of 20 µs of generalised-alpha with one matrix for all steps.
+LAPACK factors the band of a cable; riders, slides and shared nodes are its border.""",
+        [Table("linear_cost",
+               {"scene": "scene"},
+               by=("elements", "{us_per_step_and_element}"),
+               text="""![Time and memory of a step against elements](linear_cost.png)""")],
+        test="tests/test_linear_cost.py"),
+    Section(
+        "Cost against bodies",
+        """Rods of 0.1 kg let go level, generalised-alpha with steps of 1 ms. The error is against a quarter of the
+step. Unknowns are eliminated front by front in the order of the scene's graph; chains and trees fill in no more than
+a joint, loops fill in more.""",
+        [Table("bodies",
+               {"scene": "scene", "bodies": "bodies", "error": "error", "us_per_step": "µs a step",
+                "us_per_step_and_body": "µs a step and body", "iterations_per_step": "iterations a step",
+                "multiplications": "multiplications a body", "set_up_s": "set-up, s"})]),
+    Section(
+        "Threads",
+        """Wall time of a step with one thread over that with two, `genalpha`, `cable12`, with the same bits. Steps
+of 20 µs keep one matrix; steps for `tol=1e-3` take a new one in every tenth step. Fewer than 250 elements are not
+shared.""",
+        [Table("threads",
+               {"scene": "scene", "steps": "steps"},
+               by=("elements", "{ratio}"))],
+        test="tests/test_threads.py"),
+    Section(
+        "Iterations of a step",
+        """Newton iterations and factorisations a step of generalised-alpha, medians over scenes; the record has
+each scene.""",
+        [Table("iterations",
+               {"setting": "setting", "scenes": "scenes", "largest error": "largest error",
+                "iterations": "iterations", "factored": "factorisations"},
+               table="medians")]),
+    Section(
+        "Slack and taut",
+        """Springs that pull alone become slack and taut. `passed` counts events inside of a step; the other events
+end one. Errors are against radau with a tolerance of 1e-9, over the largest motion; on catenaries tolerance and
+error are in m.""",
+        [Table("slack_events",
+               {"scene": "scene", "integrator": "integrator", "tol": "tol", "error": "error",
+                "iterations": "iterations", "evaluations": "evaluations", "factorisations": "factorisations",
+                "passed": "passed"},
+               table="tolerances",
+               options="--scene overhead_span thrown table ropes catenary_1 catenary_3 catenary_10"),
+         Table("slack_events",
+               {"integrator": "integrator", "tol": "tol", "median": "median error/tol",
+                "largest": "largest error/tol", "newton_iterations": "iterations", "evaluations": "evaluations",
+                "factorisations": "factorisations", "passed": "passed"},
+               table="random",
+               options="--random 25",
+               text="""Bodies on five ropes and a spring, of random mass, stiffnesses and velocities, 0.3 s each.""")]),
+    Section(
+        "Contact",
+        """An evaluation of all forces of a cable of 1,000 elements; then pairs that are far apart.""",
+        [Table("contact",
+               {"1,000 elements": "1,000 elements", "touching, m": "touching, m", "forces, us": "forces, µs"},
+               table="forces"),
+         Table("contact",
+               {"far apart": "far apart", "add, s": "adding, s", "run but steps, s": "run without steps, s",
+                "forces, us": "forces, µs", "step, us more": "a step, µs more than without pairs"},
+               table="far apart")]),
+    Section(
+        "Contact force below a catenary, cost",
+        """Ten spans at 300 km/h, CPU seconds a simulated second. The error is that of σ in time, against a
+tolerance of 0.001 m. No setting has an error below 1 % for less than 1 s.""",
+        [Table("pantographs",
+               {"what": "setting", "sigma": "σ, N", "error of sigma %": "error of σ, %", "min": "least force, N",
+                "steps": "steps", "cpu s/s": "CPU s/s"},
+               table="cost",
+               options="--what cost"),
+         Table("pantographs",
+               {"what": "pantograph", "mean": "mean, N", "sigma": "σ, N", "max": "max, N", "min": "min, N",
+                "uplift": "uplift, mm", "unknowns": "unknowns", "cpu s/s": "CPU s/s"},
+               table="kinds",
+               options="--what kinds",
+               text="""Kinds of pantographs on the reference model at 300 km/h.""")]),
+    Section(
+        "A state with given values",
+        """`scene.equilibrium(adjust=, to=)`: lengths of droppers to heights of the contact wire, heights of
+supports, loads; spans of 55 m with nine droppers and 22 elements a span in each wire. CPU time in s.""",
+        [Table("adjusting",
+               {"adjusted": "adjusted", "spans": "spans", "parameters": "parameters",
+                "seconds, z = 0": "in the plane z = 0", "seconds, y = 0": "in the plane y = 0",
+                "iterations": "iterations", "misfit": "misfit"},
+               table="line"),
+         Table("adjusting",
+               {"adjusted": "adjusted", "size": "size", "parameters": "parameters", "seconds": "CPU s",
+                "scenes": "scenes built", "iterations": "iterations", "misfit": "misfit"},
+               table="wires",
+               text="""The form of the 55 m line by the length of its elements in m, and ropes from post to post, by
+their number.""")],
+        test="tests/test_adjusted_line.py"),
+    Section(
+        "To rest",
+        """`scene.relax` from the place drawn, beside `scene.equilibrium`; CPU time in ms. `apart` is the largest
+distance of both states in m. The last column is the kinetic energy, over the energy lost, without resets of
+velocities.""",
+        [Table("relaxation",
+               {"scene": "scene", "steps": "steps", "resets": "resets", "ms": "ms",
+                "equilibrium_ms": "equilibrium, ms", "apart_m": "apart, m",
+                "kinetic_left": "kinetic energy without resets"})],
+        test="tests/test_relaxation.py"),
+    Section(
+        "Set-up",
+        """CPU time in ms of a run beside its steps. Calls are those of Python and C functions, which do not depend
+on the machine.""",
+        [Table("setup",
+               {"name": "scene", "scene": "scene made", "checks": "checks", "model": "model", "engine": "engine",
+                "choice": "choice of the integrator", "start": "start", "set-up": "set-up", "calls": "calls"})],
+        test="tests/test_setup.py"),
+    Section(
+        "Sweeps",
+        """Points that take no time, with results of 606 numbers each, on worker processes. Results are those of a
+plain loop bit for bit.""",
+        [Table("sweep",
+               {"batch": "points in a batch", "CPU ms a task, here": "CPU ms a task, here",
+                "ms a task and worker": "ms a task and worker", "points a second": "points a second"},
+               table="empty points")],
+        test="tests/test_sweep_workers.py"),
+    Section(
+        "The 3D page",
+        """Drawn by software, without a graphics card.""",
+        [Table("page",
+               {"page": "page", "stations": "stations", "frames": "frames", "MB": "MB", "written s": "written, s",
+                "frames per second": "frames per second"})]),
 ]
 
 SPEED = PEERS + ALONE

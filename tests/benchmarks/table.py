@@ -12,7 +12,7 @@ import csv
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import ClassVar, TypeVar
 
 import records
 
@@ -27,7 +27,7 @@ class Parser(argparse.ArgumentParser):
 
     json: Path | None = None
     """Where the script that runs records its tables."""
-    recorded: list[str] = []
+    recorded: ClassVar[list[str]] = []
     """Tables of this process in the record: the next rows of one of them are added to it."""
 
     least: dict[str, int]
@@ -55,8 +55,8 @@ def few(cases: Iterable[T]) -> list[T]:
 
 
 def parser(description: str, **numbers: tuple[int, str] | tuple[int, str, int]) -> Parser:
-    """A command line: --out FILE.csv, --json FILE, --smallest, and integers by name with default, help and least value, 1 if not
-    given.
+    """A command line: --out FILE.csv, --json FILE, --smallest, and integers by name with default, help and least
+    value, 1 if not given.
     """
     made = Parser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     made.least = {name: least[0] if least else 1 for name, (_, _, *least) in numbers.items()}

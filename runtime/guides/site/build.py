@@ -19,7 +19,8 @@ REPOSITORY = GUIDES.parents[1]
 """Where the package is built from; installed, there is none."""
 
 PAGES = {"runtime/README.md": "reference.md", "derive/README.md": "derivation.md",
-         "tests/benchmarks/README.md": "benchmarks.md",
+         "tests/benchmarks/README.md": "benchmarks.md", "tests/benchmarks/validation.md": "validation.md",
+         "tests/benchmarks/speed.md": "speed.md",
          **{page.relative_to(REPOSITORY).as_posix(): page.name for page in sorted(GUIDES.glob("pages/*.md"))}}
 """Pages beside the code, those of a subject among them, and what they are called in the site."""
 

@@ -5,8 +5,7 @@ A straight cable under a compression N deflects as exp(rate t): rate² = k² (N 
 the largest at k² = N / (2 E I). A body that a joint pushes with the force N towards its centre of mass, at the distance
 l of it, falls over with rate² = N l / I less what its spin about that line resists, (I_s omega / 2 I)² (I about the
 joint). The exponents are sums of the rates over the output times. Of a cable's a part counts alone: it bends, and then
-bears less. Both parts are measured, over scenes that were compared with their references (tests/benchmarks/README.md,
-error against tol).
+bears less. Both parts are measured, over scenes that were compared with their references (tests/benchmarks/choice.py).
 """
 
 from __future__ import annotations
