@@ -52,8 +52,7 @@ def test_a_taut_cable_vibrates_slower_in_water(element, validated):
     turns = 1e-4 if "beam" in element else 1e-7
     validated("Fluid", "taut cable in water, added mass", "frequency over that in air",
               sqrt(STEEL / (STEEL + 1.3 * WATER)), float(found[2][-1] / found[0][-1]), bound=turns,
-              source="closed form",
-              variant=element)
+              source="closed form", variant=element)
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)

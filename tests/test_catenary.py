@@ -48,8 +48,7 @@ def test_strings_of_the_55_m_line(validated):
 def test_lengths_of_the_55_m_line(validated):
     form = catenary.form(line55(), FINE)
     validated("Catenaries", "form of the 55 m line", "lengths of droppers 1 to 5", PUBLISHED, form.lengths[:5],
-              unit="m",
-              scale=1.0, bound=1e-3, source="published study")
+              unit="m", scale=1.0, bound=1e-3, source="published study")
     assert form.lengths == pytest.approx(form.lengths[::-1], abs=1e-8)
     # bending rounds the kinks at the outer droppers off: these bear 0.6 % more, their neighbours 2.3 % less
     strings = form.line.strings.forces

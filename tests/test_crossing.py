@@ -70,10 +70,9 @@ def test_a_pushed_head_lifts_the_wire_as_a_moving_force_lifts_a_string(speed, er
         expected = rising(run.time, 0.5, 5.0)[:, 0]
         height = run["head.position"][:, 1] - run["head.position"][0, 1]
         found.append(np.abs(height - expected).max() / expected[-1])
-        validated("Contact", f"head pushed against a wire, {speed:g} m/s", "lift of the head", expected, height,
-                  unit="m",
-                  scale=float(expected[-1]), bound=most, source="d'Alembert, moving force on a string",
-                  mesh=f"{elements} elements")  # waves have 94 m/s
+        validated("Contact", f"head pushed against a wire, {speed:g} m/s, {elements} elements", "lift of the head",
+                  expected, height, unit="m", scale=float(expected[-1]), bound=most,
+                  source="d'Alembert, moving force on a string", mesh=f"{elements} elements")  # waves have 94 m/s
         assert unaccounted(run) < 1e-9 * run["energy.kinetic"].max()
     assert 1.7 < found[0] / found[1] < 2.3  # of first order: contact is at a point
 

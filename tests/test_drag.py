@@ -38,9 +38,9 @@ def test_a_horizontal_cable_falls_as_the_closed_form(integrator, element, valida
     terminal = sqrt(weight / drag)
     exact = -terminal * np.tanh(run.time * weight / (2000 * AREA) / terminal)
     assert exact[-1] < -0.999 * terminal
-    validated("Fluid", "horizontal cable that sinks", "velocity", exact[:, None], run["wire.nodal_velocity"][:, :, 0,
-              1],
-              unit="m/s", scale=1.0, bound=1e-7, source="closed form", variant=f"{element}, {integrator}")
+    validated("Fluid", "horizontal cable that sinks", "velocity", exact[:, None],
+              run["wire.nodal_velocity"][:, :, 0, 1], unit="m/s", scale=1.0, bound=1e-7, source="closed form",
+              variant=f"{element}, {integrator}")
     assert np.abs(run["drag_1.force"][-1] - [0, 2 * 2000 * AREA * G, 0]).max() < 1e-2
     assert unaccounted(run) < (2e-14 if integrator == "energy" else 1e-6)
     assert run["energy.dissipated"][-1] > 1.0
@@ -159,8 +159,7 @@ def test_a_cable_in_a_cross_current_hangs_as_the_boundary_value_problem(validate
     exact = sol(s)
     assert np.abs(exact[2]).max() > 1.0  # it is blown well out of its plane
     validated("Fluid", "cable in a current across it", "position", exact[:3].T, state["wire.position"], unit="m",
-              scale=1.0,
-              bound=1e-6, source="string in a current, boundary value problem", mesh="48 elements")
+              scale=1.0, bound=1e-6, source="string in a current, boundary value problem", mesh="48 elements")
     assert np.abs(state["wire@0.force"] + exact[3:, 0]).max() < 1e-7 * np.linalg.norm(exact[3:, 0])
     cut = state.section_forces("wire", [3.0, 6.0])["force"]
     assert np.abs(np.array(cut) - sol([3.0, 6.0])[3:].T).max() < 1e-6 * np.linalg.norm(exact[3:, 0])
@@ -213,9 +212,8 @@ def test_a_sphere_falls_at_its_terminal_speed_and_floats_where_it_displaces_its_
         scene.drag(name, area=0.01, coefficient=0.5, volume=volume)
     run = scene.run(3.0, tol=1e-8, output_step=0.5)
     weight, drag = (2.0 - WATER * 1e-3) * G, WATER / 2 * 0.01 * 0.5
-    validated("Fluid", "body that sinks", "terminal velocity", -sqrt(weight / drag), float(run["falls.velocity"][-1,
-              1]),
-              unit="m/s", bound=1e-6, source="closed form")
+    validated("Fluid", "body that sinks", "terminal velocity", -sqrt(weight / drag),
+              float(run["falls.velocity"][-1, 1]), unit="m/s", bound=1e-6, source="closed form")
     assert np.abs(run["floats.position"] - run["floats.position"][0]).max() < 1e-12
     assert run["drag_2.force"][-1] == pytest.approx([0, 2 * G, 0])
 

@@ -43,8 +43,8 @@ def against(validated, run, quantity: str, bound: float, variant: str) -> None:
     name, component, column = COLUMNS[quantity]
     ours = run[name] if component is None else run[name][:, component]
     validated("Slides", "example 5.1 of the paper, sliding mass on a cable",
-              f"{quantity.replace('_', ' ')} of the mass",
-              REFERENCE[column], ours, scale=float(np.ptp(REFERENCE[column])), bound=bound, variant=variant,
+              f"{quantity.replace('_', ' ')} of the mass", REFERENCE[column], ours,
+              scale=float(np.ptp(REFERENCE[column])), bound=bound, variant=variant,
               source="independent solution, converged to 1e-8 (tests/reference)")
 
 

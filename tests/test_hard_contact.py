@@ -145,8 +145,7 @@ def test_a_ball_leaves_a_dome_where_it_no_longer_presses(integrator, validated):
     assert what == ["lost contact"]
     validated("Contact", "ball that leaves a dome", "instant", left, float(times[0]), unit="s", scale=1.0,
               bound=1e-9 if integrator in ("explicit", "radau") else 3e-8,
-              source="closed form, two thirds of the height",
-              variant=integrator)
+              source="closed form, two thirds of the height", variant=integrator)
     assert run["foot.touching"][run.time > left].max() == 0
     assert drift(run) < (1e-9 if integrator != "genalpha" else 2e-6)
 

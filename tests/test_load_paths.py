@@ -109,10 +109,9 @@ def test_a_moment_bends_to_an_arc_at_every_part_of_it(settings, validated):
     assert len(state.path) >= 10
     a = 4.0 * np.array([each.load_fraction for each in state.path])
     validated("Statics", "beam rolled up by parts of an end moment", "place of the end",
-              np.transpose([np.sin(a) / a, (1 - np.cos(a)) / a]), [each["beam.position"][-1,
-              :2] for each in state.path],
-              unit="m", scale=1.0, bound=2e-4, source="closed form, arc of a circle", variant="beam24, structural",
-              mesh="16 elements")
+              np.transpose([np.sin(a) / a, (1 - np.cos(a)) / a]),
+              [each["beam.position"][-1, :2] for each in state.path], unit="m", scale=1.0, bound=2e-4,
+              source="closed form, arc of a circle", variant="beam24, structural", mesh="16 elements")
 
 
 def lees_frame(load: float, follower: bool, elements: int, beam: bool = False) -> Scene:

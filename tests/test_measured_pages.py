@@ -70,18 +70,19 @@ def test_rows_of_validation_keep_their_bounds():
 
 def test_a_comparison_fails_beyond_its_bound_and_without_a_record(request, monkeypatch):
     check = request.getfixturevalue("validated")
+    given = {"bound": 0.1, "source": "closed form"}
     with pytest.raises(AssertionError, match=r"1\.2, not 1 to 0\.1"):
-        check("Statics", "a case", "a quantity", 1.0, 1.2, bound=0.1, source="closed form")
+        check("Statics", "a case", "large", 1.0, 1.2, **given)
     with pytest.raises(AssertionError, match=r"--record-validation tests/test_measured_pages\.py"):
-        check("Statics", "a case", "a quantity", 1.0, 1.0, bound=0.1, source="closed form")
-    made = validation.row(request.node.nodeid, "Statics", "a case", "q", 1.0, 1.0, bound=0.1, source="closed form")
-    monkeypatch.setattr(validation, "recorded", lambda: [made])
-    check("Statics", "a case", "q", 1.0, 1.05, bound=0.1, source="closed form")
-    for changed in ({"bound": 0.2}, {"source": "another"}):
+        check("Statics", "a case", "unknown", 1.0, 1.0, **given)
+    with pytest.raises(AssertionError, match="a name of its own"):
+        check("Statics", "a case", "unknown", 1.0, 1.0, **given)
+    known = [validation.row(request.node.nodeid, "Statics", "a case", name, 1.0, 1.0, **given) for name in "qrst"]
+    monkeypatch.setattr(validation, "recorded", lambda: known)
+    check("Statics", "a case", "q", 1.0, 1.05, **given)
+    for name, reference, changed in (("r", 1.0, {"bound": 0.2}), ("s", 1.0, {"source": "another"}), ("t", 1.01, {})):
         with pytest.raises(AssertionError, match="record it"):
-            check("Statics", "a case", "q", 1.0, 1.05, **{"bound": 0.1, "source": "closed form"} | changed)
-    with pytest.raises(AssertionError, match="record it"):
-        check("Statics", "a case", "q", 1.01, 1.05, bound=0.1, source="closed form")
+            check("Statics", "a case", name, reference, 1.05, **given | changed)
 
 
 def test_of_arrays_the_largest_error_is_compared(request):

@@ -68,8 +68,7 @@ def test_andrews_squeezer(integrator, tol, off, validated):
     beta, to_crank, gamma, to_5, delta, to_7, epsilon = turn
     found = [beta, to_crank - beta, gamma, to_5 - delta, delta, to_7 - epsilon, epsilon]
     validated("Bodies and mechanisms", "Andrews' squeezer, at 30 ms", "seven angles", SQUEEZED, found, unit="rad",
-              scale=1.0,
-              bound=off, source="IVP test set", variant=f"{integrator}, tol {tol:g}")
+              scale=1.0, bound=off, source="IVP test set", variant=f"{integrator}, tol {tol:g}")
     assert max(run[f"{name}.residual"].max() for name in run.scene.joints) < 1e-11
     assert len(run.report["messages"]) == 3  # in space, each of three loops has three equations too many
 

@@ -41,10 +41,8 @@ def test_drawn_straight(end, length, element, validated):
     state = hangs(rope(end, length, element=element), end, length)
     H, V = end_forces(*end, length, WEIGHT, AXIAL)
     validated("Statics", f"slack rope of {length} m to ({end[0]}, {end[1]}) m, drawn straight", "force on its end",
-              [-H, V],
-              state["rope@0.force"][:2], unit="N", scale=np.hypot(H, V), bound=1e-3, variant=element,
-              mesh="20 elements",
-              source="elastic catenary")
+              [-H, V], state["rope@0.force"][:2], unit="N", scale=np.hypot(H, V), bound=1e-3, variant=element,
+              mesh="20 elements", source="elastic catenary")
 
 
 @pytest.mark.parametrize("membrane", ["assumed", "reduced"])
@@ -136,6 +134,5 @@ def test_where_bending_counts(end, length, validated):
     state = rope(end, length, section=Circle(radius=0.01)).equilibrium()
     assert state.stable and not state.messages
     validated("Statics", f"slack rope of {length} m that resists bending, to ({end[0]}, {end[1]}) m",
-              "force on its end",
-              [-H, V], state["rope@0.force"][:2], unit="N", scale=np.hypot(H, V), bound=1e-3, variant="cable12",
-              source="heavy elastica, boundary value problem", mesh="20 elements")
+              "force on its end", [-H, V], state["rope@0.force"][:2], unit="N", scale=np.hypot(H, V), bound=1e-3,
+              variant="cable12", source="heavy elastica, boundary value problem", mesh="20 elements")

@@ -97,8 +97,7 @@ def test_two_tied_ropes(elements, validated):
     assert found == pytest.approx(expected, rel=5e-3)
     validated("Statics", "two tied ropes, slack, drawn straight", "force on the end", 29953.453, found, unit="N",
               bound=1e-4 if elements == 30 else 1e-7, source="elastic catenary that bends, converged",
-              variant="cable12",
-              mesh=f"{2 * elements} elements")
+              variant="cable12", mesh=f"{2 * elements} elements")
 
 
 def catenary_to_bed(H: float, hanging: float, weight: float, axial: float) -> tuple[float, float]:
