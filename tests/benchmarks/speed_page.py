@@ -63,7 +63,7 @@ of `integrator="auto"` over that of the best other integrator.
 experiment scores and CPU time. All codes have the number of elements that the experiment asks for; the crossing is
 run with 50, too, because its metric gives 2.5e-4 to the exact shape on 51. The reference of the catenary leaves
 bending out. The second figure of the crossing is the lift; the capstan's error is a slide in m, nil by theory. [The
-solver](../../runtime/README.md#solver-of-cosseratbench) is part of the package.""",
+solver](../../runtime/guides/pages/cosseratbench.md) is part of the package.""",
         [Table("cosserat",
                {"experiment": "experiment", "elements": "elements"},
                table="peers",
