@@ -32,8 +32,6 @@ LONGEST = 1.0
 
 SILENT = {
     (49, "energy"): "its steps do not see the angular velocity that short contact gives a body",
-    **dict.fromkeys(((16, name) for name in ("explicit", "genalpha", "energy", "turned", "moved", "later")),
-                    "friction of contact whose direction turns while it slides"),
     (41, "moved"): "the motion in the plane is unstable: what leaves it grows from rounding by 1e12",
 }
 """Disagreements that no note tells, which are known and stay to be mended: seed and route, and their cause."""

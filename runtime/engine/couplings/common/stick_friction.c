@@ -70,12 +70,17 @@ static double least_of(const double g[SAMPLES + 1])
     return g[0] + x * (a + x * (b + x * c)) < g[SAMPLES] ? x : 1.0;
 }
 
+double fu_bound_within(const fu_friction_way *way, double x)
+{
+    const double depth = fu_value_within(&way->depth, way->h, x);
+    return depth > 0.0 ? way->bound(way->of, depth, fu_rate_within(&way->depth, way->h, x)) : 0.0;
+}
+
 /* Returns the bound at a part of the step, m, and makes the stretch as if nothing slid. */
 static double bound_at(const fu_friction_way *way, double x, double *stretch)
 {
-    const double depth = fu_value_within(&way->depth, way->h, x);
     *stretch = fu_value_within(&way->stretch, way->h, x);
-    return depth > 0.0 ? way->bound(way->of, depth, fu_rate_within(&way->depth, way->h, x)) / way->stiffness : 0.0;
+    return fu_bound_within(way, x) / way->stiffness;
 }
 
 static double room_at(const fu_friction_way *way, double x, int side)

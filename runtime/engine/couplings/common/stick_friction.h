@@ -34,6 +34,9 @@ typedef struct {
     const void *of;
 } fu_friction_way;
 
+/* The bound at a part of the step, N. */
+double fu_bound_within(const fu_friction_way *way, double x);
+
 /* The stretch at the end, m; after which part of the step it slid last, and whether forwards, 1, backwards, -1, or not at all, 0. */
 typedef struct {
     double stretch, part;

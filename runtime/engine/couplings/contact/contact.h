@@ -77,6 +77,8 @@ typedef struct {
 
 /* couplings/contact/friction.c: friction where a point touches, and its derivatives, added to those of the normal force. */
 void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
+/* How far off the stretch may be at the end of the step by the parts that its direction is summed over, m. */
+double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point);
 /* Makes the way of a point through a step as fu_contact_stretch does, and the direction of its spring, along the shape's axes. */
 void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point,
                      fu_friction_way *way, double along[3]);

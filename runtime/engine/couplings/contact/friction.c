@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#define PARTS 8 /* of a step: those that the direction of what slides is summed over */
+
 /* The way of a point since its mark, along the shape's axes: by the end of it, by its beginning; the stretch as if nothing slid, with its
  * direction; where the way is not known in time, as in statics, h is 0. */
 typedef struct {
@@ -95,17 +97,42 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     out->way.stretch.rate[1] = fu_dot(dim, out->along, point->slip);
 }
 
-/* Turns the stretch of a point that slides, in space, along the velocity at its end in place of its way over the step: friction is against
- * that, and against the way it would lag by half a step. Returns the time that the way takes, s, 0 where nothing is turned. */
-static double turn_to_slip(int dim, const fu_touch_point *point, path *of)
+/* Makes the stretch, m, of a spring that slides along the way, in so many equal parts of it: in each it is stretched at the velocity at
+ * the part's end, and slides back to the bound. */
+static void slide(int dim, const fu_touch_point *point, const path *of, int parts, double out[3])
 {
-    const double h = (1.0 - of->from) * of->way.h, sign = point->friction_end.stretch < 0.0 ? -1.0 : 1.0;
+    const double whole = 1.0 - of->from, normal = fu_dot(dim, of->normal, of->normal);
+    memcpy(out, of->begin, sizeof of->begin);
+    for (int i = 1; i <= parts; ++i) {
+        const double x = of->from + whole * i / parts;
+        for (int d = 0; d < dim; ++d) {
+            const fu_step_ends ends = {{0.0, of->change[d]}, {point->mark->rate[d], point->slip[d]}};
+            out[d] += whole / parts * of->way.h * fu_rate_within(&ends, of->way.h, x);
+        }
+        const double across = fu_dot(dim, of->normal, out) / normal;
+        for (int d = 0; d < dim; ++d) out[d] -= across * of->normal[d];
+        fu_limit_stretch(dim, of->way.stiffness, fu_bound_within(&of->way, x), out);
+    }
+}
+
+/* Turns the stretch of a point that slides, in space: it lags behind the velocity, by the way along which it is stretched as much. Summed
+ * over parts of the step and half as many (Richardson); the sum over the step alone would be of the first order. Returns the time that the
+ * way takes, s, 0 where nothing is turned. */
+static double turn_to_slip(int dim, const fu_touch_point *point, int parts, path *of)
+{
+    const double h = (1.0 - of->from) * of->way.h;
+    double fine[3], coarse[3];
     if (dim != 3 || !(h > 0.0) || !point->slides) return 0.0;
-    for (int d = 0; d < dim; ++d) of->x[d] = of->begin[d] + h * point->slip[d];
-    const double across = fu_dot(dim, of->normal, of->x) / fu_dot(dim, of->normal, of->normal);
-    for (int d = 0; d < dim; ++d) of->along[d] = of->x[d] - across * of->normal[d];
+    slide(dim, point, of, parts, fine);
+    slide(dim, point, of, parts / 2, coarse);
+    for (int d = 0; d < dim; ++d) of->along[d] = 2.0 * fine[d] - coarse[d];
     const double size = sqrt(fu_dot(dim, of->along, of->along));
-    for (int d = 0; d < dim && size > 0.0; ++d) of->along[d] *= sign / size;
+    for (int d = 0; d < dim; ++d) {
+        of->x[d] = of->begin[d] + h * point->slip[d];
+        if (size > 0.0) of->along[d] /= point->friction_end.stretch < 0.0 ? -size : size;
+    }
+    const double reach = sqrt(fu_dot(dim, of->x, of->x));
+    for (int d = 0; d < dim; ++d) of->x[d] = reach * (point->friction_end.stretch < 0.0 ? -of->along[d] : of->along[d]);
     return h;
 }
 
@@ -118,6 +145,19 @@ void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_
     memcpy(along, of.along, sizeof of.along);
 }
 
+double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point)
+{
+    const int dim = model->dim;
+    double square = 0.0;
+    path of, other;
+    path_of(model, contact, on, point, &of);
+    other = of;
+    turn_to_slip(dim, point, PARTS, &of);
+    turn_to_slip(dim, point, PARTS / 2, &other);
+    for (int d = 0; d < dim; ++d) square += (of.along[d] - other.along[d]) * (of.along[d] - other.along[d]);
+    return sqrt(square) * fabs(point->friction_end.stretch);
+}
+
 void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point)
 {
     const int dim = model->dim;
@@ -128,7 +168,7 @@ void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const 
     if (of.way.h > 0.0) point->friction_end = fu_end_of_friction(&of.way);
     else point->friction_end = (fu_friction_end){fmin(of.size, most), 1.0, of.size > most || most == 0.0};
     point->slides = point->friction_end.slid != 0 && point->friction_end.part == 1.0;
-    turn_to_slip(dim, point, &of);
+    turn_to_slip(dim, point, PARTS, &of);
     for (int d = 0; d < dim; ++d) point->stretch[d] = point->friction_end.stretch * of.along[d];
     fu_surface_out(dim, on, point->stretch, x);
     for (int d = 0; d < dim; ++d) {
@@ -206,7 +246,7 @@ void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *co
     double x[3], f[3], t[3], by_place[9];
     path of;
     path_of(model, contact, on, point, &of);
-    const double h = turn_to_slip(dim, point, &of);
+    const double h = turn_to_slip(dim, point, PARTS, &of);
     fu_surface_out(dim, on, of.x, x);
     if (fu_dot(dim, point->mark->normal, point->mark->normal) > 0.0) /* half of what it sinks by turns with this normal, half with that before */
         for (int d = 0; d < dim; ++d) x[d] -= 0.5 * (point->depth + point->mark->gap) * at->n[d];

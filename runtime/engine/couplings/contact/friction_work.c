@@ -43,7 +43,7 @@ static double taken_on_way(const fu_model *model, const fu_contact *contact, ste
 }
 
 /* Returns how far off the stretch may be at the end, m: by how much another way leads elsewhere, the parabola without the velocities at
- * the beginning. */
+ * the beginning, and by the parts of the step that its direction is summed over. */
 static double astray(const fu_model *model, const fu_contact *contact, step_point *of)
 {
     const int dim = model->dim;
@@ -51,12 +51,13 @@ static double astray(const fu_model *model, const fu_contact *contact, step_poin
     fu_touch_point end = of->end;
     double square = 0.0;
     if (!(end.depth > 0.0)) return 0.0;
+    const double turned = fu_contact_turn_error(model, contact, &of->on, &end);
     for (int d = 0; d < dim; ++d) other.rate[d] = 2.0 * of->change[d] / end.since - end.slip[d];
     other.gap_rate = -2.0 * (end.depth + other.gap) / end.since + end.sinking;
     end.mark = &other;
     fu_contact_stretch(model, contact, &of->on, &end);
     for (int d = 0; d < dim; ++d) square += (end.stretch[d] - of->stretch[d]) * (end.stretch[d] - of->stretch[d]);
-    return sqrt(square);
+    return turned + sqrt(square);
 }
 
 typedef double visitor(const fu_model *model, const fu_contact *contact, step_point *of);
