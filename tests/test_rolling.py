@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from derivatives import at_rest
 from expectations import unaccounted
+from funicular.base.rotations import rotate
 from funicular.engine import Engine
 from funicular.model.build import build
 
@@ -93,7 +94,7 @@ def test_momentum_stays_of_a_ball_that_rolls_on_a_free_plank(integrator):
     for body, mass, inertia in (("plank", 3.0, (0.2, 0.3, 0.4)), ("ball", MASS, (INERTIA,) * 3)):
         momentum += mass * run[f"{body}.velocity"]
         moment += mass * np.cross(run[f"{body}.position"], run[f"{body}.velocity"])
-        turned = np.array([fu.rotations.rotate(a, np.array(inertia) * w) for a, w in
+        turned = np.array([rotate(a, np.array(inertia) * w) for a, w in
                            zip(run[f"{body}.orientation"], run[f"{body}.angular_velocity"], strict=True)])
         moment += turned
     assert np.abs(run["contact_1.friction_force"]).max() > 1.0
