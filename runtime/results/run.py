@@ -83,7 +83,24 @@ class EnergyBalance(NamedTuple):
 
 
 class Run(Viewable, NamedArrays):
-    """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names."""
+    """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names.
+
+    A run is a mapping: `keys`, `items` and a loop go through all results. variables: each with its unit, dimensions and
+    meaning. report: steps, evaluations, error estimates, kernels, ``messages``, ``events``, ``integrator`` and
+    ``integrator_reason``, ``choice`` and ``errors`` where they were asked for, and ``time_s``, the wall time by part:
+
+    | part | work |
+    |---|---|
+    | set_up | model, engine, redundant constraints, choice of the integrator |
+    | start | consistent start, first row |
+    | residual, factorisation, solve | equations of motion, matrices, substitution |
+    | step | rest of the steps: prediction, positions of slides, projection on joints |
+    | error | estimates of the error |
+    | output | rows of output |
+    | results | notes, labelled arrays |
+    | total | all of these, and the search for events |
+    | solve_cpu | CPU time of the start and of all steps |
+    """
 
     def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict,
                  scene_text: SceneText):

@@ -134,6 +134,8 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
     batch: points that a worker gets at once, chosen by what they cost if None. progress: as in `Scene.run`; a function
     is given the points done and those that failed. on_cost: is given the `SweepCost` before the work.
 
+    A row of the file has at most 2 GiB, the file 2^31 - 1 points.
+
     Dimensions of the dataset are the parameters of a grid, else ``point`` with the parameters along it. A point that
     fails has NaN, the ``status`` "failed" and its error in ``message``. record_invalid: do so for scenes that cannot be
     simulated as well, which else are refused before the work; retry_failed: compute those that failed before again.

@@ -39,7 +39,8 @@ def methods_page() -> str:
     for name in FUNCTIONS:
         lines += _described(f"fu.{name}", getattr(funicular, name))
     for title, classes in CLASSES.items():
-        lines += [f"## {title}", "", prose(classes[0]), ""]
+        lines += [f"## {title}", ""]
+        lines += [line for owner in classes for line in (prose(owner), "")]
         for owner in classes:
             lines += _members(title, owner, also=classes[0])
     lines += ["## Catenaries", ""]

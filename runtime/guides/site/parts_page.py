@@ -153,7 +153,8 @@ def _words(field: dict[str, Any]) -> str:
         unit = of.get("description", "") if not note else ""
         of_what = "lists" if of.get("type") == "array" else "numbers" if of else "entries"
         return f"list of {count} {of_what}{note}{' ' * bool(unit)}{unit}"
-    bounds = [f"{sign} {field[key]:g}" for key, sign in BOUNDS.items() if key in field]
+    bounds = [f"{sign} {field[key]:,}" for key, sign in BOUNDS.items() if key in field]
+    bounds += [f"at most {field['maxLength']} characters"] if "maxLength" in field else []
     return WORDS.get(field.get("type", "anything"), field.get("type", "anything")) + note + "".join(
         f", {bound}" for bound in bounds)
 
