@@ -16,8 +16,9 @@ MOST_WORDS = {"a page": 700, "all": 5500}
 """Outside of blocks of code."""
 WANTED = ("saddle", "sheave", "haul rope", "winch", "temperature", "moving load", "float", "mooring", "dropper",
           "buffer", "brake", "tube", "cable robot", "footbridge", "crane", "pantograph", "tether", "belt")
-WANTED_CONCEPTS = ("eq 16", "eq 34", "Hunt-Crossley", "spectral radius", "added mass", "tangent", "friction", "end stop",
-                   "arc-length continuation", "section force recovery", "mesh estimate", "dropper slackness", "capstan")
+WANTED_CONCEPTS = ("eq 16", "eq 34", "Hunt-Crossley", "spectral radius", "added mass", "tangent", "friction",
+                   "end stop", "arc-length continuation", "section force recovery", "mesh estimate",
+                   "dropper slackness", "capstan")
 """Words that users look for."""
 
 

@@ -54,8 +54,9 @@ class Cable(DrawnCable, Part):
     """A cable of elements, drawn straight, through points or along a curve.
 
     It has ``elements`` of equal lengths, or ``nodes`` at given arc-lengths in m, from 0 to its length: close where it
-    bends much, or where something is attached. The longest element is at most 1e6 times as long as the shortest. Both may be left out: `Scene.choose`, or a run with ``model="auto"``,
-    then chooses equal elements for a tolerance, and element and law where no ``element`` is given.
+    bends much, or where something is attached. The longest element is at most 1e6 times as long as the shortest. Both
+    may be left out: `Scene.choose`, or a run with ``model="auto"``, then chooses equal elements for a tolerance, and
+    element and law where no ``element`` is given.
 
     Drawn, which is how a run starts: from ``start`` to ``end``; or smoothly through ``points`` (x, y, z); or along
     ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m. The tangent

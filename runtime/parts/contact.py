@@ -37,17 +37,17 @@ class Contact(Part):
     a: the cable or the body; b: the surface; or lists of them, or "all" of those in the scene: a contact is added for
     each pair, and a name given gets a number. The depth d by which it is below the surface gives the force
     ``stiffness d^exponent (1 + damping d')`` a length of a cable, or on each point of a body, with the exponent 1 or
-    1.5 (Hertz) and the damping c in s/m (Hunt and Crossley). A ball that strikes with the speed v comes back with e v, where
-    v - ln(1 + c v)/c is the same for v and for -e v. stiffness in N/m a length in m, or in N/m; if not given,
+    1.5 (Hertz) and the damping c in s/m (Hunt and Crossley). A ball that strikes with the speed v comes back with e v,
+    where v - ln(1 + c v)/c is the same for v and for -e v. stiffness in N/m a length in m, or in N/m; if not given,
     that which the weight sinks by 1 % of the radius. radius in m: of the cable, that of its section if not given, 0 for
     its centreline; of spheres about a body's points. points: of a body, in its axes, in m; its origin if not given.
     restitution: of hard contact of a body's points, which do not sink in: what part of the normal velocity they come
-    back with, 0 to 1 (Newton). What would come back by less than rest_velocity, in m/s, stays.
-    friction: Coulomb's coefficient, or a `Friction` with model "stick". What sticks is kept by a spring of
-    tangential_stiffness, that of the normal force if not given, and slides where that exceeds friction. In statics
-    friction is against the way from the places drawn. Along a cable that sticks, tension falls over the length
-    √(EA/tangential_stiffness). On spheres about a body's points friction acts where they touch,
-    with its moment, and is stretched as they roll; along cables it acts on the axis.
+    back with, 0 to 1 (Newton). What would come back by less than rest_velocity, in m/s, stays. friction: Coulomb's
+    coefficient, or a `Friction` with model "stick". What sticks is kept by a spring of tangential_stiffness, that of
+    the normal force if not given, and slides where that exceeds friction. In statics friction is against the way from
+    the places drawn. Along a cable that sticks, tension falls over the length √(EA/tangential_stiffness). On spheres
+    about a body's points friction acts where they touch, with its moment, and is stretched as they roll; along cables
+    it acts on the axis.
     """
 
     kind: ClassVar[str] = "contact"

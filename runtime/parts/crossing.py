@@ -31,9 +31,9 @@ class Crossing(Part):
     along both lines, and is smooth in the speed of slip. With model "stick" what sticks is kept by a spring of
     tangential_stiffness, ``stiffness`` if not given, and slides where that exceeds friction; in statics it is against
     the way from the places drawn. side: the direction in which a is of b, along the ground's axes, as at the start if
-    not given: the lines cannot pass through each other. Beyond the ends of cables and bars there is no contact; a bar that
-    comes in over its end and overlaps brings the energy of that from outside. A
-    crossing has one point of contact; of several possible ones the one that is closest at the start.
+    not given: the lines cannot pass through each other. Beyond the ends of cables and bars there is no contact; a bar
+    that comes in over its end and overlaps brings the energy of that from outside. A crossing has one point of contact;
+    of several possible ones the one that is closest at the start.
     """
 
     kind: ClassVar[str] = "crossing"
