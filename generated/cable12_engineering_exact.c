@@ -49,26 +49,13 @@
 
 /* rate of axial strain at the quadrature points: of cable12_engineering_exact_damping_force and 2 more */
 #define CABLE12_ENGINEERING_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
-    fu_real r1_0[3], d1_0[3], r1_1[3], d1_1[3], r1_2[3], d1_2[3]; \
+    fu_real r1[3][3], d1[3][3], len[3], inv[3], deps[3]; \
     const fu_real EA_tau = 0.5*A[0]*tau/w; \
-    FU_EACH(i, 3, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];) \
-    FU_EACH(i, 3, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];) \
-    const fu_real \
-        len_0 = FU_SQRT(r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1] + r1_0[2]*r1_0[2]), \
-        inv_0 = 1.0/len_0, \
-        deps_0 = inv_0*(d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1] + d1_0[2]*r1_0[2]); \
-    FU_EACH(i, 3, r1_1[i] = chord2[i] - 0.5*t2[i];) \
-    FU_EACH(i, 3, d1_1[i] = chordd2[i] - 0.5*dt2[i];) \
-    const fu_real \
-        len_1 = FU_SQRT(r1_1[0]*r1_1[0] + r1_1[1]*r1_1[1] + r1_1[2]*r1_1[2]), \
-        inv_1 = 1.0/len_1, \
-        deps_1 = inv_1*(d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1] + d1_1[2]*r1_1[2]); \
-    FU_EACH(i, 3, r1_2[i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];) \
-    FU_EACH(i, 3, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];) \
-    const fu_real \
-        len_2 = FU_SQRT(r1_2[0]*r1_2[0] + r1_2[1]*r1_2[1] + r1_2[2]*r1_2[2]), \
-        inv_2 = 1.0/len_2, \
-        deps_2 = inv_2*(d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1] + d1_2[2]*r1_2[2]);
+    CABLE12_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    FU_EACH(g, 3, \
+        len[g] = FU_SQRT(r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2]); \
+        inv[g] = 1.0/len[g]; \
+        deps[g] = inv[g]*(d1[g][0]*r1[g][0] + d1[g][1]*r1[g][1] + d1[g][2]*r1[g][2]);)
 
 #ifndef FU_BLOCK
 /* constants of the law from the stiffness of the section (eq 7; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)) */
@@ -346,28 +333,17 @@ FU_KERNEL void cable12_engineering_exact_damping_force(fu_real l, const fu_real 
     CABLE12_STRAIN_VECTORS_AND_THEIR_RATES
     CABLE12_ENGINEERING_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     /* rate of curvature at the quadrature points */
-    fu_real r1_b0[3], d1_b0[3], r2_b[2][3], d2_b0[3], inv_b[2], i_b[2][3], di_b0[3], along_b[2], rate_b[2][3], r1_b1[3],
-        d1_b1[3], d2_b1[3], di_b1[3], F_0[3], F_1[3], F_2[3], inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3];
+    fu_real r1_b[2][3], d1_b[2][3], r2_b[2][3], d2_b[2][3], len_b[2], inv_b[2], i_b[2][3], stretch_b[2], di_b[2][3],
+        along_b[2], across_b[2], rate_b[2][3], F_0[3], F_1[3], F_2[3], inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3];
     const fu_real EI_tau = 2.0*A[1]*tau*w;
-    FU_EACH(i, 3, r1_b0[i] = chord2[i] - 0.5773502691896257*t1[i];)
-    FU_EACH(i, 3, d1_b0[i] = chordd2[i] - 0.5773502691896257*dt1[i];)
-    FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.7320508075688772*t2[i];)
-    FU_EACH(i, 3, d2_b0[i] = dt1[i] - 1.7320508075688772*dt2[i];)
-    const fu_real len_b0 = FU_SQRT(r1_b0[0]*r1_b0[0] + r1_b0[1]*r1_b0[1] + r1_b0[2]*r1_b0[2]);
     CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
-    FU_EACH(i, 3, r1_b1[i] = chord2[i] + 0.5773502691896257*t1[i];)
-    FU_EACH(i, 3, d1_b1[i] = chordd2[i] + 0.5773502691896257*dt1[i];)
-    FU_EACH(i, 3, r2_b[1][i] = t1[i] + 1.7320508075688772*t2[i];)
-    FU_EACH(i, 3, d2_b1[i] = dt1[i] + 1.7320508075688772*dt2[i];)
-    const fu_real len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]);
+    const fu_real N_0 = 0.5555555555555557*EA_tau*deps[0]*inv[0];
+    FU_EACH(i, 3, F_0[i] = N_0*r1[0][i];)
+    const fu_real N_1 = 0.8888888888888888*EA_tau*deps[1]*inv[1];
+    FU_EACH(i, 3, F_1[i] = N_1*r1[1][i];)
+    const fu_real N_2 = 0.5555555555555557*EA_tau*deps[2]*inv[2];
+    FU_EACH(i, 3, F_2[i] = N_2*r1[2][i];)
     CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
-    const fu_real N_0 = 0.5555555555555557*EA_tau*deps_0*inv_0;
-    FU_EACH(i, 3, F_0[i] = N_0*r1_0[i];)
-    const fu_real N_1 = 0.8888888888888888*EA_tau*deps_1*inv_1;
-    FU_EACH(i, 3, F_1[i] = N_1*r1_1[i];)
-    const fu_real N_2 = 0.5555555555555557*EA_tau*deps_2*inv_2;
-    FU_EACH(i, 3, F_2[i] = N_2*r1_2[i];)
-    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
     CABLE12_FORCES_ON_STRAIN_VECTORS_3
     /* forces on nodal vectors */
     fu_real f_r_2[3];
@@ -390,23 +366,26 @@ void cable12_engineering_exact_damping_tangent(fu_real l, const fu_real *e, cons
         K_2[3][3], sum11_d10[3][3], difference11_d10[3][3], p_b0[3], by_turn_b0[3], by_i_b0[3], K_b0[4][3][3],
         pushed_b0[3], turned_b0[3], follows_b0[3], stiff_i_b0[3], p_b1[3], by_turn_b1[3], by_i_b1[3], K_b1[4][3][3],
         pushed_b1[3], turned_b1[3], follows_b1[3], stiff_i_b1[3], sum_d20[4][3][3], difference_d20[4][3][3];
-    const fu_real N_0 = 0.5555555555555557*EA_tau*deps_0*inv_0;
-    FU_EACH(i, 3, i_0[i] = inv_0*r1_0[i];)
-    FU_EACH(i, 3, di_0[i] = inv_0*(d1_0[i] - deps_0*i_0[i]);)
+    const fu_real N_0 = 0.5555555555555557*EA_tau*deps[0]*inv[0];
+    FU_EACH(i, 3, i_0[i] = inv[0]*r1[0][i];)
+    FU_EACH(i, 3, di_0[i] = inv[0]*(d1[0][i] - deps[0]*i_0[i]);)
     FU_EACH(i, 3, by_0[i] = 0.5555555555555557*EA_tau*(di_0[i] + i_0[i]*rate) - N_0*i_0[i];)
     FU_PAIRS(i, j, 3, K_0[i][j] = by_0[j]*i_0[i];)
     FU_EACH(i, 3, K_0[i][i] += N_0;)
-    const fu_real N_1 = 0.8888888888888888*EA_tau*deps_1*inv_1;
-    FU_EACH(i, 3, i_1[i] = inv_1*r1_1[i];)
-    FU_EACH(i, 3, di_1[i] = inv_1*(d1_1[i] - deps_1*i_1[i]);)
+    const fu_real N_1 = 0.8888888888888888*EA_tau*deps[1]*inv[1];
+    FU_EACH(i, 3, i_1[i] = inv[1]*r1[1][i];)
+    FU_EACH(i, 3, di_1[i] = inv[1]*(d1[1][i] - deps[1]*i_1[i]);)
     FU_EACH(i, 3, by_1[i] = 0.8888888888888888*EA_tau*(di_1[i] + i_1[i]*rate) - N_1*i_1[i];)
     FU_PAIRS(i, j, 3, K_1[i][j] = by_1[j]*i_1[i];)
     FU_EACH(i, 3, K_1[i][i] += N_1;)
-    const fu_real N_2 = 0.5555555555555557*EA_tau*deps_2*inv_2;
-    FU_EACH(i, 3, i_2[i] = inv_2*r1_2[i];)
-    FU_EACH(i, 3, di_2[i] = inv_2*(d1_2[i] - deps_2*i_2[i]);)
+    const fu_real N_2 = 0.5555555555555557*EA_tau*deps[2]*inv[2];
+    FU_EACH(i, 3, i_2[i] = inv[2]*r1[2][i];)
+    FU_EACH(i, 3, di_2[i] = inv[2]*(d1[2][i] - deps[2]*i_2[i]);)
     FU_EACH(i, 3, by_2[i] = 0.5555555555555557*EA_tau*(di_2[i] + i_2[i]*rate) - N_2*i_2[i];)
     FU_PAIRS(i, j, 3, K_2[i][j] = by_2[j]*i_2[i];)
+    FU_EACH(i, 3, K_2[i][i] += N_2;)
+    FU_PAIRS(i, j, 3, sum11_d10[i][j] = K_0[i][j] + K_2[i][j];)
+    FU_PAIRS(i, j, 3, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];)
     CABLE12_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE12_BLOCKS_OVER_STRAIN_VECTORS_2
     CABLE12_OVER_NODAL_VECTORS_K_T_3
@@ -431,7 +410,7 @@ FU_KERNEL void cable12_engineering_exact_dissipation(fu_real l, const fu_real *e
     CABLE12_ENGINEERING_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     CABLE12_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     /* outputs */
-    P[0] = 0.5555555555555557*EA_tau*deps_0*deps_0 + 0.8888888888888888*EA_tau*deps_1*deps_1 + 0.5555555555555557*EA_tau*deps_2*deps_2 + EI_tau*(rate_b0[0]*rate_b0[0] + rate_b0[1]*rate_b0[1] + rate_b0[2]*rate_b0[2]) + EI_tau*(rate_b1[0]*rate_b1[0] + rate_b1[1]*rate_b1[1] + rate_b1[2]*rate_b1[2]);
+    P[0] = 0.5555555555555557*EA_tau*deps[0]*deps[0] + 0.8888888888888888*EA_tau*deps[1]*deps[1] + 0.5555555555555557*EA_tau*deps[2]*deps[2] + EI_tau*(rate_b[0][0]*rate_b[0][0] + rate_b[0][1]*rate_b[0][1] + rate_b[0][2]*rate_b[0][2]) + EI_tau*(rate_b[1][0]*rate_b[1][0] + rate_b[1][1]*rate_b[1][1] + rate_b[1][2]*rate_b[1][2]);
 }
 
 #ifndef FU_BLOCK
@@ -440,40 +419,28 @@ void cable12_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, co
 {
     CABLE12_STRAIN_VECTORS_AND_THEIR_RATES
     /* rate of axial strain at the quadrature points */
-    fu_real r1_0[3], d1_0[3], r1_1[3], d1_1[3], r1_2[3], d1_2[3];
+    fu_real r1[3][3], d1[3][3], len[3], inv[3], deps[3];
     const fu_real EA_tau = 0.5*A[0]/w;
-    FU_EACH(i, 3, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 3, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real
-        len_0 = FU_SQRT(r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1] + r1_0[2]*r1_0[2]),
-        inv_0 = 1.0/len_0,
-        deps_0 = inv_0*(d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1] + d1_0[2]*r1_0[2]);
-    FU_EACH(i, 3, r1_1[i] = chord2[i] - 0.5*t2[i];)
-    FU_EACH(i, 3, d1_1[i] = chordd2[i] - 0.5*dt2[i];)
-    const fu_real
-        len_1 = FU_SQRT(r1_1[0]*r1_1[0] + r1_1[1]*r1_1[1] + r1_1[2]*r1_1[2]),
-        inv_1 = 1.0/len_1,
-        deps_1 = inv_1*(d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1] + d1_1[2]*r1_1[2]);
-    FU_EACH(i, 3, r1_2[i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 3, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real
-        len_2 = FU_SQRT(r1_2[0]*r1_2[0] + r1_2[1]*r1_2[1] + r1_2[2]*r1_2[2]),
-        inv_2 = 1.0/len_2,
-        deps_2 = inv_2*(d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1] + d1_2[2]*r1_2[2]);
+    CABLE12_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
+    FU_EACH(g, 3,
+        len[g] = FU_SQRT(r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2]);
+        inv[g] = 1.0/len[g];
+        deps[g] = inv[g]*(d1[g][0]*r1[g][0] + d1[g][1]*r1[g][1] + d1[g][2]*r1[g][2]);)
     CABLE12_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     /* forces at the quadrature points */
     fu_real F_0[3], F_1[3], F_2[3], excess_rate_b[2][3], inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3];
     const fu_real
-        excess_deps_0 = deps_0*weight - relaxed_strain[0],
-        N_0 = 0.5555555555555557*EA_tau*excess_deps_0*inv_0;
-    FU_EACH(i, 3, F_0[i] = N_0*r1_0[i];)
+        excess_deps_0 = deps[0]*weight - relaxed_strain[0],
+        N_0 = 0.5555555555555557*EA_tau*excess_deps_0*inv[0];
+    FU_EACH(i, 3, F_0[i] = N_0*r1[0][i];)
     const fu_real
-        excess_deps_1 = deps_1*weight - relaxed_strain[1],
-        N_1 = 0.8888888888888888*EA_tau*excess_deps_1*inv_1;
-    FU_EACH(i, 3, F_1[i] = N_1*r1_1[i];)
+        excess_deps_1 = deps[1]*weight - relaxed_strain[1],
+        N_1 = 0.8888888888888888*EA_tau*excess_deps_1*inv[1];
+    FU_EACH(i, 3, F_1[i] = N_1*r1[1][i];)
     const fu_real
-        excess_deps_2 = deps_2*weight - relaxed_strain[2],
-        N_2 = 0.5555555555555557*EA_tau*excess_deps_2*inv_2;
+        excess_deps_2 = deps[2]*weight - relaxed_strain[2],
+        N_2 = 0.5555555555555557*EA_tau*excess_deps_2*inv[2];
+    FU_EACH(i, 3, F_2[i] = N_2*r1[2][i];)
     CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2
     CABLE12_FORCES_ON_STRAIN_VECTORS_3
     /* forces on nodal vectors */
@@ -483,9 +450,9 @@ void cable12_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, co
     FU_EACH(i, 3, f[i + 9] = 0.5*f_t1[i] + 0.5*f_t2[i];)
     /* outputs */
     FU_EACH(i, 3, f[i] = -f_r_2[i];)
-    dE[0] = deps_0;
-    dE[1] = deps_1;
-    dE[2] = deps_2;
+    dE[0] = deps[0];
+    dE[1] = deps[1];
+    dE[2] = deps[2];
     FU_EACH(i, 3, dE[i + 3] = rate_b[0][i];)
     FU_EACH(i, 3, dE[i + 6] = rate_b[1][i];)
 }

@@ -7,25 +7,13 @@
  *   cable12_engineering_exact_tension_only_elastic_tangent: 807 add, 1305 mul, 42 div, 10 sqrt
  *   cable12_engineering_exact_tension_only_discrete_force: 459 add, 619 mul, 42 div, 20 sqrt
  *   cable12_engineering_exact_tension_only_step_stiffness: 70 add, 89 mul, 2 div
- *   cable12_engineering_exact_tension_only_damping_force: 210 add, 285 mul, 13 div, 11 sqrt
- *   cable12_engineering_exact_tension_only_damping_tangent: 810 add, 1140 mul, 13 div, 11 sqrt
- *   cable12_engineering_exact_tension_only_dissipation: 160 add, 210 mul, 13 div, 11 sqrt
+ *   cable12_engineering_exact_tension_only_damping_force: 210 add, 284 mul, 13 div, 11 sqrt
+ *   cable12_engineering_exact_tension_only_damping_tangent: 810 add, 1136 mul, 13 div, 11 sqrt
+ *   cable12_engineering_exact_tension_only_dissipation: 160 add, 209 mul, 13 div, 11 sqrt
  *   cable12_engineering_exact_tension_only_section_forces: 85 add, 195 mul, 6 div, 4 sqrt
  */
 #include "kernels.h"
 #include "cable12_stages.h"
-
-/* part of rate of axial strain at the quadrature points: of cable12_engineering_exact_tension_only_damping_force and 2 more */
-#define CABLE12_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
-    const fu_real \
-        len_0 = FU_SQRT(a1_0 + 1.0), \
-        eps_0 = a1_0/(len_0 + 1.0), \
-        transition2 = A[3]*A[3], \
-        smooth_0 = FU_SQRT(eps_0*eps_0 + transition2), \
-        inv_smooth_0 = 1.0/smooth_0, \
-        u_0 = eps_0*inv_smooth_0, \
-        quarter_lost = -0.25*A[2] + 0.25, \
-        share_0 = A[2] + quarter_lost*(-u_0 + 2.0)*(u_0 + 1.0)*(u_0 + 1.0);
 
 /* strain at the quadrature points: of cable12_engineering_exact_tension_only_elastic_force and 1 more */
 #define CABLE12_ENGINEERING_EXACT_TENSION_ONLY_STRAIN_AT_THE_QUADRATURE_POINTS \
@@ -81,6 +69,30 @@
     cross2[4] = a[4]*c[4] - b[4]*b[4]; \
     smooth[4] = FU_SQRT(eps[4]*eps[4] + transition2); \
     inv_smooth[4] = 1.0/(A[3] + smooth[4]);
+
+/* rate of axial strain at the quadrature points: of cable12_engineering_exact_tension_only_damping_force and 1 more */
+#define CABLE12_ENGINEERING_EXACT_TENSION_ONLY_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    fu_real r1[3][3], d1[3][3], EA_tau_at[2], a1[3], len[3], eps[3], smooth[3], inv_smooth[3], u[3], share[3], \
+        viscosity[3], len_2_at[3], inv[3], deps[3]; \
+    const fu_real EA_tau = 0.5*A[0]*tau/w; \
+    CABLE12_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    const fu_real \
+        transition2 = A[3]*A[3], \
+        quarter_lost = -0.25*A[2] + 0.25; \
+    EA_tau_at[0] = 0.5555555555555557*EA_tau; \
+    EA_tau_at[1] = 0.8888888888888888*EA_tau; \
+    FU_EACH(g, 3, \
+        a1[g] = r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2] - 1.0; \
+        len[g] = FU_SQRT(a1[g] + 1.0); \
+        eps[g] = a1[g]/(len[g] + 1.0); \
+        smooth[g] = FU_SQRT(eps[g]*eps[g] + transition2); \
+        inv_smooth[g] = 1.0/smooth[g]; \
+        u[g] = eps[g]*inv_smooth[g]; \
+        share[g] = A[2] + quarter_lost*(-u[g] + 2.0)*(u[g] + 1.0)*(u[g] + 1.0); \
+        viscosity[g] = EA_tau_at[g < 1 ? g : 2 - g]*share[g]; \
+        len_2_at[g] = FU_SQRT(r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2]); \
+        inv[g] = 1.0/len_2_at[g]; \
+        deps[g] = inv[g]*(d1[g][0]*r1[g][0] + d1[g][1]*r1[g][1] + d1[g][2]*r1[g][2]);)
 
 #ifndef FU_BLOCK
 /* constants of the law from the stiffness of the section (eq 7; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)) */
@@ -540,65 +552,16 @@ void cable12_engineering_exact_tension_only_step_stiffness(fu_real l, const fu_r
 FU_KERNEL void cable12_engineering_exact_tension_only_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f)
 {
     CABLE12_STRAIN_VECTORS_AND_THEIR_RATES
-    /* rate of axial strain at the quadrature points */
-    fu_real r1[3][3], d1_0[3], viscosity[3], inv[3], deps[3], d1_1[3], d1_2[3];
-    const fu_real EA_tau = 0.5*A[0]*tau/w;
-    FU_EACH(i, 3, r1[0][i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 3, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real a1_0 = r1[0][0]*r1[0][0] + r1[0][1]*r1[0][1] + r1[0][2]*r1[0][2] - 1.0;
-    CABLE12_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
-    viscosity[0] = 0.5555555555555557*EA_tau*share_0;
-    const fu_real len_0_2 = FU_SQRT(r1[0][0]*r1[0][0] + r1[0][1]*r1[0][1] + r1[0][2]*r1[0][2]);
-    inv[0] = 1.0/len_0_2;
-    deps[0] = inv[0]*(d1_0[0]*r1[0][0] + d1_0[1]*r1[0][1] + d1_0[2]*r1[0][2]);
-    FU_EACH(i, 3, r1[1][i] = chord2[i] - 0.5*t2[i];)
-    FU_EACH(i, 3, d1_1[i] = chordd2[i] - 0.5*dt2[i];)
-    const fu_real
-        a1_1 = r1[1][0]*r1[1][0] + r1[1][1]*r1[1][1] + r1[1][2]*r1[1][2] - 1.0,
-        len_1 = FU_SQRT(a1_1 + 1.0),
-        eps_1 = a1_1/(len_1 + 1.0),
-        smooth_1 = FU_SQRT(eps_1*eps_1 + transition2),
-        inv_smooth_1 = 1.0/smooth_1,
-        u_1 = eps_1*inv_smooth_1,
-        share_1 = A[2] + quarter_lost*(-u_1 + 2.0)*(u_1 + 1.0)*(u_1 + 1.0);
-    viscosity[1] = 0.8888888888888888*EA_tau*share_1;
-    const fu_real len_1_2 = FU_SQRT(r1[1][0]*r1[1][0] + r1[1][1]*r1[1][1] + r1[1][2]*r1[1][2]);
-    inv[1] = 1.0/len_1_2;
-    deps[1] = inv[1]*(d1_1[0]*r1[1][0] + d1_1[1]*r1[1][1] + d1_1[2]*r1[1][2]);
-    FU_EACH(i, 3, r1[2][i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 3, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real
-        a1_2 = r1[2][0]*r1[2][0] + r1[2][1]*r1[2][1] + r1[2][2]*r1[2][2] - 1.0,
-        len_2 = FU_SQRT(a1_2 + 1.0),
-        eps_2 = a1_2/(len_2 + 1.0),
-        smooth_2 = FU_SQRT(eps_2*eps_2 + transition2),
-        inv_smooth_2 = 1.0/smooth_2,
-        u_2 = eps_2*inv_smooth_2,
-        share_2 = A[2] + quarter_lost*(-u_2 + 2.0)*(u_2 + 1.0)*(u_2 + 1.0);
-    viscosity[2] = 0.5555555555555557*EA_tau*share_2;
-    const fu_real len_2_2 = FU_SQRT(r1[2][0]*r1[2][0] + r1[2][1]*r1[2][1] + r1[2][2]*r1[2][2]);
-    inv[2] = 1.0/len_2_2;
-    deps[2] = inv[2]*(d1_2[0]*r1[2][0] + d1_2[1]*r1[2][1] + d1_2[2]*r1[2][2]);
+    CABLE12_ENGINEERING_EXACT_TENSION_ONLY_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     /* rate of curvature at the quadrature points */
-    fu_real r1_b0[3], d1_b0[3], r2_b[2][3], d2_b0[3], inv_b[2], i_b[2][3], di_b0[3], along_b[2], rate_b[2][3], r1_b1[3],
-        d1_b1[3], d2_b1[3], di_b1[3], N[3], F[3][3], inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3];
+    fu_real r1_b[2][3], d1_b[2][3], r2_b[2][3], d2_b[2][3], len_b[2], inv_b[2], i_b[2][3], stretch_b[2], di_b[2][3],
+        along_b[2], across_b[2], rate_b[2][3], N[3], F[3][3], inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3];
     const fu_real EI_tau = 2.0*A[1]*tau*w;
-    FU_EACH(i, 3, r1_b0[i] = chord2[i] - 0.5773502691896257*t1[i];)
-    FU_EACH(i, 3, d1_b0[i] = chordd2[i] - 0.5773502691896257*dt1[i];)
-    FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.7320508075688772*t2[i];)
-    FU_EACH(i, 3, d2_b0[i] = dt1[i] - 1.7320508075688772*dt2[i];)
-    const fu_real len_b0 = FU_SQRT(r1_b0[0]*r1_b0[0] + r1_b0[1]*r1_b0[1] + r1_b0[2]*r1_b0[2]);
     CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
-    FU_EACH(i, 3, r1_b1[i] = chord2[i] + 0.5773502691896257*t1[i];)
-    FU_EACH(i, 3, d1_b1[i] = chordd2[i] + 0.5773502691896257*dt1[i];)
-    FU_EACH(i, 3, r2_b[1][i] = t1[i] + 1.7320508075688772*t2[i];)
-    FU_EACH(i, 3, d2_b1[i] = dt1[i] + 1.7320508075688772*dt2[i];)
-    const fu_real len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]);
-    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     FU_EACH(g, 3,
         N[g] = deps[g]*inv[g]*viscosity[g];
         FU_EACH(i, 3, F[g][i] = N[g]*r1[g][i];))
-    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
+    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     /* forces on strain vectors */
     fu_real f_t0[3], f_t1[3], f_t2[3];
     FU_EACH(i, 3, f_t0[i] = F1_b[0][i] + F1_b[1][i] + F[0][i] + F[1][i] + F[2][i];)
@@ -619,85 +582,57 @@ void cable12_engineering_exact_tension_only_damping_tangent(fu_real l, const fu_
 {
     CABLE12_STRAIN_VECTORS_AND_THEIR_RATES
     /* rate of axial strain at the quadrature points */
-    fu_real r1_0[3], d1_0[3], r1_1[3], d1_1[3], r1_2[3], d1_2[3];
+    fu_real r1[3][3], d1[3][3], EA_tau_at[2], a1[3], len[3], eps[3], smooth[3], inv_smooth[3], u[3], share[3],
+        d_eps_smooth[3], d_eps_inv_smooth[3], d_eps_u[3], d_eps_share[3], viscosity[3], len_2_at[3], inv[3], deps[3];
     const fu_real EA_tau = 0.5*A[0]*tau/w;
-    FU_EACH(i, 3, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 3, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real a1_0 = r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1] + r1_0[2]*r1_0[2] - 1.0;
-    CABLE12_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
+    CABLE12_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     const fu_real
-        d_eps_0_smooth_0 = eps_0*inv_smooth_0,
-        d_eps_0_inv_smooth_0 = -(d_eps_0_smooth_0*inv_smooth_0*inv_smooth_0),
-        d_eps_0_u_0 = d_eps_0_inv_smooth_0*eps_0 + inv_smooth_0,
-        d_eps_0_share_0 = d_eps_0_u_0*(quarter_lost*(-u_0 + 2.0)*(2.0*u_0 + 2.0) - quarter_lost*(u_0 + 1.0)*(u_0 + 1.0)),
-        viscosity_0 = 0.5555555555555557*EA_tau*share_0,
-        len_0_2 = FU_SQRT(r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1] + r1_0[2]*r1_0[2]),
-        inv_0 = 1.0/len_0_2,
-        deps_0 = inv_0*(d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1] + d1_0[2]*r1_0[2]);
-    FU_EACH(i, 3, r1_1[i] = chord2[i] - 0.5*t2[i];)
-    FU_EACH(i, 3, d1_1[i] = chordd2[i] - 0.5*dt2[i];)
-    const fu_real
-        a1_1 = r1_1[0]*r1_1[0] + r1_1[1]*r1_1[1] + r1_1[2]*r1_1[2] - 1.0,
-        len_1 = FU_SQRT(a1_1 + 1.0),
-        eps_1 = a1_1/(len_1 + 1.0),
-        smooth_1 = FU_SQRT(eps_1*eps_1 + transition2),
-        inv_smooth_1 = 1.0/smooth_1,
-        u_1 = eps_1*inv_smooth_1,
-        share_1 = A[2] + quarter_lost*(-u_1 + 2.0)*(u_1 + 1.0)*(u_1 + 1.0),
-        d_eps_1_smooth_1 = eps_1*inv_smooth_1,
-        d_eps_1_inv_smooth_1 = -(d_eps_1_smooth_1*inv_smooth_1*inv_smooth_1),
-        d_eps_1_u_1 = d_eps_1_inv_smooth_1*eps_1 + inv_smooth_1,
-        d_eps_1_share_1 = d_eps_1_u_1*(quarter_lost*(-u_1 + 2.0)*(2.0*u_1 + 2.0) - quarter_lost*(u_1 + 1.0)*(u_1 + 1.0)),
-        viscosity_1 = 0.8888888888888888*EA_tau*share_1,
-        len_1_2 = FU_SQRT(r1_1[0]*r1_1[0] + r1_1[1]*r1_1[1] + r1_1[2]*r1_1[2]),
-        inv_1 = 1.0/len_1_2,
-        deps_1 = inv_1*(d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1] + d1_1[2]*r1_1[2]);
-    FU_EACH(i, 3, r1_2[i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 3, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real
-        a1_2 = r1_2[0]*r1_2[0] + r1_2[1]*r1_2[1] + r1_2[2]*r1_2[2] - 1.0,
-        len_2 = FU_SQRT(a1_2 + 1.0),
-        eps_2 = a1_2/(len_2 + 1.0),
-        smooth_2 = FU_SQRT(eps_2*eps_2 + transition2),
-        inv_smooth_2 = 1.0/smooth_2,
-        u_2 = eps_2*inv_smooth_2,
-        share_2 = A[2] + quarter_lost*(-u_2 + 2.0)*(u_2 + 1.0)*(u_2 + 1.0),
-        d_eps_2_smooth_2 = eps_2*inv_smooth_2,
-        d_eps_2_inv_smooth_2 = -(d_eps_2_smooth_2*inv_smooth_2*inv_smooth_2),
-        d_eps_2_u_2 = d_eps_2_inv_smooth_2*eps_2 + inv_smooth_2,
-        d_eps_2_share_2 = d_eps_2_u_2*(quarter_lost*(-u_2 + 2.0)*(2.0*u_2 + 2.0) - quarter_lost*(u_2 + 1.0)*(u_2 + 1.0)),
-        viscosity_2 = 0.5555555555555557*EA_tau*share_2,
-        len_2_2 = FU_SQRT(r1_2[0]*r1_2[0] + r1_2[1]*r1_2[1] + r1_2[2]*r1_2[2]),
-        inv_2 = 1.0/len_2_2,
-        deps_2 = inv_2*(d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1] + d1_2[2]*r1_2[2]);
+        transition2 = A[3]*A[3],
+        quarter_lost = -0.25*A[2] + 0.25;
+    EA_tau_at[0] = 0.5555555555555557*EA_tau;
+    EA_tau_at[1] = 0.8888888888888888*EA_tau;
+    FU_EACH(g, 3,
+        a1[g] = r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2] - 1.0;
+        len[g] = FU_SQRT(a1[g] + 1.0);
+        eps[g] = a1[g]/(len[g] + 1.0);
+        smooth[g] = FU_SQRT(eps[g]*eps[g] + transition2);
+        inv_smooth[g] = 1.0/smooth[g];
+        u[g] = eps[g]*inv_smooth[g];
+        share[g] = A[2] + quarter_lost*(-u[g] + 2.0)*(u[g] + 1.0)*(u[g] + 1.0);
+        d_eps_smooth[g] = eps[g]*inv_smooth[g];
+        d_eps_inv_smooth[g] = -(d_eps_smooth[g]*inv_smooth[g]*inv_smooth[g]);
+        d_eps_u[g] = d_eps_inv_smooth[g]*eps[g] + inv_smooth[g];
+        d_eps_share[g] = d_eps_u[g]*(quarter_lost*(-u[g] + 2.0)*(2.0*u[g] + 2.0) - quarter_lost*(u[g] + 1.0)*(u[g] + 1.0));
+        viscosity[g] = EA_tau_at[g < 1 ? g : 2 - g]*share[g];
+        len_2_at[g] = FU_SQRT(r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2]);
+        inv[g] = 1.0/len_2_at[g];
+        deps[g] = inv[g]*(d1[g][0]*r1[g][0] + d1[g][1]*r1[g][1] + d1[g][2]*r1[g][2]);)
     CABLE12_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     /* derivatives at the quadrature points */
-    fu_real i_0[3], di_0[3], by_0[3], K_0[3][3], i_1[3], di_1[3], by_1[3], K_1[3][3], i_2[3], di_2[3], by_2[3],
-        K_2[3][3], sum11_d10[3][3], difference11_d10[3][3], p_b0[3], by_turn_b0[3], by_i_b0[3], K_b0[4][3][3],
-        pushed_b0[3], turned_b0[3], follows_b0[3], stiff_i_b0[3], p_b1[3], by_turn_b1[3], by_i_b1[3], K_b1[4][3][3],
-        pushed_b1[3], turned_b1[3], follows_b1[3], stiff_i_b1[3], sum_d20[4][3][3], difference_d20[4][3][3];
-    const fu_real N_0 = deps_0*inv_0*viscosity_0;
-    FU_EACH(i, 3, i_0[i] = inv_0*r1_0[i];)
-    FU_EACH(i, 3, di_0[i] = inv_0*(d1_0[i] - deps_0*i_0[i]);)
-    const fu_real change_0 = 0.5555555555555557*EA_tau*d_eps_0_share_0*deps_0;
-    FU_EACH(i, 3, by_0[i] = -N_0*i_0[i] + change_0*i_0[i] + viscosity_0*(di_0[i] + i_0[i]*rate);)
-    FU_PAIRS(i, j, 3, K_0[i][j] = by_0[j]*i_0[i];)
-    FU_EACH(i, 3, K_0[i][i] += N_0;)
-    const fu_real N_1 = deps_1*inv_1*viscosity_1;
-    FU_EACH(i, 3, i_1[i] = inv_1*r1_1[i];)
-    FU_EACH(i, 3, di_1[i] = inv_1*(d1_1[i] - deps_1*i_1[i]);)
-    const fu_real change_1 = 0.8888888888888888*EA_tau*d_eps_1_share_1*deps_1;
-    FU_EACH(i, 3, by_1[i] = -N_1*i_1[i] + change_1*i_1[i] + viscosity_1*(di_1[i] + i_1[i]*rate);)
-    FU_PAIRS(i, j, 3, K_1[i][j] = by_1[j]*i_1[i];)
-    FU_EACH(i, 3, K_1[i][i] += N_1;)
-    const fu_real N_2 = deps_2*inv_2*viscosity_2;
-    FU_EACH(i, 3, i_2[i] = inv_2*r1_2[i];)
-    FU_EACH(i, 3, di_2[i] = inv_2*(d1_2[i] - deps_2*i_2[i]);)
-    const fu_real change_2 = 0.5555555555555557*EA_tau*d_eps_2_share_2*deps_2;
-    FU_EACH(i, 3, by_2[i] = -N_2*i_2[i] + change_2*i_2[i] + viscosity_2*(di_2[i] + i_2[i]*rate);)
-    FU_PAIRS(i, j, 3, K_2[i][j] = by_2[j]*i_2[i];)
+    fu_real N[3], i_at[3][3], di[3][3], change[3], by[3][3], K_at[3][3][3], sum11_d10[3][3], difference11_d10[3][3],
+        p_b0[3], by_turn_b0[3], by_i_b0[3], K_b0[4][3][3], pushed_b0[3], turned_b0[3], follows_b0[3], stiff_i_b0[3],
+        p_b1[3], by_turn_b1[3], by_i_b1[3], K_b1[4][3][3], pushed_b1[3], turned_b1[3], follows_b1[3], stiff_i_b1[3],
+        sum_d20[4][3][3], difference_d20[4][3][3];
+    FU_EACH(g, 3,
+        N[g] = deps[g]*inv[g]*viscosity[g];
+        FU_EACH(i, 3, i_at[g][i] = inv[g]*r1[g][i];)
+        FU_EACH(i, 3, di[g][i] = inv[g]*(d1[g][i] - deps[g]*i_at[g][i]);)
+        change[g] = EA_tau_at[g < 1 ? g : 2 - g]*d_eps_share[g]*deps[g];
+        FU_EACH(i, 3, by[g][i] = -N[g]*i_at[g][i] + change[g]*i_at[g][i] + viscosity[g]*(di[g][i] + i_at[g][i]*rate);)
+        FU_PAIRS(i, j, 3, K_at[g][i][j] = by[g][j]*i_at[g][i];)
+        FU_EACH(i, 3, K_at[g][i][i] += N[g];))
+    FU_PAIRS(i, j, 3, sum11_d10[i][j] = K_at[0][i][j] + K_at[2][i][j];)
+    FU_PAIRS(i, j, 3, difference11_d10[i][j] = K_at[0][i][j] - K_at[2][i][j];)
     CABLE12_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
-    CABLE12_BLOCKS_OVER_STRAIN_VECTORS_2
+    /* blocks over strain vectors */
+    fu_real K_t_t0[3][3][3], K_t_t1[3][3][3], K_t_t2[3][3][3];
+    FU_PAIRS(i, j, 3, K_t_t0[0][i][j] = K_at[1][i][j] + sum11_d10[i][j] + sum_d20[0][i][j];)
+    FU_PAIRS(i, j, 3, K_t_t1[0][i][j] = -0.7745966692414834*difference11_d10[i][j] - 0.5773502691896257*difference_d20[0][i][j] + sum_d20[1][i][j];)
+    FU_PAIRS(i, j, 3, K_t_t2[0][i][j] = -0.5*K_at[1][i][j] - 1.7320508075688772*difference_d20[1][i][j] + 0.40000000000000013*sum11_d10[i][j];)
+    CABLE12_PART_OF_BLOCKS_OVER_STRAIN_VECTORS_2
+    FU_PAIRS(i, j, 3, K_t_t0[2][i][j] = -0.5*K_at[1][i][j] - 1.7320508075688772*difference_d20[2][i][j] + 0.40000000000000013*sum11_d10[i][j];)
+    FU_PAIRS(i, j, 3, K_t_t1[2][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[2][i][j];)
+    FU_PAIRS(i, j, 3, K_t_t2[2][i][j] = 0.25*K_at[1][i][j] + 0.16000000000000011*sum11_d10[i][j] + 2.9999999999999996*sum_d20[3][i][j];)
     CABLE12_OVER_NODAL_VECTORS_K_T_3
     CABLE12_OVER_NODAL_VECTORS_T_K_T_3
     /* the first position: rigid translation makes no force */
@@ -717,49 +652,10 @@ void cable12_engineering_exact_tension_only_damping_tangent(fu_real l, const fu_
 FU_KERNEL void cable12_engineering_exact_tension_only_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P)
 {
     CABLE12_STRAIN_VECTORS_AND_THEIR_RATES
-    /* rate of axial strain at the quadrature points */
-    fu_real r1_0[3], d1_0[3], r1_1[3], d1_1[3], r1_2[3], d1_2[3];
-    const fu_real EA_tau = 0.5*A[0]*tau/w;
-    FU_EACH(i, 3, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 3, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real a1_0 = r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1] + r1_0[2]*r1_0[2] - 1.0;
-    CABLE12_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
-    const fu_real
-        viscosity_0 = 0.5555555555555557*EA_tau*share_0,
-        len_0_2 = FU_SQRT(r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1] + r1_0[2]*r1_0[2]),
-        inv_0 = 1.0/len_0_2,
-        deps_0 = inv_0*(d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1] + d1_0[2]*r1_0[2]);
-    FU_EACH(i, 3, r1_1[i] = chord2[i] - 0.5*t2[i];)
-    FU_EACH(i, 3, d1_1[i] = chordd2[i] - 0.5*dt2[i];)
-    const fu_real
-        a1_1 = r1_1[0]*r1_1[0] + r1_1[1]*r1_1[1] + r1_1[2]*r1_1[2] - 1.0,
-        len_1 = FU_SQRT(a1_1 + 1.0),
-        eps_1 = a1_1/(len_1 + 1.0),
-        smooth_1 = FU_SQRT(eps_1*eps_1 + transition2),
-        inv_smooth_1 = 1.0/smooth_1,
-        u_1 = eps_1*inv_smooth_1,
-        share_1 = A[2] + quarter_lost*(-u_1 + 2.0)*(u_1 + 1.0)*(u_1 + 1.0),
-        viscosity_1 = 0.8888888888888888*EA_tau*share_1,
-        len_1_2 = FU_SQRT(r1_1[0]*r1_1[0] + r1_1[1]*r1_1[1] + r1_1[2]*r1_1[2]),
-        inv_1 = 1.0/len_1_2,
-        deps_1 = inv_1*(d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1] + d1_1[2]*r1_1[2]);
-    FU_EACH(i, 3, r1_2[i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 3, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real
-        a1_2 = r1_2[0]*r1_2[0] + r1_2[1]*r1_2[1] + r1_2[2]*r1_2[2] - 1.0,
-        len_2 = FU_SQRT(a1_2 + 1.0),
-        eps_2 = a1_2/(len_2 + 1.0),
-        smooth_2 = FU_SQRT(eps_2*eps_2 + transition2),
-        inv_smooth_2 = 1.0/smooth_2,
-        u_2 = eps_2*inv_smooth_2,
-        share_2 = A[2] + quarter_lost*(-u_2 + 2.0)*(u_2 + 1.0)*(u_2 + 1.0),
-        viscosity_2 = 0.5555555555555557*EA_tau*share_2,
-        len_2_2 = FU_SQRT(r1_2[0]*r1_2[0] + r1_2[1]*r1_2[1] + r1_2[2]*r1_2[2]),
-        inv_2 = 1.0/len_2_2,
-        deps_2 = inv_2*(d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1] + d1_2[2]*r1_2[2]);
+    CABLE12_ENGINEERING_EXACT_TENSION_ONLY_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     CABLE12_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     /* outputs */
-    P[0] = EI_tau*(rate_b0[0]*rate_b0[0] + rate_b0[1]*rate_b0[1] + rate_b0[2]*rate_b0[2]) + EI_tau*(rate_b1[0]*rate_b1[0] + rate_b1[1]*rate_b1[1] + rate_b1[2]*rate_b1[2]) + deps_0*deps_0*viscosity_0 + deps_1*deps_1*viscosity_1 + deps_2*deps_2*viscosity_2;
+    P[0] = EI_tau*(rate_b[0][0]*rate_b[0][0] + rate_b[0][1]*rate_b[0][1] + rate_b[0][2]*rate_b[0][2]) + EI_tau*(rate_b[1][0]*rate_b[1][0] + rate_b[1][1]*rate_b[1][1] + rate_b[1][2]*rate_b[1][2]) + deps[0]*deps[0]*viscosity[0] + deps[1]*deps[1]*viscosity[1] + deps[2]*deps[2]*viscosity[2];
 }
 
 #ifndef FU_BLOCK

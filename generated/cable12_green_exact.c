@@ -16,6 +16,19 @@
 #include "kernels.h"
 #include "cable12_stages.h"
 
+/* part of rate of axial strain at the quadrature points: of cable12_green_exact_algorithmic_force and 3 more */
+#define CABLE12_GREEN_EXACT_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    FU_EACH(i, 3, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];) \
+    FU_EACH(i, 3, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];) \
+    FU_EACH(i, 3, r1_1[i] = chord2[i] - 0.5*t2[i];) \
+    FU_EACH(i, 3, d1_1[i] = chordd2[i] - 0.5*dt2[i];) \
+    FU_EACH(i, 3, r1_2[i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];) \
+    FU_EACH(i, 3, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];) \
+    const fu_real \
+        deps_0 = d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1] + d1_0[2]*r1_0[2], \
+        deps_1 = d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1] + d1_1[2]*r1_1[2], \
+        deps_2 = d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1] + d1_2[2]*r1_2[2];
+
 /* strain at the quadrature points: of cable12_green_exact_elastic_force and 1 more */
 #define CABLE12_GREEN_EXACT_STRAIN_AT_THE_QUADRATURE_POINTS \
     fu_real r1_even0[3], r1_odd0[3], r1[5][3], r1_even1[3], r1_odd1[3], r2_odd0[3], r2[5][3], r2_odd1[3], a1[5], b[5], \
@@ -50,15 +63,7 @@
 #define CABLE12_GREEN_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
     fu_real r1_0[3], d1_0[3], r1_1[3], d1_1[3], r1_2[3], d1_2[3]; \
     const fu_real EA_tau = 0.5*A[0]*tau/w; \
-    FU_EACH(i, 3, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];) \
-    FU_EACH(i, 3, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];) \
-    const fu_real deps_0 = d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1] + d1_0[2]*r1_0[2]; \
-    FU_EACH(i, 3, r1_1[i] = chord2[i] - 0.5*t2[i];) \
-    FU_EACH(i, 3, d1_1[i] = chordd2[i] - 0.5*dt2[i];) \
-    const fu_real deps_1 = d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1] + d1_1[2]*r1_1[2]; \
-    FU_EACH(i, 3, r1_2[i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];) \
-    FU_EACH(i, 3, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];) \
-    const fu_real deps_2 = d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1] + d1_2[2]*r1_2[2];
+    CABLE12_GREEN_EXACT_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
 
 #ifndef FU_BLOCK
 /* constants of the law from the stiffness of the section (eq 7; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)) */
@@ -342,28 +347,17 @@ FU_KERNEL void cable12_green_exact_damping_force(fu_real l, const fu_real *e, co
     CABLE12_STRAIN_VECTORS_AND_THEIR_RATES
     CABLE12_GREEN_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     /* rate of curvature at the quadrature points */
-    fu_real r1_b0[3], d1_b0[3], r2_b[2][3], d2_b0[3], inv_b[2], i_b[2][3], di_b0[3], along_b[2], rate_b[2][3], r1_b1[3],
-        d1_b1[3], d2_b1[3], di_b1[3], F_0[3], F_1[3], F_2[3], inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3];
+    fu_real r1_b[2][3], d1_b[2][3], r2_b[2][3], d2_b[2][3], len_b[2], inv_b[2], i_b[2][3], stretch_b[2], di_b[2][3],
+        along_b[2], across_b[2], rate_b[2][3], F_0[3], F_1[3], F_2[3], inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3];
     const fu_real EI_tau = 2.0*A[1]*tau*w;
-    FU_EACH(i, 3, r1_b0[i] = chord2[i] - 0.5773502691896257*t1[i];)
-    FU_EACH(i, 3, d1_b0[i] = chordd2[i] - 0.5773502691896257*dt1[i];)
-    FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.7320508075688772*t2[i];)
-    FU_EACH(i, 3, d2_b0[i] = dt1[i] - 1.7320508075688772*dt2[i];)
-    const fu_real len_b0 = FU_SQRT(r1_b0[0]*r1_b0[0] + r1_b0[1]*r1_b0[1] + r1_b0[2]*r1_b0[2]);
     CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
-    FU_EACH(i, 3, r1_b1[i] = chord2[i] + 0.5773502691896257*t1[i];)
-    FU_EACH(i, 3, d1_b1[i] = chordd2[i] + 0.5773502691896257*dt1[i];)
-    FU_EACH(i, 3, r2_b[1][i] = t1[i] + 1.7320508075688772*t2[i];)
-    FU_EACH(i, 3, d2_b1[i] = dt1[i] + 1.7320508075688772*dt2[i];)
-    const fu_real len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]);
-    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     const fu_real N_0 = 0.5555555555555557*EA_tau*deps_0;
     FU_EACH(i, 3, F_0[i] = N_0*r1_0[i];)
     const fu_real N_1 = 0.8888888888888888*EA_tau*deps_1;
     FU_EACH(i, 3, F_1[i] = N_1*r1_1[i];)
     const fu_real N_2 = 0.5555555555555557*EA_tau*deps_2;
     FU_EACH(i, 3, F_2[i] = N_2*r1_2[i];)
-    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
+    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     CABLE12_FORCES_ON_STRAIN_VECTORS_3
     /* forces on nodal vectors */
     fu_real f_r_2[3];
@@ -397,6 +391,9 @@ void cable12_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_r
     const fu_real N_2 = 0.5555555555555557*EA_tau*deps_2;
     FU_EACH(i, 3, by_2[i] = 0.5555555555555557*EA_tau*(d1_2[i] + r1_2[i]*rate);)
     FU_PAIRS(i, j, 3, K_2[i][j] = by_2[j]*r1_2[i];)
+    FU_EACH(i, 3, K_2[i][i] += N_2;)
+    FU_PAIRS(i, j, 3, sum11_d10[i][j] = K_0[i][j] + K_2[i][j];)
+    FU_PAIRS(i, j, 3, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];)
     CABLE12_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE12_BLOCKS_OVER_STRAIN_VECTORS_2
     CABLE12_OVER_NODAL_VECTORS_K_T_3
@@ -421,7 +418,7 @@ FU_KERNEL void cable12_green_exact_dissipation(fu_real l, const fu_real *e, cons
     CABLE12_GREEN_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     CABLE12_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     /* outputs */
-    P[0] = 0.5555555555555557*EA_tau*deps_0*deps_0 + 0.8888888888888888*EA_tau*deps_1*deps_1 + 0.5555555555555557*EA_tau*deps_2*deps_2 + EI_tau*(rate_b0[0]*rate_b0[0] + rate_b0[1]*rate_b0[1] + rate_b0[2]*rate_b0[2]) + EI_tau*(rate_b1[0]*rate_b1[0] + rate_b1[1]*rate_b1[1] + rate_b1[2]*rate_b1[2]);
+    P[0] = 0.5555555555555557*EA_tau*deps_0*deps_0 + 0.8888888888888888*EA_tau*deps_1*deps_1 + 0.5555555555555557*EA_tau*deps_2*deps_2 + EI_tau*(rate_b[0][0]*rate_b[0][0] + rate_b[0][1]*rate_b[0][1] + rate_b[0][2]*rate_b[0][2]) + EI_tau*(rate_b[1][0]*rate_b[1][0] + rate_b[1][1]*rate_b[1][1] + rate_b[1][2]*rate_b[1][2]);
 }
 
 #ifndef FU_BLOCK
@@ -432,15 +429,7 @@ void cable12_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu
     /* rate of axial strain at the quadrature points */
     fu_real r1_0[3], d1_0[3], r1_1[3], d1_1[3], r1_2[3], d1_2[3];
     const fu_real EA_tau = 0.5*A[0]/w;
-    FU_EACH(i, 3, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 3, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real deps_0 = d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1] + d1_0[2]*r1_0[2];
-    FU_EACH(i, 3, r1_1[i] = chord2[i] - 0.5*t2[i];)
-    FU_EACH(i, 3, d1_1[i] = chordd2[i] - 0.5*dt2[i];)
-    const fu_real deps_1 = d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1] + d1_1[2]*r1_1[2];
-    FU_EACH(i, 3, r1_2[i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 3, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real deps_2 = d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1] + d1_2[2]*r1_2[2];
+    CABLE12_GREEN_EXACT_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     CABLE12_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     /* forces at the quadrature points */
     fu_real F_0[3], F_1[3], F_2[3], excess_rate_b[2][3], inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3];
@@ -455,6 +444,7 @@ void cable12_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu
     const fu_real
         excess_deps_2 = deps_2*weight - relaxed_strain[2],
         N_2 = 0.5555555555555557*EA_tau*excess_deps_2;
+    FU_EACH(i, 3, F_2[i] = N_2*r1_2[i];)
     CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2
     CABLE12_FORCES_ON_STRAIN_VECTORS_3
     /* forces on nodal vectors */

@@ -128,28 +128,28 @@
         now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g]; \
         next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
 
-/* part of rate of curvature at the quadrature points: of cable12_green_exact_damping_force and 4 more */
+/* part of rate of curvature at the quadrature points: of cable12_green_exact_damping_force and 10 more */
 #define CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    inv_b[0] = 1.0/len_b0; \
-    FU_EACH(i, 3, i_b[0][i] = inv_b[0]*r1_b0[i];) \
-    const fu_real stretch_b0 = d1_b0[0]*i_b[0][0] + d1_b0[1]*i_b[0][1] + d1_b0[2]*i_b[0][2]; \
-    FU_EACH(i, 3, di_b0[i] = inv_b[0]*(d1_b0[i] - i_b[0][i]*stretch_b0);) \
-    along_b[0] = i_b[0][0]*r2_b[0][0] + i_b[0][1]*r2_b[0][1] + i_b[0][2]*r2_b[0][2]; \
-    const fu_real across_b0 = di_b0[0]*r2_b[0][0] + di_b0[1]*r2_b[0][1] + di_b0[2]*r2_b[0][2]; \
-    FU_EACH(i, 3, rate_b[0][i] = across_b0*i_b[0][i] - along_b[0]*di_b0[i] + d2_b0[i];)
-
-/* part of rate of curvature at the quadrature points: of cable12_green_exact_damping_force and 4 more */
-#define CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
-    inv_b[1] = 1.0/len_b1; \
-    FU_EACH(i, 3, i_b[1][i] = inv_b[1]*r1_b1[i];) \
-    const fu_real stretch_b1 = d1_b1[0]*i_b[1][0] + d1_b1[1]*i_b[1][1] + d1_b1[2]*i_b[1][2]; \
-    FU_EACH(i, 3, di_b1[i] = inv_b[1]*(d1_b1[i] - i_b[1][i]*stretch_b1);) \
-    along_b[1] = i_b[1][0]*r2_b[1][0] + i_b[1][1]*r2_b[1][1] + i_b[1][2]*r2_b[1][2]; \
-    const fu_real across_b1 = di_b1[0]*r2_b[1][0] + di_b1[1]*r2_b[1][1] + di_b1[2]*r2_b[1][2]; \
-    FU_EACH(i, 3, rate_b[1][i] = across_b1*i_b[1][i] - along_b[1]*di_b1[i] + d2_b1[i];)
+    FU_EACH(i, 3, r1_b[0][i] = chord2[i] - 0.5773502691896257*t1[i];) \
+    FU_EACH(i, 3, d1_b[0][i] = chordd2[i] - 0.5773502691896257*dt1[i];) \
+    FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.7320508075688772*t2[i];) \
+    FU_EACH(i, 3, d2_b[0][i] = dt1[i] - 1.7320508075688772*dt2[i];) \
+    FU_EACH(i, 3, r1_b[1][i] = chord2[i] + 0.5773502691896257*t1[i];) \
+    FU_EACH(i, 3, d1_b[1][i] = chordd2[i] + 0.5773502691896257*dt1[i];) \
+    FU_EACH(i, 3, r2_b[1][i] = t1[i] + 1.7320508075688772*t2[i];) \
+    FU_EACH(i, 3, d2_b[1][i] = dt1[i] + 1.7320508075688772*dt2[i];) \
+    FU_EACH(g, 2, \
+        len_b[g] = FU_SQRT(r1_b[g][0]*r1_b[g][0] + r1_b[g][1]*r1_b[g][1] + r1_b[g][2]*r1_b[g][2]); \
+        inv_b[g] = 1.0/len_b[g]; \
+        FU_EACH(i, 3, i_b[g][i] = inv_b[g]*r1_b[g][i];) \
+        stretch_b[g] = d1_b[g][0]*i_b[g][0] + d1_b[g][1]*i_b[g][1] + d1_b[g][2]*i_b[g][2]; \
+        FU_EACH(i, 3, di_b[g][i] = inv_b[g]*(d1_b[g][i] - i_b[g][i]*stretch_b[g]);) \
+        along_b[g] = i_b[g][0]*r2_b[g][0] + i_b[g][1]*r2_b[g][1] + i_b[g][2]*r2_b[g][2]; \
+        across_b[g] = di_b[g][0]*r2_b[g][0] + di_b[g][1]*r2_b[g][1] + di_b[g][2]*r2_b[g][2]; \
+        FU_EACH(i, 3, rate_b[g][i] = across_b[g]*i_b[g][i] - along_b[g]*di_b[g][i] + d2_b[g][i];))
 
 /* part of rate of curvature at the quadrature points: of cable12_green_exact_damping_force and 2 more */
-#define CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3 \
+#define CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
     FU_EACH(g, 2, \
         inward_b[g] = EI_tau*inv_b[g]*(i_b[g][0]*rate_b[g][0] + i_b[g][1]*rate_b[g][1] + i_b[g][2]*rate_b[g][2]); \
         lever_b[g] = EI_tau*along_b[g]*inv_b[g]; \
@@ -158,66 +158,63 @@
 
 /* part of derivatives at the quadrature points: of cable12_green_exact_damping_tangent and 2 more */
 #define CABLE12_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS \
-    FU_EACH(i, 3, K_2[i][i] += N_2;) \
-    FU_PAIRS(i, j, 3, sum11_d10[i][j] = K_0[i][j] + K_2[i][j];) \
-    FU_PAIRS(i, j, 3, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];) \
     const fu_real \
-        k_b0 = inv_b0*(-inv_b0*stretch_b0 + rate), \
-        level_b0 = across_b0*inv_b0 - along_b0*k_b0; \
-    FU_EACH(i, 3, p_b0[i] = -along_b0*i_b0[i] + r2_b0[i];) \
-    FU_EACH(i, 3, by_turn_b0[i] = inv_b0*(along_b0*i_b0[i] - p_b0[i]);) \
-    const fu_real by_i_i_b0 = across_b0*inv_b0 + level_b0; \
-    FU_EACH(i, 3, by_i_b0[i] = -by_i_i_b0*i_b0[i] + k_b0*p_b0[i];) \
-    K_b0[2][0][0] = EI_tau*(by_i_b0[0]*i_b0[0] + by_turn_b0[0]*di_b0[0] + level_b0); \
-    K_b0[2][0][1] = EI_tau*(by_i_b0[1]*i_b0[0] + by_turn_b0[1]*di_b0[0]); \
-    K_b0[2][0][2] = EI_tau*(by_i_b0[2]*i_b0[0] + by_turn_b0[2]*di_b0[0]); \
-    K_b0[2][1][0] = EI_tau*(by_i_b0[0]*i_b0[1] + by_turn_b0[0]*di_b0[1]); \
-    K_b0[2][1][1] = EI_tau*(by_i_b0[1]*i_b0[1] + by_turn_b0[1]*di_b0[1] + level_b0); \
-    K_b0[2][1][2] = EI_tau*(by_i_b0[2]*i_b0[1] + by_turn_b0[2]*di_b0[1]); \
-    K_b0[2][2][0] = EI_tau*(by_i_b0[0]*i_b0[2] + by_turn_b0[0]*di_b0[2]); \
-    K_b0[2][2][1] = EI_tau*(by_i_b0[1]*i_b0[2] + by_turn_b0[1]*di_b0[2]); \
-    K_b0[2][2][2] = EI_tau*(by_i_b0[2]*i_b0[2] + by_turn_b0[2]*di_b0[2] + level_b0); \
-    FU_PAIRS(i, j, 3, K_b0[3][i][j] = EI_tau*(-di_b0[i]*i_b0[j] + di_b0[j]*i_b0[i]);) \
+        k_b0 = inv_b[0]*(-inv_b[0]*stretch_b[0] + rate), \
+        level_b0 = across_b[0]*inv_b[0] - along_b[0]*k_b0; \
+    FU_EACH(i, 3, p_b0[i] = -along_b[0]*i_b[0][i] + r2_b[0][i];) \
+    FU_EACH(i, 3, by_turn_b0[i] = inv_b[0]*(along_b[0]*i_b[0][i] - p_b0[i]);) \
+    const fu_real by_i_i_b0 = across_b[0]*inv_b[0] + level_b0; \
+    FU_EACH(i, 3, by_i_b0[i] = -by_i_i_b0*i_b[0][i] + k_b0*p_b0[i];) \
+    K_b0[2][0][0] = EI_tau*(by_i_b0[0]*i_b[0][0] + by_turn_b0[0]*di_b[0][0] + level_b0); \
+    K_b0[2][0][1] = EI_tau*(by_i_b0[1]*i_b[0][0] + by_turn_b0[1]*di_b[0][0]); \
+    K_b0[2][0][2] = EI_tau*(by_i_b0[2]*i_b[0][0] + by_turn_b0[2]*di_b[0][0]); \
+    K_b0[2][1][0] = EI_tau*(by_i_b0[0]*i_b[0][1] + by_turn_b0[0]*di_b[0][1]); \
+    K_b0[2][1][1] = EI_tau*(by_i_b0[1]*i_b[0][1] + by_turn_b0[1]*di_b[0][1] + level_b0); \
+    K_b0[2][1][2] = EI_tau*(by_i_b0[2]*i_b[0][1] + by_turn_b0[2]*di_b[0][1]); \
+    K_b0[2][2][0] = EI_tau*(by_i_b0[0]*i_b[0][2] + by_turn_b0[0]*di_b[0][2]); \
+    K_b0[2][2][1] = EI_tau*(by_i_b0[1]*i_b[0][2] + by_turn_b0[1]*di_b[0][2]); \
+    K_b0[2][2][2] = EI_tau*(by_i_b0[2]*i_b[0][2] + by_turn_b0[2]*di_b[0][2] + level_b0); \
+    FU_PAIRS(i, j, 3, K_b0[3][i][j] = EI_tau*(-di_b[0][i]*i_b[0][j] + di_b[0][j]*i_b[0][i]);) \
     FU_EACH(i, 3, K_b0[3][i][i] += EI_tau*rate;) \
     const fu_real \
-        stiff_b0 = EI_tau*inv_b0, \
-        lever_b0 = along_b0*inv_b0, \
-        growth_b0 = i_b0[0]*rate_b0[0] + i_b0[1]*rate_b0[1] + i_b0[2]*rate_b0[2]; \
-    FU_EACH(i, 3, pushed_b0[i] = stiff_b0*(-along_b0*di_b0[i]*inv_b0 + d2_b0[i]*inv_b0 - 2.0*growth_b0*i_b0[i]*inv_b0 + k_b0*p_b0[i]);) \
+        stiff_b0 = EI_tau*inv_b[0], \
+        lever_b0 = along_b[0]*inv_b[0], \
+        growth_b0 = i_b[0][0]*rate_b[0][0] + i_b[0][1]*rate_b[0][1] + i_b[0][2]*rate_b[0][2]; \
+    FU_EACH(i, 3, pushed_b0[i] = stiff_b0*(-along_b[0]*di_b[0][i]*inv_b[0] + d2_b[0][i]*inv_b[0] - 2.0*growth_b0*i_b[0][i]*inv_b[0] + k_b0*p_b0[i]);) \
     FU_EACH(i, 3, turned_b0[i] = by_turn_b0[i]*stiff_b0;) \
-    FU_EACH(i, 3, follows_b0[i] = stiff_b0*(di_b0[i] + i_b0[i]*rate);) \
-    FU_EACH(i, 3, stiff_i_b0[i] = i_b0[i]*stiff_b0;) \
-    FU_PAIRS(i, j, 3, K_b0[0][i][j] = -K_b0[2][i][j]*lever_b0 + pushed_b0[j]*r2_b0[i] + rate_b0[i]*turned_b0[j];) \
-    FU_PAIRS(i, j, 3, K_b0[1][i][j] = -K_b0[3][i][j]*lever_b0 + follows_b0[j]*r2_b0[i] - rate_b0[i]*stiff_i_b0[j];) \
+    FU_EACH(i, 3, follows_b0[i] = stiff_b0*(di_b[0][i] + i_b[0][i]*rate);) \
+    FU_EACH(i, 3, stiff_i_b0[i] = i_b[0][i]*stiff_b0;) \
+    FU_PAIRS(i, j, 3, K_b0[0][i][j] = -K_b0[2][i][j]*lever_b0 + pushed_b0[j]*r2_b[0][i] + rate_b[0][i]*turned_b0[j];) \
+    FU_PAIRS(i, j, 3, K_b0[1][i][j] = -K_b0[3][i][j]*lever_b0 + follows_b0[j]*r2_b[0][i] - rate_b[0][i]*stiff_i_b0[j];) \
     FU_EACH(i, 3, K_b0[1][i][i] += growth_b0*stiff_b0;) \
     const fu_real \
-        k_b1 = inv_b1*(-inv_b1*stretch_b1 + rate), \
-        level_b1 = across_b1*inv_b1 - along_b1*k_b1; \
-    FU_EACH(i, 3, p_b1[i] = -along_b1*i_b1[i] + r2_b1[i];) \
-    FU_EACH(i, 3, by_turn_b1[i] = inv_b1*(along_b1*i_b1[i] - p_b1[i]);) \
-    const fu_real by_i_i_b1 = across_b1*inv_b1 + level_b1; \
-    FU_EACH(i, 3, by_i_b1[i] = -by_i_i_b1*i_b1[i] + k_b1*p_b1[i];) \
-    K_b1[2][0][0] = EI_tau*(by_i_b1[0]*i_b1[0] + by_turn_b1[0]*di_b1[0] + level_b1); \
-    K_b1[2][0][1] = EI_tau*(by_i_b1[1]*i_b1[0] + by_turn_b1[1]*di_b1[0]); \
-    K_b1[2][0][2] = EI_tau*(by_i_b1[2]*i_b1[0] + by_turn_b1[2]*di_b1[0]); \
-    K_b1[2][1][0] = EI_tau*(by_i_b1[0]*i_b1[1] + by_turn_b1[0]*di_b1[1]); \
-    K_b1[2][1][1] = EI_tau*(by_i_b1[1]*i_b1[1] + by_turn_b1[1]*di_b1[1] + level_b1); \
-    K_b1[2][1][2] = EI_tau*(by_i_b1[2]*i_b1[1] + by_turn_b1[2]*di_b1[1]); \
-    K_b1[2][2][0] = EI_tau*(by_i_b1[0]*i_b1[2] + by_turn_b1[0]*di_b1[2]); \
-    K_b1[2][2][1] = EI_tau*(by_i_b1[1]*i_b1[2] + by_turn_b1[1]*di_b1[2]); \
-    K_b1[2][2][2] = EI_tau*(by_i_b1[2]*i_b1[2] + by_turn_b1[2]*di_b1[2] + level_b1); \
-    FU_PAIRS(i, j, 3, K_b1[3][i][j] = EI_tau*(-di_b1[i]*i_b1[j] + di_b1[j]*i_b1[i]);) \
+        k_b1 = inv_b[1]*(-inv_b[1]*stretch_b[1] + rate), \
+        level_b1 = across_b[1]*inv_b[1] - along_b[1]*k_b1; \
+    FU_EACH(i, 3, p_b1[i] = -along_b[1]*i_b[1][i] + r2_b[1][i];) \
+    FU_EACH(i, 3, by_turn_b1[i] = inv_b[1]*(along_b[1]*i_b[1][i] - p_b1[i]);) \
+    const fu_real by_i_i_b1 = across_b[1]*inv_b[1] + level_b1; \
+    FU_EACH(i, 3, by_i_b1[i] = -by_i_i_b1*i_b[1][i] + k_b1*p_b1[i];) \
+    K_b1[2][0][0] = EI_tau*(by_i_b1[0]*i_b[1][0] + by_turn_b1[0]*di_b[1][0] + level_b1); \
+    K_b1[2][0][1] = EI_tau*(by_i_b1[1]*i_b[1][0] + by_turn_b1[1]*di_b[1][0]); \
+    K_b1[2][0][2] = EI_tau*(by_i_b1[2]*i_b[1][0] + by_turn_b1[2]*di_b[1][0]); \
+    K_b1[2][1][0] = EI_tau*(by_i_b1[0]*i_b[1][1] + by_turn_b1[0]*di_b[1][1]); \
+    K_b1[2][1][1] = EI_tau*(by_i_b1[1]*i_b[1][1] + by_turn_b1[1]*di_b[1][1] + level_b1); \
+    K_b1[2][1][2] = EI_tau*(by_i_b1[2]*i_b[1][1] + by_turn_b1[2]*di_b[1][1]); \
+    K_b1[2][2][0] = EI_tau*(by_i_b1[0]*i_b[1][2] + by_turn_b1[0]*di_b[1][2]); \
+    K_b1[2][2][1] = EI_tau*(by_i_b1[1]*i_b[1][2] + by_turn_b1[1]*di_b[1][2]); \
+    K_b1[2][2][2] = EI_tau*(by_i_b1[2]*i_b[1][2] + by_turn_b1[2]*di_b[1][2] + level_b1); \
+    FU_PAIRS(i, j, 3, K_b1[3][i][j] = EI_tau*(-di_b[1][i]*i_b[1][j] + di_b[1][j]*i_b[1][i]);) \
     FU_EACH(i, 3, K_b1[3][i][i] += EI_tau*rate;) \
     const fu_real \
-        stiff_b1 = EI_tau*inv_b1, \
-        lever_b1 = along_b1*inv_b1, \
-        growth_b1 = i_b1[0]*rate_b1[0] + i_b1[1]*rate_b1[1] + i_b1[2]*rate_b1[2]; \
-    FU_EACH(i, 3, pushed_b1[i] = stiff_b1*(-along_b1*di_b1[i]*inv_b1 + d2_b1[i]*inv_b1 - 2.0*growth_b1*i_b1[i]*inv_b1 + k_b1*p_b1[i]);) \
+        stiff_b1 = EI_tau*inv_b[1], \
+        lever_b1 = along_b[1]*inv_b[1], \
+        growth_b1 = i_b[1][0]*rate_b[1][0] + i_b[1][1]*rate_b[1][1] + i_b[1][2]*rate_b[1][2]; \
+    FU_EACH(i, 3, pushed_b1[i] = stiff_b1*(-along_b[1]*di_b[1][i]*inv_b[1] + d2_b[1][i]*inv_b[1] - 2.0*growth_b1*i_b[1][i]*inv_b[1] + k_b1*p_b1[i]);) \
     FU_EACH(i, 3, turned_b1[i] = by_turn_b1[i]*stiff_b1;) \
-    FU_EACH(i, 3, follows_b1[i] = stiff_b1*(di_b1[i] + i_b1[i]*rate);) \
-    FU_EACH(i, 3, stiff_i_b1[i] = i_b1[i]*stiff_b1;) \
-    FU_PAIRS(i, j, 3, K_b1[0][i][j] = -K_b1[2][i][j]*lever_b1 + pushed_b1[j]*r2_b1[i] + rate_b1[i]*turned_b1[j];) \
-    FU_PAIRS(i, j, 3, K_b1[1][i][j] = -K_b1[3][i][j]*lever_b1 + follows_b1[j]*r2_b1[i] - rate_b1[i]*stiff_i_b1[j];) \
+    FU_EACH(i, 3, follows_b1[i] = stiff_b1*(di_b[1][i] + i_b[1][i]*rate);) \
+    FU_EACH(i, 3, stiff_i_b1[i] = i_b[1][i]*stiff_b1;) \
+    FU_PAIRS(i, j, 3, K_b1[0][i][j] = -K_b1[2][i][j]*lever_b1 + pushed_b1[j]*r2_b[1][i] + rate_b[1][i]*turned_b1[j];) \
+    FU_PAIRS(i, j, 3, K_b1[1][i][j] = -K_b1[3][i][j]*lever_b1 + follows_b1[j]*r2_b[1][i] - rate_b[1][i]*stiff_i_b1[j];) \
     FU_EACH(i, 3, K_b1[1][i][i] += growth_b1*stiff_b1;) \
     FU_EACH(g, 4, \
         FU_PAIRS(i, j, 3, sum_d20[g][i][j] = K_b0[g][i][j] + K_b1[g][i][j];) \
@@ -225,7 +222,6 @@
 
 /* part of forces at the quadrature points: of cable12_green_exact_algorithmic_force and 1 more */
 #define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2 \
-    FU_EACH(i, 3, F_2[i] = N_2*r1_2[i];) \
     FU_EACH(g, 2, \
         excess_rate_b[g][0] = rate_b[g][0]*weight - relaxed_strain[3*g + 3]; \
         excess_rate_b[g][1] = rate_b[g][1]*weight - relaxed_strain[3*g + 4]; \
@@ -267,6 +263,15 @@
         next_scale[g] = EI5[g < 2 ? g : 4 - g]*next_inv_a[g]*next_inv_a[g]; \
         now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g]; \
         next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
+
+/* part of rate of axial strain at the quadrature points: of cable12_engineering_exact_algorithmic_force and 6 more */
+#define CABLE12_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    FU_EACH(i, 3, r1[0][i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];) \
+    FU_EACH(i, 3, d1[0][i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];) \
+    FU_EACH(i, 3, r1[1][i] = chord2[i] - 0.5*t2[i];) \
+    FU_EACH(i, 3, d1[1][i] = chordd2[i] - 0.5*dt2[i];) \
+    FU_EACH(i, 3, r1[2][i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];) \
+    FU_EACH(i, 3, d1[2][i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
 
 /* part of blocks over strain vectors: of cable12_green_exact_assumed_elastic_tangent and 1 more */
 #define CABLE12_PART_OF_BLOCKS_OVER_STRAIN_VECTORS \
@@ -745,6 +750,12 @@
         dx_d_c_kappa = -0.5*d_c_k2*dx_kappa/(kappa*kappa) + 0.5*dx_d_c_k2/kappa, \
         dx_W_c = S[1]*d_c_kappa*dx_dk*j0 + S[1]*d_c_kappa*dx_k0_none*j0 + d_c_kappa*dx_j0*(0.5*S[1]*dk + S[1]*(0.5*dk + k0_none)) + dx_d_c_kappa*j0*(0.5*S[1]*dk + S[1]*(0.5*dk + k0_none));
 
+/* part of blocks over strain vectors: of cable12_engineering_exact_tension_only_damping_tangent and 2 more */
+#define CABLE12_PART_OF_BLOCKS_OVER_STRAIN_VECTORS_2 \
+    FU_PAIRS(i, j, 3, K_t_t0[1][i][j] = -0.7745966692414834*difference11_d10[i][j] - 0.5773502691896257*difference_d20[0][i][j] + sum_d20[2][i][j];) \
+    FU_PAIRS(i, j, 3, K_t_t1[1][i][j] = -0.5773502691896257*difference_d20[1][i][j] - 0.5773502691896257*difference_d20[2][i][j] + 0.6000000000000001*sum11_d10[i][j] + 0.3333333333333333*sum_d20[0][i][j] + sum_d20[3][i][j];) \
+    FU_PAIRS(i, j, 3, K_t_t2[1][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[1][i][j];)
+
 /* part of strain vectors: of cable12_green_exact_energy and 15 more */
 #define CABLE12_PART_OF_STRAIN_VECTORS \
     const fu_real \
@@ -953,47 +964,18 @@
 
 /* rate of curvature at the quadrature points: of cable12_green_exact_damping_tangent and 5 more */
 #define CABLE12_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    fu_real r1_b0[3], d1_b0[3], r2_b0[3], d2_b0[3], i_b0[3], di_b0[3], rate_b0[3], r1_b1[3], d1_b1[3], r2_b1[3], \
-        d2_b1[3], i_b1[3], di_b1[3], rate_b1[3]; \
+    fu_real r1_b[2][3], d1_b[2][3], r2_b[2][3], d2_b[2][3], len_b[2], inv_b[2], i_b[2][3], stretch_b[2], di_b[2][3], \
+        along_b[2], across_b[2], rate_b[2][3]; \
     const fu_real EI_tau = 2.0*A[1]*tau*w; \
-    FU_EACH(i, 3, r1_b0[i] = chord2[i] - 0.5773502691896257*t1[i];) \
-    FU_EACH(i, 3, d1_b0[i] = chordd2[i] - 0.5773502691896257*dt1[i];) \
-    FU_EACH(i, 3, r2_b0[i] = t1[i] - 1.7320508075688772*t2[i];) \
-    FU_EACH(i, 3, d2_b0[i] = dt1[i] - 1.7320508075688772*dt2[i];) \
-    const fu_real \
-        len_b0 = FU_SQRT(r1_b0[0]*r1_b0[0] + r1_b0[1]*r1_b0[1] + r1_b0[2]*r1_b0[2]), \
-        inv_b0 = 1.0/len_b0; \
-    FU_EACH(i, 3, i_b0[i] = inv_b0*r1_b0[i];) \
-    const fu_real stretch_b0 = d1_b0[0]*i_b0[0] + d1_b0[1]*i_b0[1] + d1_b0[2]*i_b0[2]; \
-    FU_EACH(i, 3, di_b0[i] = inv_b0*(d1_b0[i] - i_b0[i]*stretch_b0);) \
-    const fu_real \
-        along_b0 = i_b0[0]*r2_b0[0] + i_b0[1]*r2_b0[1] + i_b0[2]*r2_b0[2], \
-        across_b0 = di_b0[0]*r2_b0[0] + di_b0[1]*r2_b0[1] + di_b0[2]*r2_b0[2]; \
-    FU_EACH(i, 3, rate_b0[i] = across_b0*i_b0[i] - along_b0*di_b0[i] + d2_b0[i];) \
-    FU_EACH(i, 3, r1_b1[i] = chord2[i] + 0.5773502691896257*t1[i];) \
-    FU_EACH(i, 3, d1_b1[i] = chordd2[i] + 0.5773502691896257*dt1[i];) \
-    FU_EACH(i, 3, r2_b1[i] = t1[i] + 1.7320508075688772*t2[i];) \
-    FU_EACH(i, 3, d2_b1[i] = dt1[i] + 1.7320508075688772*dt2[i];) \
-    const fu_real \
-        len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]), \
-        inv_b1 = 1.0/len_b1; \
-    FU_EACH(i, 3, i_b1[i] = inv_b1*r1_b1[i];) \
-    const fu_real stretch_b1 = d1_b1[0]*i_b1[0] + d1_b1[1]*i_b1[1] + d1_b1[2]*i_b1[2]; \
-    FU_EACH(i, 3, di_b1[i] = inv_b1*(d1_b1[i] - i_b1[i]*stretch_b1);) \
-    const fu_real \
-        along_b1 = i_b1[0]*r2_b1[0] + i_b1[1]*r2_b1[1] + i_b1[2]*r2_b1[2], \
-        across_b1 = di_b1[0]*r2_b1[0] + di_b1[1]*r2_b1[1] + di_b1[2]*r2_b1[2]; \
-    FU_EACH(i, 3, rate_b1[i] = across_b1*i_b1[i] - along_b1*di_b1[i] + d2_b1[i];)
+    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
 
-/* blocks over strain vectors: of cable12_green_exact_damping_tangent and 2 more */
+/* blocks over strain vectors: of cable12_green_exact_damping_tangent and 1 more */
 #define CABLE12_BLOCKS_OVER_STRAIN_VECTORS_2 \
     fu_real K_t_t0[3][3][3], K_t_t1[3][3][3], K_t_t2[3][3][3]; \
     FU_PAIRS(i, j, 3, K_t_t0[0][i][j] = K_1[i][j] + sum11_d10[i][j] + sum_d20[0][i][j];) \
     FU_PAIRS(i, j, 3, K_t_t1[0][i][j] = -0.7745966692414834*difference11_d10[i][j] - 0.5773502691896257*difference_d20[0][i][j] + sum_d20[1][i][j];) \
     FU_PAIRS(i, j, 3, K_t_t2[0][i][j] = -0.5*K_1[i][j] - 1.7320508075688772*difference_d20[1][i][j] + 0.40000000000000013*sum11_d10[i][j];) \
-    FU_PAIRS(i, j, 3, K_t_t0[1][i][j] = -0.7745966692414834*difference11_d10[i][j] - 0.5773502691896257*difference_d20[0][i][j] + sum_d20[2][i][j];) \
-    FU_PAIRS(i, j, 3, K_t_t1[1][i][j] = -0.5773502691896257*difference_d20[1][i][j] - 0.5773502691896257*difference_d20[2][i][j] + 0.6000000000000001*sum11_d10[i][j] + 0.3333333333333333*sum_d20[0][i][j] + sum_d20[3][i][j];) \
-    FU_PAIRS(i, j, 3, K_t_t2[1][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[1][i][j];) \
+    CABLE12_PART_OF_BLOCKS_OVER_STRAIN_VECTORS_2 \
     FU_PAIRS(i, j, 3, K_t_t0[2][i][j] = -0.5*K_1[i][j] - 1.7320508075688772*difference_d20[2][i][j] + 0.40000000000000013*sum11_d10[i][j];) \
     FU_PAIRS(i, j, 3, K_t_t1[2][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[2][i][j];) \
     FU_PAIRS(i, j, 3, K_t_t2[2][i][j] = 0.25*K_1[i][j] + 0.16000000000000011*sum11_d10[i][j] + 2.9999999999999996*sum_d20[3][i][j];)
@@ -1021,21 +1003,10 @@
 
 /* rate of curvature at the quadrature points: of cable12_green_exact_algorithmic_force and 1 more */
 #define CABLE12_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
-    fu_real r1_b0[3], d1_b0[3], r2_b[2][3], d2_b0[3], inv_b[2], i_b[2][3], di_b0[3], along_b[2], rate_b[2][3], r1_b1[3], \
-        d1_b1[3], d2_b1[3], di_b1[3]; \
+    fu_real r1_b[2][3], d1_b[2][3], r2_b[2][3], d2_b[2][3], len_b[2], inv_b[2], i_b[2][3], stretch_b[2], di_b[2][3], \
+        along_b[2], across_b[2], rate_b[2][3]; \
     const fu_real EI_tau = 2.0*A[1]*w; \
-    FU_EACH(i, 3, r1_b0[i] = chord2[i] - 0.5773502691896257*t1[i];) \
-    FU_EACH(i, 3, d1_b0[i] = chordd2[i] - 0.5773502691896257*dt1[i];) \
-    FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.7320508075688772*t2[i];) \
-    FU_EACH(i, 3, d2_b0[i] = dt1[i] - 1.7320508075688772*dt2[i];) \
-    const fu_real len_b0 = FU_SQRT(r1_b0[0]*r1_b0[0] + r1_b0[1]*r1_b0[1] + r1_b0[2]*r1_b0[2]); \
-    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    FU_EACH(i, 3, r1_b1[i] = chord2[i] + 0.5773502691896257*t1[i];) \
-    FU_EACH(i, 3, d1_b1[i] = chordd2[i] + 0.5773502691896257*dt1[i];) \
-    FU_EACH(i, 3, r2_b[1][i] = t1[i] + 1.7320508075688772*t2[i];) \
-    FU_EACH(i, 3, d2_b1[i] = dt1[i] + 1.7320508075688772*dt2[i];) \
-    const fu_real len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]); \
-    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
+    CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
 
 /* strain vectors: of cable12_green_exact_section_forces and 4 more */
 #define CABLE12_STRAIN_VECTORS_2 \

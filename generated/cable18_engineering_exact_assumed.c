@@ -331,6 +331,6 @@ void cable18_engineering_exact_assumed_section_forces(fu_real l, fu_real x, cons
         n_z = r1_x*r2_y - r1_y*r2_x,
         size2 = scale*(n_x*n_x + n_y*n_y + n_z*n_z);
     CABLE18_AXES_OF_THE_SECTION
-    CABLE18_OUTPUTS_6
+    CABLE18_OUTPUTS_5
 }
 #endif

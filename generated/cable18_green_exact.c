@@ -39,23 +39,11 @@
 
 /* rate of axial strain at the quadrature points: of cable18_green_exact_damping_force and 2 more */
 #define CABLE18_GREEN_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
-    fu_real r1_0[3], d1_0[3], r1_1[3], d1_1[3], r1_2[3], d1_2[3], r1_3[3], d1_3[3], r1_4[3], d1_4[3]; \
+    fu_real r1[5][3], d1[5][3], deps[5]; \
     const fu_real EA_tau = 0.5*A[0]*tau/w; \
-    FU_EACH(i, 3, r1_0[i] = chord3[i] - 0.906179845938664*t1[i] + 0.7317428697781312*t2[i] - 0.501031171044662*t3[i] + 0.24573545909491168*t4[i];) \
-    FU_EACH(i, 3, d1_0[i] = chordd3[i] - 0.906179845938664*dt1[i] + 0.7317428697781312*dt2[i] - 0.501031171044662*dt3[i] + 0.24573545909491168*dt4[i];) \
-    const fu_real deps_0 = d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1] + d1_0[2]*r1_0[2]; \
-    FU_EACH(i, 3, r1_1[i] = chord3[i] - 0.5384693101056831*t1[i] - 0.06507620311146456*t2[i] + 0.4173821037266682*t3[i] - 0.34450089119367744*t4[i];) \
-    FU_EACH(i, 3, d1_1[i] = chordd3[i] - 0.5384693101056831*dt1[i] - 0.06507620311146456*dt2[i] + 0.4173821037266682*dt3[i] - 0.34450089119367744*dt4[i];) \
-    const fu_real deps_1 = d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1] + d1_1[2]*r1_1[2]; \
-    FU_EACH(i, 3, r1_2[i] = chord3[i] - 0.5*t2[i] + 0.375*t4[i];) \
-    FU_EACH(i, 3, d1_2[i] = chordd3[i] - 0.5*dt2[i] + 0.375*dt4[i];) \
-    const fu_real deps_2 = d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1] + d1_2[2]*r1_2[2]; \
-    FU_EACH(i, 3, r1_3[i] = chord3[i] + 0.5384693101056831*t1[i] - 0.06507620311146456*t2[i] - 0.4173821037266682*t3[i] - 0.34450089119367744*t4[i];) \
-    FU_EACH(i, 3, d1_3[i] = chordd3[i] + 0.5384693101056831*dt1[i] - 0.06507620311146456*dt2[i] - 0.4173821037266682*dt3[i] - 0.34450089119367744*dt4[i];) \
-    const fu_real deps_3 = d1_3[0]*r1_3[0] + d1_3[1]*r1_3[1] + d1_3[2]*r1_3[2]; \
-    FU_EACH(i, 3, r1_4[i] = chord3[i] + 0.906179845938664*t1[i] + 0.7317428697781312*t2[i] + 0.501031171044662*t3[i] + 0.24573545909491168*t4[i];) \
-    FU_EACH(i, 3, d1_4[i] = chordd3[i] + 0.906179845938664*dt1[i] + 0.7317428697781312*dt2[i] + 0.501031171044662*dt3[i] + 0.24573545909491168*dt4[i];) \
-    const fu_real deps_4 = d1_4[0]*r1_4[0] + d1_4[1]*r1_4[1] + d1_4[2]*r1_4[2];
+    CABLE18_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    FU_EACH(g, 5, \
+        deps[g] = d1[g][0]*r1[g][0] + d1[g][1]*r1[g][1] + d1[g][2]*r1[g][2];)
 
 #ifndef FU_BLOCK
 /* constants of the law from the stiffness of the section (eq 7; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)) */
@@ -308,45 +296,21 @@ FU_KERNEL void cable18_green_exact_damping_force(fu_real l, const fu_real *e, co
     CABLE18_STRAIN_VECTORS_AND_THEIR_RATES
     CABLE18_GREEN_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     /* rate of curvature at the quadrature points */
-    fu_real r1_b0[3], d1_b0[3], r2_b0[3], d2_b0[3], i_b0[3], di_b0[3], rate_b0[3], r1_b1[3], d1_b1[3], r2_b[2][3],
-        d2_b1[3], inv_b[2], i_b[2][3], di_b1[3], along_b[2], rate_b[2][3], r1_b2[3], d1_b2[3], d2_b2[3], di_b2[3],
-        r1_b3[3], d1_b3[3], r2_b3[3], d2_b3[3], i_b3[3], di_b3[3], rate_b3[3], F_0[3], F_1[3], F_2[3], F_3[3], F_4[3],
-        F1_b0[3], F2_b0[3], inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3], F1_b3[3], F2_b3[3];
+    fu_real r1_b[4][3], d1_b[4][3], r2_b[4][3], d2_b[4][3], len_b[4], inv_b[4], i_b[4][3], stretch_b[4], di_b[4][3],
+        along_b[4], across_b[4], rate_b[4][3], F_0[3], F_1[3], F_2[3], F_3[3], F_4[3], F1_b0[3], F2_b0[3], inward_b[2],
+        lever_b[2], F1_b[2][3], F2_b[2][3], F1_b3[3], F2_b3[3];
     const fu_real EI_tau = 2.0*A[1]*tau*w;
     CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
-    FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] + 1.8621528669557281*t4[i];)
-    FU_EACH(i, 3, d2_b1[i] = dt1[i] - 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] + 1.8621528669557281*dt4[i];)
-    const fu_real len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]);
-    inv_b[0] = 1.0/len_b1;
-    FU_EACH(i, 3, i_b[0][i] = inv_b[0]*r1_b1[i];)
-    const fu_real stretch_b1 = d1_b1[0]*i_b[0][0] + d1_b1[1]*i_b[0][1] + d1_b1[2]*i_b[0][2];
-    FU_EACH(i, 3, di_b1[i] = inv_b[0]*(d1_b1[i] - i_b[0][i]*stretch_b1);)
-    along_b[0] = i_b[0][0]*r2_b[0][0] + i_b[0][1]*r2_b[0][1] + i_b[0][2]*r2_b[0][2];
-    const fu_real across_b1 = di_b1[0]*r2_b[0][0] + di_b1[1]*r2_b[0][1] + di_b1[2]*r2_b[0][2];
-    FU_EACH(i, 3, rate_b[0][i] = across_b1*i_b[0][i] - along_b[0]*di_b1[i] + d2_b1[i];)
-    FU_EACH(i, 3, r1_b2[i] = chord3[i] + 0.33998104358485626*t1[i] - 0.3266193350044281*t2[i] - 0.4117279996728996*t3[i];)
-    FU_EACH(i, 3, d1_b2[i] = chordd3[i] + 0.33998104358485626*dt1[i] - 0.3266193350044281*dt2[i] - 0.4117279996728996*dt3[i];)
-    FU_EACH(i, 3, r2_b[1][i] = t1[i] + 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] - 1.8621528669557281*t4[i];)
-    FU_EACH(i, 3, d2_b2[i] = dt1[i] + 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] - 1.8621528669557281*dt4[i];)
-    const fu_real len_b2 = FU_SQRT(r1_b2[0]*r1_b2[0] + r1_b2[1]*r1_b2[1] + r1_b2[2]*r1_b2[2]);
-    inv_b[1] = 1.0/len_b2;
-    FU_EACH(i, 3, i_b[1][i] = inv_b[1]*r1_b2[i];)
-    const fu_real stretch_b2 = d1_b2[0]*i_b[1][0] + d1_b2[1]*i_b[1][1] + d1_b2[2]*i_b[1][2];
-    FU_EACH(i, 3, di_b2[i] = inv_b[1]*(d1_b2[i] - i_b[1][i]*stretch_b2);)
-    along_b[1] = i_b[1][0]*r2_b[1][0] + i_b[1][1]*r2_b[1][1] + i_b[1][2]*r2_b[1][2];
-    const fu_real across_b2 = di_b2[0]*r2_b[1][0] + di_b2[1]*r2_b[1][1] + di_b2[2]*r2_b[1][2];
-    FU_EACH(i, 3, rate_b[1][i] = across_b2*i_b[1][i] - along_b[1]*di_b2[i] + d2_b2[i];)
+    const fu_real N_0 = 0.23692688505618928*EA_tau*deps[0];
+    FU_EACH(i, 3, F_0[i] = N_0*r1[0][i];)
+    const fu_real N_1 = 0.4786286704993663*EA_tau*deps[1];
+    FU_EACH(i, 3, F_1[i] = N_1*r1[1][i];)
+    const fu_real N_2 = 0.5688888888888887*EA_tau*deps[2];
+    FU_EACH(i, 3, F_2[i] = N_2*r1[2][i];)
+    const fu_real N_3 = 0.4786286704993663*EA_tau*deps[3];
+    FU_EACH(i, 3, F_3[i] = N_3*r1[3][i];)
+    const fu_real N_4 = 0.23692688505618928*EA_tau*deps[4];
     CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
-    const fu_real N_0 = 0.23692688505618928*EA_tau*deps_0;
-    FU_EACH(i, 3, F_0[i] = N_0*r1_0[i];)
-    const fu_real N_1 = 0.4786286704993663*EA_tau*deps_1;
-    FU_EACH(i, 3, F_1[i] = N_1*r1_1[i];)
-    const fu_real N_2 = 0.5688888888888887*EA_tau*deps_2;
-    FU_EACH(i, 3, F_2[i] = N_2*r1_2[i];)
-    const fu_real N_3 = 0.4786286704993663*EA_tau*deps_3;
-    FU_EACH(i, 3, F_3[i] = N_3*r1_3[i];)
-    const fu_real N_4 = 0.23692688505618928*EA_tau*deps_4;
-    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
     CABLE18_FORCES_ON_STRAIN_VECTORS_2
     CABLE18_FORCES_ON_NODAL_VECTORS
     /* outputs */
@@ -371,25 +335,25 @@ void cable18_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_r
         sum11_d21[3][3], difference11_d20[3][3], sum12_d20[3][3], difference11_d21[3][3], sum12_d21[3][3],
         difference12_d20[3][3], difference12_d21[3][3], sum21_d20[3][3], sum21_d21[3][3], difference21_d20[3][3],
         sum22_d20[3][3], difference21_d21[3][3], sum22_d21[3][3], difference22_d20[3][3], difference22_d21[3][3];
-    const fu_real N_0 = 0.23692688505618928*EA_tau*deps_0;
-    FU_EACH(i, 3, by_0[i] = 0.23692688505618928*EA_tau*(d1_0[i] + r1_0[i]*rate);)
-    FU_PAIRS(i, j, 3, K_0[i][j] = by_0[j]*r1_0[i];)
+    const fu_real N_0 = 0.23692688505618928*EA_tau*deps[0];
+    FU_EACH(i, 3, by_0[i] = 0.23692688505618928*EA_tau*(d1[0][i] + r1[0][i]*rate);)
+    FU_PAIRS(i, j, 3, K_0[i][j] = by_0[j]*r1[0][i];)
     FU_EACH(i, 3, K_0[i][i] += N_0;)
-    const fu_real N_1 = 0.4786286704993663*EA_tau*deps_1;
-    FU_EACH(i, 3, by_1[i] = 0.4786286704993663*EA_tau*(d1_1[i] + r1_1[i]*rate);)
-    FU_PAIRS(i, j, 3, K_1[i][j] = by_1[j]*r1_1[i];)
+    const fu_real N_1 = 0.4786286704993663*EA_tau*deps[1];
+    FU_EACH(i, 3, by_1[i] = 0.4786286704993663*EA_tau*(d1[1][i] + r1[1][i]*rate);)
+    FU_PAIRS(i, j, 3, K_1[i][j] = by_1[j]*r1[1][i];)
     FU_EACH(i, 3, K_1[i][i] += N_1;)
-    const fu_real N_2 = 0.5688888888888887*EA_tau*deps_2;
-    FU_EACH(i, 3, by_2[i] = 0.5688888888888887*EA_tau*(d1_2[i] + r1_2[i]*rate);)
-    FU_PAIRS(i, j, 3, K_2[i][j] = by_2[j]*r1_2[i];)
+    const fu_real N_2 = 0.5688888888888887*EA_tau*deps[2];
+    FU_EACH(i, 3, by_2[i] = 0.5688888888888887*EA_tau*(d1[2][i] + r1[2][i]*rate);)
+    FU_PAIRS(i, j, 3, K_2[i][j] = by_2[j]*r1[2][i];)
     FU_EACH(i, 3, K_2[i][i] += N_2;)
-    const fu_real N_3 = 0.4786286704993663*EA_tau*deps_3;
-    FU_EACH(i, 3, by_3[i] = 0.4786286704993663*EA_tau*(d1_3[i] + r1_3[i]*rate);)
-    FU_PAIRS(i, j, 3, K_3[i][j] = by_3[j]*r1_3[i];)
+    const fu_real N_3 = 0.4786286704993663*EA_tau*deps[3];
+    FU_EACH(i, 3, by_3[i] = 0.4786286704993663*EA_tau*(d1[3][i] + r1[3][i]*rate);)
+    FU_PAIRS(i, j, 3, K_3[i][j] = by_3[j]*r1[3][i];)
     FU_EACH(i, 3, K_3[i][i] += N_3;)
-    const fu_real N_4 = 0.23692688505618928*EA_tau*deps_4;
-    FU_EACH(i, 3, by_4[i] = 0.23692688505618928*EA_tau*(d1_4[i] + r1_4[i]*rate);)
-    FU_PAIRS(i, j, 3, K_4[i][j] = by_4[j]*r1_4[i];)
+    const fu_real N_4 = 0.23692688505618928*EA_tau*deps[4];
+    FU_EACH(i, 3, by_4[i] = 0.23692688505618928*EA_tau*(d1[4][i] + r1[4][i]*rate);)
+    FU_PAIRS(i, j, 3, K_4[i][j] = by_4[j]*r1[4][i];)
     CABLE18_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE18_BLOCKS_OVER_STRAIN_VECTORS_2
     CABLE18_OVER_NODAL_VECTORS_K_T_2
@@ -404,7 +368,7 @@ FU_KERNEL void cable18_green_exact_dissipation(fu_real l, const fu_real *e, cons
 {
     CABLE18_STRAIN_VECTORS_AND_THEIR_RATES
     CABLE18_GREEN_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
-    CABLE18_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
+    CABLE18_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     CABLE18_OUTPUTS_3
 }
 
@@ -414,50 +378,45 @@ void cable18_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu
 {
     CABLE18_STRAIN_VECTORS_AND_THEIR_RATES
     /* rate of axial strain at the quadrature points */
-    fu_real r1_0[3], d1_0[3], r1_1[3], d1_1[3], r1_2[3], d1_2[3], r1_3[3], d1_3[3], r1_4[3], d1_4[3];
+    fu_real r1[5][3], d1[5][3], deps[5];
     const fu_real EA_tau = 0.5*A[0]/w;
-    FU_EACH(i, 3, r1_0[i] = chord3[i] - 0.906179845938664*t1[i] + 0.7317428697781312*t2[i] - 0.501031171044662*t3[i] + 0.24573545909491168*t4[i];)
-    FU_EACH(i, 3, d1_0[i] = chordd3[i] - 0.906179845938664*dt1[i] + 0.7317428697781312*dt2[i] - 0.501031171044662*dt3[i] + 0.24573545909491168*dt4[i];)
-    const fu_real deps_0 = d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1] + d1_0[2]*r1_0[2];
-    FU_EACH(i, 3, r1_1[i] = chord3[i] - 0.5384693101056831*t1[i] - 0.06507620311146456*t2[i] + 0.4173821037266682*t3[i] - 0.34450089119367744*t4[i];)
-    FU_EACH(i, 3, d1_1[i] = chordd3[i] - 0.5384693101056831*dt1[i] - 0.06507620311146456*dt2[i] + 0.4173821037266682*dt3[i] - 0.34450089119367744*dt4[i];)
-    const fu_real deps_1 = d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1] + d1_1[2]*r1_1[2];
-    FU_EACH(i, 3, r1_2[i] = chord3[i] - 0.5*t2[i] + 0.375*t4[i];)
-    FU_EACH(i, 3, d1_2[i] = chordd3[i] - 0.5*dt2[i] + 0.375*dt4[i];)
-    const fu_real deps_2 = d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1] + d1_2[2]*r1_2[2];
-    FU_EACH(i, 3, r1_3[i] = chord3[i] + 0.5384693101056831*t1[i] - 0.06507620311146456*t2[i] - 0.4173821037266682*t3[i] - 0.34450089119367744*t4[i];)
-    FU_EACH(i, 3, d1_3[i] = chordd3[i] + 0.5384693101056831*dt1[i] - 0.06507620311146456*dt2[i] - 0.4173821037266682*dt3[i] - 0.34450089119367744*dt4[i];)
-    const fu_real deps_3 = d1_3[0]*r1_3[0] + d1_3[1]*r1_3[1] + d1_3[2]*r1_3[2];
-    FU_EACH(i, 3, r1_4[i] = chord3[i] + 0.906179845938664*t1[i] + 0.7317428697781312*t2[i] + 0.501031171044662*t3[i] + 0.24573545909491168*t4[i];)
-    FU_EACH(i, 3, d1_4[i] = chordd3[i] + 0.906179845938664*dt1[i] + 0.7317428697781312*dt2[i] + 0.501031171044662*dt3[i] + 0.24573545909491168*dt4[i];)
-    const fu_real deps_4 = d1_4[0]*r1_4[0] + d1_4[1]*r1_4[1] + d1_4[2]*r1_4[2];
-    CABLE18_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
+    CABLE18_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
+    FU_EACH(g, 5,
+        deps[g] = d1[g][0]*r1[g][0] + d1[g][1]*r1[g][1] + d1[g][2]*r1[g][2];)
+    CABLE18_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     /* forces at the quadrature points */
     fu_real F_0[3], F_1[3], F_2[3], F_3[3], F_4[3], excess_rate_b0[3], F1_b0[3], F2_b0[3], excess_rate_b[2][3],
         inward_b[2], lever_b[2], F1_b[2][3], F2_b[2][3], excess_rate_b3[3], F1_b3[3], F2_b3[3];
     const fu_real
-        excess_deps_0 = deps_0*weight - relaxed_strain[0],
+        excess_deps_0 = deps[0]*weight - relaxed_strain[0],
         N_0 = 0.23692688505618928*EA_tau*excess_deps_0;
-    FU_EACH(i, 3, F_0[i] = N_0*r1_0[i];)
+    FU_EACH(i, 3, F_0[i] = N_0*r1[0][i];)
     const fu_real
-        excess_deps_1 = deps_1*weight - relaxed_strain[1],
+        excess_deps_1 = deps[1]*weight - relaxed_strain[1],
         N_1 = 0.4786286704993663*EA_tau*excess_deps_1;
-    FU_EACH(i, 3, F_1[i] = N_1*r1_1[i];)
+    FU_EACH(i, 3, F_1[i] = N_1*r1[1][i];)
     const fu_real
-        excess_deps_2 = deps_2*weight - relaxed_strain[2],
+        excess_deps_2 = deps[2]*weight - relaxed_strain[2],
         N_2 = 0.5688888888888887*EA_tau*excess_deps_2;
-    FU_EACH(i, 3, F_2[i] = N_2*r1_2[i];)
+    FU_EACH(i, 3, F_2[i] = N_2*r1[2][i];)
     const fu_real
-        excess_deps_3 = deps_3*weight - relaxed_strain[3],
+        excess_deps_3 = deps[3]*weight - relaxed_strain[3],
         N_3 = 0.4786286704993663*EA_tau*excess_deps_3;
-    FU_EACH(i, 3, F_3[i] = N_3*r1_3[i];)
+    FU_EACH(i, 3, F_3[i] = N_3*r1[3][i];)
     const fu_real
-        excess_deps_4 = deps_4*weight - relaxed_strain[4],
+        excess_deps_4 = deps[4]*weight - relaxed_strain[4],
         N_4 = 0.23692688505618928*EA_tau*excess_deps_4;
     CABLE18_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2
     CABLE18_FORCES_ON_STRAIN_VECTORS_2
     CABLE18_FORCES_ON_NODAL_VECTORS
-    CABLE18_OUTPUTS_4
+    /* outputs */
+    FU_EACH(i, 3, f[i] = -f_r_2[i];)
+    FU_EACH(g, 5,
+        dE[g] = deps[g];)
+    FU_EACH(g, 4,
+        dE[3*g + 5] = rate_b[g][0];
+        dE[3*g + 6] = rate_b[g][1];
+        dE[3*g + 7] = rate_b[g][2];)
 }
 #endif
 
@@ -491,6 +450,6 @@ void cable18_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, 
         n_z = r1_x*r2_y - r1_y*r2_x,
         size2 = scale*(n_x*n_x + n_y*n_y + n_z*n_z);
     CABLE18_AXES_OF_THE_SECTION
-    CABLE18_OUTPUTS_5
+    CABLE18_OUTPUTS_4
 }
 #endif

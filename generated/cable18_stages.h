@@ -158,58 +158,50 @@
 
 /* part of rate of curvature at the quadrature points: of cable18_green_exact_damping_force and 7 more */
 #define CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    FU_EACH(i, 3, r1_b0[i] = chord3[i] - 0.8611363115940526*t1[i] + 0.6123336207187138*t2[i] - 0.304746984955206*t3[i];) \
-    FU_EACH(i, 3, d1_b0[i] = chordd3[i] - 0.8611363115940526*dt1[i] + 0.6123336207187138*dt2[i] - 0.304746984955206*dt3[i];) \
-    FU_EACH(i, 3, r2_b0[i] = t1[i] - 2.583408934782158*t2[i] + 4.0616681035935684*t3[i] - 4.7166378294686*t4[i];) \
-    FU_EACH(i, 3, d2_b0[i] = dt1[i] - 2.583408934782158*dt2[i] + 4.0616681035935684*dt3[i] - 4.7166378294686*dt4[i];) \
-    const fu_real \
-        len_b0 = FU_SQRT(r1_b0[0]*r1_b0[0] + r1_b0[1]*r1_b0[1] + r1_b0[2]*r1_b0[2]), \
-        inv_b0 = 1.0/len_b0; \
-    FU_EACH(i, 3, i_b0[i] = inv_b0*r1_b0[i];) \
-    const fu_real stretch_b0 = d1_b0[0]*i_b0[0] + d1_b0[1]*i_b0[1] + d1_b0[2]*i_b0[2]; \
-    FU_EACH(i, 3, di_b0[i] = inv_b0*(d1_b0[i] - i_b0[i]*stretch_b0);) \
-    const fu_real \
-        along_b0 = i_b0[0]*r2_b0[0] + i_b0[1]*r2_b0[1] + i_b0[2]*r2_b0[2], \
-        across_b0 = di_b0[0]*r2_b0[0] + di_b0[1]*r2_b0[1] + di_b0[2]*r2_b0[2]; \
-    FU_EACH(i, 3, rate_b0[i] = across_b0*i_b0[i] - along_b0*di_b0[i] + d2_b0[i];) \
-    FU_EACH(i, 3, r1_b1[i] = chord3[i] - 0.33998104358485626*t1[i] - 0.3266193350044281*t2[i] + 0.4117279996728996*t3[i];) \
-    FU_EACH(i, 3, d1_b1[i] = chordd3[i] - 0.33998104358485626*dt1[i] - 0.3266193350044281*dt2[i] + 0.4117279996728996*dt3[i];)
-
-/* part of rate of curvature at the quadrature points: of cable18_green_exact_damping_force and 7 more */
-#define CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
-    FU_EACH(i, 3, r1_b3[i] = chord3[i] + 0.8611363115940526*t1[i] + 0.6123336207187138*t2[i] + 0.304746984955206*t3[i];) \
-    FU_EACH(i, 3, d1_b3[i] = chordd3[i] + 0.8611363115940526*dt1[i] + 0.6123336207187138*dt2[i] + 0.304746984955206*dt3[i];) \
-    FU_EACH(i, 3, r2_b3[i] = t1[i] + 2.583408934782158*t2[i] + 4.0616681035935684*t3[i] + 4.7166378294686*t4[i];) \
-    FU_EACH(i, 3, d2_b3[i] = dt1[i] + 2.583408934782158*dt2[i] + 4.0616681035935684*dt3[i] + 4.7166378294686*dt4[i];) \
-    const fu_real \
-        len_b3 = FU_SQRT(r1_b3[0]*r1_b3[0] + r1_b3[1]*r1_b3[1] + r1_b3[2]*r1_b3[2]), \
-        inv_b3 = 1.0/len_b3; \
-    FU_EACH(i, 3, i_b3[i] = inv_b3*r1_b3[i];) \
-    const fu_real stretch_b3 = d1_b3[0]*i_b3[0] + d1_b3[1]*i_b3[1] + d1_b3[2]*i_b3[2]; \
-    FU_EACH(i, 3, di_b3[i] = inv_b3*(d1_b3[i] - i_b3[i]*stretch_b3);) \
-    const fu_real \
-        along_b3 = i_b3[0]*r2_b3[0] + i_b3[1]*r2_b3[1] + i_b3[2]*r2_b3[2], \
-        across_b3 = di_b3[0]*r2_b3[0] + di_b3[1]*r2_b3[1] + di_b3[2]*r2_b3[2]; \
-    FU_EACH(i, 3, rate_b3[i] = across_b3*i_b3[i] - along_b3*di_b3[i] + d2_b3[i];)
+    FU_EACH(i, 3, r1_b[0][i] = chord3[i] - 0.8611363115940526*t1[i] + 0.6123336207187138*t2[i] - 0.304746984955206*t3[i];) \
+    FU_EACH(i, 3, d1_b[0][i] = chordd3[i] - 0.8611363115940526*dt1[i] + 0.6123336207187138*dt2[i] - 0.304746984955206*dt3[i];) \
+    FU_EACH(i, 3, r2_b[0][i] = t1[i] - 2.583408934782158*t2[i] + 4.0616681035935684*t3[i] - 4.7166378294686*t4[i];) \
+    FU_EACH(i, 3, d2_b[0][i] = dt1[i] - 2.583408934782158*dt2[i] + 4.0616681035935684*dt3[i] - 4.7166378294686*dt4[i];) \
+    FU_EACH(i, 3, r1_b[1][i] = chord3[i] - 0.33998104358485626*t1[i] - 0.3266193350044281*t2[i] + 0.4117279996728996*t3[i];) \
+    FU_EACH(i, 3, d1_b[1][i] = chordd3[i] - 0.33998104358485626*dt1[i] - 0.3266193350044281*dt2[i] + 0.4117279996728996*dt3[i];) \
+    FU_EACH(i, 3, r2_b[1][i] = t1[i] - 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] + 1.8621528669557281*t4[i];) \
+    FU_EACH(i, 3, d2_b[1][i] = dt1[i] - 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] + 1.8621528669557281*dt4[i];) \
+    FU_EACH(i, 3, r1_b[2][i] = chord3[i] + 0.33998104358485626*t1[i] - 0.3266193350044281*t2[i] - 0.4117279996728996*t3[i];) \
+    FU_EACH(i, 3, d1_b[2][i] = chordd3[i] + 0.33998104358485626*dt1[i] - 0.3266193350044281*dt2[i] - 0.4117279996728996*dt3[i];) \
+    FU_EACH(i, 3, r2_b[2][i] = t1[i] + 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] - 1.8621528669557281*t4[i];) \
+    FU_EACH(i, 3, d2_b[2][i] = dt1[i] + 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] - 1.8621528669557281*dt4[i];) \
+    FU_EACH(i, 3, r1_b[3][i] = chord3[i] + 0.8611363115940526*t1[i] + 0.6123336207187138*t2[i] + 0.304746984955206*t3[i];) \
+    FU_EACH(i, 3, d1_b[3][i] = chordd3[i] + 0.8611363115940526*dt1[i] + 0.6123336207187138*dt2[i] + 0.304746984955206*dt3[i];) \
+    FU_EACH(i, 3, r2_b[3][i] = t1[i] + 2.583408934782158*t2[i] + 4.0616681035935684*t3[i] + 4.7166378294686*t4[i];) \
+    FU_EACH(i, 3, d2_b[3][i] = dt1[i] + 2.583408934782158*dt2[i] + 4.0616681035935684*dt3[i] + 4.7166378294686*dt4[i];) \
+    FU_EACH(g, 4, \
+        len_b[g] = FU_SQRT(r1_b[g][0]*r1_b[g][0] + r1_b[g][1]*r1_b[g][1] + r1_b[g][2]*r1_b[g][2]); \
+        inv_b[g] = 1.0/len_b[g]; \
+        FU_EACH(i, 3, i_b[g][i] = inv_b[g]*r1_b[g][i];) \
+        stretch_b[g] = d1_b[g][0]*i_b[g][0] + d1_b[g][1]*i_b[g][1] + d1_b[g][2]*i_b[g][2]; \
+        FU_EACH(i, 3, di_b[g][i] = inv_b[g]*(d1_b[g][i] - i_b[g][i]*stretch_b[g]);) \
+        along_b[g] = i_b[g][0]*r2_b[g][0] + i_b[g][1]*r2_b[g][1] + i_b[g][2]*r2_b[g][2]; \
+        across_b[g] = di_b[g][0]*r2_b[g][0] + di_b[g][1]*r2_b[g][1] + di_b[g][2]*r2_b[g][2]; \
+        FU_EACH(i, 3, rate_b[g][i] = across_b[g]*i_b[g][i] - along_b[g]*di_b[g][i] + d2_b[g][i];))
 
 /* part of rate of curvature at the quadrature points: of cable18_green_exact_damping_force and 1 more */
-#define CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3 \
-    FU_EACH(i, 3, F_4[i] = N_4*r1_4[i];) \
+#define CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
+    FU_EACH(i, 3, F_4[i] = N_4*r1[4][i];) \
     const fu_real \
-        inward_b0 = 0.34785484513745357*EI_tau*inv_b0*(i_b0[0]*rate_b0[0] + i_b0[1]*rate_b0[1] + i_b0[2]*rate_b0[2]), \
-        lever_b0 = 0.34785484513745357*EI_tau*along_b0*inv_b0; \
-    FU_EACH(i, 3, F1_b0[i] = inward_b0*r2_b0[i] - lever_b0*rate_b0[i];) \
-    FU_EACH(i, 3, F2_b0[i] = 0.34785484513745357*EI_tau*rate_b0[i];) \
+        inward_b0 = 0.34785484513745357*EI_tau*inv_b[0]*(i_b[0][0]*rate_b[0][0] + i_b[0][1]*rate_b[0][1] + i_b[0][2]*rate_b[0][2]), \
+        lever_b0 = 0.34785484513745357*EI_tau*along_b[0]*inv_b[0]; \
+    FU_EACH(i, 3, F1_b0[i] = inward_b0*r2_b[0][i] - lever_b0*rate_b[0][i];) \
+    FU_EACH(i, 3, F2_b0[i] = 0.34785484513745357*EI_tau*rate_b[0][i];) \
     FU_EACH(g, 2, \
-        inward_b[g] = 0.6521451548625464*EI_tau*inv_b[g]*(i_b[g][0]*rate_b[g][0] + i_b[g][1]*rate_b[g][1] + i_b[g][2]*rate_b[g][2]); \
-        lever_b[g] = 0.6521451548625464*EI_tau*along_b[g]*inv_b[g]; \
-        FU_EACH(i, 3, F1_b[g][i] = inward_b[g]*r2_b[g][i] - lever_b[g]*rate_b[g][i];) \
-        FU_EACH(i, 3, F2_b[g][i] = 0.6521451548625464*EI_tau*rate_b[g][i];)) \
+        inward_b[g] = 0.6521451548625464*EI_tau*inv_b[g + 1]*(i_b[g + 1][0]*rate_b[g + 1][0] + i_b[g + 1][1]*rate_b[g + 1][1] + i_b[g + 1][2]*rate_b[g + 1][2]); \
+        lever_b[g] = 0.6521451548625464*EI_tau*along_b[g + 1]*inv_b[g + 1]; \
+        FU_EACH(i, 3, F1_b[g][i] = inward_b[g]*r2_b[g + 1][i] - lever_b[g]*rate_b[g + 1][i];) \
+        FU_EACH(i, 3, F2_b[g][i] = 0.6521451548625464*EI_tau*rate_b[g + 1][i];)) \
     const fu_real \
-        inward_b3 = 0.34785484513745357*EI_tau*inv_b3*(i_b3[0]*rate_b3[0] + i_b3[1]*rate_b3[1] + i_b3[2]*rate_b3[2]), \
-        lever_b3 = 0.34785484513745357*EI_tau*along_b3*inv_b3; \
-    FU_EACH(i, 3, F1_b3[i] = inward_b3*r2_b3[i] - lever_b3*rate_b3[i];) \
-    FU_EACH(i, 3, F2_b3[i] = 0.34785484513745357*EI_tau*rate_b3[i];)
+        inward_b3 = 0.34785484513745357*EI_tau*inv_b[3]*(i_b[3][0]*rate_b[3][0] + i_b[3][1]*rate_b[3][1] + i_b[3][2]*rate_b[3][2]), \
+        lever_b3 = 0.34785484513745357*EI_tau*along_b[3]*inv_b[3]; \
+    FU_EACH(i, 3, F1_b3[i] = inward_b3*r2_b[3][i] - lever_b3*rate_b[3][i];) \
+    FU_EACH(i, 3, F2_b3[i] = 0.34785484513745357*EI_tau*rate_b[3][i];)
 
 /* part of derivatives at the quadrature points: of cable18_green_exact_damping_tangent and 1 more */
 #define CABLE18_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS \
@@ -219,90 +211,90 @@
     FU_PAIRS(i, j, 3, difference11_d10[i][j] = K_0[i][j] - K_4[i][j];) \
     FU_PAIRS(i, j, 3, difference11_d11[i][j] = K_1[i][j] - K_3[i][j];) \
     const fu_real \
-        k_b0 = inv_b0*(-inv_b0*stretch_b0 + rate), \
-        level_b0 = across_b0*inv_b0 - along_b0*k_b0; \
-    FU_EACH(i, 3, p_b0[i] = -along_b0*i_b0[i] + r2_b0[i];) \
-    FU_EACH(i, 3, by_turn_b0[i] = inv_b0*(along_b0*i_b0[i] - p_b0[i]);) \
-    const fu_real by_i_i_b0 = across_b0*inv_b0 + level_b0; \
-    FU_EACH(i, 3, by_i_b0[i] = -by_i_i_b0*i_b0[i] + k_b0*p_b0[i];) \
-    K21_b0[0][0] = 0.34785484513745357*EI_tau*(by_i_b0[0]*i_b0[0] + by_turn_b0[0]*di_b0[0] + level_b0); \
-    K21_b0[0][1] = 0.34785484513745357*EI_tau*(by_i_b0[1]*i_b0[0] + by_turn_b0[1]*di_b0[0]); \
-    K21_b0[0][2] = 0.34785484513745357*EI_tau*(by_i_b0[2]*i_b0[0] + by_turn_b0[2]*di_b0[0]); \
-    K21_b0[1][0] = 0.34785484513745357*EI_tau*(by_i_b0[0]*i_b0[1] + by_turn_b0[0]*di_b0[1]); \
-    K21_b0[1][1] = 0.34785484513745357*EI_tau*(by_i_b0[1]*i_b0[1] + by_turn_b0[1]*di_b0[1] + level_b0); \
-    K21_b0[1][2] = 0.34785484513745357*EI_tau*(by_i_b0[2]*i_b0[1] + by_turn_b0[2]*di_b0[1]); \
-    K21_b0[2][0] = 0.34785484513745357*EI_tau*(by_i_b0[0]*i_b0[2] + by_turn_b0[0]*di_b0[2]); \
-    K21_b0[2][1] = 0.34785484513745357*EI_tau*(by_i_b0[1]*i_b0[2] + by_turn_b0[1]*di_b0[2]); \
-    K21_b0[2][2] = 0.34785484513745357*EI_tau*(by_i_b0[2]*i_b0[2] + by_turn_b0[2]*di_b0[2] + level_b0); \
-    FU_PAIRS(i, j, 3, K22_b0[i][j] = 0.34785484513745357*EI_tau*(-di_b0[i]*i_b0[j] + di_b0[j]*i_b0[i]);) \
+        k_b0 = inv_b[0]*(-inv_b[0]*stretch_b[0] + rate), \
+        level_b0 = across_b[0]*inv_b[0] - along_b[0]*k_b0; \
+    FU_EACH(i, 3, p_b0[i] = -along_b[0]*i_b[0][i] + r2_b[0][i];) \
+    FU_EACH(i, 3, by_turn_b0[i] = inv_b[0]*(along_b[0]*i_b[0][i] - p_b0[i]);) \
+    const fu_real by_i_i_b0 = across_b[0]*inv_b[0] + level_b0; \
+    FU_EACH(i, 3, by_i_b0[i] = -by_i_i_b0*i_b[0][i] + k_b0*p_b0[i];) \
+    K21_b0[0][0] = 0.34785484513745357*EI_tau*(by_i_b0[0]*i_b[0][0] + by_turn_b0[0]*di_b[0][0] + level_b0); \
+    K21_b0[0][1] = 0.34785484513745357*EI_tau*(by_i_b0[1]*i_b[0][0] + by_turn_b0[1]*di_b[0][0]); \
+    K21_b0[0][2] = 0.34785484513745357*EI_tau*(by_i_b0[2]*i_b[0][0] + by_turn_b0[2]*di_b[0][0]); \
+    K21_b0[1][0] = 0.34785484513745357*EI_tau*(by_i_b0[0]*i_b[0][1] + by_turn_b0[0]*di_b[0][1]); \
+    K21_b0[1][1] = 0.34785484513745357*EI_tau*(by_i_b0[1]*i_b[0][1] + by_turn_b0[1]*di_b[0][1] + level_b0); \
+    K21_b0[1][2] = 0.34785484513745357*EI_tau*(by_i_b0[2]*i_b[0][1] + by_turn_b0[2]*di_b[0][1]); \
+    K21_b0[2][0] = 0.34785484513745357*EI_tau*(by_i_b0[0]*i_b[0][2] + by_turn_b0[0]*di_b[0][2]); \
+    K21_b0[2][1] = 0.34785484513745357*EI_tau*(by_i_b0[1]*i_b[0][2] + by_turn_b0[1]*di_b[0][2]); \
+    K21_b0[2][2] = 0.34785484513745357*EI_tau*(by_i_b0[2]*i_b[0][2] + by_turn_b0[2]*di_b[0][2] + level_b0); \
+    FU_PAIRS(i, j, 3, K22_b0[i][j] = 0.34785484513745357*EI_tau*(-di_b[0][i]*i_b[0][j] + di_b[0][j]*i_b[0][i]);) \
     FU_EACH(i, 3, K22_b0[i][i] += 0.34785484513745357*EI_tau*rate;) \
     const fu_real \
-        stiff_b0 = 0.34785484513745357*EI_tau*inv_b0, \
-        lever_b0 = along_b0*inv_b0, \
-        growth_b0 = i_b0[0]*rate_b0[0] + i_b0[1]*rate_b0[1] + i_b0[2]*rate_b0[2]; \
-    FU_EACH(i, 3, pushed_b0[i] = stiff_b0*(-along_b0*di_b0[i]*inv_b0 + d2_b0[i]*inv_b0 - 2.0*growth_b0*i_b0[i]*inv_b0 + k_b0*p_b0[i]);) \
+        stiff_b0 = 0.34785484513745357*EI_tau*inv_b[0], \
+        lever_b0 = along_b[0]*inv_b[0], \
+        growth_b0 = i_b[0][0]*rate_b[0][0] + i_b[0][1]*rate_b[0][1] + i_b[0][2]*rate_b[0][2]; \
+    FU_EACH(i, 3, pushed_b0[i] = stiff_b0*(-along_b[0]*di_b[0][i]*inv_b[0] + d2_b[0][i]*inv_b[0] - 2.0*growth_b0*i_b[0][i]*inv_b[0] + k_b0*p_b0[i]);) \
     FU_EACH(i, 3, turned_b0[i] = by_turn_b0[i]*stiff_b0;) \
-    FU_EACH(i, 3, follows_b0[i] = stiff_b0*(di_b0[i] + i_b0[i]*rate);) \
-    FU_EACH(i, 3, stiff_i_b0[i] = i_b0[i]*stiff_b0;) \
-    FU_PAIRS(i, j, 3, K11_b0[i][j] = -K21_b0[i][j]*lever_b0 + pushed_b0[j]*r2_b0[i] + rate_b0[i]*turned_b0[j];) \
-    FU_PAIRS(i, j, 3, K12_b0[i][j] = -K22_b0[i][j]*lever_b0 + follows_b0[j]*r2_b0[i] - rate_b0[i]*stiff_i_b0[j];) \
+    FU_EACH(i, 3, follows_b0[i] = stiff_b0*(di_b[0][i] + i_b[0][i]*rate);) \
+    FU_EACH(i, 3, stiff_i_b0[i] = i_b[0][i]*stiff_b0;) \
+    FU_PAIRS(i, j, 3, K11_b0[i][j] = -K21_b0[i][j]*lever_b0 + pushed_b0[j]*r2_b[0][i] + rate_b[0][i]*turned_b0[j];) \
+    FU_PAIRS(i, j, 3, K12_b0[i][j] = -K22_b0[i][j]*lever_b0 + follows_b0[j]*r2_b[0][i] - rate_b[0][i]*stiff_i_b0[j];) \
     FU_EACH(i, 3, K12_b0[i][i] += growth_b0*stiff_b0;) \
     FU_EACH(g, 2, \
-        k_b[g] = inv_b[g]*(-inv_b[g]*stretch_b[g] + rate); \
-        level_b[g] = across_b[g]*inv_b[g] - along_b[g]*k_b[g]; \
-        FU_EACH(i, 3, p_b[g][i] = -along_b[g]*i_b[g][i] + r2_b[g][i];) \
-        FU_EACH(i, 3, by_turn_b[g][i] = inv_b[g]*(along_b[g]*i_b[g][i] - p_b[g][i]);) \
-        by_i_i_b[g] = across_b[g]*inv_b[g] + level_b[g]; \
-        FU_EACH(i, 3, by_i_b[g][i] = -by_i_i_b[g]*i_b[g][i] + k_b[g]*p_b[g][i];) \
-        K21_b[g][0][0] = 0.6521451548625464*EI_tau*(by_i_b[g][0]*i_b[g][0] + by_turn_b[g][0]*di_b[g][0] + level_b[g]); \
-        K21_b[g][0][1] = 0.6521451548625464*EI_tau*(by_i_b[g][1]*i_b[g][0] + by_turn_b[g][1]*di_b[g][0]); \
-        K21_b[g][0][2] = 0.6521451548625464*EI_tau*(by_i_b[g][2]*i_b[g][0] + by_turn_b[g][2]*di_b[g][0]); \
-        K21_b[g][1][0] = 0.6521451548625464*EI_tau*(by_i_b[g][0]*i_b[g][1] + by_turn_b[g][0]*di_b[g][1]); \
-        K21_b[g][1][1] = 0.6521451548625464*EI_tau*(by_i_b[g][1]*i_b[g][1] + by_turn_b[g][1]*di_b[g][1] + level_b[g]); \
-        K21_b[g][1][2] = 0.6521451548625464*EI_tau*(by_i_b[g][2]*i_b[g][1] + by_turn_b[g][2]*di_b[g][1]); \
-        K21_b[g][2][0] = 0.6521451548625464*EI_tau*(by_i_b[g][0]*i_b[g][2] + by_turn_b[g][0]*di_b[g][2]); \
-        K21_b[g][2][1] = 0.6521451548625464*EI_tau*(by_i_b[g][1]*i_b[g][2] + by_turn_b[g][1]*di_b[g][2]); \
-        K21_b[g][2][2] = 0.6521451548625464*EI_tau*(by_i_b[g][2]*i_b[g][2] + by_turn_b[g][2]*di_b[g][2] + level_b[g]); \
-        FU_PAIRS(i, j, 3, K22_b[g][i][j] = 0.6521451548625464*EI_tau*(-di_b[g][i]*i_b[g][j] + di_b[g][j]*i_b[g][i]);) \
+        k_b[g] = inv_b[g + 1]*(-inv_b[g + 1]*stretch_b[g + 1] + rate); \
+        level_b[g] = across_b[g + 1]*inv_b[g + 1] - along_b[g + 1]*k_b[g]; \
+        FU_EACH(i, 3, p_b[g][i] = -along_b[g + 1]*i_b[g + 1][i] + r2_b[g + 1][i];) \
+        FU_EACH(i, 3, by_turn_b[g][i] = inv_b[g + 1]*(along_b[g + 1]*i_b[g + 1][i] - p_b[g][i]);) \
+        by_i_i_b[g] = across_b[g + 1]*inv_b[g + 1] + level_b[g]; \
+        FU_EACH(i, 3, by_i_b[g][i] = -by_i_i_b[g]*i_b[g + 1][i] + k_b[g]*p_b[g][i];) \
+        K21_b[g][0][0] = 0.6521451548625464*EI_tau*(by_i_b[g][0]*i_b[g + 1][0] + by_turn_b[g][0]*di_b[g + 1][0] + level_b[g]); \
+        K21_b[g][0][1] = 0.6521451548625464*EI_tau*(by_i_b[g][1]*i_b[g + 1][0] + by_turn_b[g][1]*di_b[g + 1][0]); \
+        K21_b[g][0][2] = 0.6521451548625464*EI_tau*(by_i_b[g][2]*i_b[g + 1][0] + by_turn_b[g][2]*di_b[g + 1][0]); \
+        K21_b[g][1][0] = 0.6521451548625464*EI_tau*(by_i_b[g][0]*i_b[g + 1][1] + by_turn_b[g][0]*di_b[g + 1][1]); \
+        K21_b[g][1][1] = 0.6521451548625464*EI_tau*(by_i_b[g][1]*i_b[g + 1][1] + by_turn_b[g][1]*di_b[g + 1][1] + level_b[g]); \
+        K21_b[g][1][2] = 0.6521451548625464*EI_tau*(by_i_b[g][2]*i_b[g + 1][1] + by_turn_b[g][2]*di_b[g + 1][1]); \
+        K21_b[g][2][0] = 0.6521451548625464*EI_tau*(by_i_b[g][0]*i_b[g + 1][2] + by_turn_b[g][0]*di_b[g + 1][2]); \
+        K21_b[g][2][1] = 0.6521451548625464*EI_tau*(by_i_b[g][1]*i_b[g + 1][2] + by_turn_b[g][1]*di_b[g + 1][2]); \
+        K21_b[g][2][2] = 0.6521451548625464*EI_tau*(by_i_b[g][2]*i_b[g + 1][2] + by_turn_b[g][2]*di_b[g + 1][2] + level_b[g]); \
+        FU_PAIRS(i, j, 3, K22_b[g][i][j] = 0.6521451548625464*EI_tau*(-di_b[g + 1][i]*i_b[g + 1][j] + di_b[g + 1][j]*i_b[g + 1][i]);) \
         FU_EACH(i, 3, K22_b[g][i][i] += 0.6521451548625464*EI_tau*rate;) \
-        stiff_b[g] = 0.6521451548625464*EI_tau*inv_b[g]; \
-        lever_b[g] = along_b[g]*inv_b[g]; \
-        growth_b[g] = i_b[g][0]*rate_b[g][0] + i_b[g][1]*rate_b[g][1] + i_b[g][2]*rate_b[g][2]; \
-        FU_EACH(i, 3, pushed_b[g][i] = stiff_b[g]*(-along_b[g]*di_b[g][i]*inv_b[g] + d2_b[g][i]*inv_b[g] - 2.0*growth_b[g]*i_b[g][i]*inv_b[g] + k_b[g]*p_b[g][i]);) \
+        stiff_b[g] = 0.6521451548625464*EI_tau*inv_b[g + 1]; \
+        lever_b[g] = along_b[g + 1]*inv_b[g + 1]; \
+        growth_b[g] = i_b[g + 1][0]*rate_b[g + 1][0] + i_b[g + 1][1]*rate_b[g + 1][1] + i_b[g + 1][2]*rate_b[g + 1][2]; \
+        FU_EACH(i, 3, pushed_b[g][i] = stiff_b[g]*(-along_b[g + 1]*di_b[g + 1][i]*inv_b[g + 1] + d2_b[g + 1][i]*inv_b[g + 1] - 2.0*growth_b[g]*i_b[g + 1][i]*inv_b[g + 1] + k_b[g]*p_b[g][i]);) \
         FU_EACH(i, 3, turned_b[g][i] = by_turn_b[g][i]*stiff_b[g];) \
-        FU_EACH(i, 3, follows_b[g][i] = stiff_b[g]*(di_b[g][i] + i_b[g][i]*rate);) \
-        FU_EACH(i, 3, stiff_i_b[g][i] = i_b[g][i]*stiff_b[g];) \
-        FU_PAIRS(i, j, 3, K11_b[g][i][j] = -K21_b[g][i][j]*lever_b[g] + pushed_b[g][j]*r2_b[g][i] + rate_b[g][i]*turned_b[g][j];) \
-        FU_PAIRS(i, j, 3, K12_b[g][i][j] = -K22_b[g][i][j]*lever_b[g] + follows_b[g][j]*r2_b[g][i] - rate_b[g][i]*stiff_i_b[g][j];) \
+        FU_EACH(i, 3, follows_b[g][i] = stiff_b[g]*(di_b[g + 1][i] + i_b[g + 1][i]*rate);) \
+        FU_EACH(i, 3, stiff_i_b[g][i] = i_b[g + 1][i]*stiff_b[g];) \
+        FU_PAIRS(i, j, 3, K11_b[g][i][j] = -K21_b[g][i][j]*lever_b[g] + pushed_b[g][j]*r2_b[g + 1][i] + rate_b[g + 1][i]*turned_b[g][j];) \
+        FU_PAIRS(i, j, 3, K12_b[g][i][j] = -K22_b[g][i][j]*lever_b[g] + follows_b[g][j]*r2_b[g + 1][i] - rate_b[g + 1][i]*stiff_i_b[g][j];) \
         FU_EACH(i, 3, K12_b[g][i][i] += growth_b[g]*stiff_b[g];)) \
     const fu_real \
-        k_b3 = inv_b3*(-inv_b3*stretch_b3 + rate), \
-        level_b3 = across_b3*inv_b3 - along_b3*k_b3; \
-    FU_EACH(i, 3, p_b3[i] = -along_b3*i_b3[i] + r2_b3[i];) \
-    FU_EACH(i, 3, by_turn_b3[i] = inv_b3*(along_b3*i_b3[i] - p_b3[i]);) \
-    const fu_real by_i_i_b3 = across_b3*inv_b3 + level_b3; \
-    FU_EACH(i, 3, by_i_b3[i] = -by_i_i_b3*i_b3[i] + k_b3*p_b3[i];) \
-    K21_b3[0][0] = 0.34785484513745357*EI_tau*(by_i_b3[0]*i_b3[0] + by_turn_b3[0]*di_b3[0] + level_b3); \
-    K21_b3[0][1] = 0.34785484513745357*EI_tau*(by_i_b3[1]*i_b3[0] + by_turn_b3[1]*di_b3[0]); \
-    K21_b3[0][2] = 0.34785484513745357*EI_tau*(by_i_b3[2]*i_b3[0] + by_turn_b3[2]*di_b3[0]); \
-    K21_b3[1][0] = 0.34785484513745357*EI_tau*(by_i_b3[0]*i_b3[1] + by_turn_b3[0]*di_b3[1]); \
-    K21_b3[1][1] = 0.34785484513745357*EI_tau*(by_i_b3[1]*i_b3[1] + by_turn_b3[1]*di_b3[1] + level_b3); \
-    K21_b3[1][2] = 0.34785484513745357*EI_tau*(by_i_b3[2]*i_b3[1] + by_turn_b3[2]*di_b3[1]); \
-    K21_b3[2][0] = 0.34785484513745357*EI_tau*(by_i_b3[0]*i_b3[2] + by_turn_b3[0]*di_b3[2]); \
-    K21_b3[2][1] = 0.34785484513745357*EI_tau*(by_i_b3[1]*i_b3[2] + by_turn_b3[1]*di_b3[2]); \
-    K21_b3[2][2] = 0.34785484513745357*EI_tau*(by_i_b3[2]*i_b3[2] + by_turn_b3[2]*di_b3[2] + level_b3); \
-    FU_PAIRS(i, j, 3, K22_b3[i][j] = 0.34785484513745357*EI_tau*(-di_b3[i]*i_b3[j] + di_b3[j]*i_b3[i]);) \
+        k_b3 = inv_b[3]*(-inv_b[3]*stretch_b[3] + rate), \
+        level_b3 = across_b[3]*inv_b[3] - along_b[3]*k_b3; \
+    FU_EACH(i, 3, p_b3[i] = -along_b[3]*i_b[3][i] + r2_b[3][i];) \
+    FU_EACH(i, 3, by_turn_b3[i] = inv_b[3]*(along_b[3]*i_b[3][i] - p_b3[i]);) \
+    const fu_real by_i_i_b3 = across_b[3]*inv_b[3] + level_b3; \
+    FU_EACH(i, 3, by_i_b3[i] = -by_i_i_b3*i_b[3][i] + k_b3*p_b3[i];) \
+    K21_b3[0][0] = 0.34785484513745357*EI_tau*(by_i_b3[0]*i_b[3][0] + by_turn_b3[0]*di_b[3][0] + level_b3); \
+    K21_b3[0][1] = 0.34785484513745357*EI_tau*(by_i_b3[1]*i_b[3][0] + by_turn_b3[1]*di_b[3][0]); \
+    K21_b3[0][2] = 0.34785484513745357*EI_tau*(by_i_b3[2]*i_b[3][0] + by_turn_b3[2]*di_b[3][0]); \
+    K21_b3[1][0] = 0.34785484513745357*EI_tau*(by_i_b3[0]*i_b[3][1] + by_turn_b3[0]*di_b[3][1]); \
+    K21_b3[1][1] = 0.34785484513745357*EI_tau*(by_i_b3[1]*i_b[3][1] + by_turn_b3[1]*di_b[3][1] + level_b3); \
+    K21_b3[1][2] = 0.34785484513745357*EI_tau*(by_i_b3[2]*i_b[3][1] + by_turn_b3[2]*di_b[3][1]); \
+    K21_b3[2][0] = 0.34785484513745357*EI_tau*(by_i_b3[0]*i_b[3][2] + by_turn_b3[0]*di_b[3][2]); \
+    K21_b3[2][1] = 0.34785484513745357*EI_tau*(by_i_b3[1]*i_b[3][2] + by_turn_b3[1]*di_b[3][2]); \
+    K21_b3[2][2] = 0.34785484513745357*EI_tau*(by_i_b3[2]*i_b[3][2] + by_turn_b3[2]*di_b[3][2] + level_b3); \
+    FU_PAIRS(i, j, 3, K22_b3[i][j] = 0.34785484513745357*EI_tau*(-di_b[3][i]*i_b[3][j] + di_b[3][j]*i_b[3][i]);) \
     FU_EACH(i, 3, K22_b3[i][i] += 0.34785484513745357*EI_tau*rate;) \
     const fu_real \
-        stiff_b3 = 0.34785484513745357*EI_tau*inv_b3, \
-        lever_b3 = along_b3*inv_b3, \
-        growth_b3 = i_b3[0]*rate_b3[0] + i_b3[1]*rate_b3[1] + i_b3[2]*rate_b3[2]; \
-    FU_EACH(i, 3, pushed_b3[i] = stiff_b3*(-along_b3*di_b3[i]*inv_b3 + d2_b3[i]*inv_b3 - 2.0*growth_b3*i_b3[i]*inv_b3 + k_b3*p_b3[i]);) \
+        stiff_b3 = 0.34785484513745357*EI_tau*inv_b[3], \
+        lever_b3 = along_b[3]*inv_b[3], \
+        growth_b3 = i_b[3][0]*rate_b[3][0] + i_b[3][1]*rate_b[3][1] + i_b[3][2]*rate_b[3][2]; \
+    FU_EACH(i, 3, pushed_b3[i] = stiff_b3*(-along_b[3]*di_b[3][i]*inv_b[3] + d2_b[3][i]*inv_b[3] - 2.0*growth_b3*i_b[3][i]*inv_b[3] + k_b3*p_b3[i]);) \
     FU_EACH(i, 3, turned_b3[i] = by_turn_b3[i]*stiff_b3;) \
-    FU_EACH(i, 3, follows_b3[i] = stiff_b3*(di_b3[i] + i_b3[i]*rate);) \
-    FU_EACH(i, 3, stiff_i_b3[i] = i_b3[i]*stiff_b3;) \
-    FU_PAIRS(i, j, 3, K11_b3[i][j] = -K21_b3[i][j]*lever_b3 + pushed_b3[j]*r2_b3[i] + rate_b3[i]*turned_b3[j];) \
-    FU_PAIRS(i, j, 3, K12_b3[i][j] = -K22_b3[i][j]*lever_b3 + follows_b3[j]*r2_b3[i] - rate_b3[i]*stiff_i_b3[j];) \
+    FU_EACH(i, 3, follows_b3[i] = stiff_b3*(di_b[3][i] + i_b[3][i]*rate);) \
+    FU_EACH(i, 3, stiff_i_b3[i] = i_b[3][i]*stiff_b3;) \
+    FU_PAIRS(i, j, 3, K11_b3[i][j] = -K21_b3[i][j]*lever_b3 + pushed_b3[j]*r2_b[3][i] + rate_b[3][i]*turned_b3[j];) \
+    FU_PAIRS(i, j, 3, K12_b3[i][j] = -K22_b3[i][j]*lever_b3 + follows_b3[j]*r2_b[3][i] - rate_b[3][i]*stiff_i_b3[j];) \
     FU_EACH(i, 3, K12_b3[i][i] += growth_b3*stiff_b3;) \
     FU_PAIRS(i, j, 3, sum11_d20[i][j] = K11_b0[i][j] + K11_b3[i][j];) \
     FU_PAIRS(i, j, 3, sum11_d21[i][j] = K11_b[0][i][j] + K11_b[1][i][j];) \
@@ -321,32 +313,45 @@
     FU_PAIRS(i, j, 3, difference22_d20[i][j] = K22_b0[i][j] - K22_b3[i][j];) \
     FU_PAIRS(i, j, 3, difference22_d21[i][j] = K22_b[0][i][j] - K22_b[1][i][j];)
 
+/* part of rate of axial strain at the quadrature points: of cable18_green_exact_algorithmic_force and 7 more */
+#define CABLE18_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    FU_EACH(i, 3, r1[0][i] = chord3[i] - 0.906179845938664*t1[i] + 0.7317428697781312*t2[i] - 0.501031171044662*t3[i] + 0.24573545909491168*t4[i];) \
+    FU_EACH(i, 3, d1[0][i] = chordd3[i] - 0.906179845938664*dt1[i] + 0.7317428697781312*dt2[i] - 0.501031171044662*dt3[i] + 0.24573545909491168*dt4[i];) \
+    FU_EACH(i, 3, r1[1][i] = chord3[i] - 0.5384693101056831*t1[i] - 0.06507620311146456*t2[i] + 0.4173821037266682*t3[i] - 0.34450089119367744*t4[i];) \
+    FU_EACH(i, 3, d1[1][i] = chordd3[i] - 0.5384693101056831*dt1[i] - 0.06507620311146456*dt2[i] + 0.4173821037266682*dt3[i] - 0.34450089119367744*dt4[i];) \
+    FU_EACH(i, 3, r1[2][i] = chord3[i] - 0.5*t2[i] + 0.375*t4[i];) \
+    FU_EACH(i, 3, d1[2][i] = chordd3[i] - 0.5*dt2[i] + 0.375*dt4[i];) \
+    FU_EACH(i, 3, r1[3][i] = chord3[i] + 0.5384693101056831*t1[i] - 0.06507620311146456*t2[i] - 0.4173821037266682*t3[i] - 0.34450089119367744*t4[i];) \
+    FU_EACH(i, 3, d1[3][i] = chordd3[i] + 0.5384693101056831*dt1[i] - 0.06507620311146456*dt2[i] - 0.4173821037266682*dt3[i] - 0.34450089119367744*dt4[i];) \
+    FU_EACH(i, 3, r1[4][i] = chord3[i] + 0.906179845938664*t1[i] + 0.7317428697781312*t2[i] + 0.501031171044662*t3[i] + 0.24573545909491168*t4[i];) \
+    FU_EACH(i, 3, d1[4][i] = chordd3[i] + 0.906179845938664*dt1[i] + 0.7317428697781312*dt2[i] + 0.501031171044662*dt3[i] + 0.24573545909491168*dt4[i];)
+
 /* part of forces at the quadrature points: of cable18_green_exact_algorithmic_force and 1 more */
 #define CABLE18_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2 \
-    FU_EACH(i, 3, F_4[i] = N_4*r1_4[i];) \
-    excess_rate_b0[0] = rate_b0[0]*weight - relaxed_strain[5]; \
-    excess_rate_b0[1] = rate_b0[1]*weight - relaxed_strain[6]; \
-    excess_rate_b0[2] = rate_b0[2]*weight - relaxed_strain[7]; \
+    FU_EACH(i, 3, F_4[i] = N_4*r1[4][i];) \
+    excess_rate_b0[0] = rate_b[0][0]*weight - relaxed_strain[5]; \
+    excess_rate_b0[1] = rate_b[0][1]*weight - relaxed_strain[6]; \
+    excess_rate_b0[2] = rate_b[0][2]*weight - relaxed_strain[7]; \
     const fu_real \
-        inward_b0 = 0.34785484513745357*EI_tau*inv_b0*(excess_rate_b0[0]*i_b0[0] + excess_rate_b0[1]*i_b0[1] + excess_rate_b0[2]*i_b0[2]), \
-        lever_b0 = 0.34785484513745357*EI_tau*along_b0*inv_b0; \
-    FU_EACH(i, 3, F1_b0[i] = -excess_rate_b0[i]*lever_b0 + inward_b0*r2_b0[i];) \
+        inward_b0 = 0.34785484513745357*EI_tau*inv_b[0]*(excess_rate_b0[0]*i_b[0][0] + excess_rate_b0[1]*i_b[0][1] + excess_rate_b0[2]*i_b[0][2]), \
+        lever_b0 = 0.34785484513745357*EI_tau*along_b[0]*inv_b[0]; \
+    FU_EACH(i, 3, F1_b0[i] = -excess_rate_b0[i]*lever_b0 + inward_b0*r2_b[0][i];) \
     FU_EACH(i, 3, F2_b0[i] = 0.34785484513745357*EI_tau*excess_rate_b0[i];) \
     FU_EACH(g, 2, \
-        excess_rate_b[g][0] = rate_b[g][0]*weight - relaxed_strain[3*g + 8]; \
-        excess_rate_b[g][1] = rate_b[g][1]*weight - relaxed_strain[3*g + 9]; \
-        excess_rate_b[g][2] = rate_b[g][2]*weight - relaxed_strain[3*g + 10]; \
-        inward_b[g] = 0.6521451548625464*EI_tau*inv_b[g]*(excess_rate_b[g][0]*i_b[g][0] + excess_rate_b[g][1]*i_b[g][1] + excess_rate_b[g][2]*i_b[g][2]); \
-        lever_b[g] = 0.6521451548625464*EI_tau*along_b[g]*inv_b[g]; \
-        FU_EACH(i, 3, F1_b[g][i] = -excess_rate_b[g][i]*lever_b[g] + inward_b[g]*r2_b[g][i];) \
+        excess_rate_b[g][0] = rate_b[g + 1][0]*weight - relaxed_strain[3*g + 8]; \
+        excess_rate_b[g][1] = rate_b[g + 1][1]*weight - relaxed_strain[3*g + 9]; \
+        excess_rate_b[g][2] = rate_b[g + 1][2]*weight - relaxed_strain[3*g + 10]; \
+        inward_b[g] = 0.6521451548625464*EI_tau*inv_b[g + 1]*(excess_rate_b[g][0]*i_b[g + 1][0] + excess_rate_b[g][1]*i_b[g + 1][1] + excess_rate_b[g][2]*i_b[g + 1][2]); \
+        lever_b[g] = 0.6521451548625464*EI_tau*along_b[g + 1]*inv_b[g + 1]; \
+        FU_EACH(i, 3, F1_b[g][i] = -excess_rate_b[g][i]*lever_b[g] + inward_b[g]*r2_b[g + 1][i];) \
         FU_EACH(i, 3, F2_b[g][i] = 0.6521451548625464*EI_tau*excess_rate_b[g][i];)) \
-    excess_rate_b3[0] = rate_b3[0]*weight - relaxed_strain[14]; \
-    excess_rate_b3[1] = rate_b3[1]*weight - relaxed_strain[15]; \
-    excess_rate_b3[2] = rate_b3[2]*weight - relaxed_strain[16]; \
+    excess_rate_b3[0] = rate_b[3][0]*weight - relaxed_strain[14]; \
+    excess_rate_b3[1] = rate_b[3][1]*weight - relaxed_strain[15]; \
+    excess_rate_b3[2] = rate_b[3][2]*weight - relaxed_strain[16]; \
     const fu_real \
-        inward_b3 = 0.34785484513745357*EI_tau*inv_b3*(excess_rate_b3[0]*i_b3[0] + excess_rate_b3[1]*i_b3[1] + excess_rate_b3[2]*i_b3[2]), \
-        lever_b3 = 0.34785484513745357*EI_tau*along_b3*inv_b3; \
-    FU_EACH(i, 3, F1_b3[i] = -excess_rate_b3[i]*lever_b3 + inward_b3*r2_b3[i];) \
+        inward_b3 = 0.34785484513745357*EI_tau*inv_b[3]*(excess_rate_b3[0]*i_b[3][0] + excess_rate_b3[1]*i_b[3][1] + excess_rate_b3[2]*i_b[3][2]), \
+        lever_b3 = 0.34785484513745357*EI_tau*along_b[3]*inv_b[3]; \
+    FU_EACH(i, 3, F1_b3[i] = -excess_rate_b3[i]*lever_b3 + inward_b3*r2_b[3][i];) \
     FU_EACH(i, 3, F2_b3[i] = 0.34785484513745357*EI_tau*excess_rate_b3[i];)
 
 /* part of strain at the quadrature points: of cable18_engineering_exact_discrete_force and 1 more */
@@ -675,36 +680,12 @@
     FU_EACH(i, 3, f_t3[i] = -0.304746984955206*F1_b0[i] + 0.4117279996728996*F1_b[0][i] - 0.4117279996728996*F1_b[1][i] + 0.304746984955206*F1_b3[i] + 4.0616681035935684*F2_b0[i] - 0.6330966750221406*F2_b[0][i] - 0.6330966750221406*F2_b[1][i] + 4.0616681035935684*F2_b3[i] - 0.501031171044662*F_0[i] + 0.4173821037266682*F_1[i] - 0.4173821037266682*F_3[i] + 0.501031171044662*F_4[i];) \
     FU_EACH(i, 3, f_t4[i] = -4.7166378294686*F2_b0[i] + 1.8621528669557281*F2_b[0][i] - 1.8621528669557281*F2_b[1][i] + 4.7166378294686*F2_b3[i] + 0.24573545909491168*F_0[i] - 0.34450089119367744*F_1[i] + 0.375*F_2[i] - 0.34450089119367744*F_3[i] + 0.24573545909491168*F_4[i];)
 
-/* rate of curvature at the quadrature points: of cable18_green_exact_damping_tangent and 1 more */
+/* rate of curvature at the quadrature points: of cable18_green_exact_damping_tangent and 3 more */
 #define CABLE18_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    fu_real r1_b0[3], d1_b0[3], r2_b0[3], d2_b0[3], i_b0[3], di_b0[3], rate_b0[3], r1_b1[3], d1_b1[3], r2_b[2][3], \
-        d2_b[2][3], inv_b[2], i_b[2][3], stretch_b[2], di_b[2][3], along_b[2], across_b[2], rate_b[2][3], r1_b2[3], \
-        d1_b2[3], r1_b3[3], d1_b3[3], r2_b3[3], d2_b3[3], i_b3[3], di_b3[3], rate_b3[3]; \
+    fu_real r1_b[4][3], d1_b[4][3], r2_b[4][3], d2_b[4][3], len_b[4], inv_b[4], i_b[4][3], stretch_b[4], di_b[4][3], \
+        along_b[4], across_b[4], rate_b[4][3]; \
     const fu_real EI_tau = 2.0*A[1]*tau*w; \
-    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] + 1.8621528669557281*t4[i];) \
-    FU_EACH(i, 3, d2_b[0][i] = dt1[i] - 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] + 1.8621528669557281*dt4[i];) \
-    const fu_real len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]); \
-    inv_b[0] = 1.0/len_b1; \
-    FU_EACH(i, 3, i_b[0][i] = inv_b[0]*r1_b1[i];) \
-    stretch_b[0] = d1_b1[0]*i_b[0][0] + d1_b1[1]*i_b[0][1] + d1_b1[2]*i_b[0][2]; \
-    FU_EACH(i, 3, di_b[0][i] = inv_b[0]*(d1_b1[i] - i_b[0][i]*stretch_b[0]);) \
-    along_b[0] = i_b[0][0]*r2_b[0][0] + i_b[0][1]*r2_b[0][1] + i_b[0][2]*r2_b[0][2]; \
-    across_b[0] = di_b[0][0]*r2_b[0][0] + di_b[0][1]*r2_b[0][1] + di_b[0][2]*r2_b[0][2]; \
-    FU_EACH(i, 3, rate_b[0][i] = across_b[0]*i_b[0][i] - along_b[0]*di_b[0][i] + d2_b[0][i];) \
-    FU_EACH(i, 3, r1_b2[i] = chord3[i] + 0.33998104358485626*t1[i] - 0.3266193350044281*t2[i] - 0.4117279996728996*t3[i];) \
-    FU_EACH(i, 3, d1_b2[i] = chordd3[i] + 0.33998104358485626*dt1[i] - 0.3266193350044281*dt2[i] - 0.4117279996728996*dt3[i];) \
-    FU_EACH(i, 3, r2_b[1][i] = t1[i] + 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] - 1.8621528669557281*t4[i];) \
-    FU_EACH(i, 3, d2_b[1][i] = dt1[i] + 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] - 1.8621528669557281*dt4[i];) \
-    const fu_real len_b2 = FU_SQRT(r1_b2[0]*r1_b2[0] + r1_b2[1]*r1_b2[1] + r1_b2[2]*r1_b2[2]); \
-    inv_b[1] = 1.0/len_b2; \
-    FU_EACH(i, 3, i_b[1][i] = inv_b[1]*r1_b2[i];) \
-    stretch_b[1] = d1_b2[0]*i_b[1][0] + d1_b2[1]*i_b[1][1] + d1_b2[2]*i_b[1][2]; \
-    FU_EACH(i, 3, di_b[1][i] = inv_b[1]*(d1_b2[i] - i_b[1][i]*stretch_b[1]);) \
-    along_b[1] = i_b[1][0]*r2_b[1][0] + i_b[1][1]*r2_b[1][1] + i_b[1][2]*r2_b[1][2]; \
-    across_b[1] = di_b[1][0]*r2_b[1][0] + di_b[1][1]*r2_b[1][1] + di_b[1][2]*r2_b[1][2]; \
-    FU_EACH(i, 3, rate_b[1][i] = across_b[1]*i_b[1][i] - along_b[1]*di_b[1][i] + d2_b[1][i];) \
-    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
+    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
 
 /* blocks over strain vectors: of cable18_green_exact_damping_tangent and 1 more */
 #define CABLE18_BLOCKS_OVER_STRAIN_VECTORS_2 \
@@ -793,94 +774,16 @@
     FU_PAIRS(i, j, 3, K[18*i + j + 216] = -K_r_x2_r_2[i][j];) \
     FU_PAIRS(i, j, 3, K[18*i + j + 270] = -K_r_xx2_r_2[i][j];)
 
-/* rate of curvature at the quadrature points: of cable18_green_exact_dissipation and 1 more */
-#define CABLE18_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
-    fu_real r1_b0[3], d1_b0[3], r2_b0[3], d2_b0[3], i_b0[3], di_b0[3], rate_b0[3], r1_b1[3], d1_b1[3], r2_b1[3], \
-        d2_b1[3], i_b1[3], di_b1[3], rate_b1[3], r1_b2[3], d1_b2[3], r2_b2[3], d2_b2[3], i_b2[3], di_b2[3], rate_b2[3], \
-        r1_b3[3], d1_b3[3], r2_b3[3], d2_b3[3], i_b3[3], di_b3[3], rate_b3[3]; \
-    const fu_real EI_tau = 2.0*A[1]*tau*w; \
-    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    FU_EACH(i, 3, r2_b1[i] = t1[i] - 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] + 1.8621528669557281*t4[i];) \
-    FU_EACH(i, 3, d2_b1[i] = dt1[i] - 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] + 1.8621528669557281*dt4[i];) \
-    const fu_real \
-        len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]), \
-        inv_b1 = 1.0/len_b1; \
-    FU_EACH(i, 3, i_b1[i] = inv_b1*r1_b1[i];) \
-    const fu_real stretch_b1 = d1_b1[0]*i_b1[0] + d1_b1[1]*i_b1[1] + d1_b1[2]*i_b1[2]; \
-    FU_EACH(i, 3, di_b1[i] = inv_b1*(d1_b1[i] - i_b1[i]*stretch_b1);) \
-    const fu_real \
-        along_b1 = i_b1[0]*r2_b1[0] + i_b1[1]*r2_b1[1] + i_b1[2]*r2_b1[2], \
-        across_b1 = di_b1[0]*r2_b1[0] + di_b1[1]*r2_b1[1] + di_b1[2]*r2_b1[2]; \
-    FU_EACH(i, 3, rate_b1[i] = across_b1*i_b1[i] - along_b1*di_b1[i] + d2_b1[i];) \
-    FU_EACH(i, 3, r1_b2[i] = chord3[i] + 0.33998104358485626*t1[i] - 0.3266193350044281*t2[i] - 0.4117279996728996*t3[i];) \
-    FU_EACH(i, 3, d1_b2[i] = chordd3[i] + 0.33998104358485626*dt1[i] - 0.3266193350044281*dt2[i] - 0.4117279996728996*dt3[i];) \
-    FU_EACH(i, 3, r2_b2[i] = t1[i] + 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] - 1.8621528669557281*t4[i];) \
-    FU_EACH(i, 3, d2_b2[i] = dt1[i] + 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] - 1.8621528669557281*dt4[i];) \
-    const fu_real \
-        len_b2 = FU_SQRT(r1_b2[0]*r1_b2[0] + r1_b2[1]*r1_b2[1] + r1_b2[2]*r1_b2[2]), \
-        inv_b2 = 1.0/len_b2; \
-    FU_EACH(i, 3, i_b2[i] = inv_b2*r1_b2[i];) \
-    const fu_real stretch_b2 = d1_b2[0]*i_b2[0] + d1_b2[1]*i_b2[1] + d1_b2[2]*i_b2[2]; \
-    FU_EACH(i, 3, di_b2[i] = inv_b2*(d1_b2[i] - i_b2[i]*stretch_b2);) \
-    const fu_real \
-        along_b2 = i_b2[0]*r2_b2[0] + i_b2[1]*r2_b2[1] + i_b2[2]*r2_b2[2], \
-        across_b2 = di_b2[0]*r2_b2[0] + di_b2[1]*r2_b2[1] + di_b2[2]*r2_b2[2]; \
-    FU_EACH(i, 3, rate_b2[i] = across_b2*i_b2[i] - along_b2*di_b2[i] + d2_b2[i];) \
-    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
-
 /* outputs: of cable18_green_exact_dissipation and 1 more */
 #define CABLE18_OUTPUTS_3 \
-    P[0] = 0.23692688505618928*EA_tau*deps_0*deps_0 + 0.4786286704993663*EA_tau*deps_1*deps_1 + 0.5688888888888887*EA_tau*deps_2*deps_2 + 0.4786286704993663*EA_tau*deps_3*deps_3 + 0.23692688505618928*EA_tau*deps_4*deps_4 + 0.34785484513745357*EI_tau*(rate_b0[0]*rate_b0[0] + rate_b0[1]*rate_b0[1] + rate_b0[2]*rate_b0[2]) + 0.6521451548625464*EI_tau*(rate_b1[0]*rate_b1[0] + rate_b1[1]*rate_b1[1] + rate_b1[2]*rate_b1[2]) + 0.6521451548625464*EI_tau*(rate_b2[0]*rate_b2[0] + rate_b2[1]*rate_b2[1] + rate_b2[2]*rate_b2[2]) + 0.34785484513745357*EI_tau*(rate_b3[0]*rate_b3[0] + rate_b3[1]*rate_b3[1] + rate_b3[2]*rate_b3[2]);
+    P[0] = 0.23692688505618928*EA_tau*deps[0]*deps[0] + 0.4786286704993663*EA_tau*deps[1]*deps[1] + 0.5688888888888887*EA_tau*deps[2]*deps[2] + 0.4786286704993663*EA_tau*deps[3]*deps[3] + 0.23692688505618928*EA_tau*deps[4]*deps[4] + 0.34785484513745357*EI_tau*(rate_b[0][0]*rate_b[0][0] + rate_b[0][1]*rate_b[0][1] + rate_b[0][2]*rate_b[0][2]) + 0.6521451548625464*EI_tau*(rate_b[1][0]*rate_b[1][0] + rate_b[1][1]*rate_b[1][1] + rate_b[1][2]*rate_b[1][2]) + 0.6521451548625464*EI_tau*(rate_b[2][0]*rate_b[2][0] + rate_b[2][1]*rate_b[2][1] + rate_b[2][2]*rate_b[2][2]) + 0.34785484513745357*EI_tau*(rate_b[3][0]*rate_b[3][0] + rate_b[3][1]*rate_b[3][1] + rate_b[3][2]*rate_b[3][2]);
 
 /* rate of curvature at the quadrature points: of cable18_green_exact_algorithmic_force and 1 more */
-#define CABLE18_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3 \
-    fu_real r1_b0[3], d1_b0[3], r2_b0[3], d2_b0[3], i_b0[3], di_b0[3], rate_b0[3], r1_b1[3], d1_b1[3], r2_b[2][3], \
-        d2_b1[3], inv_b[2], i_b[2][3], di_b1[3], along_b[2], rate_b[2][3], r1_b2[3], d1_b2[3], d2_b2[3], di_b2[3], \
-        r1_b3[3], d1_b3[3], r2_b3[3], d2_b3[3], i_b3[3], di_b3[3], rate_b3[3]; \
+#define CABLE18_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
+    fu_real r1_b[4][3], d1_b[4][3], r2_b[4][3], d2_b[4][3], len_b[4], inv_b[4], i_b[4][3], stretch_b[4], di_b[4][3], \
+        along_b[4], across_b[4], rate_b[4][3]; \
     const fu_real EI_tau = 2.0*A[1]*w; \
-    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    FU_EACH(i, 3, r2_b[0][i] = t1[i] - 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] + 1.8621528669557281*t4[i];) \
-    FU_EACH(i, 3, d2_b1[i] = dt1[i] - 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] + 1.8621528669557281*dt4[i];) \
-    const fu_real len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1] + r1_b1[2]*r1_b1[2]); \
-    inv_b[0] = 1.0/len_b1; \
-    FU_EACH(i, 3, i_b[0][i] = inv_b[0]*r1_b1[i];) \
-    const fu_real stretch_b1 = d1_b1[0]*i_b[0][0] + d1_b1[1]*i_b[0][1] + d1_b1[2]*i_b[0][2]; \
-    FU_EACH(i, 3, di_b1[i] = inv_b[0]*(d1_b1[i] - i_b[0][i]*stretch_b1);) \
-    along_b[0] = i_b[0][0]*r2_b[0][0] + i_b[0][1]*r2_b[0][1] + i_b[0][2]*r2_b[0][2]; \
-    const fu_real across_b1 = di_b1[0]*r2_b[0][0] + di_b1[1]*r2_b[0][1] + di_b1[2]*r2_b[0][2]; \
-    FU_EACH(i, 3, rate_b[0][i] = across_b1*i_b[0][i] - along_b[0]*di_b1[i] + d2_b1[i];) \
-    FU_EACH(i, 3, r1_b2[i] = chord3[i] + 0.33998104358485626*t1[i] - 0.3266193350044281*t2[i] - 0.4117279996728996*t3[i];) \
-    FU_EACH(i, 3, d1_b2[i] = chordd3[i] + 0.33998104358485626*dt1[i] - 0.3266193350044281*dt2[i] - 0.4117279996728996*dt3[i];) \
-    FU_EACH(i, 3, r2_b[1][i] = t1[i] + 1.0199431307545688*t2[i] - 0.6330966750221406*t3[i] - 1.8621528669557281*t4[i];) \
-    FU_EACH(i, 3, d2_b2[i] = dt1[i] + 1.0199431307545688*dt2[i] - 0.6330966750221406*dt3[i] - 1.8621528669557281*dt4[i];) \
-    const fu_real len_b2 = FU_SQRT(r1_b2[0]*r1_b2[0] + r1_b2[1]*r1_b2[1] + r1_b2[2]*r1_b2[2]); \
-    inv_b[1] = 1.0/len_b2; \
-    FU_EACH(i, 3, i_b[1][i] = inv_b[1]*r1_b2[i];) \
-    const fu_real stretch_b2 = d1_b2[0]*i_b[1][0] + d1_b2[1]*i_b[1][1] + d1_b2[2]*i_b[1][2]; \
-    FU_EACH(i, 3, di_b2[i] = inv_b[1]*(d1_b2[i] - i_b[1][i]*stretch_b2);) \
-    along_b[1] = i_b[1][0]*r2_b[1][0] + i_b[1][1]*r2_b[1][1] + i_b[1][2]*r2_b[1][2]; \
-    const fu_real across_b2 = di_b2[0]*r2_b[1][0] + di_b2[1]*r2_b[1][1] + di_b2[2]*r2_b[1][2]; \
-    FU_EACH(i, 3, rate_b[1][i] = across_b2*i_b[1][i] - along_b[1]*di_b2[i] + d2_b2[i];) \
-    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
-
-/* outputs: of cable18_green_exact_algorithmic_force and 1 more */
-#define CABLE18_OUTPUTS_4 \
-    FU_EACH(i, 3, f[i] = -f_r_2[i];) \
-    dE[0] = deps_0; \
-    dE[1] = deps_1; \
-    dE[2] = deps_2; \
-    dE[3] = deps_3; \
-    dE[4] = deps_4; \
-    dE[5] = rate_b0[0]; \
-    dE[6] = rate_b0[1]; \
-    dE[7] = rate_b0[2]; \
-    FU_EACH(g, 2, \
-        dE[3*g + 8] = rate_b[g][0]; \
-        dE[3*g + 9] = rate_b[g][1]; \
-        dE[3*g + 10] = rate_b[g][2];) \
-    dE[14] = rate_b3[0]; \
-    dE[15] = rate_b3[1]; \
-    dE[16] = rate_b3[2];
+    CABLE18_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
 
 /* strain vectors: of cable18_green_exact_section_forces and 3 more */
 #define CABLE18_STRAIN_VECTORS_3 \
@@ -925,7 +828,7 @@
         i_z = inv_i*t_z;
 
 /* outputs: of cable18_green_exact_section_forces and 1 more */
-#define CABLE18_OUTPUTS_5 \
+#define CABLE18_OUTPUTS_4 \
     force[0] = 2.0*W_a*r1_x + W_b*r2_x - dx_slope_x; \
     force[1] = 2.0*W_a*r1_y + W_b*r2_y - dx_slope_y; \
     force[2] = 2.0*W_a*r1_z + W_b*r2_z - dx_slope_z; \
@@ -1074,7 +977,7 @@
     FU_EACH(i, 3, f_t4[i] = 0.375*F1_abc2[i] - 6.225757735128626*difference_abc[2][i] + 1.306266795769628*difference_abc[3][i] + 0.24573545909491168*sum_abc[0][i] - 0.34450089119367744*sum_abc[1][i];)
 
 /* outputs: of cable18_green_exact_assumed_section_forces and 1 more */
-#define CABLE18_OUTPUTS_6 \
+#define CABLE18_OUTPUTS_5 \
     force[0] = 2.0*W_a*r1_x + W_b*r2_x - dx_slope_x; \
     force[1] = 2.0*W_a*r1_y + W_b*r2_y - dx_slope_y; \
     force[2] = 2.0*W_a*r1_z + W_b*r2_z - dx_slope_z; \

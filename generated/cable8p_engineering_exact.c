@@ -49,29 +49,13 @@
 
 /* rate of axial strain at the quadrature points: of cable8p_engineering_exact_damping_force and 1 more */
 #define CABLE8P_ENGINEERING_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
-    const fu_real \
-        EA_tau = 0.5*A[0]*tau/w, \
-        r1_0_x = chord2_x - 0.7745966692414834*t1_x + 0.40000000000000013*t2_x, \
-        r1_0_y = chord2_y - 0.7745966692414834*t1_y + 0.40000000000000013*t2_y, \
-        d1_0_x = chordd2_x - 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x, \
-        d1_0_y = chordd2_y - 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y, \
-        len_0 = FU_SQRT(r1_0_x*r1_0_x + r1_0_y*r1_0_y), \
-        inv_0 = 1.0/len_0, \
-        deps_0 = inv_0*(d1_0_x*r1_0_x + d1_0_y*r1_0_y), \
-        r1_1_x = chord2_x - 0.5*t2_x, \
-        r1_1_y = chord2_y - 0.5*t2_y, \
-        d1_1_x = chordd2_x - 0.5*dt2_x, \
-        d1_1_y = chordd2_y - 0.5*dt2_y, \
-        len_1 = FU_SQRT(r1_1_x*r1_1_x + r1_1_y*r1_1_y), \
-        inv_1 = 1.0/len_1, \
-        deps_1 = inv_1*(d1_1_x*r1_1_x + d1_1_y*r1_1_y), \
-        r1_2_x = chord2_x + 0.7745966692414834*t1_x + 0.40000000000000013*t2_x, \
-        r1_2_y = chord2_y + 0.7745966692414834*t1_y + 0.40000000000000013*t2_y, \
-        d1_2_x = chordd2_x + 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x, \
-        d1_2_y = chordd2_y + 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y, \
-        len_2 = FU_SQRT(r1_2_x*r1_2_x + r1_2_y*r1_2_y), \
-        inv_2 = 1.0/len_2, \
-        deps_2 = inv_2*(d1_2_x*r1_2_x + d1_2_y*r1_2_y);
+    fu_real r1_x[3], r1_y[3], d1_x[3], d1_y[3], len[3], inv[3], deps[3]; \
+    const fu_real EA_tau = 0.5*A[0]*tau/w; \
+    CABLE8P_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS_2 \
+    FU_EACH(g, 3, \
+        len[g] = FU_SQRT(r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g]); \
+        inv[g] = 1.0/len[g]; \
+        deps[g] = inv[g]*(d1_x[g]*r1_x[g] + d1_y[g]*r1_y[g]);)
 
 #ifndef FU_BLOCK
 /* constants of the law from the stiffness of the section (eq 7; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)) */
@@ -361,44 +345,22 @@ FU_KERNEL void cable8p_engineering_exact_damping_force(fu_real l, const fu_real 
     CABLE8P_STRAIN_VECTORS_AND_THEIR_RATES
     CABLE8P_ENGINEERING_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     /* rate of curvature at the quadrature points */
-    fu_real r2_b_x[2], r2_b_y[2], inv_b[2], i_b_x[2], i_b_y[2], along_b[2], rate_b_x[2], rate_b_y[2], inward_b[2],
-        lever_b[2], F1_b_x[2], F1_b_y[2], F2_b_x[2], F2_b_y[2];
-    const fu_real
-        EI_tau = 2.0*A[1]*tau*w,
-        r1_b0_x = chord2_x - 0.5773502691896257*t1_x,
-        r1_b0_y = chord2_y - 0.5773502691896257*t1_y,
-        d1_b0_x = chordd2_x - 0.5773502691896257*dt1_x,
-        d1_b0_y = chordd2_y - 0.5773502691896257*dt1_y;
-    r2_b_x[0] = t1_x - 1.7320508075688772*t2_x;
-    r2_b_y[0] = t1_y - 1.7320508075688772*t2_y;
-    const fu_real
-        d2_b0_x = dt1_x - 1.7320508075688772*dt2_x,
-        d2_b0_y = dt1_y - 1.7320508075688772*dt2_y,
-        len_b0 = FU_SQRT(r1_b0_x*r1_b0_x + r1_b0_y*r1_b0_y);
+    fu_real r1_b_x[2], r1_b_y[2], d1_b_x[2], d1_b_y[2], r2_b_x[2], r2_b_y[2], d2_b_x[2], d2_b_y[2], len_b[2], inv_b[2],
+        i_b_x[2], i_b_y[2], stretch_b[2], di_b_x[2], di_b_y[2], along_b[2], across_b[2], rate_b_x[2], rate_b_y[2],
+        inward_b[2], lever_b[2], F1_b_x[2], F1_b_y[2], F2_b_x[2], F2_b_y[2];
+    const fu_real EI_tau = 2.0*A[1]*tau*w;
     CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     const fu_real
-        r1_b1_x = chord2_x + 0.5773502691896257*t1_x,
-        r1_b1_y = chord2_y + 0.5773502691896257*t1_y,
-        d1_b1_x = chordd2_x + 0.5773502691896257*dt1_x,
-        d1_b1_y = chordd2_y + 0.5773502691896257*dt1_y;
-    r2_b_x[1] = t1_x + 1.7320508075688772*t2_x;
-    r2_b_y[1] = t1_y + 1.7320508075688772*t2_y;
-    const fu_real
-        d2_b1_x = dt1_x + 1.7320508075688772*dt2_x,
-        d2_b1_y = dt1_y + 1.7320508075688772*dt2_y,
-        len_b1 = FU_SQRT(r1_b1_x*r1_b1_x + r1_b1_y*r1_b1_y);
+        N_0 = 0.5555555555555557*EA_tau*deps[0]*inv[0],
+        F_0_x = N_0*r1_x[0],
+        F_0_y = N_0*r1_y[0],
+        N_1 = 0.8888888888888888*EA_tau*deps[1]*inv[1],
+        F_1_x = N_1*r1_x[1],
+        F_1_y = N_1*r1_y[1],
+        N_2 = 0.5555555555555557*EA_tau*deps[2]*inv[2],
+        F_2_x = N_2*r1_x[2],
+        F_2_y = N_2*r1_y[2];
     CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
-    const fu_real
-        N_0 = 0.5555555555555557*EA_tau*deps_0*inv_0,
-        F_0_x = N_0*r1_0_x,
-        F_0_y = N_0*r1_0_y,
-        N_1 = 0.8888888888888888*EA_tau*deps_1*inv_1,
-        F_1_x = N_1*r1_1_x,
-        F_1_y = N_1*r1_1_y,
-        N_2 = 0.5555555555555557*EA_tau*deps_2*inv_2,
-        F_2_x = N_2*r1_2_x,
-        F_2_y = N_2*r1_2_y;
-    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
     CABLE8P_FORCES_ON_STRAIN_VECTORS_3
     /* forces on nodal vectors */
     const fu_real
@@ -425,49 +387,39 @@ void cable8p_engineering_exact_damping_tangent(fu_real l, const fu_real *e, cons
 {
     CABLE8P_STRAIN_VECTORS_AND_THEIR_RATES_2
     /* rate of axial strain at the quadrature points */
-    fu_real r1_0[2], d1_0[2], r1_1[2], d1_1[2], r1_2[2], d1_2[2];
+    fu_real r1[3][2], d1[3][2], len[3], inv[3], deps[3];
     const fu_real EA_tau = 0.5*A[0]*tau/w;
-    FU_EACH(i, 2, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 2, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real
-        len_0 = FU_SQRT(r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1]),
-        inv_0 = 1.0/len_0,
-        deps_0 = inv_0*(d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1]);
-    FU_EACH(i, 2, r1_1[i] = chord2[i] - 0.5*t2[i];)
-    FU_EACH(i, 2, d1_1[i] = chordd2[i] - 0.5*dt2[i];)
-    const fu_real
-        len_1 = FU_SQRT(r1_1[0]*r1_1[0] + r1_1[1]*r1_1[1]),
-        inv_1 = 1.0/len_1,
-        deps_1 = inv_1*(d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1]);
-    FU_EACH(i, 2, r1_2[i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 2, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real
-        len_2 = FU_SQRT(r1_2[0]*r1_2[0] + r1_2[1]*r1_2[1]),
-        inv_2 = 1.0/len_2,
-        deps_2 = inv_2*(d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1]);
+    CABLE8P_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
+    FU_EACH(g, 3,
+        len[g] = FU_SQRT(r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1]);
+        inv[g] = 1.0/len[g];
+        deps[g] = inv[g]*(d1[g][0]*r1[g][0] + d1[g][1]*r1[g][1]);)
     CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     /* derivatives at the quadrature points */
     fu_real i_0[2], di_0[2], by_0[2], K_0[2][2], i_1[2], di_1[2], by_1[2], K_1[2][2], i_2[2], di_2[2], by_2[2],
         K_2[2][2], sum11_d10[2][2], difference11_d10[2][2], p_b0[2], by_turn_b0[2], by_i_b0[2], K_b0[4][2][2],
         pushed_b0[2], turned_b0[2], follows_b0[2], stiff_i_b0[2], p_b1[2], by_turn_b1[2], by_i_b1[2], K_b1[4][2][2],
         pushed_b1[2], turned_b1[2], follows_b1[2], stiff_i_b1[2], sum_d20[4][2][2], difference_d20[4][2][2];
-    const fu_real N_0 = 0.5555555555555557*EA_tau*deps_0*inv_0;
-    FU_EACH(i, 2, i_0[i] = inv_0*r1_0[i];)
-    FU_EACH(i, 2, di_0[i] = inv_0*(d1_0[i] - deps_0*i_0[i]);)
+    const fu_real N_0 = 0.5555555555555557*EA_tau*deps[0]*inv[0];
+    FU_EACH(i, 2, i_0[i] = inv[0]*r1[0][i];)
+    FU_EACH(i, 2, di_0[i] = inv[0]*(d1[0][i] - deps[0]*i_0[i]);)
     FU_EACH(i, 2, by_0[i] = 0.5555555555555557*EA_tau*(di_0[i] + i_0[i]*rate) - N_0*i_0[i];)
     FU_PAIRS(i, j, 2, K_0[i][j] = by_0[j]*i_0[i];)
     FU_EACH(i, 2, K_0[i][i] += N_0;)
-    const fu_real N_1 = 0.8888888888888888*EA_tau*deps_1*inv_1;
-    FU_EACH(i, 2, i_1[i] = inv_1*r1_1[i];)
-    FU_EACH(i, 2, di_1[i] = inv_1*(d1_1[i] - deps_1*i_1[i]);)
+    const fu_real N_1 = 0.8888888888888888*EA_tau*deps[1]*inv[1];
+    FU_EACH(i, 2, i_1[i] = inv[1]*r1[1][i];)
+    FU_EACH(i, 2, di_1[i] = inv[1]*(d1[1][i] - deps[1]*i_1[i]);)
     FU_EACH(i, 2, by_1[i] = 0.8888888888888888*EA_tau*(di_1[i] + i_1[i]*rate) - N_1*i_1[i];)
     FU_PAIRS(i, j, 2, K_1[i][j] = by_1[j]*i_1[i];)
     FU_EACH(i, 2, K_1[i][i] += N_1;)
-    const fu_real N_2 = 0.5555555555555557*EA_tau*deps_2*inv_2;
-    FU_EACH(i, 2, i_2[i] = inv_2*r1_2[i];)
-    FU_EACH(i, 2, di_2[i] = inv_2*(d1_2[i] - deps_2*i_2[i]);)
+    const fu_real N_2 = 0.5555555555555557*EA_tau*deps[2]*inv[2];
+    FU_EACH(i, 2, i_2[i] = inv[2]*r1[2][i];)
+    FU_EACH(i, 2, di_2[i] = inv[2]*(d1[2][i] - deps[2]*i_2[i]);)
     FU_EACH(i, 2, by_2[i] = 0.5555555555555557*EA_tau*(di_2[i] + i_2[i]*rate) - N_2*i_2[i];)
     FU_PAIRS(i, j, 2, K_2[i][j] = by_2[j]*i_2[i];)
+    FU_EACH(i, 2, K_2[i][i] += N_2;)
+    FU_PAIRS(i, j, 2, sum11_d10[i][j] = K_0[i][j] + K_2[i][j];)
+    FU_PAIRS(i, j, 2, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];)
     CABLE8P_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE8P_BLOCKS_OVER_STRAIN_VECTORS_2
     CABLE8P_OVER_NODAL_VECTORS_K_T_3
@@ -492,7 +444,7 @@ FU_KERNEL void cable8p_engineering_exact_dissipation(fu_real l, const fu_real *e
     CABLE8P_ENGINEERING_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     /* outputs */
-    P[0] = 0.5555555555555557*EA_tau*deps_0*deps_0 + 0.8888888888888888*EA_tau*deps_1*deps_1 + 0.5555555555555557*EA_tau*deps_2*deps_2 + EI_tau*(rate_b0_x*rate_b0_x + rate_b0_y*rate_b0_y) + EI_tau*(rate_b1_x*rate_b1_x + rate_b1_y*rate_b1_y);
+    P[0] = 0.5555555555555557*EA_tau*deps[0]*deps[0] + 0.8888888888888888*EA_tau*deps[1]*deps[1] + 0.5555555555555557*EA_tau*deps[2]*deps[2] + EI_tau*(rate_b_x[0]*rate_b_x[0] + rate_b_y[0]*rate_b_y[0]) + EI_tau*(rate_b_x[1]*rate_b_x[1] + rate_b_y[1]*rate_b_y[1]);
 }
 
 #ifndef FU_BLOCK
@@ -501,43 +453,29 @@ void cable8p_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, co
 {
     CABLE8P_STRAIN_VECTORS_AND_THEIR_RATES
     /* rate of axial strain at the quadrature points */
-    const fu_real
-        EA_tau = 0.5*A[0]/w,
-        r1_0_x = chord2_x - 0.7745966692414834*t1_x + 0.40000000000000013*t2_x,
-        r1_0_y = chord2_y - 0.7745966692414834*t1_y + 0.40000000000000013*t2_y,
-        d1_0_x = chordd2_x - 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x,
-        d1_0_y = chordd2_y - 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y,
-        len_0 = FU_SQRT(r1_0_x*r1_0_x + r1_0_y*r1_0_y),
-        inv_0 = 1.0/len_0,
-        deps_0 = inv_0*(d1_0_x*r1_0_x + d1_0_y*r1_0_y),
-        r1_1_x = chord2_x - 0.5*t2_x,
-        r1_1_y = chord2_y - 0.5*t2_y,
-        d1_1_x = chordd2_x - 0.5*dt2_x,
-        d1_1_y = chordd2_y - 0.5*dt2_y,
-        len_1 = FU_SQRT(r1_1_x*r1_1_x + r1_1_y*r1_1_y),
-        inv_1 = 1.0/len_1,
-        deps_1 = inv_1*(d1_1_x*r1_1_x + d1_1_y*r1_1_y),
-        r1_2_x = chord2_x + 0.7745966692414834*t1_x + 0.40000000000000013*t2_x,
-        r1_2_y = chord2_y + 0.7745966692414834*t1_y + 0.40000000000000013*t2_y,
-        d1_2_x = chordd2_x + 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x,
-        d1_2_y = chordd2_y + 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y,
-        len_2 = FU_SQRT(r1_2_x*r1_2_x + r1_2_y*r1_2_y),
-        inv_2 = 1.0/len_2,
-        deps_2 = inv_2*(d1_2_x*r1_2_x + d1_2_y*r1_2_y);
+    fu_real r1_x[3], r1_y[3], d1_x[3], d1_y[3], len[3], inv[3], deps[3];
+    const fu_real EA_tau = 0.5*A[0]/w;
+    CABLE8P_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS_2
+    FU_EACH(g, 3,
+        len[g] = FU_SQRT(r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g]);
+        inv[g] = 1.0/len[g];
+        deps[g] = inv[g]*(d1_x[g]*r1_x[g] + d1_y[g]*r1_y[g]);)
     CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
     /* forces at the quadrature points */
     fu_real excess_rate_b_x[2], excess_rate_b_y[2], inward_b[2], lever_b[2], F1_b_x[2], F1_b_y[2], F2_b_x[2], F2_b_y[2];
     const fu_real
-        excess_deps_0 = deps_0*weight - relaxed_strain[0],
-        N_0 = 0.5555555555555557*EA_tau*excess_deps_0*inv_0,
-        F_0_x = N_0*r1_0_x,
-        F_0_y = N_0*r1_0_y,
-        excess_deps_1 = deps_1*weight - relaxed_strain[1],
-        N_1 = 0.8888888888888888*EA_tau*excess_deps_1*inv_1,
-        F_1_x = N_1*r1_1_x,
-        F_1_y = N_1*r1_1_y,
-        excess_deps_2 = deps_2*weight - relaxed_strain[2],
-        N_2 = 0.5555555555555557*EA_tau*excess_deps_2*inv_2;
+        excess_deps_0 = deps[0]*weight - relaxed_strain[0],
+        N_0 = 0.5555555555555557*EA_tau*excess_deps_0*inv[0],
+        F_0_x = N_0*r1_x[0],
+        F_0_y = N_0*r1_y[0],
+        excess_deps_1 = deps[1]*weight - relaxed_strain[1],
+        N_1 = 0.8888888888888888*EA_tau*excess_deps_1*inv[1],
+        F_1_x = N_1*r1_x[1],
+        F_1_y = N_1*r1_y[1],
+        excess_deps_2 = deps[2]*weight - relaxed_strain[2],
+        N_2 = 0.5555555555555557*EA_tau*excess_deps_2*inv[2],
+        F_2_x = N_2*r1_x[2],
+        F_2_y = N_2*r1_y[2];
     CABLE8P_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_3
     CABLE8P_FORCES_ON_STRAIN_VECTORS_3
     /* forces on nodal vectors */
@@ -557,9 +495,9 @@ void cable8p_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, co
     f[5] = f_r_2_y;
     f[6] = f_r_x2_x;
     f[7] = f_r_x2_y;
-    dE[0] = deps_0;
-    dE[1] = deps_1;
-    dE[2] = deps_2;
+    dE[0] = deps[0];
+    dE[1] = deps[1];
+    dE[2] = deps[2];
     dE[3] = rate_b_x[0];
     dE[4] = rate_b_y[0];
     dE[5] = rate_b_x[1];

@@ -7,25 +7,13 @@
  *   cable8p_engineering_exact_tension_only_elastic_tangent: 482 add, 939 mul, 42 div, 10 sqrt
  *   cable8p_engineering_exact_tension_only_discrete_force: 358 add, 513 mul, 42 div, 20 sqrt
  *   cable8p_engineering_exact_tension_only_step_stiffness: 52 add, 73 mul, 2 div
- *   cable8p_engineering_exact_tension_only_damping_force: 141 add, 205 mul, 13 div, 11 sqrt
- *   cable8p_engineering_exact_tension_only_damping_tangent: 428 add, 630 mul, 13 div, 11 sqrt
- *   cable8p_engineering_exact_tension_only_dissipation: 109 add, 153 mul, 13 div, 11 sqrt
+ *   cable8p_engineering_exact_tension_only_damping_force: 141 add, 204 mul, 13 div, 11 sqrt
+ *   cable8p_engineering_exact_tension_only_damping_tangent: 428 add, 626 mul, 13 div, 11 sqrt
+ *   cable8p_engineering_exact_tension_only_dissipation: 109 add, 152 mul, 13 div, 11 sqrt
  *   cable8p_engineering_exact_tension_only_section_forces: 58 add, 146 mul, 6 div, 4 sqrt
  */
 #include "kernels.h"
 #include "cable8p_stages.h"
-
-/* part of rate of axial strain at the quadrature points: of cable8p_engineering_exact_tension_only_damping_force and 2 more */
-#define CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
-    const fu_real \
-        len_0 = FU_SQRT(a1_0 + 1.0), \
-        eps_0 = a1_0/(len_0 + 1.0), \
-        transition2 = A[3]*A[3], \
-        smooth_0 = FU_SQRT(eps_0*eps_0 + transition2), \
-        inv_smooth_0 = 1.0/smooth_0, \
-        u_0 = eps_0*inv_smooth_0, \
-        quarter_lost = -0.25*A[2] + 0.25, \
-        share_0 = A[2] + quarter_lost*(-u_0 + 2.0)*(u_0 + 1.0)*(u_0 + 1.0);
 
 /* strain at the quadrature points: of cable8p_engineering_exact_tension_only_elastic_force and 1 more */
 #define CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_STRAIN_AT_THE_QUADRATURE_POINTS \
@@ -81,6 +69,30 @@
     cross2[4] = a[4]*c[4] - b[4]*b[4]; \
     smooth[4] = FU_SQRT(eps[4]*eps[4] + transition2); \
     inv_smooth[4] = 1.0/(A[3] + smooth[4]);
+
+/* rate of axial strain at the quadrature points: of cable8p_engineering_exact_tension_only_damping_force and 1 more */
+#define CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    fu_real r1_x[3], r1_y[3], d1_x[3], d1_y[3], EA_tau_at[2], a1[3], len[3], eps[3], smooth[3], inv_smooth[3], u[3], \
+        share[3], viscosity[3], len_2_at[3], inv[3], deps[3]; \
+    const fu_real EA_tau = 0.5*A[0]*tau/w; \
+    CABLE8P_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS_2 \
+    const fu_real \
+        transition2 = A[3]*A[3], \
+        quarter_lost = -0.25*A[2] + 0.25; \
+    EA_tau_at[0] = 0.5555555555555557*EA_tau; \
+    EA_tau_at[1] = 0.8888888888888888*EA_tau; \
+    FU_EACH(g, 3, \
+        a1[g] = r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g] - 1.0; \
+        len[g] = FU_SQRT(a1[g] + 1.0); \
+        eps[g] = a1[g]/(len[g] + 1.0); \
+        smooth[g] = FU_SQRT(eps[g]*eps[g] + transition2); \
+        inv_smooth[g] = 1.0/smooth[g]; \
+        u[g] = eps[g]*inv_smooth[g]; \
+        share[g] = A[2] + quarter_lost*(-u[g] + 2.0)*(u[g] + 1.0)*(u[g] + 1.0); \
+        viscosity[g] = EA_tau_at[g < 1 ? g : 2 - g]*share[g]; \
+        len_2_at[g] = FU_SQRT(r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g]); \
+        inv[g] = 1.0/len_2_at[g]; \
+        deps[g] = inv[g]*(d1_x[g]*r1_x[g] + d1_y[g]*r1_y[g]);)
 
 #ifndef FU_BLOCK
 /* constants of the law from the stiffness of the section (eq 7; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)) */
@@ -552,85 +564,18 @@ void cable8p_engineering_exact_tension_only_step_stiffness(fu_real l, const fu_r
 FU_KERNEL void cable8p_engineering_exact_tension_only_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f)
 {
     CABLE8P_STRAIN_VECTORS_AND_THEIR_RATES
-    /* rate of axial strain at the quadrature points */
-    fu_real r1_x[3], r1_y[3], viscosity[3], inv[3], deps[3];
-    const fu_real EA_tau = 0.5*A[0]*tau/w;
-    r1_x[0] = chord2_x - 0.7745966692414834*t1_x + 0.40000000000000013*t2_x;
-    r1_y[0] = chord2_y - 0.7745966692414834*t1_y + 0.40000000000000013*t2_y;
-    const fu_real
-        d1_0_x = chordd2_x - 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x,
-        d1_0_y = chordd2_y - 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y,
-        a1_0 = r1_x[0]*r1_x[0] + r1_y[0]*r1_y[0] - 1.0;
-    CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
-    viscosity[0] = 0.5555555555555557*EA_tau*share_0;
-    const fu_real len_0_2 = FU_SQRT(r1_x[0]*r1_x[0] + r1_y[0]*r1_y[0]);
-    inv[0] = 1.0/len_0_2;
-    deps[0] = inv[0]*(d1_0_x*r1_x[0] + d1_0_y*r1_y[0]);
-    r1_x[1] = chord2_x - 0.5*t2_x;
-    r1_y[1] = chord2_y - 0.5*t2_y;
-    const fu_real
-        d1_1_x = chordd2_x - 0.5*dt2_x,
-        d1_1_y = chordd2_y - 0.5*dt2_y,
-        a1_1 = r1_x[1]*r1_x[1] + r1_y[1]*r1_y[1] - 1.0,
-        len_1 = FU_SQRT(a1_1 + 1.0),
-        eps_1 = a1_1/(len_1 + 1.0),
-        smooth_1 = FU_SQRT(eps_1*eps_1 + transition2),
-        inv_smooth_1 = 1.0/smooth_1,
-        u_1 = eps_1*inv_smooth_1,
-        share_1 = A[2] + quarter_lost*(-u_1 + 2.0)*(u_1 + 1.0)*(u_1 + 1.0);
-    viscosity[1] = 0.8888888888888888*EA_tau*share_1;
-    const fu_real len_1_2 = FU_SQRT(r1_x[1]*r1_x[1] + r1_y[1]*r1_y[1]);
-    inv[1] = 1.0/len_1_2;
-    deps[1] = inv[1]*(d1_1_x*r1_x[1] + d1_1_y*r1_y[1]);
-    r1_x[2] = chord2_x + 0.7745966692414834*t1_x + 0.40000000000000013*t2_x;
-    r1_y[2] = chord2_y + 0.7745966692414834*t1_y + 0.40000000000000013*t2_y;
-    const fu_real
-        d1_2_x = chordd2_x + 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x,
-        d1_2_y = chordd2_y + 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y,
-        a1_2 = r1_x[2]*r1_x[2] + r1_y[2]*r1_y[2] - 1.0,
-        len_2 = FU_SQRT(a1_2 + 1.0),
-        eps_2 = a1_2/(len_2 + 1.0),
-        smooth_2 = FU_SQRT(eps_2*eps_2 + transition2),
-        inv_smooth_2 = 1.0/smooth_2,
-        u_2 = eps_2*inv_smooth_2,
-        share_2 = A[2] + quarter_lost*(-u_2 + 2.0)*(u_2 + 1.0)*(u_2 + 1.0);
-    viscosity[2] = 0.5555555555555557*EA_tau*share_2;
-    const fu_real len_2_2 = FU_SQRT(r1_x[2]*r1_x[2] + r1_y[2]*r1_y[2]);
-    inv[2] = 1.0/len_2_2;
-    deps[2] = inv[2]*(d1_2_x*r1_x[2] + d1_2_y*r1_y[2]);
+    CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     /* rate of curvature at the quadrature points */
-    fu_real r2_b_x[2], r2_b_y[2], inv_b[2], i_b_x[2], i_b_y[2], along_b[2], rate_b_x[2], rate_b_y[2], N[3], F_x[3],
-        F_y[3], inward_b[2], lever_b[2], F1_b_x[2], F1_b_y[2], F2_b_x[2], F2_b_y[2];
-    const fu_real
-        EI_tau = 2.0*A[1]*tau*w,
-        r1_b0_x = chord2_x - 0.5773502691896257*t1_x,
-        r1_b0_y = chord2_y - 0.5773502691896257*t1_y,
-        d1_b0_x = chordd2_x - 0.5773502691896257*dt1_x,
-        d1_b0_y = chordd2_y - 0.5773502691896257*dt1_y;
-    r2_b_x[0] = t1_x - 1.7320508075688772*t2_x;
-    r2_b_y[0] = t1_y - 1.7320508075688772*t2_y;
-    const fu_real
-        d2_b0_x = dt1_x - 1.7320508075688772*dt2_x,
-        d2_b0_y = dt1_y - 1.7320508075688772*dt2_y,
-        len_b0 = FU_SQRT(r1_b0_x*r1_b0_x + r1_b0_y*r1_b0_y);
+    fu_real r1_b_x[2], r1_b_y[2], d1_b_x[2], d1_b_y[2], r2_b_x[2], r2_b_y[2], d2_b_x[2], d2_b_y[2], len_b[2], inv_b[2],
+        i_b_x[2], i_b_y[2], stretch_b[2], di_b_x[2], di_b_y[2], along_b[2], across_b[2], rate_b_x[2], rate_b_y[2], N[3],
+        F_x[3], F_y[3], inward_b[2], lever_b[2], F1_b_x[2], F1_b_y[2], F2_b_x[2], F2_b_y[2];
+    const fu_real EI_tau = 2.0*A[1]*tau*w;
     CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
-    const fu_real
-        r1_b1_x = chord2_x + 0.5773502691896257*t1_x,
-        r1_b1_y = chord2_y + 0.5773502691896257*t1_y,
-        d1_b1_x = chordd2_x + 0.5773502691896257*dt1_x,
-        d1_b1_y = chordd2_y + 0.5773502691896257*dt1_y;
-    r2_b_x[1] = t1_x + 1.7320508075688772*t2_x;
-    r2_b_y[1] = t1_y + 1.7320508075688772*t2_y;
-    const fu_real
-        d2_b1_x = dt1_x + 1.7320508075688772*dt2_x,
-        d2_b1_y = dt1_y + 1.7320508075688772*dt2_y,
-        len_b1 = FU_SQRT(r1_b1_x*r1_b1_x + r1_b1_y*r1_b1_y);
-    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     FU_EACH(g, 3,
         N[g] = deps[g]*inv[g]*viscosity[g];
         F_x[g] = N[g]*r1_x[g];
         F_y[g] = N[g]*r1_y[g];)
-    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
+    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     /* forces on strain vectors */
     const fu_real
         f_t0_x = F1_b_x[0] + F1_b_x[1] + F_x[0] + F_x[1] + F_x[2],
@@ -664,85 +609,57 @@ void cable8p_engineering_exact_tension_only_damping_tangent(fu_real l, const fu_
 {
     CABLE8P_STRAIN_VECTORS_AND_THEIR_RATES_2
     /* rate of axial strain at the quadrature points */
-    fu_real r1_0[2], d1_0[2], r1_1[2], d1_1[2], r1_2[2], d1_2[2];
+    fu_real r1[3][2], d1[3][2], EA_tau_at[2], a1[3], len[3], eps[3], smooth[3], inv_smooth[3], u[3], share[3],
+        d_eps_smooth[3], d_eps_inv_smooth[3], d_eps_u[3], d_eps_share[3], viscosity[3], len_2_at[3], inv[3], deps[3];
     const fu_real EA_tau = 0.5*A[0]*tau/w;
-    FU_EACH(i, 2, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 2, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real a1_0 = r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1] - 1.0;
-    CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
+    CABLE8P_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     const fu_real
-        d_eps_0_smooth_0 = eps_0*inv_smooth_0,
-        d_eps_0_inv_smooth_0 = -(d_eps_0_smooth_0*inv_smooth_0*inv_smooth_0),
-        d_eps_0_u_0 = d_eps_0_inv_smooth_0*eps_0 + inv_smooth_0,
-        d_eps_0_share_0 = d_eps_0_u_0*(quarter_lost*(-u_0 + 2.0)*(2.0*u_0 + 2.0) - quarter_lost*(u_0 + 1.0)*(u_0 + 1.0)),
-        viscosity_0 = 0.5555555555555557*EA_tau*share_0,
-        len_0_2 = FU_SQRT(r1_0[0]*r1_0[0] + r1_0[1]*r1_0[1]),
-        inv_0 = 1.0/len_0_2,
-        deps_0 = inv_0*(d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1]);
-    FU_EACH(i, 2, r1_1[i] = chord2[i] - 0.5*t2[i];)
-    FU_EACH(i, 2, d1_1[i] = chordd2[i] - 0.5*dt2[i];)
-    const fu_real
-        a1_1 = r1_1[0]*r1_1[0] + r1_1[1]*r1_1[1] - 1.0,
-        len_1 = FU_SQRT(a1_1 + 1.0),
-        eps_1 = a1_1/(len_1 + 1.0),
-        smooth_1 = FU_SQRT(eps_1*eps_1 + transition2),
-        inv_smooth_1 = 1.0/smooth_1,
-        u_1 = eps_1*inv_smooth_1,
-        share_1 = A[2] + quarter_lost*(-u_1 + 2.0)*(u_1 + 1.0)*(u_1 + 1.0),
-        d_eps_1_smooth_1 = eps_1*inv_smooth_1,
-        d_eps_1_inv_smooth_1 = -(d_eps_1_smooth_1*inv_smooth_1*inv_smooth_1),
-        d_eps_1_u_1 = d_eps_1_inv_smooth_1*eps_1 + inv_smooth_1,
-        d_eps_1_share_1 = d_eps_1_u_1*(quarter_lost*(-u_1 + 2.0)*(2.0*u_1 + 2.0) - quarter_lost*(u_1 + 1.0)*(u_1 + 1.0)),
-        viscosity_1 = 0.8888888888888888*EA_tau*share_1,
-        len_1_2 = FU_SQRT(r1_1[0]*r1_1[0] + r1_1[1]*r1_1[1]),
-        inv_1 = 1.0/len_1_2,
-        deps_1 = inv_1*(d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1]);
-    FU_EACH(i, 2, r1_2[i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
-    FU_EACH(i, 2, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real
-        a1_2 = r1_2[0]*r1_2[0] + r1_2[1]*r1_2[1] - 1.0,
-        len_2 = FU_SQRT(a1_2 + 1.0),
-        eps_2 = a1_2/(len_2 + 1.0),
-        smooth_2 = FU_SQRT(eps_2*eps_2 + transition2),
-        inv_smooth_2 = 1.0/smooth_2,
-        u_2 = eps_2*inv_smooth_2,
-        share_2 = A[2] + quarter_lost*(-u_2 + 2.0)*(u_2 + 1.0)*(u_2 + 1.0),
-        d_eps_2_smooth_2 = eps_2*inv_smooth_2,
-        d_eps_2_inv_smooth_2 = -(d_eps_2_smooth_2*inv_smooth_2*inv_smooth_2),
-        d_eps_2_u_2 = d_eps_2_inv_smooth_2*eps_2 + inv_smooth_2,
-        d_eps_2_share_2 = d_eps_2_u_2*(quarter_lost*(-u_2 + 2.0)*(2.0*u_2 + 2.0) - quarter_lost*(u_2 + 1.0)*(u_2 + 1.0)),
-        viscosity_2 = 0.5555555555555557*EA_tau*share_2,
-        len_2_2 = FU_SQRT(r1_2[0]*r1_2[0] + r1_2[1]*r1_2[1]),
-        inv_2 = 1.0/len_2_2,
-        deps_2 = inv_2*(d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1]);
+        transition2 = A[3]*A[3],
+        quarter_lost = -0.25*A[2] + 0.25;
+    EA_tau_at[0] = 0.5555555555555557*EA_tau;
+    EA_tau_at[1] = 0.8888888888888888*EA_tau;
+    FU_EACH(g, 3,
+        a1[g] = r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] - 1.0;
+        len[g] = FU_SQRT(a1[g] + 1.0);
+        eps[g] = a1[g]/(len[g] + 1.0);
+        smooth[g] = FU_SQRT(eps[g]*eps[g] + transition2);
+        inv_smooth[g] = 1.0/smooth[g];
+        u[g] = eps[g]*inv_smooth[g];
+        share[g] = A[2] + quarter_lost*(-u[g] + 2.0)*(u[g] + 1.0)*(u[g] + 1.0);
+        d_eps_smooth[g] = eps[g]*inv_smooth[g];
+        d_eps_inv_smooth[g] = -(d_eps_smooth[g]*inv_smooth[g]*inv_smooth[g]);
+        d_eps_u[g] = d_eps_inv_smooth[g]*eps[g] + inv_smooth[g];
+        d_eps_share[g] = d_eps_u[g]*(quarter_lost*(-u[g] + 2.0)*(2.0*u[g] + 2.0) - quarter_lost*(u[g] + 1.0)*(u[g] + 1.0));
+        viscosity[g] = EA_tau_at[g < 1 ? g : 2 - g]*share[g];
+        len_2_at[g] = FU_SQRT(r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1]);
+        inv[g] = 1.0/len_2_at[g];
+        deps[g] = inv[g]*(d1[g][0]*r1[g][0] + d1[g][1]*r1[g][1]);)
     CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     /* derivatives at the quadrature points */
-    fu_real i_0[2], di_0[2], by_0[2], K_0[2][2], i_1[2], di_1[2], by_1[2], K_1[2][2], i_2[2], di_2[2], by_2[2],
-        K_2[2][2], sum11_d10[2][2], difference11_d10[2][2], p_b0[2], by_turn_b0[2], by_i_b0[2], K_b0[4][2][2],
-        pushed_b0[2], turned_b0[2], follows_b0[2], stiff_i_b0[2], p_b1[2], by_turn_b1[2], by_i_b1[2], K_b1[4][2][2],
-        pushed_b1[2], turned_b1[2], follows_b1[2], stiff_i_b1[2], sum_d20[4][2][2], difference_d20[4][2][2];
-    const fu_real N_0 = deps_0*inv_0*viscosity_0;
-    FU_EACH(i, 2, i_0[i] = inv_0*r1_0[i];)
-    FU_EACH(i, 2, di_0[i] = inv_0*(d1_0[i] - deps_0*i_0[i]);)
-    const fu_real change_0 = 0.5555555555555557*EA_tau*d_eps_0_share_0*deps_0;
-    FU_EACH(i, 2, by_0[i] = -N_0*i_0[i] + change_0*i_0[i] + viscosity_0*(di_0[i] + i_0[i]*rate);)
-    FU_PAIRS(i, j, 2, K_0[i][j] = by_0[j]*i_0[i];)
-    FU_EACH(i, 2, K_0[i][i] += N_0;)
-    const fu_real N_1 = deps_1*inv_1*viscosity_1;
-    FU_EACH(i, 2, i_1[i] = inv_1*r1_1[i];)
-    FU_EACH(i, 2, di_1[i] = inv_1*(d1_1[i] - deps_1*i_1[i]);)
-    const fu_real change_1 = 0.8888888888888888*EA_tau*d_eps_1_share_1*deps_1;
-    FU_EACH(i, 2, by_1[i] = -N_1*i_1[i] + change_1*i_1[i] + viscosity_1*(di_1[i] + i_1[i]*rate);)
-    FU_PAIRS(i, j, 2, K_1[i][j] = by_1[j]*i_1[i];)
-    FU_EACH(i, 2, K_1[i][i] += N_1;)
-    const fu_real N_2 = deps_2*inv_2*viscosity_2;
-    FU_EACH(i, 2, i_2[i] = inv_2*r1_2[i];)
-    FU_EACH(i, 2, di_2[i] = inv_2*(d1_2[i] - deps_2*i_2[i]);)
-    const fu_real change_2 = 0.5555555555555557*EA_tau*d_eps_2_share_2*deps_2;
-    FU_EACH(i, 2, by_2[i] = -N_2*i_2[i] + change_2*i_2[i] + viscosity_2*(di_2[i] + i_2[i]*rate);)
-    FU_PAIRS(i, j, 2, K_2[i][j] = by_2[j]*i_2[i];)
+    fu_real N[3], i_at[3][2], di[3][2], change[3], by[3][2], K_at[3][2][2], sum11_d10[2][2], difference11_d10[2][2],
+        p_b0[2], by_turn_b0[2], by_i_b0[2], K_b0[4][2][2], pushed_b0[2], turned_b0[2], follows_b0[2], stiff_i_b0[2],
+        p_b1[2], by_turn_b1[2], by_i_b1[2], K_b1[4][2][2], pushed_b1[2], turned_b1[2], follows_b1[2], stiff_i_b1[2],
+        sum_d20[4][2][2], difference_d20[4][2][2];
+    FU_EACH(g, 3,
+        N[g] = deps[g]*inv[g]*viscosity[g];
+        FU_EACH(i, 2, i_at[g][i] = inv[g]*r1[g][i];)
+        FU_EACH(i, 2, di[g][i] = inv[g]*(d1[g][i] - deps[g]*i_at[g][i]);)
+        change[g] = EA_tau_at[g < 1 ? g : 2 - g]*d_eps_share[g]*deps[g];
+        FU_EACH(i, 2, by[g][i] = -N[g]*i_at[g][i] + change[g]*i_at[g][i] + viscosity[g]*(di[g][i] + i_at[g][i]*rate);)
+        FU_PAIRS(i, j, 2, K_at[g][i][j] = by[g][j]*i_at[g][i];)
+        FU_EACH(i, 2, K_at[g][i][i] += N[g];))
+    FU_PAIRS(i, j, 2, sum11_d10[i][j] = K_at[0][i][j] + K_at[2][i][j];)
+    FU_PAIRS(i, j, 2, difference11_d10[i][j] = K_at[0][i][j] - K_at[2][i][j];)
     CABLE8P_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
-    CABLE8P_BLOCKS_OVER_STRAIN_VECTORS_2
+    /* blocks over strain vectors */
+    fu_real K_t_t0[3][2][2], K_t_t1[3][2][2], K_t_t2[3][2][2];
+    FU_PAIRS(i, j, 2, K_t_t0[0][i][j] = K_at[1][i][j] + sum11_d10[i][j] + sum_d20[0][i][j];)
+    FU_PAIRS(i, j, 2, K_t_t1[0][i][j] = -0.7745966692414834*difference11_d10[i][j] - 0.5773502691896257*difference_d20[0][i][j] + sum_d20[1][i][j];)
+    FU_PAIRS(i, j, 2, K_t_t2[0][i][j] = -0.5*K_at[1][i][j] - 1.7320508075688772*difference_d20[1][i][j] + 0.40000000000000013*sum11_d10[i][j];)
+    CABLE8P_PART_OF_BLOCKS_OVER_STRAIN_VECTORS_2
+    FU_PAIRS(i, j, 2, K_t_t0[2][i][j] = -0.5*K_at[1][i][j] - 1.7320508075688772*difference_d20[2][i][j] + 0.40000000000000013*sum11_d10[i][j];)
+    FU_PAIRS(i, j, 2, K_t_t1[2][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[2][i][j];)
+    FU_PAIRS(i, j, 2, K_t_t2[2][i][j] = 0.25*K_at[1][i][j] + 0.16000000000000011*sum11_d10[i][j] + 2.9999999999999996*sum_d20[3][i][j];)
     CABLE8P_OVER_NODAL_VECTORS_K_T_3
     CABLE8P_OVER_NODAL_VECTORS_T_K_T_3
     /* the first position: rigid translation makes no force */
@@ -762,53 +679,10 @@ void cable8p_engineering_exact_tension_only_damping_tangent(fu_real l, const fu_
 FU_KERNEL void cable8p_engineering_exact_tension_only_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P)
 {
     CABLE8P_STRAIN_VECTORS_AND_THEIR_RATES
-    /* rate of axial strain at the quadrature points */
-    const fu_real
-        EA_tau = 0.5*A[0]*tau/w,
-        r1_0_x = chord2_x - 0.7745966692414834*t1_x + 0.40000000000000013*t2_x,
-        r1_0_y = chord2_y - 0.7745966692414834*t1_y + 0.40000000000000013*t2_y,
-        d1_0_x = chordd2_x - 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x,
-        d1_0_y = chordd2_y - 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y,
-        a1_0 = r1_0_x*r1_0_x + r1_0_y*r1_0_y - 1.0;
-    CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
-    const fu_real
-        viscosity_0 = 0.5555555555555557*EA_tau*share_0,
-        len_0_2 = FU_SQRT(r1_0_x*r1_0_x + r1_0_y*r1_0_y),
-        inv_0 = 1.0/len_0_2,
-        deps_0 = inv_0*(d1_0_x*r1_0_x + d1_0_y*r1_0_y),
-        r1_1_x = chord2_x - 0.5*t2_x,
-        r1_1_y = chord2_y - 0.5*t2_y,
-        d1_1_x = chordd2_x - 0.5*dt2_x,
-        d1_1_y = chordd2_y - 0.5*dt2_y,
-        a1_1 = r1_1_x*r1_1_x + r1_1_y*r1_1_y - 1.0,
-        len_1 = FU_SQRT(a1_1 + 1.0),
-        eps_1 = a1_1/(len_1 + 1.0),
-        smooth_1 = FU_SQRT(eps_1*eps_1 + transition2),
-        inv_smooth_1 = 1.0/smooth_1,
-        u_1 = eps_1*inv_smooth_1,
-        share_1 = A[2] + quarter_lost*(-u_1 + 2.0)*(u_1 + 1.0)*(u_1 + 1.0),
-        viscosity_1 = 0.8888888888888888*EA_tau*share_1,
-        len_1_2 = FU_SQRT(r1_1_x*r1_1_x + r1_1_y*r1_1_y),
-        inv_1 = 1.0/len_1_2,
-        deps_1 = inv_1*(d1_1_x*r1_1_x + d1_1_y*r1_1_y),
-        r1_2_x = chord2_x + 0.7745966692414834*t1_x + 0.40000000000000013*t2_x,
-        r1_2_y = chord2_y + 0.7745966692414834*t1_y + 0.40000000000000013*t2_y,
-        d1_2_x = chordd2_x + 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x,
-        d1_2_y = chordd2_y + 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y,
-        a1_2 = r1_2_x*r1_2_x + r1_2_y*r1_2_y - 1.0,
-        len_2 = FU_SQRT(a1_2 + 1.0),
-        eps_2 = a1_2/(len_2 + 1.0),
-        smooth_2 = FU_SQRT(eps_2*eps_2 + transition2),
-        inv_smooth_2 = 1.0/smooth_2,
-        u_2 = eps_2*inv_smooth_2,
-        share_2 = A[2] + quarter_lost*(-u_2 + 2.0)*(u_2 + 1.0)*(u_2 + 1.0),
-        viscosity_2 = 0.5555555555555557*EA_tau*share_2,
-        len_2_2 = FU_SQRT(r1_2_x*r1_2_x + r1_2_y*r1_2_y),
-        inv_2 = 1.0/len_2_2,
-        deps_2 = inv_2*(d1_2_x*r1_2_x + d1_2_y*r1_2_y);
+    CABLE8P_ENGINEERING_EXACT_TENSION_ONLY_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     /* outputs */
-    P[0] = EI_tau*(rate_b0_x*rate_b0_x + rate_b0_y*rate_b0_y) + EI_tau*(rate_b1_x*rate_b1_x + rate_b1_y*rate_b1_y) + deps_0*deps_0*viscosity_0 + deps_1*deps_1*viscosity_1 + deps_2*deps_2*viscosity_2;
+    P[0] = EI_tau*(rate_b_x[0]*rate_b_x[0] + rate_b_y[0]*rate_b_y[0]) + EI_tau*(rate_b_x[1]*rate_b_x[1] + rate_b_y[1]*rate_b_y[1]) + deps[0]*deps[0]*viscosity[0] + deps[1]*deps[1]*viscosity[1] + deps[2]*deps[2]*viscosity[2];
 }
 
 #ifndef FU_BLOCK

@@ -16,6 +16,25 @@
 #include "kernels.h"
 #include "cable8p_stages.h"
 
+/* part of rate of axial strain at the quadrature points: of cable8p_green_exact_algorithmic_force and 2 more */
+#define CABLE8P_GREEN_EXACT_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    const fu_real \
+        r1_0_x = chord2_x - 0.7745966692414834*t1_x + 0.40000000000000013*t2_x, \
+        r1_0_y = chord2_y - 0.7745966692414834*t1_y + 0.40000000000000013*t2_y, \
+        d1_0_x = chordd2_x - 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x, \
+        d1_0_y = chordd2_y - 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y, \
+        r1_1_x = chord2_x - 0.5*t2_x, \
+        r1_1_y = chord2_y - 0.5*t2_y, \
+        d1_1_x = chordd2_x - 0.5*dt2_x, \
+        d1_1_y = chordd2_y - 0.5*dt2_y, \
+        r1_2_x = chord2_x + 0.7745966692414834*t1_x + 0.40000000000000013*t2_x, \
+        r1_2_y = chord2_y + 0.7745966692414834*t1_y + 0.40000000000000013*t2_y, \
+        d1_2_x = chordd2_x + 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x, \
+        d1_2_y = chordd2_y + 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y, \
+        deps_0 = d1_0_x*r1_0_x + d1_0_y*r1_0_y, \
+        deps_1 = d1_1_x*r1_1_x + d1_1_y*r1_1_y, \
+        deps_2 = d1_2_x*r1_2_x + d1_2_y*r1_2_y;
+
 /* strain at the quadrature points: of cable8p_green_exact_elastic_force and 1 more */
 #define CABLE8P_GREEN_EXACT_STRAIN_AT_THE_QUADRATURE_POINTS \
     fu_real r1_even0[2], r1_odd0[2], r1[5][2], r1_even1[2], r1_odd1[2], r2_odd0[2], r2[5][2], r2_odd1[2], a1[5], b[5], \
@@ -48,23 +67,8 @@
 
 /* rate of axial strain at the quadrature points: of cable8p_green_exact_damping_force and 1 more */
 #define CABLE8P_GREEN_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
-    const fu_real \
-        EA_tau = 0.5*A[0]*tau/w, \
-        r1_0_x = chord2_x - 0.7745966692414834*t1_x + 0.40000000000000013*t2_x, \
-        r1_0_y = chord2_y - 0.7745966692414834*t1_y + 0.40000000000000013*t2_y, \
-        d1_0_x = chordd2_x - 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x, \
-        d1_0_y = chordd2_y - 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y, \
-        deps_0 = d1_0_x*r1_0_x + d1_0_y*r1_0_y, \
-        r1_1_x = chord2_x - 0.5*t2_x, \
-        r1_1_y = chord2_y - 0.5*t2_y, \
-        d1_1_x = chordd2_x - 0.5*dt2_x, \
-        d1_1_y = chordd2_y - 0.5*dt2_y, \
-        deps_1 = d1_1_x*r1_1_x + d1_1_y*r1_1_y, \
-        r1_2_x = chord2_x + 0.7745966692414834*t1_x + 0.40000000000000013*t2_x, \
-        r1_2_y = chord2_y + 0.7745966692414834*t1_y + 0.40000000000000013*t2_y, \
-        d1_2_x = chordd2_x + 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x, \
-        d1_2_y = chordd2_y + 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y, \
-        deps_2 = d1_2_x*r1_2_x + d1_2_y*r1_2_y;
+    const fu_real EA_tau = 0.5*A[0]*tau/w; \
+    CABLE8P_GREEN_EXACT_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
 
 #ifndef FU_BLOCK
 /* constants of the law from the stiffness of the section (eq 7; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)) */
@@ -359,33 +363,11 @@ FU_KERNEL void cable8p_green_exact_damping_force(fu_real l, const fu_real *e, co
     CABLE8P_STRAIN_VECTORS_AND_THEIR_RATES
     CABLE8P_GREEN_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     /* rate of curvature at the quadrature points */
-    fu_real r2_b_x[2], r2_b_y[2], inv_b[2], i_b_x[2], i_b_y[2], along_b[2], rate_b_x[2], rate_b_y[2], inward_b[2],
-        lever_b[2], F1_b_x[2], F1_b_y[2], F2_b_x[2], F2_b_y[2];
-    const fu_real
-        EI_tau = 2.0*A[1]*tau*w,
-        r1_b0_x = chord2_x - 0.5773502691896257*t1_x,
-        r1_b0_y = chord2_y - 0.5773502691896257*t1_y,
-        d1_b0_x = chordd2_x - 0.5773502691896257*dt1_x,
-        d1_b0_y = chordd2_y - 0.5773502691896257*dt1_y;
-    r2_b_x[0] = t1_x - 1.7320508075688772*t2_x;
-    r2_b_y[0] = t1_y - 1.7320508075688772*t2_y;
-    const fu_real
-        d2_b0_x = dt1_x - 1.7320508075688772*dt2_x,
-        d2_b0_y = dt1_y - 1.7320508075688772*dt2_y,
-        len_b0 = FU_SQRT(r1_b0_x*r1_b0_x + r1_b0_y*r1_b0_y);
+    fu_real r1_b_x[2], r1_b_y[2], d1_b_x[2], d1_b_y[2], r2_b_x[2], r2_b_y[2], d2_b_x[2], d2_b_y[2], len_b[2], inv_b[2],
+        i_b_x[2], i_b_y[2], stretch_b[2], di_b_x[2], di_b_y[2], along_b[2], across_b[2], rate_b_x[2], rate_b_y[2],
+        inward_b[2], lever_b[2], F1_b_x[2], F1_b_y[2], F2_b_x[2], F2_b_y[2];
+    const fu_real EI_tau = 2.0*A[1]*tau*w;
     CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
-    const fu_real
-        r1_b1_x = chord2_x + 0.5773502691896257*t1_x,
-        r1_b1_y = chord2_y + 0.5773502691896257*t1_y,
-        d1_b1_x = chordd2_x + 0.5773502691896257*dt1_x,
-        d1_b1_y = chordd2_y + 0.5773502691896257*dt1_y;
-    r2_b_x[1] = t1_x + 1.7320508075688772*t2_x;
-    r2_b_y[1] = t1_y + 1.7320508075688772*t2_y;
-    const fu_real
-        d2_b1_x = dt1_x + 1.7320508075688772*dt2_x,
-        d2_b1_y = dt1_y + 1.7320508075688772*dt2_y,
-        len_b1 = FU_SQRT(r1_b1_x*r1_b1_x + r1_b1_y*r1_b1_y);
-    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     const fu_real
         N_0 = 0.5555555555555557*EA_tau*deps_0,
         F_0_x = N_0*r1_0_x,
@@ -396,7 +378,7 @@ FU_KERNEL void cable8p_green_exact_damping_force(fu_real l, const fu_real *e, co
         N_2 = 0.5555555555555557*EA_tau*deps_2,
         F_2_x = N_2*r1_2_x,
         F_2_y = N_2*r1_2_y;
-    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
+    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     CABLE8P_FORCES_ON_STRAIN_VECTORS_3
     /* forces on nodal vectors */
     const fu_real
@@ -427,13 +409,14 @@ void cable8p_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_r
     const fu_real EA_tau = 0.5*A[0]*tau/w;
     FU_EACH(i, 2, r1_0[i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
     FU_EACH(i, 2, d1_0[i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real deps_0 = d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1];
     FU_EACH(i, 2, r1_1[i] = chord2[i] - 0.5*t2[i];)
     FU_EACH(i, 2, d1_1[i] = chordd2[i] - 0.5*dt2[i];)
-    const fu_real deps_1 = d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1];
     FU_EACH(i, 2, r1_2[i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];)
     FU_EACH(i, 2, d1_2[i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
-    const fu_real deps_2 = d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1];
+    const fu_real
+        deps_0 = d1_0[0]*r1_0[0] + d1_0[1]*r1_0[1],
+        deps_1 = d1_1[0]*r1_1[0] + d1_1[1]*r1_1[1],
+        deps_2 = d1_2[0]*r1_2[0] + d1_2[1]*r1_2[1];
     CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
     /* derivatives at the quadrature points */
     fu_real by_0[2], K_0[2][2], by_1[2], K_1[2][2], by_2[2], K_2[2][2], sum11_d10[2][2], difference11_d10[2][2],
@@ -451,6 +434,9 @@ void cable8p_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_r
     const fu_real N_2 = 0.5555555555555557*EA_tau*deps_2;
     FU_EACH(i, 2, by_2[i] = 0.5555555555555557*EA_tau*(d1_2[i] + r1_2[i]*rate);)
     FU_PAIRS(i, j, 2, K_2[i][j] = by_2[j]*r1_2[i];)
+    FU_EACH(i, 2, K_2[i][i] += N_2;)
+    FU_PAIRS(i, j, 2, sum11_d10[i][j] = K_0[i][j] + K_2[i][j];)
+    FU_PAIRS(i, j, 2, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];)
     CABLE8P_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE8P_BLOCKS_OVER_STRAIN_VECTORS_2
     CABLE8P_OVER_NODAL_VECTORS_K_T_3
@@ -475,7 +461,7 @@ FU_KERNEL void cable8p_green_exact_dissipation(fu_real l, const fu_real *e, cons
     CABLE8P_GREEN_EXACT_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
     /* outputs */
-    P[0] = 0.5555555555555557*EA_tau*deps_0*deps_0 + 0.8888888888888888*EA_tau*deps_1*deps_1 + 0.5555555555555557*EA_tau*deps_2*deps_2 + EI_tau*(rate_b0_x*rate_b0_x + rate_b0_y*rate_b0_y) + EI_tau*(rate_b1_x*rate_b1_x + rate_b1_y*rate_b1_y);
+    P[0] = 0.5555555555555557*EA_tau*deps_0*deps_0 + 0.8888888888888888*EA_tau*deps_1*deps_1 + 0.5555555555555557*EA_tau*deps_2*deps_2 + EI_tau*(rate_b_x[0]*rate_b_x[0] + rate_b_y[0]*rate_b_y[0]) + EI_tau*(rate_b_x[1]*rate_b_x[1] + rate_b_y[1]*rate_b_y[1]);
 }
 
 #ifndef FU_BLOCK
@@ -484,23 +470,8 @@ void cable8p_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu
 {
     CABLE8P_STRAIN_VECTORS_AND_THEIR_RATES
     /* rate of axial strain at the quadrature points */
-    const fu_real
-        EA_tau = 0.5*A[0]/w,
-        r1_0_x = chord2_x - 0.7745966692414834*t1_x + 0.40000000000000013*t2_x,
-        r1_0_y = chord2_y - 0.7745966692414834*t1_y + 0.40000000000000013*t2_y,
-        d1_0_x = chordd2_x - 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x,
-        d1_0_y = chordd2_y - 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y,
-        deps_0 = d1_0_x*r1_0_x + d1_0_y*r1_0_y,
-        r1_1_x = chord2_x - 0.5*t2_x,
-        r1_1_y = chord2_y - 0.5*t2_y,
-        d1_1_x = chordd2_x - 0.5*dt2_x,
-        d1_1_y = chordd2_y - 0.5*dt2_y,
-        deps_1 = d1_1_x*r1_1_x + d1_1_y*r1_1_y,
-        r1_2_x = chord2_x + 0.7745966692414834*t1_x + 0.40000000000000013*t2_x,
-        r1_2_y = chord2_y + 0.7745966692414834*t1_y + 0.40000000000000013*t2_y,
-        d1_2_x = chordd2_x + 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x,
-        d1_2_y = chordd2_y + 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y,
-        deps_2 = d1_2_x*r1_2_x + d1_2_y*r1_2_y;
+    const fu_real EA_tau = 0.5*A[0]/w;
+    CABLE8P_GREEN_EXACT_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS
     CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3
     /* forces at the quadrature points */
     fu_real excess_rate_b_x[2], excess_rate_b_y[2], inward_b[2], lever_b[2], F1_b_x[2], F1_b_y[2], F2_b_x[2], F2_b_y[2];
@@ -514,7 +485,9 @@ void cable8p_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu
         F_1_x = N_1*r1_1_x,
         F_1_y = N_1*r1_1_y,
         excess_deps_2 = deps_2*weight - relaxed_strain[2],
-        N_2 = 0.5555555555555557*EA_tau*excess_deps_2;
+        N_2 = 0.5555555555555557*EA_tau*excess_deps_2,
+        F_2_x = N_2*r1_2_x,
+        F_2_y = N_2*r1_2_y;
     CABLE8P_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_3
     CABLE8P_FORCES_ON_STRAIN_VECTORS_3
     /* forces on nodal vectors */

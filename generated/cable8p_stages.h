@@ -103,36 +103,39 @@
     FU_EACH(i, 2, F1_abc2[i] = D_a1_2*mean1_abc2[i] + half_abc2*mean2_abc2[i];) \
     FU_EACH(i, 2, F2_abc2[i] = D_c_2*mean2_abc2[i] + half_abc2*mean1_abc2[i];)
 
-/* part of rate of curvature at the quadrature points: of cable8p_green_exact_damping_force and 4 more */
+/* part of rate of curvature at the quadrature points: of cable8p_green_exact_damping_force and 7 more */
 #define CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    inv_b[0] = 1.0/len_b0; \
-    i_b_x[0] = inv_b[0]*r1_b0_x; \
-    i_b_y[0] = inv_b[0]*r1_b0_y; \
-    const fu_real \
-        stretch_b0 = d1_b0_x*i_b_x[0] + d1_b0_y*i_b_y[0], \
-        di_b0_x = inv_b[0]*(d1_b0_x - i_b_x[0]*stretch_b0), \
-        di_b0_y = inv_b[0]*(d1_b0_y - i_b_y[0]*stretch_b0); \
-    along_b[0] = i_b_x[0]*r2_b_x[0] + i_b_y[0]*r2_b_y[0]; \
-    const fu_real across_b0 = di_b0_x*r2_b_x[0] + di_b0_y*r2_b_y[0]; \
-    rate_b_x[0] = across_b0*i_b_x[0] - along_b[0]*di_b0_x + d2_b0_x; \
-    rate_b_y[0] = across_b0*i_b_y[0] - along_b[0]*di_b0_y + d2_b0_y;
-
-/* part of rate of curvature at the quadrature points: of cable8p_green_exact_damping_force and 4 more */
-#define CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
-    inv_b[1] = 1.0/len_b1; \
-    i_b_x[1] = inv_b[1]*r1_b1_x; \
-    i_b_y[1] = inv_b[1]*r1_b1_y; \
-    const fu_real \
-        stretch_b1 = d1_b1_x*i_b_x[1] + d1_b1_y*i_b_y[1], \
-        di_b1_x = inv_b[1]*(d1_b1_x - i_b_x[1]*stretch_b1), \
-        di_b1_y = inv_b[1]*(d1_b1_y - i_b_y[1]*stretch_b1); \
-    along_b[1] = i_b_x[1]*r2_b_x[1] + i_b_y[1]*r2_b_y[1]; \
-    const fu_real across_b1 = di_b1_x*r2_b_x[1] + di_b1_y*r2_b_y[1]; \
-    rate_b_x[1] = across_b1*i_b_x[1] - along_b[1]*di_b1_x + d2_b1_x; \
-    rate_b_y[1] = across_b1*i_b_y[1] - along_b[1]*di_b1_y + d2_b1_y;
+    r1_b_x[0] = chord2_x - 0.5773502691896257*t1_x; \
+    r1_b_y[0] = chord2_y - 0.5773502691896257*t1_y; \
+    d1_b_x[0] = chordd2_x - 0.5773502691896257*dt1_x; \
+    d1_b_y[0] = chordd2_y - 0.5773502691896257*dt1_y; \
+    r2_b_x[0] = t1_x - 1.7320508075688772*t2_x; \
+    r2_b_y[0] = t1_y - 1.7320508075688772*t2_y; \
+    d2_b_x[0] = dt1_x - 1.7320508075688772*dt2_x; \
+    d2_b_y[0] = dt1_y - 1.7320508075688772*dt2_y; \
+    r1_b_x[1] = chord2_x + 0.5773502691896257*t1_x; \
+    r1_b_y[1] = chord2_y + 0.5773502691896257*t1_y; \
+    d1_b_x[1] = chordd2_x + 0.5773502691896257*dt1_x; \
+    d1_b_y[1] = chordd2_y + 0.5773502691896257*dt1_y; \
+    r2_b_x[1] = t1_x + 1.7320508075688772*t2_x; \
+    r2_b_y[1] = t1_y + 1.7320508075688772*t2_y; \
+    d2_b_x[1] = dt1_x + 1.7320508075688772*dt2_x; \
+    d2_b_y[1] = dt1_y + 1.7320508075688772*dt2_y; \
+    FU_EACH(g, 2, \
+        len_b[g] = FU_SQRT(r1_b_x[g]*r1_b_x[g] + r1_b_y[g]*r1_b_y[g]); \
+        inv_b[g] = 1.0/len_b[g]; \
+        i_b_x[g] = inv_b[g]*r1_b_x[g]; \
+        i_b_y[g] = inv_b[g]*r1_b_y[g]; \
+        stretch_b[g] = d1_b_x[g]*i_b_x[g] + d1_b_y[g]*i_b_y[g]; \
+        di_b_x[g] = inv_b[g]*(d1_b_x[g] - i_b_x[g]*stretch_b[g]); \
+        di_b_y[g] = inv_b[g]*(d1_b_y[g] - i_b_y[g]*stretch_b[g]); \
+        along_b[g] = i_b_x[g]*r2_b_x[g] + i_b_y[g]*r2_b_y[g]; \
+        across_b[g] = di_b_x[g]*r2_b_x[g] + di_b_y[g]*r2_b_y[g]; \
+        rate_b_x[g] = across_b[g]*i_b_x[g] - along_b[g]*di_b_x[g] + d2_b_x[g]; \
+        rate_b_y[g] = across_b[g]*i_b_y[g] - along_b[g]*di_b_y[g] + d2_b_y[g];)
 
 /* part of rate of curvature at the quadrature points: of cable8p_green_exact_damping_force and 2 more */
-#define CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3 \
+#define CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
     FU_EACH(g, 2, \
         inward_b[g] = EI_tau*inv_b[g]*(i_b_x[g]*rate_b_x[g] + i_b_y[g]*rate_b_y[g]); \
         lever_b[g] = EI_tau*along_b[g]*inv_b[g]; \
@@ -143,56 +146,53 @@
 
 /* part of derivatives at the quadrature points: of cable8p_green_exact_damping_tangent and 2 more */
 #define CABLE8P_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS \
-    FU_EACH(i, 2, K_2[i][i] += N_2;) \
-    FU_PAIRS(i, j, 2, sum11_d10[i][j] = K_0[i][j] + K_2[i][j];) \
-    FU_PAIRS(i, j, 2, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];) \
     const fu_real \
-        k_b0 = inv_b0*(-inv_b0*stretch_b0 + rate), \
-        level_b0 = across_b0*inv_b0 - along_b0*k_b0; \
-    FU_EACH(i, 2, p_b0[i] = -along_b0*i_b0[i] + r2_b0[i];) \
-    FU_EACH(i, 2, by_turn_b0[i] = inv_b0*(along_b0*i_b0[i] - p_b0[i]);) \
-    const fu_real by_i_i_b0 = across_b0*inv_b0 + level_b0; \
-    FU_EACH(i, 2, by_i_b0[i] = -by_i_i_b0*i_b0[i] + k_b0*p_b0[i];) \
-    K_b0[2][0][0] = EI_tau*(by_i_b0[0]*i_b0[0] + by_turn_b0[0]*di_b0[0] + level_b0); \
-    K_b0[2][0][1] = EI_tau*(by_i_b0[1]*i_b0[0] + by_turn_b0[1]*di_b0[0]); \
-    K_b0[2][1][0] = EI_tau*(by_i_b0[0]*i_b0[1] + by_turn_b0[0]*di_b0[1]); \
-    K_b0[2][1][1] = EI_tau*(by_i_b0[1]*i_b0[1] + by_turn_b0[1]*di_b0[1] + level_b0); \
-    FU_PAIRS(i, j, 2, K_b0[3][i][j] = EI_tau*(-di_b0[i]*i_b0[j] + di_b0[j]*i_b0[i]);) \
+        k_b0 = inv_b[0]*(-inv_b[0]*stretch_b[0] + rate), \
+        level_b0 = across_b[0]*inv_b[0] - along_b[0]*k_b0; \
+    FU_EACH(i, 2, p_b0[i] = -along_b[0]*i_b[0][i] + r2_b[0][i];) \
+    FU_EACH(i, 2, by_turn_b0[i] = inv_b[0]*(along_b[0]*i_b[0][i] - p_b0[i]);) \
+    const fu_real by_i_i_b0 = across_b[0]*inv_b[0] + level_b0; \
+    FU_EACH(i, 2, by_i_b0[i] = -by_i_i_b0*i_b[0][i] + k_b0*p_b0[i];) \
+    K_b0[2][0][0] = EI_tau*(by_i_b0[0]*i_b[0][0] + by_turn_b0[0]*di_b[0][0] + level_b0); \
+    K_b0[2][0][1] = EI_tau*(by_i_b0[1]*i_b[0][0] + by_turn_b0[1]*di_b[0][0]); \
+    K_b0[2][1][0] = EI_tau*(by_i_b0[0]*i_b[0][1] + by_turn_b0[0]*di_b[0][1]); \
+    K_b0[2][1][1] = EI_tau*(by_i_b0[1]*i_b[0][1] + by_turn_b0[1]*di_b[0][1] + level_b0); \
+    FU_PAIRS(i, j, 2, K_b0[3][i][j] = EI_tau*(-di_b[0][i]*i_b[0][j] + di_b[0][j]*i_b[0][i]);) \
     FU_EACH(i, 2, K_b0[3][i][i] += EI_tau*rate;) \
     const fu_real \
-        stiff_b0 = EI_tau*inv_b0, \
-        lever_b0 = along_b0*inv_b0, \
-        growth_b0 = i_b0[0]*rate_b0[0] + i_b0[1]*rate_b0[1]; \
-    FU_EACH(i, 2, pushed_b0[i] = stiff_b0*(-along_b0*di_b0[i]*inv_b0 + d2_b0[i]*inv_b0 - 2.0*growth_b0*i_b0[i]*inv_b0 + k_b0*p_b0[i]);) \
+        stiff_b0 = EI_tau*inv_b[0], \
+        lever_b0 = along_b[0]*inv_b[0], \
+        growth_b0 = i_b[0][0]*rate_b[0][0] + i_b[0][1]*rate_b[0][1]; \
+    FU_EACH(i, 2, pushed_b0[i] = stiff_b0*(-along_b[0]*di_b[0][i]*inv_b[0] + d2_b[0][i]*inv_b[0] - 2.0*growth_b0*i_b[0][i]*inv_b[0] + k_b0*p_b0[i]);) \
     FU_EACH(i, 2, turned_b0[i] = by_turn_b0[i]*stiff_b0;) \
-    FU_EACH(i, 2, follows_b0[i] = stiff_b0*(di_b0[i] + i_b0[i]*rate);) \
-    FU_EACH(i, 2, stiff_i_b0[i] = i_b0[i]*stiff_b0;) \
-    FU_PAIRS(i, j, 2, K_b0[0][i][j] = -K_b0[2][i][j]*lever_b0 + pushed_b0[j]*r2_b0[i] + rate_b0[i]*turned_b0[j];) \
-    FU_PAIRS(i, j, 2, K_b0[1][i][j] = -K_b0[3][i][j]*lever_b0 + follows_b0[j]*r2_b0[i] - rate_b0[i]*stiff_i_b0[j];) \
+    FU_EACH(i, 2, follows_b0[i] = stiff_b0*(di_b[0][i] + i_b[0][i]*rate);) \
+    FU_EACH(i, 2, stiff_i_b0[i] = i_b[0][i]*stiff_b0;) \
+    FU_PAIRS(i, j, 2, K_b0[0][i][j] = -K_b0[2][i][j]*lever_b0 + pushed_b0[j]*r2_b[0][i] + rate_b[0][i]*turned_b0[j];) \
+    FU_PAIRS(i, j, 2, K_b0[1][i][j] = -K_b0[3][i][j]*lever_b0 + follows_b0[j]*r2_b[0][i] - rate_b[0][i]*stiff_i_b0[j];) \
     FU_EACH(i, 2, K_b0[1][i][i] += growth_b0*stiff_b0;) \
     const fu_real \
-        k_b1 = inv_b1*(-inv_b1*stretch_b1 + rate), \
-        level_b1 = across_b1*inv_b1 - along_b1*k_b1; \
-    FU_EACH(i, 2, p_b1[i] = -along_b1*i_b1[i] + r2_b1[i];) \
-    FU_EACH(i, 2, by_turn_b1[i] = inv_b1*(along_b1*i_b1[i] - p_b1[i]);) \
-    const fu_real by_i_i_b1 = across_b1*inv_b1 + level_b1; \
-    FU_EACH(i, 2, by_i_b1[i] = -by_i_i_b1*i_b1[i] + k_b1*p_b1[i];) \
-    K_b1[2][0][0] = EI_tau*(by_i_b1[0]*i_b1[0] + by_turn_b1[0]*di_b1[0] + level_b1); \
-    K_b1[2][0][1] = EI_tau*(by_i_b1[1]*i_b1[0] + by_turn_b1[1]*di_b1[0]); \
-    K_b1[2][1][0] = EI_tau*(by_i_b1[0]*i_b1[1] + by_turn_b1[0]*di_b1[1]); \
-    K_b1[2][1][1] = EI_tau*(by_i_b1[1]*i_b1[1] + by_turn_b1[1]*di_b1[1] + level_b1); \
-    FU_PAIRS(i, j, 2, K_b1[3][i][j] = EI_tau*(-di_b1[i]*i_b1[j] + di_b1[j]*i_b1[i]);) \
+        k_b1 = inv_b[1]*(-inv_b[1]*stretch_b[1] + rate), \
+        level_b1 = across_b[1]*inv_b[1] - along_b[1]*k_b1; \
+    FU_EACH(i, 2, p_b1[i] = -along_b[1]*i_b[1][i] + r2_b[1][i];) \
+    FU_EACH(i, 2, by_turn_b1[i] = inv_b[1]*(along_b[1]*i_b[1][i] - p_b1[i]);) \
+    const fu_real by_i_i_b1 = across_b[1]*inv_b[1] + level_b1; \
+    FU_EACH(i, 2, by_i_b1[i] = -by_i_i_b1*i_b[1][i] + k_b1*p_b1[i];) \
+    K_b1[2][0][0] = EI_tau*(by_i_b1[0]*i_b[1][0] + by_turn_b1[0]*di_b[1][0] + level_b1); \
+    K_b1[2][0][1] = EI_tau*(by_i_b1[1]*i_b[1][0] + by_turn_b1[1]*di_b[1][0]); \
+    K_b1[2][1][0] = EI_tau*(by_i_b1[0]*i_b[1][1] + by_turn_b1[0]*di_b[1][1]); \
+    K_b1[2][1][1] = EI_tau*(by_i_b1[1]*i_b[1][1] + by_turn_b1[1]*di_b[1][1] + level_b1); \
+    FU_PAIRS(i, j, 2, K_b1[3][i][j] = EI_tau*(-di_b[1][i]*i_b[1][j] + di_b[1][j]*i_b[1][i]);) \
     FU_EACH(i, 2, K_b1[3][i][i] += EI_tau*rate;) \
     const fu_real \
-        stiff_b1 = EI_tau*inv_b1, \
-        lever_b1 = along_b1*inv_b1, \
-        growth_b1 = i_b1[0]*rate_b1[0] + i_b1[1]*rate_b1[1]; \
-    FU_EACH(i, 2, pushed_b1[i] = stiff_b1*(-along_b1*di_b1[i]*inv_b1 + d2_b1[i]*inv_b1 - 2.0*growth_b1*i_b1[i]*inv_b1 + k_b1*p_b1[i]);) \
+        stiff_b1 = EI_tau*inv_b[1], \
+        lever_b1 = along_b[1]*inv_b[1], \
+        growth_b1 = i_b[1][0]*rate_b[1][0] + i_b[1][1]*rate_b[1][1]; \
+    FU_EACH(i, 2, pushed_b1[i] = stiff_b1*(-along_b[1]*di_b[1][i]*inv_b[1] + d2_b[1][i]*inv_b[1] - 2.0*growth_b1*i_b[1][i]*inv_b[1] + k_b1*p_b1[i]);) \
     FU_EACH(i, 2, turned_b1[i] = by_turn_b1[i]*stiff_b1;) \
-    FU_EACH(i, 2, follows_b1[i] = stiff_b1*(di_b1[i] + i_b1[i]*rate);) \
-    FU_EACH(i, 2, stiff_i_b1[i] = i_b1[i]*stiff_b1;) \
-    FU_PAIRS(i, j, 2, K_b1[0][i][j] = -K_b1[2][i][j]*lever_b1 + pushed_b1[j]*r2_b1[i] + rate_b1[i]*turned_b1[j];) \
-    FU_PAIRS(i, j, 2, K_b1[1][i][j] = -K_b1[3][i][j]*lever_b1 + follows_b1[j]*r2_b1[i] - rate_b1[i]*stiff_i_b1[j];) \
+    FU_EACH(i, 2, follows_b1[i] = stiff_b1*(di_b[1][i] + i_b[1][i]*rate);) \
+    FU_EACH(i, 2, stiff_i_b1[i] = i_b[1][i]*stiff_b1;) \
+    FU_PAIRS(i, j, 2, K_b1[0][i][j] = -K_b1[2][i][j]*lever_b1 + pushed_b1[j]*r2_b[1][i] + rate_b[1][i]*turned_b1[j];) \
+    FU_PAIRS(i, j, 2, K_b1[1][i][j] = -K_b1[3][i][j]*lever_b1 + follows_b1[j]*r2_b[1][i] - rate_b[1][i]*stiff_i_b1[j];) \
     FU_EACH(i, 2, K_b1[1][i][i] += growth_b1*stiff_b1;) \
     FU_EACH(g, 4, \
         FU_PAIRS(i, j, 2, sum_d20[g][i][j] = K_b0[g][i][j] + K_b1[g][i][j];) \
@@ -200,9 +200,6 @@
 
 /* part of forces at the quadrature points: of cable8p_green_exact_algorithmic_force and 1 more */
 #define CABLE8P_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_3 \
-    const fu_real \
-        F_2_x = N_2*r1_2_x, \
-        F_2_y = N_2*r1_2_y; \
     FU_EACH(g, 2, \
         excess_rate_b_x[g] = rate_b_x[g]*weight - relaxed_strain[2*g + 3]; \
         excess_rate_b_y[g] = rate_b_y[g]*weight - relaxed_strain[2*g + 4]; \
@@ -238,11 +235,41 @@
         now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g]; \
         next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
 
+/* part of rate of axial strain at the quadrature points: of cable8p_engineering_exact_damping_tangent and 1 more */
+#define CABLE8P_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS \
+    FU_EACH(i, 2, r1[0][i] = chord2[i] - 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];) \
+    FU_EACH(i, 2, d1[0][i] = chordd2[i] - 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];) \
+    FU_EACH(i, 2, r1[1][i] = chord2[i] - 0.5*t2[i];) \
+    FU_EACH(i, 2, d1[1][i] = chordd2[i] - 0.5*dt2[i];) \
+    FU_EACH(i, 2, r1[2][i] = chord2[i] + 0.7745966692414834*t1[i] + 0.40000000000000013*t2[i];) \
+    FU_EACH(i, 2, d1[2][i] = chordd2[i] + 0.7745966692414834*dt1[i] + 0.40000000000000013*dt2[i];)
+
+/* part of rate of axial strain at the quadrature points: of cable8p_engineering_exact_algorithmic_force and 4 more */
+#define CABLE8P_PART_OF_RATE_OF_AXIAL_STRAIN_AT_THE_QUADRATURE_POINTS_2 \
+    r1_x[0] = chord2_x - 0.7745966692414834*t1_x + 0.40000000000000013*t2_x; \
+    r1_y[0] = chord2_y - 0.7745966692414834*t1_y + 0.40000000000000013*t2_y; \
+    d1_x[0] = chordd2_x - 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x; \
+    d1_y[0] = chordd2_y - 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y; \
+    r1_x[1] = chord2_x - 0.5*t2_x; \
+    r1_y[1] = chord2_y - 0.5*t2_y; \
+    d1_x[1] = chordd2_x - 0.5*dt2_x; \
+    d1_y[1] = chordd2_y - 0.5*dt2_y; \
+    r1_x[2] = chord2_x + 0.7745966692414834*t1_x + 0.40000000000000013*t2_x; \
+    r1_y[2] = chord2_y + 0.7745966692414834*t1_y + 0.40000000000000013*t2_y; \
+    d1_x[2] = chordd2_x + 0.7745966692414834*dt1_x + 0.40000000000000013*dt2_x; \
+    d1_y[2] = chordd2_y + 0.7745966692414834*dt1_y + 0.40000000000000013*dt2_y;
+
 /* part of blocks over strain vectors: of cable8p_green_exact_assumed_elastic_tangent and 1 more */
 #define CABLE8P_PART_OF_BLOCKS_OVER_STRAIN_VECTORS \
     FU_UPPER(i, j, 2, K_t1_t1[i][j] = K22_abc[2][i][j] + dN_m0_t1[j]*eps_m0_t1[i] + dN_m1_t1[j]*eps_m1_t1[i] + dN_m2_t1[j]*eps_m2_t1[i] - 0.906179845938664*difference12_abc0[i][j] - 0.906179845938664*difference12_abc0[j][i] - 0.5384693101056831*difference12_abc1[i][j] - 0.5384693101056831*difference12_abc1[j][i] + 0.8211619131854208*sum11_abc0[i][j] + 0.2899491979256903*sum11_abc1[i][j] + sum22_abc0[i][j] + sum22_abc1[i][j]; K_t1_t1[j][i] = K_t1_t1[i][j];) \
     FU_PAIRS(i, j, 2, K_t1_t2[i][j] = -0.5*K12_abc[2][j][i] + dN_m0_t2[j]*eps_m0_t1[i] + dN_m1_t2[j]*eps_m1_t1[i] + dN_m2_t2[j]*eps_m2_t1[i] - 0.6630906410022628*difference11_abc0[i][j] + 0.03504153819372763*difference11_abc1[i][j] - 2.718539537815992*difference22_abc0[i][j] - 1.6154079303170494*difference22_abc1[i][j] + 2.4634857395562624*sum12_abc0[i][j] + 0.7317428697781312*sum12_abc0[j][i] + 0.869847593777071*sum12_abc1[i][j] - 0.06507620311146456*sum12_abc1[j][i];) \
     FU_UPPER(i, j, 2, K_t2_t2[i][j] = 0.25*K11_abc[2][i][j] + dN_m0_t2[j]*eps_m0_t2[i] + dN_m1_t2[j]*eps_m1_t2[i] + dN_m2_t2[j]*eps_m2_t2[i] - 1.9892719230067883*difference12_abc0[i][j] - 1.9892719230067883*difference12_abc0[j][i] + 0.1051246145811829*difference12_abc1[i][j] + 0.1051246145811829*difference12_abc1[j][i] + 0.5354476274711351*sum11_abc0[i][j] + 0.0042349122114045895*sum11_abc1[i][j] + 7.390457218668788*sum22_abc0[i][j] + 2.6095427813312133*sum22_abc1[i][j]; K_t2_t2[j][i] = K_t2_t2[i][j];)
+
+/* part of blocks over strain vectors: of cable8p_engineering_exact_tension_only_damping_tangent and 2 more */
+#define CABLE8P_PART_OF_BLOCKS_OVER_STRAIN_VECTORS_2 \
+    FU_PAIRS(i, j, 2, K_t_t0[1][i][j] = -0.7745966692414834*difference11_d10[i][j] - 0.5773502691896257*difference_d20[0][i][j] + sum_d20[2][i][j];) \
+    FU_PAIRS(i, j, 2, K_t_t1[1][i][j] = -0.5773502691896257*difference_d20[1][i][j] - 0.5773502691896257*difference_d20[2][i][j] + 0.6000000000000001*sum11_d10[i][j] + 0.3333333333333333*sum_d20[0][i][j] + sum_d20[3][i][j];) \
+    FU_PAIRS(i, j, 2, K_t_t2[1][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[1][i][j];)
 
 /* part of strain at the quadrature points: of cable8p_green_exact_elastic_force and 9 more */
 #define CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_5 \
@@ -438,47 +465,34 @@
 
 /* rate of curvature at the quadrature points: of cable8p_green_exact_damping_tangent and 2 more */
 #define CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    fu_real r1_b0[2], d1_b0[2], r2_b0[2], d2_b0[2], i_b0[2], di_b0[2], rate_b0[2], r1_b1[2], d1_b1[2], r2_b1[2], \
-        d2_b1[2], i_b1[2], di_b1[2], rate_b1[2]; \
+    fu_real r1_b[2][2], d1_b[2][2], r2_b[2][2], d2_b[2][2], len_b[2], inv_b[2], i_b[2][2], stretch_b[2], di_b[2][2], \
+        along_b[2], across_b[2], rate_b[2][2]; \
     const fu_real EI_tau = 2.0*A[1]*tau*w; \
-    FU_EACH(i, 2, r1_b0[i] = chord2[i] - 0.5773502691896257*t1[i];) \
-    FU_EACH(i, 2, d1_b0[i] = chordd2[i] - 0.5773502691896257*dt1[i];) \
-    FU_EACH(i, 2, r2_b0[i] = t1[i] - 1.7320508075688772*t2[i];) \
-    FU_EACH(i, 2, d2_b0[i] = dt1[i] - 1.7320508075688772*dt2[i];) \
-    const fu_real \
-        len_b0 = FU_SQRT(r1_b0[0]*r1_b0[0] + r1_b0[1]*r1_b0[1]), \
-        inv_b0 = 1.0/len_b0; \
-    FU_EACH(i, 2, i_b0[i] = inv_b0*r1_b0[i];) \
-    const fu_real stretch_b0 = d1_b0[0]*i_b0[0] + d1_b0[1]*i_b0[1]; \
-    FU_EACH(i, 2, di_b0[i] = inv_b0*(d1_b0[i] - i_b0[i]*stretch_b0);) \
-    const fu_real \
-        along_b0 = i_b0[0]*r2_b0[0] + i_b0[1]*r2_b0[1], \
-        across_b0 = di_b0[0]*r2_b0[0] + di_b0[1]*r2_b0[1]; \
-    FU_EACH(i, 2, rate_b0[i] = across_b0*i_b0[i] - along_b0*di_b0[i] + d2_b0[i];) \
-    FU_EACH(i, 2, r1_b1[i] = chord2[i] + 0.5773502691896257*t1[i];) \
-    FU_EACH(i, 2, d1_b1[i] = chordd2[i] + 0.5773502691896257*dt1[i];) \
-    FU_EACH(i, 2, r2_b1[i] = t1[i] + 1.7320508075688772*t2[i];) \
-    FU_EACH(i, 2, d2_b1[i] = dt1[i] + 1.7320508075688772*dt2[i];) \
-    const fu_real \
-        len_b1 = FU_SQRT(r1_b1[0]*r1_b1[0] + r1_b1[1]*r1_b1[1]), \
-        inv_b1 = 1.0/len_b1; \
-    FU_EACH(i, 2, i_b1[i] = inv_b1*r1_b1[i];) \
-    const fu_real stretch_b1 = d1_b1[0]*i_b1[0] + d1_b1[1]*i_b1[1]; \
-    FU_EACH(i, 2, di_b1[i] = inv_b1*(d1_b1[i] - i_b1[i]*stretch_b1);) \
-    const fu_real \
-        along_b1 = i_b1[0]*r2_b1[0] + i_b1[1]*r2_b1[1], \
-        across_b1 = di_b1[0]*r2_b1[0] + di_b1[1]*r2_b1[1]; \
-    FU_EACH(i, 2, rate_b1[i] = across_b1*i_b1[i] - along_b1*di_b1[i] + d2_b1[i];)
+    FU_EACH(i, 2, r1_b[0][i] = chord2[i] - 0.5773502691896257*t1[i];) \
+    FU_EACH(i, 2, d1_b[0][i] = chordd2[i] - 0.5773502691896257*dt1[i];) \
+    FU_EACH(i, 2, r2_b[0][i] = t1[i] - 1.7320508075688772*t2[i];) \
+    FU_EACH(i, 2, d2_b[0][i] = dt1[i] - 1.7320508075688772*dt2[i];) \
+    FU_EACH(i, 2, r1_b[1][i] = chord2[i] + 0.5773502691896257*t1[i];) \
+    FU_EACH(i, 2, d1_b[1][i] = chordd2[i] + 0.5773502691896257*dt1[i];) \
+    FU_EACH(i, 2, r2_b[1][i] = t1[i] + 1.7320508075688772*t2[i];) \
+    FU_EACH(i, 2, d2_b[1][i] = dt1[i] + 1.7320508075688772*dt2[i];) \
+    FU_EACH(g, 2, \
+        len_b[g] = FU_SQRT(r1_b[g][0]*r1_b[g][0] + r1_b[g][1]*r1_b[g][1]); \
+        inv_b[g] = 1.0/len_b[g]; \
+        FU_EACH(i, 2, i_b[g][i] = inv_b[g]*r1_b[g][i];) \
+        stretch_b[g] = d1_b[g][0]*i_b[g][0] + d1_b[g][1]*i_b[g][1]; \
+        FU_EACH(i, 2, di_b[g][i] = inv_b[g]*(d1_b[g][i] - i_b[g][i]*stretch_b[g]);) \
+        along_b[g] = i_b[g][0]*r2_b[g][0] + i_b[g][1]*r2_b[g][1]; \
+        across_b[g] = di_b[g][0]*r2_b[g][0] + di_b[g][1]*r2_b[g][1]; \
+        FU_EACH(i, 2, rate_b[g][i] = across_b[g]*i_b[g][i] - along_b[g]*di_b[g][i] + d2_b[g][i];))
 
-/* blocks over strain vectors: of cable8p_green_exact_damping_tangent and 2 more */
+/* blocks over strain vectors: of cable8p_green_exact_damping_tangent and 1 more */
 #define CABLE8P_BLOCKS_OVER_STRAIN_VECTORS_2 \
     fu_real K_t_t0[3][2][2], K_t_t1[3][2][2], K_t_t2[3][2][2]; \
     FU_PAIRS(i, j, 2, K_t_t0[0][i][j] = K_1[i][j] + sum11_d10[i][j] + sum_d20[0][i][j];) \
     FU_PAIRS(i, j, 2, K_t_t1[0][i][j] = -0.7745966692414834*difference11_d10[i][j] - 0.5773502691896257*difference_d20[0][i][j] + sum_d20[1][i][j];) \
     FU_PAIRS(i, j, 2, K_t_t2[0][i][j] = -0.5*K_1[i][j] - 1.7320508075688772*difference_d20[1][i][j] + 0.40000000000000013*sum11_d10[i][j];) \
-    FU_PAIRS(i, j, 2, K_t_t0[1][i][j] = -0.7745966692414834*difference11_d10[i][j] - 0.5773502691896257*difference_d20[0][i][j] + sum_d20[2][i][j];) \
-    FU_PAIRS(i, j, 2, K_t_t1[1][i][j] = -0.5773502691896257*difference_d20[1][i][j] - 0.5773502691896257*difference_d20[2][i][j] + 0.6000000000000001*sum11_d10[i][j] + 0.3333333333333333*sum_d20[0][i][j] + sum_d20[3][i][j];) \
-    FU_PAIRS(i, j, 2, K_t_t2[1][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[1][i][j];) \
+    CABLE8P_PART_OF_BLOCKS_OVER_STRAIN_VECTORS_2 \
     FU_PAIRS(i, j, 2, K_t_t0[2][i][j] = -0.5*K_1[i][j] - 1.7320508075688772*difference_d20[2][i][j] + 0.40000000000000013*sum11_d10[i][j];) \
     FU_PAIRS(i, j, 2, K_t_t1[2][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[2][i][j];) \
     FU_PAIRS(i, j, 2, K_t_t2[2][i][j] = 0.25*K_1[i][j] + 0.16000000000000011*sum11_d10[i][j] + 2.9999999999999996*sum_d20[3][i][j];)
@@ -506,75 +520,17 @@
 
 /* rate of curvature at the quadrature points: of cable8p_green_exact_dissipation and 2 more */
 #define CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2 \
-    const fu_real \
-        EI_tau = 2.0*A[1]*tau*w, \
-        r1_b0_x = chord2_x - 0.5773502691896257*t1_x, \
-        r1_b0_y = chord2_y - 0.5773502691896257*t1_y, \
-        d1_b0_x = chordd2_x - 0.5773502691896257*dt1_x, \
-        d1_b0_y = chordd2_y - 0.5773502691896257*dt1_y, \
-        r2_b0_x = t1_x - 1.7320508075688772*t2_x, \
-        r2_b0_y = t1_y - 1.7320508075688772*t2_y, \
-        d2_b0_x = dt1_x - 1.7320508075688772*dt2_x, \
-        d2_b0_y = dt1_y - 1.7320508075688772*dt2_y, \
-        len_b0 = FU_SQRT(r1_b0_x*r1_b0_x + r1_b0_y*r1_b0_y), \
-        inv_b0 = 1.0/len_b0, \
-        i_b0_x = inv_b0*r1_b0_x, \
-        i_b0_y = inv_b0*r1_b0_y, \
-        stretch_b0 = d1_b0_x*i_b0_x + d1_b0_y*i_b0_y, \
-        di_b0_x = inv_b0*(d1_b0_x - i_b0_x*stretch_b0), \
-        di_b0_y = inv_b0*(d1_b0_y - i_b0_y*stretch_b0), \
-        along_b0 = i_b0_x*r2_b0_x + i_b0_y*r2_b0_y, \
-        across_b0 = di_b0_x*r2_b0_x + di_b0_y*r2_b0_y, \
-        rate_b0_x = across_b0*i_b0_x - along_b0*di_b0_x + d2_b0_x, \
-        rate_b0_y = across_b0*i_b0_y - along_b0*di_b0_y + d2_b0_y, \
-        r1_b1_x = chord2_x + 0.5773502691896257*t1_x, \
-        r1_b1_y = chord2_y + 0.5773502691896257*t1_y, \
-        d1_b1_x = chordd2_x + 0.5773502691896257*dt1_x, \
-        d1_b1_y = chordd2_y + 0.5773502691896257*dt1_y, \
-        r2_b1_x = t1_x + 1.7320508075688772*t2_x, \
-        r2_b1_y = t1_y + 1.7320508075688772*t2_y, \
-        d2_b1_x = dt1_x + 1.7320508075688772*dt2_x, \
-        d2_b1_y = dt1_y + 1.7320508075688772*dt2_y, \
-        len_b1 = FU_SQRT(r1_b1_x*r1_b1_x + r1_b1_y*r1_b1_y), \
-        inv_b1 = 1.0/len_b1, \
-        i_b1_x = inv_b1*r1_b1_x, \
-        i_b1_y = inv_b1*r1_b1_y, \
-        stretch_b1 = d1_b1_x*i_b1_x + d1_b1_y*i_b1_y, \
-        di_b1_x = inv_b1*(d1_b1_x - i_b1_x*stretch_b1), \
-        di_b1_y = inv_b1*(d1_b1_y - i_b1_y*stretch_b1), \
-        along_b1 = i_b1_x*r2_b1_x + i_b1_y*r2_b1_y, \
-        across_b1 = di_b1_x*r2_b1_x + di_b1_y*r2_b1_y, \
-        rate_b1_x = across_b1*i_b1_x - along_b1*di_b1_x + d2_b1_x, \
-        rate_b1_y = across_b1*i_b1_y - along_b1*di_b1_y + d2_b1_y;
+    fu_real r1_b_x[2], r1_b_y[2], d1_b_x[2], d1_b_y[2], r2_b_x[2], r2_b_y[2], d2_b_x[2], d2_b_y[2], len_b[2], inv_b[2], \
+        i_b_x[2], i_b_y[2], stretch_b[2], di_b_x[2], di_b_y[2], along_b[2], across_b[2], rate_b_x[2], rate_b_y[2]; \
+    const fu_real EI_tau = 2.0*A[1]*tau*w; \
+    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
 
 /* rate of curvature at the quadrature points: of cable8p_green_exact_algorithmic_force and 1 more */
 #define CABLE8P_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_3 \
-    fu_real r2_b_x[2], r2_b_y[2], inv_b[2], i_b_x[2], i_b_y[2], along_b[2], rate_b_x[2], rate_b_y[2]; \
-    const fu_real \
-        EI_tau = 2.0*A[1]*w, \
-        r1_b0_x = chord2_x - 0.5773502691896257*t1_x, \
-        r1_b0_y = chord2_y - 0.5773502691896257*t1_y, \
-        d1_b0_x = chordd2_x - 0.5773502691896257*dt1_x, \
-        d1_b0_y = chordd2_y - 0.5773502691896257*dt1_y; \
-    r2_b_x[0] = t1_x - 1.7320508075688772*t2_x; \
-    r2_b_y[0] = t1_y - 1.7320508075688772*t2_y; \
-    const fu_real \
-        d2_b0_x = dt1_x - 1.7320508075688772*dt2_x, \
-        d2_b0_y = dt1_y - 1.7320508075688772*dt2_y, \
-        len_b0 = FU_SQRT(r1_b0_x*r1_b0_x + r1_b0_y*r1_b0_y); \
-    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
-    const fu_real \
-        r1_b1_x = chord2_x + 0.5773502691896257*t1_x, \
-        r1_b1_y = chord2_y + 0.5773502691896257*t1_y, \
-        d1_b1_x = chordd2_x + 0.5773502691896257*dt1_x, \
-        d1_b1_y = chordd2_y + 0.5773502691896257*dt1_y; \
-    r2_b_x[1] = t1_x + 1.7320508075688772*t2_x; \
-    r2_b_y[1] = t1_y + 1.7320508075688772*t2_y; \
-    const fu_real \
-        d2_b1_x = dt1_x + 1.7320508075688772*dt2_x, \
-        d2_b1_y = dt1_y + 1.7320508075688772*dt2_y, \
-        len_b1 = FU_SQRT(r1_b1_x*r1_b1_x + r1_b1_y*r1_b1_y); \
-    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS_2
+    fu_real r1_b_x[2], r1_b_y[2], d1_b_x[2], d1_b_y[2], r2_b_x[2], r2_b_y[2], d2_b_x[2], d2_b_y[2], len_b[2], inv_b[2], \
+        i_b_x[2], i_b_y[2], stretch_b[2], di_b_x[2], di_b_y[2], along_b[2], across_b[2], rate_b_x[2], rate_b_y[2]; \
+    const fu_real EI_tau = 2.0*A[1]*w; \
+    CABLE8P_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
 
 /* forces on r' and r'': of cable8p_green_exact_section_forces and 1 more */
 #define CABLE8P_FORCES_ON_R_AND_R \

@@ -11,7 +11,7 @@ Damping need not be integrated exactly: as many points as the degree.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import groupby
 
 import numpy as np
@@ -25,6 +25,8 @@ from .points import Point
 
 Pair = tuple[np.ndarray, np.ndarray]
 """A vector at a point and its rate, (dim,) each."""
+Share = Callable[[str, np.ndarray], tuple[sp.Expr, sp.Expr]]
+"""Axial stiffness over EA and its derivative by the strain, from a tag and r' (dim,) at a point."""
 
 
 class Damping:
@@ -55,11 +57,9 @@ class Damping:
         degree = sum(sp.sympify(monomial).free_symbols <= {x} for monomial in element.basis) - 1
         return {"rates": degree + (degree - 1) * element.dim, "spins": int(element.dim == 3)}
 
-    def stiffness_share(self, program: Program, tag: str, A: np.ndarray,
-                        r: np.ndarray) -> tuple[sp.Expr, sp.Expr] | None:
-        """Return the axial stiffness at a point over EA, and its derivative by the strain; None where it is EA.
-
-        A: the constants of the law; r (dim,): r' there.
+    def stiffness_share(self, program: Program, A: np.ndarray) -> Share | None:
+        """Define what the axial stiffness over EA has in common at all points, and return what gives it at one, from a
+        tag and r' (dim,) there, with its derivative by the strain; None where the stiffness is EA.
         """
         return None
 
@@ -68,18 +68,25 @@ class Damping:
         """Return the quadrature points with the rates there, in two stages; is_full: with EA at any strain."""
         program.stage("rate of axial strain at the quadrature points")
         viscosity = program.define("EA_tau", tau * A[0] / (2 * w))
+        of_axial = self.points(self.degree)
+        at_axial = [self._at_point(program, f"{g}", "1", point.value, c, dc) for g, point in enumerate(of_axial)]
+        weighted = [point.weight * viscosity for point in of_axial]
+        share = None if is_full else self.stiffness_share(program, A)
+        if share:  # points that mirror each other have the same weight
+            weighted = [program.define_once(f"EA_tau_{min(g, len(weighted) - 1 - g)}", value)
+                        for g, value in enumerate(weighted)]
         axial: list[AxialPoint | BendingPoint] = []
-        for g, point in enumerate(self.points(self.degree)):
-            r = self._at_point(program, f"{g}", "1", point.value, c, dc)
-            share = None if is_full else self.stiffness_share(program, f"_{g}", A, r[0])
-            axial.append(AxialPoint(program, f"{g}", point, point.weight * viscosity, r, self.strain == "engineering",
-                                    share))
+        for g, (point, r) in enumerate(zip(of_axial, at_axial, strict=True)):
+            axial.append(AxialPoint(program, f"{g}", point, weighted[g], r, self.strain == "engineering",
+                                    share and share(f"_{g}", r[0])))
         program.stage("rate of curvature at the quadrature points")
         viscosity = program.define("EI_tau", 2 * tau * A[1] * w)
-        return axial + [BendingPoint(program, f"b{g}", point, point.weight * viscosity,
-                                     self._at_point(program, f"b{g}", "1", point.value, c, dc),
-                                     self._at_point(program, f"b{g}", "2", point.slope, c, dc))
-                        for g, point in enumerate(self.points(self.degree - 1))]
+        of_bending = self.points(self.degree - 1)
+        at_bending = [[self._at_point(program, f"b{g}", order, series, c, dc)
+                       for order, series in (("1", point.value), ("2", point.slope))]
+                      for g, point in enumerate(of_bending)]
+        return axial + [BendingPoint(program, f"b{g}", point, point.weight * viscosity, *at)
+                        for g, (point, at) in enumerate(zip(of_bending, at_bending, strict=True))]
 
     def _at_point(self, program: Program, tag: str, order: str, series: Sequence[sp.Expr], c: np.ndarray,
                   dc: np.ndarray) -> Pair:

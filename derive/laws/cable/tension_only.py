@@ -23,6 +23,7 @@ from ...algebra.gram import Gram
 from ...codegen.program import Program, jacobian
 from ...spec import LawTraits
 from .cable import Cable
+from .damping import Share
 
 
 def traits(strain: str, curvature: str) -> LawTraits:
@@ -50,11 +51,16 @@ class TensionOnlyCable(Cable):
         inverse = program.define(f"inv_smooth{tag}", 1 / (smooth + A[3]))
         return stiffness * strain**2 * (A[2] + lost * (1 + strain * inverse))
 
-    def stiffness_share(self, program: Program, tag: str, A: np.ndarray, r: np.ndarray) -> tuple[sp.Expr, sp.Expr]:
-        """Return the second derivative of the energy by the strain over EA, and the third."""
-        strain = self._axial_strain(program, tag, program.define(f"a1{tag}", r.dot(r) - 1))
-        smooth = program.define(f"smooth{tag}", sp.sqrt(strain**2 + program.define_once("transition2", A[3] ** 2)))
-        u = program.define(f"u{tag}", strain * program.define(f"inv_smooth{tag}", 1 / smooth))
+    def stiffness_share(self, program: Program, A: np.ndarray) -> Share:
+        """Return what gives the second derivative of the energy by the strain over EA, and the third."""
+        square = program.define_once("transition2", A[3] ** 2)
         quarter = program.define_once("quarter_lost", (1 - A[2]) / 4)
-        share = program.define(f"share{tag}", A[2] + quarter * (1 + u) ** 2 * (2 - u))
-        return share, jacobian(program, np.array([share]), [strain])[0, 0]
+
+        def at(tag: str, r: np.ndarray) -> tuple[sp.Expr, sp.Expr]:
+            strain = self._axial_strain(program, tag, program.define(f"a1{tag}", r.dot(r) - 1))
+            smooth = program.define(f"smooth{tag}", sp.sqrt(strain**2 + square))
+            u = program.define(f"u{tag}", strain * program.define(f"inv_smooth{tag}", 1 / smooth))
+            share = program.define(f"share{tag}", A[2] + quarter * (1 + u) ** 2 * (2 - u))
+            return share, jacobian(program, np.array([share]), [strain])[0, 0]
+
+        return at
