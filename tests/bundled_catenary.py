@@ -2,7 +2,7 @@
 
     python tests/bundled_catenary.py
 
-writes runtime/scenes/catenary.toml anew; tests/test_bundled_catenary.py compares it.
+writes runtime/scenes/catenary.toml anew; tests/statics/test_bundled_catenary.py compares it.
 """
 
 from pathlib import Path

@@ -4,7 +4,7 @@ A test says case, source, quantity, reference, bound and what it found. The reco
 validation.json, keeps that beside the test's name, and the page Validation is printed from it. A test that says other
 words or numbers than the record fails, with the command that renews it:
 
-    python -m pytest -n 0 -m "" --record-validation tests/test_cases.py && python tests/benchmarks/print_pages.py
+    python -m pytest -n 0 -m "" --record-validation tests/motion/test_cases.py && python tests/benchmarks/print_pages.py
 """
 
 from __future__ import annotations

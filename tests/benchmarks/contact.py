@@ -2,7 +2,7 @@
 
     python tests/benchmarks/contact.py [--out FILE.csv]
 
-First the mooring line of tests/test_contact.py at rest, against the elastic catenary on the ground: where its end is
+First the mooring line of test_contact.py at rest, against the elastic catenary on the ground: where its end is
 and where it touches down, in m; the tension at the anchor in N, with and without friction; the penetration in m. What
 does not converge to zero is the line's bending, which the catenary leaves out.
 
@@ -30,6 +30,7 @@ import numpy as np
 from funicular import Circle, Material, Plane, Scene, Sphere
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "contact"))
 
 from table import arguments, few, show
 from test_contact import LIFTED, LIGHT, L, R, capstan, end_of_mooring, heaviest, mooring

@@ -3,7 +3,7 @@
     python tests/benchmarks/friction_springs.py [--out FILE.csv] [--scenes 6]
 
 A bar falls on two points of rough ground, and of smooth ground; a rope of one and of four elements is thrown on it; a
-bar bounces, slides and sticks on a wire (tests/test_friction_springs.py, tests/test_friction_paths.py). References are
+bar bounces, slides and sticks on a wire (test_friction_springs.py, test_friction_paths.py). References are
 of explicit steps at tol=1e-10; the column `references` says how far off those of radau at 1e-8 are. Errors are the
 largest of places, over the largest motion. Steps and CPU time are of the least tol. With fewer scenes there are no
 fixed steps.
@@ -27,6 +27,7 @@ import numpy as np
 from funicular import FunicularError, Run, Scene
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "contact"))
 
 from table import arguments, show
 from test_friction_paths import bounced

@@ -75,7 +75,7 @@ TWO_MASSES = catenary.Pantograph(masses=[7.2, 15], stiffness=[4200, 50], damping
 
 
 def line55(spans: int = 10, frequency: float = 10.0) -> catenary.Line:
-    """Return the 55 m line, as tests/test_catenary.py has it."""
+    """Return the 55 m line, as tests/statics/test_catenary.py has it."""
     damping = {"mass_damping": catenary.mass_damping(0.005, frequency), "damping_time": MATERIAL}
     return catenary.Line(
         spans=spans, span=55.0, height=1.2, support=500e3,

@@ -1,4 +1,4 @@
-"""The first scene against its reference: what the benchmarks print and tests/test_first_scene.py asserts."""
+"""The first scene against its reference: what the benchmarks print and tests/parts/test_first_scene.py asserts."""
 
 from __future__ import annotations
 

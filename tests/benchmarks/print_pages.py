@@ -36,7 +36,7 @@ def compared(rows: list[Row]) -> list[list[str]]:
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         test = row["test"].partition("[")[0]
-        several = row["test"].startswith("tests/test_cases.py")  # each element errs most in a quantity of its own
+        several = row["test"].startswith("tests/motion/test_cases.py")  # each errs most in its own quantity
         key = row["case"], row["source"], "" if several else row["quantity"], row["bound"], test
         groups.setdefault(key, []).append(row)
     found = []

@@ -109,7 +109,7 @@ m), which is a tenth of the range of accelerations.""",
         [Table("first_scene",
                {"setting": "setting", "integrator": "integrator", "steps": "steps", "motion": "error of the motion",
                 "y": "of y", "y_acceleration": "of y-acceleration", "energy": "energy", "cpu_s": "CPU s"})],
-        test="tests/test_first_scene.py"),
+        test="tests/parts/test_first_scene.py"),
     Section(
         "Work and precision",
         """`funicular bench SCENE` measures error against time on a user's own scene. The picture shows example 5.1,
@@ -127,7 +127,7 @@ over the motion of what counts.""",
                {"scene": "scene", "tol": "tol", "limit": "limit", "error": "error", "integrator": "integrator",
                 "steps": "steps", "CPU s": "CPU s", "best fixed": "best fixed step", "its error": "its error",
                 "its CPU s": "its CPU s"})],
-        test="tests/test_ringing.py"),
+        test="tests/motion/test_ringing.py"),
     Section(
         "Cost against elements",
         """CPU time in µs a step and an element. Steps of 20 µs of generalised-alpha with one matrix for all steps.
@@ -136,7 +136,7 @@ LAPACK factors the band of a cable; riders, slides and shared nodes are its bord
                {"scene": "scene"},
                by=("elements", "{us_per_step_and_element}"),
                text="""![Time and memory of a step against elements](linear_cost.png)""")],
-        test="tests/test_linear_cost.py"),
+        test="tests/engine/test_linear_cost.py"),
     Section(
         "Cost against bodies",
         """Rods of 0.1 kg let go level, generalised-alpha with steps of 1 ms. The error is against a quarter of the
@@ -154,7 +154,7 @@ shared.""",
         [Table("threads",
                {"scene": "scene", "steps": "steps"},
                by=("elements", "{ratio}"))],
-        test="tests/test_threads.py"),
+        test="tests/engine/test_threads.py"),
     Section(
         "Iterations of a step",
         """Newton iterations and factorisations a step of generalised-alpha, medians over scenes; the record has
@@ -221,7 +221,7 @@ supports, loads; spans of 55 m with nine droppers and 22 elements a span in each
                table="wires",
                text="""The form of the 55 m line by the length of its elements in m, and ropes from post to post, by
 their number.""")],
-        test="tests/test_adjusted_line.py"),
+        test="tests/statics/test_adjusted_line.py"),
     Section(
         "To rest",
         """`scene.relax` from the place drawn, beside `scene.equilibrium`; CPU time in ms. `apart` is the largest
@@ -231,7 +231,7 @@ velocities.""",
                {"scene": "scene", "steps": "steps", "resets": "resets", "ms": "ms",
                 "equilibrium_ms": "equilibrium, ms", "apart_m": "apart, m",
                 "kinetic_left": "kinetic energy without resets"})],
-        test="tests/test_relaxation.py"),
+        test="tests/statics/test_relaxation.py"),
     Section(
         "Set-up",
         """CPU time in ms of a run beside its steps. Calls are those of Python and C functions, which do not depend
@@ -239,7 +239,7 @@ on the machine.""",
         [Table("setup",
                {"name": "scene", "scene": "scene made", "checks": "checks", "model": "model", "engine": "engine",
                 "choice": "choice of the integrator", "start": "start", "set-up": "set-up", "calls": "calls"})],
-        test="tests/test_setup.py"),
+        test="tests/parts/test_setup.py"),
     Section(
         "Sweeps",
         """Points that take no time, with results of 606 numbers each, on worker processes. Results are those of a
@@ -248,7 +248,7 @@ plain loop bit for bit.""",
                {"batch": "points in a batch", "CPU ms a task, here": "CPU ms a task, here",
                 "ms a task and worker": "ms a task and worker", "points a second": "points a second"},
                table="empty points")],
-        test="tests/test_sweep_workers.py"),
+        test="tests/sweeps/test_sweep_workers.py"),
     Section(
         "The 3D page",
         """Drawn by software, without a graphics card.""",

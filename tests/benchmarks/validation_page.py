@@ -35,7 +35,7 @@ rotations, friction or prescribed motions its error can be 10 to 100 `tol`, and 
                {"tol": "tol", "runs": "runs", "within tol": "within tol", "median error/tol": "median error/tol",
                 "largest error/tol": "largest error/tol", "of": "of"},
                table="by tolerance")],
-        test="tests/test_tolerance.py"),
+        test="tests/motion/test_tolerance.py"),
     Section(
         "Notes on errors",
         """Random scenes that an engineer could draw, each at `tol` 1e-3 and 1e-4. `noted` runs carry a note that
@@ -45,7 +45,7 @@ of the run.""",
                {"error": "error", "runs": "runs", "noted": "noted", "silent": "silent"},
                table="counts",
                options="--scenes 300")],
-        test="tests/test_notes_are_true.py"),
+        test="tests/motion/test_notes_are_true.py"),
     Section(
         "Order of convergence",
         """The slide's arc-length s and the body's y of the first scene, root mean square of their errors as the
@@ -53,7 +53,7 @@ step of generalised-alpha is halved. Starting from zero accelerations instead of
         [Table("order",
                {"start": "start", "step": "step, s", "s_rms_m": "s, m", "s_ratio": "ratio", "y_rms_m": "y, m",
                 "y_ratio": "ratio"})],
-        test="tests/test_first_scene.py"),
+        test="tests/parts/test_first_scene.py"),
     Section(
         "Model for a tolerance",
         """`scene.choose(tol, free="all")`: true error of the chosen model over `tol`, against the converged motion
@@ -74,7 +74,7 @@ model by brute force. `choice`: CPU time of the choice over that of the run.""",
                {"scene": "scene", "tol": "tol", "error/tol": "error/tol", "kept": "kept", "chosen": "chosen"},
                text="""Riders near the wave speed, impacts, contact, one-sided springs, friction, water; the error
 is against three times the elements and a hundredth of the tolerance of time.""")],
-        test="tests/test_choice.py"),
+        test="tests/sweeps/test_choice.py"),
     Section(
         "Elements of unequal lengths",
         """`scene.choose(tol, unequal=True)` beside equal elements, both against the mesh for the tightest tolerance
@@ -83,7 +83,7 @@ with every element halved. A taut cable bends beside clamps and point forces ove
                {"scene": "scene", "tol": "tol", "elements_equal": "equal elements", "error_equal": "error",
                 "cpu_s_equal": "CPU s", "elements_unequal": "unequal elements (u)", "error_unequal": "error",
                 "cpu_s_unequal": "CPU s"})],
-        test="tests/test_unequal_choice.py"),
+        test="tests/sweeps/test_unequal_choice.py"),
     Section(
         "Example 5.2 of the paper",
         """A link below the cable with a ball at its end: rigid, modal, or of absolute nodal coordinates; its ball
@@ -93,7 +93,7 @@ in mm from that of the rigid link. The three agree while the link bends little.
         [Table("paper52",
                {"link": "link", "mm off rigid, 0.5 s": "0.5 s", "mm off rigid, 1.0 s": "1.0 s",
                 "mm off rigid, 1.5 s": "1.5 s", "error": "error in time", "CPU s": "CPU s"})],
-        test="tests/test_paper52.py"),
+        test="tests/motion/test_paper52.py"),
     Section(
         "Planar and spatial",
         """Planar elements give the results of spatial ones where their kinematics are equal.
@@ -102,7 +102,7 @@ in mm from that of the rigid link. The three agree while the link bends little.
         [Table("planar",
                {"planar": "planar", "spatial": "spatial", "law": "law", "ν": "ν", "x, y / m": "x, y, m",
                 "s / m": "s, m", "force / N": "force, N", "why": "why"})],
-        test="tests/test_planar_scene.py"),
+        test="tests/parts/test_planar_scene.py"),
     Section(
         "Crossing a node",
         """Jump of a rider's acceleration at the nodes of a cable of 2 MPa under 5 kg: r'' of cubic elements jumps,
@@ -124,7 +124,7 @@ times the elements.""",
                 "position": "position, m", "rider": "rider, m", "force": "force"},
                table="rest",
                rows=under_a_rider)],
-        test="tests/test_membrane.py"),
+        test="tests/kernels/test_membrane.py"),
     Section(
         "Mooring line by mesh",
         """Errors in m and N against the elastic catenary, of end, touch-down and tension at the anchor. The
@@ -137,7 +137,7 @@ and slides at parts of the capstan's limit.""",
          Table("contact",
                {"case": "case", "friction": "friction", "holds": "holds", "slides": "slides"},
                table="drum")],
-        test="tests/test_contact.py"),
+        test="tests/contact/test_contact.py"),
     Section(
         "Friction by springs",
         """Error over `tol`, with the steps at 1e-6; references by explicit steps at 1e-10.""",
@@ -145,7 +145,7 @@ and slides at parts of the capstan's limit.""",
                {"scene": "scene", "integrator": "integrator", "tol 1e-03": "1e-3", "tol 1e-04": "1e-4",
                 "tol 1e-05": "1e-5", "tol 1e-06": "1e-6", "steps": "steps"},
                table="tolerances")],
-        test="tests/test_friction_springs.py"),
+        test="tests/contact/test_friction_springs.py"),
     Section(
         "Slack lines by mesh",
         """`scene.equilibrium` of lines drawn straight. References: another program for the lazy-wave cables, the
@@ -153,7 +153,7 @@ elastic catenary without bending for ropes and wire.""",
         [Table("slack_lines",
                {"line": "line", "elements": "elements", "force, N": "force, N", "off": "error",
                 "curvature, 1/m": "curvature, 1/m", "off ": "error", "CPU, ms": "CPU ms"})],
-        test="tests/test_slack_lines.py"),
+        test="tests/statics/test_slack_lines.py"),
     Section(
         "Contact force below a catenary",
         """The reference model of EN 50318:2002 (withdrawn), forces below 20 Hz in two spans in the middle. The
@@ -180,7 +180,7 @@ model.""",
                options="--what line55",
                text="""The 55 m line with a pantograph of three masses, spans 7 and 8 of 12, and two of them 200 m
 apart. There is no reference; meshes of 1 m and 0.5 m are compared.""")],
-        test="tests/test_catenary.py"),
+        test="tests/statics/test_catenary.py"),
     Section(
         "Hard cases",
         """Nodes crossed at 0.1 and 100 m/s, riders of 1e-9 to 1e4 times the cable's mass, steel beside rubber,

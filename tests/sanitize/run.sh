@@ -41,10 +41,10 @@ export LD_PRELOAD=$runtime PYTHONMALLOC=malloc PYTHONPATH=$work/site MPLBACKEND=
 export ASAN_OPTIONS=detect_leaks=0:abort_on_error=1 UBSAN_OPTIONS=print_stacktrace=1
 "$python" -c "import funicular, sys; sys.exit(funicular.__path__[0] != '$work/site/funicular')"
 if [ $# -eq 0 ]; then
-  set -- tests/test_integrators.py tests/test_joints.py tests/test_friction.py tests/test_cable_ends.py \
-    tests/test_events.py tests/test_modal_joints.py tests/test_energy_integrator.py \
-    tests/test_streaming.py::test_every_integrator_goes_on_exactly \
-    tests/test_damaged_files.py::test_forged_states_are_refused_or_run
+  set -- tests/motion/test_integrators.py tests/motion/test_joints.py tests/contact/test_friction.py tests/motion/test_cable_ends.py \
+    tests/motion/test_events.py tests/motion/test_modal_joints.py tests/motion/test_energy_integrator.py \
+    tests/results/test_streaming.py::test_every_integrator_goes_on_exactly \
+    tests/results/test_damaged_files.py::test_forged_states_are_refused_or_run
 fi
 "$python" -m pytest -p no:cacheprovider -x "$@"
 printf 'passed after %d s\n' "$SECONDS"

@@ -10,7 +10,7 @@ from expectations import energy_error
 from funicular import Material, Rectangle, Scene, SceneError
 from shared_scenes import cable_scene
 
-REFERENCE = Path(__file__).parent / "reference"
+REFERENCE = Path(__file__).parents[1] / "reference"
 
 
 def read(name: str) -> np.ndarray:

@@ -21,7 +21,7 @@ from typer.testing import CliRunner
 
 README, DERIVE, RUNTIME, *_ = pages = [page(path) for path in PAGES]
 OUTSIDE = "python3 -m venv", "funicular derive", "funicular verify", "funicular derive --check", "funicular theory"
-"""Commands that .ci/run starts; `funicular derive --spec` is in tests/test_user_elements.py."""
+"""Commands that .ci/run starts; `funicular derive --spec` is in tests/derive/test_user_elements.py."""
 SHORT = {"bench": ["--duration", "0.02", "--repetitions", "1"], "sweep": ["--duration", "0.02", "--serial"]}
 """What a command gets here so that it is quick."""
 QUICK = ("first_scene", "order", "paper52", "planar", "crossing", "taut_rope", "choice", "linear_cost",
@@ -272,7 +272,7 @@ def test_exactly_two_commands():
 
 @pytest.mark.parametrize("words", commands("funicular"))
 def test_commands_run(words, tmp_path, monkeypatch):
-    if words[0] in ("derive", "verify", "theory"):  # of .ci/run and of tests/test_user_elements.py: minutes
+    if words[0] in ("derive", "verify", "theory"):  # of .ci/run and of tests/derive/test_user_elements.py: minutes
         words = [*words, "--help"]
     monkeypatch.chdir(tmp_path)
     (block,) = RUNTIME.of("Scene files", "toml")

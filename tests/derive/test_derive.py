@@ -62,7 +62,7 @@ def test_another_process_and_hash_seed_give_the_bytes_that_are_checked_in(derive
     script = ("from funicular.derive import pipeline; from test_derive import FRESH, hashes; "
               "print(hashes(pipeline.generate(FRESH)))")
     other = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True,
-                           cwd=Path(__file__).parent, env={**os.environ, "PYTHONHASHSEED": "4242"})
+                           cwd=Path(__file__).parents[1], env={**os.environ, "PYTHONHASHSEED": "4242"})
     made, checked_in = literal_eval(other.stdout), hashes(derived)
     assert {f"{name}.c" for name in (*FRESH, "beam12p_structural")} < set(made)
     assert made == {name: checked_in[name] for name in made}

@@ -1,5 +1,5 @@
 /* The cost of a coupling by a scripted clock: a call takes 4 µs, and the first one is interrupted for 56 ms. Prints the
- * seconds a step; tests/test_part_timing.py.
+ * seconds a step; tests/engine/test_part_timing.py.
  */
 #define fu_clock scripted_clock
 #include "run/part_timing.c"

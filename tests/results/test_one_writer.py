@@ -109,8 +109,8 @@ except FunicularError as error:
 @pytest.mark.slow
 def test_processes_started_at_once(tmp_path):
     started = {speed: subprocess.Popen(
-        [sys.executable, "-c", PROCESS.format(tests=str(Path(__file__).parent), speed=speed)], cwd=tmp_path, text=True,
-        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) for speed in (1.0, 2.0, 3.0)}
+        [sys.executable, "-c", PROCESS.format(tests=str(Path(__file__).parents[1]), speed=speed)], cwd=tmp_path,
+        text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) for speed in (1.0, 2.0, 3.0)}
     output = {speed: process.communicate()[0].strip() for speed, process in started.items()}
     assert all(text in ("refused", str(speed)) for speed, text in output.items()), output
     assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-ENGINE = Path(__file__).parents[1] / "runtime" / "engine"
+ENGINE = Path(__file__).parents[2] / "runtime" / "engine"
 LAYERS = ["base", "linear", "bodies", "couplings", "equations", "events", "integrators", "run"]
 """From the lowest to the highest."""
 

@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-SOURCE = Path(__file__).parents[1] / "runtime" / "view" / "page_source"
+SOURCE = Path(__file__).parents[2] / "runtime" / "view" / "page_source"
 SHAPES = hnp.array_shapes(min_dims=1, max_dims=3, max_side=7)
 
 

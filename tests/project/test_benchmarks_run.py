@@ -11,7 +11,7 @@ from printed import scripts
 from speed_page import SPEED
 from validation_page import STUDIES
 
-FOLDER = Path(__file__).parent / "benchmarks"
+FOLDER = Path(__file__).parents[1] / "benchmarks"
 MAIN = {path.stem for path in FOLDER.glob("*.py") if '\nif __name__ == "__main__"' in path.read_text("utf-8")}
 SCRIPTS = sorted(MAIN - {"print_pages"})
 PEERS = {"exudyn_side_by_side": "exudyn", "many_scenes": "exudyn", "cosserat": "cosseratbench", "page": "playwright",

@@ -247,7 +247,7 @@ print(refused)
 
 
 def forged_states(folder: Path, times: int, seed: int) -> int:
-    code = FORGE.format(tests=str(Path(__file__).parent), times=times, seed=seed)
+    code = FORGE.format(tests=str(Path(__file__).parents[1]), times=times, seed=seed)
     (folder / "kept").mkdir()
     for name in ("x.nc", "x.nc.state"):
         (folder / name).rename(folder / "kept" / name)

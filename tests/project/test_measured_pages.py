@@ -17,7 +17,7 @@ from printed import FOLDER, cell, markdown, scripts
 from speed_page import SPEED
 from validation_page import STUDIES
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 SECTIONS = [*SPEED, *STUDIES]
 TABLES = [of for section in SECTIONS for of in section.tables]
 ROWS = validation.recorded()
@@ -73,7 +73,7 @@ def test_a_comparison_fails_beyond_its_bound_and_without_a_record(request, monke
     given = {"bound": 0.1, "source": "closed form"}
     with pytest.raises(AssertionError, match=r"1\.2, not 1 to 0\.1"):
         check("Statics", "a case", "large", 1.0, 1.2, **given)
-    with pytest.raises(AssertionError, match=r"--record-validation tests/test_measured_pages\.py"):
+    with pytest.raises(AssertionError, match=r"--record-validation tests/project/test_measured_pages\.py"):
         check("Statics", "a case", "unknown", 1.0, 1.0, **given)
     with pytest.raises(AssertionError, match="a name of its own"):
         check("Statics", "a case", "unknown", 1.0, 1.0, **given)

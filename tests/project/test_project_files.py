@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 PAGES = [str(path.relative_to(ROOT)) for pattern in ("*.md", "*/README.md", "tests/*/README.md")
          for path in ROOT.glob(pattern) if not path.parent.name.startswith(".")]  # not of caches
 

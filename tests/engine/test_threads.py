@@ -35,7 +35,7 @@ def test_there_are_processors():
 
 FORKED = """
 import os, sys
-sys.path += ["tests", "tests/benchmarks"]
+sys.path += ["tests", "tests/benchmarks", "tests/engine"]
 import funicular.solve.linear.threads
 from test_threads import scene
 funicular.solve.linear.threads.available = lambda: 2
@@ -59,7 +59,7 @@ def test_threads_after_a_fork(parent, request):
 
 WITHIN = """
 import os, sys
-sys.path += ["tests", "tests/benchmarks"]
+sys.path += ["tests", "tests/benchmarks", "tests/engine"]
 import funicular.solve.linear.threads
 from linear_cost import scene
 funicular.solve.linear.threads.available = lambda: 2

@@ -29,7 +29,7 @@ from funicular.derive.theory.tex import tex
 from typer.testing import CliRunner
 from validation import recorded
 
-TOP = Path(__file__).parents[1]
+TOP = Path(__file__).parents[2]
 SLIDE = "slide_cable12_point"
 
 

@@ -1,7 +1,7 @@
 /* Random systems of the engine's own linear algebra: complex bands, inverses of bands, small matrices. Prints the largest
- * residual of each, of 400, in units of rounding; tests/test_small_systems.py.
+ * residual of each, of 400, in units of rounding; tests/engine/test_small_systems.py.
  */
-#include "complex_system.h"
+#include "linear/complex_system.h"
 
 #include <float.h>
 #include <stdio.h>

@@ -7,14 +7,14 @@ from funicular.derive.codegen import drift
 from funicular.derive.verify.compiled import compiler
 
 PROGRAM = Path(__file__).with_name("small_systems.c")
-ENGINE = Path(__file__).parents[1] / "runtime" / "engine"
+ENGINE = Path(__file__).parents[2] / "runtime" / "engine"
 SOURCES = [ENGINE / "linear" / f"{name}.c" for name in ("complex_band", "inverse", "small", "band")]
 
 
 def test_residuals_are_rounding(tmp_path):
     program = tmp_path / "small_systems"
     subprocess.run([*compiler(), "-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{drift.folder()}",
-                    f"-I{ENGINE / 'include'}", PROGRAM, *SOURCES, "-lm", "-o", program], check=True)
+                    f"-I{ENGINE}", PROGRAM, *SOURCES, "-lm", "-o", program], check=True)
     done = subprocess.run([program], capture_output=True, text=True, check=True)
     band, unsymmetric, inverse, small, singular = map(float, done.stdout.split())
     assert 0 < band < 10

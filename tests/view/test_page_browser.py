@@ -18,7 +18,7 @@ from matplotlib.image import imread, imsave
 
 pytestmark = pytest.mark.browser
 
-GOLDEN = Path(__file__).parent / "reference" / "page.png"
+GOLDEN = Path(__file__).parents[1] / "reference" / "page.png"
 DESKTOP = {"viewport": {"width": 1200, "height": 800}}
 SMALL = {"viewport": {"width": 900, "height": 560}, "color_scheme": "light"}
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}

@@ -212,10 +212,10 @@ def test_a_sweep_does_not_go_on_with_another_watched_function(tmp_path):
 
 def test_what_a_function_is_does_not_depend_on_the_process():
     """A sweep goes on in another process, in which addresses and the order of sets differ."""
-    code = ("import sys; sys.path.insert(0, 'tests'); from test_sweep_files import *; "
+    code = ("import sys; sys.path[:0] = ['tests', 'tests/sweeps']; from test_sweep_files import *; "
             "from funicular.sweeps.identity import identity_of; "
             "print([identity_of(each) for each in (calls, multiplied(2.0), Times(1.0), by_array(1.0))])")
-    folder = Path(__file__).parent.parent
+    folder = Path(__file__).parents[2]
     one, other = (subprocess.run([sys.executable, "-c", code], cwd=folder, check=True, capture_output=True, text=True,
                                  env=os.environ | {"PYTHONHASHSEED": seed}).stdout for seed in "12")
     assert one == other and "0x" not in one

@@ -17,7 +17,7 @@ from funicular.derive.theory import command
 from funicular.errors import FunicularError
 from typer.testing import CliRunner
 
-SOURCES = [Path(__file__).parents[1] / folder for folder in ("runtime", "derive")]
+SOURCES = [Path(__file__).parents[2] / folder for folder in ("runtime", "derive")]
 
 
 @contextmanager

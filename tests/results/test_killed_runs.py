@@ -110,7 +110,7 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 
 def peak(rows: int, folder: Path) -> float:
-    code = MEMORY.format(tests=str(Path(__file__).parent), rows=rows)
+    code = MEMORY.format(tests=str(Path(__file__).parents[1]), rows=rows)
     done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True)
     return int(done.stdout) / 1024
 
