@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import cache
-from itertools import pairwise
+from itertools import pairwise, permutations
 
 import numpy as np
 
-from ..kernels.libraries import kernels_of
 from .attachments import AttachmentModel
-from .contacts import ContactModel
 from .coupling import CouplingModel
-from .crossings import CrossingModel
 from .elimination import DENSE, BorderGraph, Elimination, dense
-from .hard_contacts import HardContactModel
-from .joints import JointModel
 from .model import Model, SlideModel
 
 NEWTON, ACCELERATIONS = "newton", "accelerations"
@@ -56,8 +50,6 @@ class _Border:
         self.slides: list[int] = []
         for coupling in model.couplings:
             self._coupling(coupling)
-        for contact in model.contacts if system == NEWTON else []:
-            self._contact(contact)
 
     def _nodes(self) -> None:
         """Add what cables have in the border: a group of the unknowns that the same elements share."""
@@ -111,33 +103,24 @@ class _Border:
         newton = self.system == NEWTON
         first, count = ((coupling.unknown, coupling.n_coordinates + coupling.n_forces) if newton
                         else (coupling.multiplier, coupling.n_multipliers))
-        if not count:
+        ties = newton and bool(coupling.ends) and coupling.ties_ends(self.model.dim)
+        if not count and not ties:
             return
-        ends = [coupling.rider] if isinstance(coupling, SlideModel) else getattr(coupling, "attachments", [])
-        if isinstance(coupling, HardContactModel):
-            ends = [*ends, *coupling.on]
-        bodies = {body for end in ends for body in self._bodies_of(end)}
-        own = self.graph.group(range(self.model.n_border_dof + first, self.model.n_border_dof + first + count),
-                               None if coupling.follows_law else bodies)
-        places = [self._end(end) for end in ends]
+        places = [self._end(end) for end in coupling.ends]
+        if count:
+            self._own(coupling, range(self.model.n_border_dof + first, self.model.n_border_dof + first + count), places)
+        if ties:
+            for one, other in permutations([*places, *(self.cables[k] for k in coupling.along)], 2):
+                self._touch(one.groups, other)
+
+    def _own(self, coupling: CouplingModel, unknowns: range, places: list[_Place]) -> None:
+        """Add the own unknowns of a coupling, which touch all that it acts on."""
+        bodies = {body for end in coupling.ends for body in self._bodies_of(end)}
+        own = self.graph.group(unknowns, None if coupling.follows_law else bodies)
         if isinstance(coupling, SlideModel):
             self.slides.append(own)
-            places.append(self.cables[coupling.cable])
-        if isinstance(coupling, CrossingModel):
-            places += [self.cables[k] for k in coupling.cables if k >= 0]
-        for place in places:
+        for place in [*places, *(self.cables[k] for k in coupling.along)]:
             self._touch({own}, place)
-        if newton and isinstance(coupling, JointModel) and _ties_turns(coupling, self.model.dim):
-            self._touch(places[0].groups, places[1])
-            self._touch(places[1].groups, places[0])
-
-    def _contact(self, contact: ContactModel) -> None:
-        """Join the body that a surface is on to what touches it, by forces without unknowns of their own."""
-        on = self._end(contact.on[0])
-        places = [self.cables[contact.cable]] if contact.cable >= 0 else [self._end(contact.attachments[0])]
-        for place in places:
-            self._touch(on.groups, place)
-            self._touch(place.groups, on)
 
     def _bodies_of(self, end: AttachmentModel) -> set[int]:
         """Return the groups of the bodies that an attachment is on, a slide's rider among them."""
@@ -157,28 +140,3 @@ class _Border:
         cable = self.model.cables[end.cable]
         per_node = cable.shape[1] * cable.shape[2]
         return self._place(slice(cable.first + end.element * per_node, cable.first + (end.element + 2) * per_node))
-
-
-def _ties_turns(joint: JointModel, dim: int) -> bool:
-    """Return whether a joint's forces change with the turns of both ends, or with a gap: its stiffness is between them.
-
-    Of a spherical joint they do not: what it adds to the stiffness is of each end alone.
-    """
-    if any(end.slide >= 0 for end in joint.attachments):
-        return True
-    if all(end.cable >= 0 for end in joint.attachments):
-        return False  # engine/couplings/joint/joint.c leaves that out
-    return _has_cross_stiffness(joint.kernel, dim)
-
-
-@cache
-def _has_cross_stiffness(kernel: str, dim: int) -> bool:
-    """Return whether the kernel's second derivatives couple what moves its first end to what moves its second."""
-    force = getattr(kernels_of(None), f"{kernel}_force")
-    rng = np.random.default_rng(0)  # of numbers without any relation no two cancel each other
-    given = [rng.uniform(0.5, 1.0, force.shapes[name]) for name in list(force.shapes)[:5]]
-    numbers = np.asarray(force(*given)[2]).ravel()
-    moves = int(np.sqrt(numbers.size))
-    K, turns = numbers.reshape(moves, moves), (moves - dim) // 2
-    first, second = K[: dim + turns], [*range(dim), *range(dim + turns, moves)]
-    return bool(np.any(first[:, second] != 0))

@@ -10,16 +10,11 @@ from .attachments import AttachmentBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .border import ACCELERATIONS, NEWTON, elimination
 from .cables import cable_gravity, cable_model, cable_rates, cable_weights, level_tied_slopes
-from .contacts import contact_model
 from .coupling import number
-from .crossings import crossing_model
 from .cutting import attached
-from .drags import drag_models
-from .hard_contacts import hard_contact_models
-from .joints import JointModel, frame_joint_model, joint_model
+from .kinds import COUPLINGS
 from .loads import LoadBuilder
 from .model import CableModel, Model, MotionModel
-from .slides import slide_model
 from .unknowns import Node, supports
 
 
@@ -44,25 +39,13 @@ def build(scene: SceneData) -> Model:
     attachments = AttachmentBuilder(scene, cables, bodies)
     loads = LoadBuilder(scene, attachments)
     reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, _elements(nodes), attached(scene))
-    for load in scene.loads.values():
-        loads.load(load)
-    slides = [slide_model(slide, scene, attachments, loads.signal) for slide in scene.slides.values()]
-    joints = _joints(scene, attachments, loads)
-    point_forces = [loads.point_force(force) for force in scene.point_forces.values()]
-    drags = [model for drag in scene.drags.values() for model in drag_models(drag, scene, attachments, loads)]
-    crossings = [crossing_model(crossing, scene, attachments) for crossing in scene.crossings.values()]
-    contacts = [contact_model(contact, scene, attachments) for contact in scene.contacts.values()
-                if not contact.is_hard]
-    hard = [model for contact in scene.contacts.values() if contact.is_hard
-            for model in hard_contact_models(contact, scene, attachments)]
-    n_extra, n_multipliers = number([*loads.dead, *loads.turning, *slides, *joints, *point_forces, *drags, *crossings,
-                                     *contacts, *hard])
+    couplings = [model for kind in COUPLINGS for model in kind.models(scene, attachments, loads)]
+    n_extra, n_multipliers = number(couplings)
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     model = Model(
-        dim, cables, bodies, slides, joints, point_forces, loads.signals,
+        dim, cables, bodies, couplings, loads.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
-        [*loads.dead, *loads.turning], drags, crossings, contacts, hard,
         q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
         v=_joined(cable_rates(scene, reduction), *(velocity_of(body, dim) for body in described)),
         weight=_joined(*map(cable_weights, drawn), *(body_weights(body, dim) for body in described)),
@@ -88,13 +71,6 @@ def _elements(nodes: dict[str, list[Node]]) -> np.ndarray:
     """Return (elements, 2): the first dof of each element of these nodes, by cable, and how many dofs it has."""
     return np.array([(node.first, 2 * node.vectors.size) for each in nodes.values() for node in each[:-1]],
                     dtype=int).reshape(-1, 2)
-
-
-def _joints(scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> list[JointModel]:
-    """Return the joints: first those that keep a rider's axes to its cable, then those of the scene."""
-    of_slides = [frame_joint_model(attachments, slide, k) for k, slide in enumerate(scene.slides.values())
-                 if slide.frame != "point"]
-    return of_slides + [joint_model(attachments, joint, loads.signal) for joint in scene.joints.values()]
 
 
 def _joined(*arrays: np.ndarray) -> np.ndarray:

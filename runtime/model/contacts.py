@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -73,6 +74,16 @@ class ContactModel(CouplingModel, SurfaceModel):
     spread: np.ndarray = field(default_factory=lambda: NONE)
     marks: np.ndarray = field(default_factory=lambda: NONE)
     attachments: list[AttachmentModel] = field(default_factory=list)
+
+    @property
+    def ends(self) -> Sequence[AttachmentModel]:
+        """Return what carries the surface, and the first of the points of a body that touch it."""
+        return [*self.on, *self.attachments[:1]]
+
+    @property
+    def along(self) -> Sequence[int]:
+        """Return the number of its cable, if it is on one."""
+        return (self.cable,) if self.cable >= 0 else ()
 
 
 def surface_entries(surface: Surface, scene: SceneData, attachments: AttachmentBuilder,

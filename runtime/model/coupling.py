@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
+
+from .attachments import AttachmentModel
 
 
 @dataclass(kw_only=True)
@@ -19,8 +22,13 @@ class CouplingModel:
     own forces are given by a law, and else by constraints. redundant_rows: those of its constraints that others imply,
     whose forces are nil (model/redundant_constraints.py). unknown, multiplier: the first of each, of unknowns beyond
     the dofs, as `number` counts them.
+
+    keeps_forces: a search for rest goes on from its own forces, which else begin at zero in each state; reports_cost:
+    the report of a run says how long it takes.
     """
 
+    keeps_forces: ClassVar[bool] = True
+    reports_cost: ClassVar[bool] = False
     type: str
     name: str = ""
     n_coordinates: int = 0
@@ -35,6 +43,25 @@ class CouplingModel:
     redundant_rows: set[int] = field(default_factory=set)
     unknown: int = -1
     multiplier: int = -1
+
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the names of the generated kernels that it takes."""
+        return [self.kernel] if hasattr(self, "kernel") else []
+
+    @property
+    def ends(self) -> Sequence[AttachmentModel]:
+        """Return the attachments that it acts on, `attachments` where it has these."""
+        return getattr(self, "attachments", ())
+
+    @property
+    def along(self) -> Sequence[int]:
+        """Return the numbers of cables that it acts on at places that move."""
+        return ()
+
+    def ties_ends(self, dim: int) -> bool:
+        """Return whether the tangent of its forces has entries between what it acts on, beside its own unknowns."""
+        return not self.n_forces
 
     @property
     def is_driven(self) -> bool:

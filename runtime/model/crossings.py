@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -45,6 +47,13 @@ class CrossingModel(CouplingModel):
     friction: float
     tangential: float
     stiffness: float
+
+    keeps_forces: ClassVar[bool] = False
+
+    @property
+    def along(self) -> Sequence[int]:
+        """Return the numbers of its cables."""
+        return [number for number in self.cables if number >= 0]
 
 
 def crossing_model(part: Crossing, scene: SceneData, attachments: AttachmentBuilder) -> CrossingModel:

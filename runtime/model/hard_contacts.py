@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -10,7 +11,7 @@ import numpy as np
 from ..parts.attachment import Attachment
 from ..parts.contact import Contact
 from ..parts.scene_data import SceneData
-from .attachments import AttachmentBuilder
+from .attachments import AttachmentBuilder, AttachmentModel
 from .contacts import ContactModel, surface_entries
 
 GIVES_WAY = 1e-10
@@ -31,6 +32,11 @@ class HardContactModel(ContactModel):
     sliding: float
     weight: float
     static_stiffness: float
+
+    @property
+    def ends(self) -> Sequence[AttachmentModel]:
+        """Return the point and what carries the surface."""
+        return [*self.attachments, *self.on]
 
 
 def hard_contact_models(part: Contact, scene: SceneData, attachments: AttachmentBuilder) -> list[HardContactModel]:

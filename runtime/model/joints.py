@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from typing import ClassVar
 
 import numpy as np
 
@@ -26,6 +27,7 @@ class JointModel(CouplingModel):
     slide: the one beside which it ties a rider's axes to the cable; reversed: the first end is the joint's b.
     """
 
+    reports_cost: ClassVar[bool] = True
     kernel: str
     attachments: tuple[AttachmentModel, AttachmentModel]
     base: float
@@ -37,6 +39,17 @@ class JointModel(CouplingModel):
     def rows(self) -> int:
         """Return the number of its equations."""
         return len(self.scale)
+
+    def ties_ends(self, dim: int) -> bool:
+        """Return whether its forces change with the turns of both ends, or with a gap: its stiffness is between them.
+
+        Of a spherical joint they do not: what it adds to the stiffness is of each end alone.
+        """
+        if any(end.slide >= 0 for end in self.attachments):
+            return True
+        if all(end.cable >= 0 for end in self.attachments):
+            return False  # engine/couplings/joint/joint.c leaves that out
+        return _has_cross_stiffness(self.kernel, dim)
 
 
 def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[Signal], int]) -> JointModel:
@@ -94,3 +107,16 @@ def _derivatives(kernel: str, dim: int) -> np.ndarray:
     eye, ones = np.eye(dim), np.ones(dim)
     force = getattr(kernels_of(None), f"{kernel}_force")
     return force(ones, eye, eye, np.array([0.5, np.cos(0.5), np.sin(0.5)]), np.zeros(force.shapes["f"]))[1]
+
+
+@cache
+def _has_cross_stiffness(kernel: str, dim: int) -> bool:
+    """Return whether the kernel's second derivatives couple what moves its first end to what moves its second."""
+    force = getattr(kernels_of(None), f"{kernel}_force")
+    rng = np.random.default_rng(0)  # of numbers without any relation no two cancel each other
+    given = [rng.uniform(0.5, 1.0, force.shapes[name]) for name in list(force.shapes)[:5]]
+    numbers = np.asarray(force(*given)[2]).ravel()
+    moves = int(np.sqrt(numbers.size))
+    K, turns = numbers.reshape(moves, moves), (moves - dim) // 2
+    first, second = K[: dim + turns], [*range(dim), *range(dim + turns, moves)]
+    return bool(np.any(first[:, second] != 0))

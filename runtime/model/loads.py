@@ -131,6 +131,11 @@ class PointForceModel(CouplingModel, ForceLaw):
 
     attachments: list[AttachmentModel]
 
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the name of the kernels of its law."""
+        return [self.law]
+
 
 class LoadBuilder:
     """Translates the loads and springs of a scene."""

@@ -5,8 +5,10 @@ Coordinates, unknowns and their order are those of engine/bodies/model.h.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from functools import cached_property
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -25,6 +27,8 @@ from .hard_contacts import HardContactModel
 from .joints import JointModel
 from .loads import DeadLoadModel, LoadModel, PointForceModel, SignalModel
 from .unknowns import Node
+
+K = TypeVar("K", bound=CouplingModel)
 
 
 class Kernel(Protocol):
@@ -130,6 +134,7 @@ class SlideModel(CouplingModel):
     them, restitutions of hard stops, lengths (m), stiffnesses (N/m) and dampings (N s/m) of buffers.
     """
 
+    reports_cost: ClassVar[bool] = True
     kernel: str
     cable: int
     rider: AttachmentModel
@@ -149,6 +154,21 @@ class SlideModel(CouplingModel):
     buffer_lengths: list[float]
     buffer_stiffnesses: list[float]
     buffer_dampings: list[float]
+
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the names of its kernels, and of those of its resistance."""
+        return [self.kernel, self.resistance] if self.resistance else [self.kernel]
+
+    @property
+    def ends(self) -> Sequence[AttachmentModel]:
+        """Return its rider."""
+        return (self.rider,)
+
+    @property
+    def along(self) -> Sequence[int]:
+        """Return the number of its cable."""
+        return (self.cable,)
 
     def place_at(self, s: float, cable: CableModel) -> None:
         """Put the slide at arc-length s (m) of its cable, on the element there; at a node the one that it is on."""
@@ -177,6 +197,7 @@ class MotionModel:
 class Model:
     """Arrays that the engine reads; engine/bodies/model.h says what they mean. tables: addresses of further kernels.
 
+    couplings: in the order in which the engine adds up what they give, that of `kinds.COUPLINGS`.
     newton, accelerations: how the borders of Newton's systems and of those of eq 38 are eliminated; plane_axes: what
     turns results into the ground's axes, None where the model is in these.
     """
@@ -184,16 +205,9 @@ class Model:
     dim: int
     cables: list[CableModel]
     bodies: list[BodyModel]
-    slides: list[SlideModel]
-    joints: list[JointModel]
-    point_forces: list[PointForceModel]
+    couplings: list[CouplingModel]
     signals: list[SignalModel]
     motions: list[MotionModel]
-    loads: list[DeadLoadModel | LoadModel]
-    drags: list[DragModel]
-    crossings: list[CrossingModel]
-    contacts: list[ContactModel]
-    hard_contacts: list[HardContactModel]
     q: np.ndarray
     v: np.ndarray
     weight: np.ndarray
@@ -212,11 +226,49 @@ class Model:
     newton: Elimination = field(init=False)
     accelerations: Elimination = field(init=False)
 
-    @property
-    def couplings(self) -> list[CouplingModel]:
-        """Return all couplings in the engine's order, which adds up what they give in it."""
-        return [*self.loads, *self.slides, *self.joints, *self.point_forces, *self.drags, *self.crossings,
-                *self.contacts, *self.hard_contacts]
+    def of(self, *kinds: type[K]) -> list[K]:
+        """Return the couplings of these classes, in their order."""
+        return [coupling for coupling in self.couplings if type(coupling) in kinds]
+
+    @cached_property
+    def loads(self) -> list[DeadLoadModel | LoadModel]:
+        """Return the loads."""
+        return self.of(DeadLoadModel, LoadModel)
+
+    @cached_property
+    def slides(self) -> list[SlideModel]:
+        """Return the slides."""
+        return self.of(SlideModel)
+
+    @cached_property
+    def joints(self) -> list[JointModel]:
+        """Return the joints, first those that keep a rider's axes to its cable."""
+        return self.of(JointModel)
+
+    @cached_property
+    def point_forces(self) -> list[PointForceModel]:
+        """Return the forces between two points."""
+        return self.of(PointForceModel)
+
+    @cached_property
+    def drags(self) -> list[DragModel]:
+        """Return the forces of fluids."""
+        return self.of(DragModel)
+
+    @cached_property
+    def crossings(self) -> list[CrossingModel]:
+        """Return the contacts of lines."""
+        return self.of(CrossingModel)
+
+    @cached_property
+    def contacts(self) -> list[ContactModel]:
+        """Return the contacts with surfaces by penalty."""
+        return self.of(ContactModel)
+
+    @cached_property
+    def hard_contacts(self) -> list[HardContactModel]:
+        """Return the points of hard contacts."""
+        return self.of(HardContactModel)
 
     def prescribed_at(self, t: float) -> dict[int, float]:
         """Return what motions make of their dofs at the time t in s, by dof."""
@@ -258,10 +310,6 @@ class Model:
     def kernels(self) -> list[str]:
         """Return the names of the kernel families that the scene touches."""
         return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
-                      | {slide.kernel for slide in self.slides} | {body.kernel for body in self.bodies}
-                      | {joint.kernel for joint in self.joints}
-                      | {slide.resistance for slide in self.slides if slide.resistance}
-                      | {force.law for force in self.point_forces} | {drag.kernel for drag in self.drags}
-                      | {crossing.kernel for crossing in self.crossings}
-                      | {contact.kernel for contact in [*self.contacts, *self.hard_contacts]}
+                      | {name for coupling in self.couplings for name in coupling.kernel_families}
+                      | {body.kernel for body in self.bodies}
                       | {body.modal_kernel for body in self.bodies if body.modes})

@@ -11,13 +11,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..engine import OUTPUTS, Engine, outputs_by_name
-from ..parts.contact import Contact
-from ..parts.crossing import Crossing
-from ..parts.drag import Drag
-from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
+from ..parts.slide import Slide
 from ..parts.support import Support
-from .contacts import ContactModel
+from .kinds import COUPLINGS
 from .model import Model
 from .states import (
     body_rates,
@@ -70,6 +67,8 @@ def numbers_at_rest(engine: Engine) -> dict[str, np.ndarray]:
 
 Values = dict[str, dict[str, np.ndarray]]
 """Arrays by label and quantity."""
+Asked = Callable[[str], bool]
+"""Whether results of a label are asked for."""
 
 
 @dataclass
@@ -114,56 +113,74 @@ def part_states(model: Model, scene: SceneData, at: States, alone: str | None = 
     return PartStates(cables, modal, {"bodies": bodies, **connections})
 
 
-def _connections(model: Model, scene: SceneData, at: States, asked: Callable[[str], bool]) -> dict[str, Values]:
-    """Return what slides, supports, ties, joints and forces tell, along the axes of the model."""
+def _connections(model: Model, scene: SceneData, at: States, asked: Asked) -> dict[str, Values]:
+    """Return what supports, ties and couplings tell, along the axes of the model."""
     def reactions(supports: Iterable[Support]) -> Values:
         return {support.label: support_reaction(model, scene, support, at.reaction, at.q) for support in supports
                 if asked(support.label)}
 
-    of_joints = [(joint, joint_state(joint, at.outputs("joint", k))) for k, joint in enumerate(model.joints)]
-    slides = {slide.name: {"s": at.s[:, k]} | _slide_state(at.outputs("slide", k))
-              for k, slide in enumerate(model.slides)}
-    for joint, state in of_joints:
-        if joint.slide is not None:
-            slides[joint.slide]["moment"] = state["moment"]
+    couplings: dict[str, Values] = {kind.group: {} for kind in COUPLINGS if kind.name in OUTPUTS}
+    for kind in COUPLINGS:
+        if kind.name in OUTPUTS:
+            couplings[kind.group] |= RESULTS.get(kind.name, _outputs)(model, at, kind.name, asked)
     return {
-        "slides": slides,
+        Slide.group: couplings.pop(Slide.group),
         "pins": {label: {"force": of["force"]} for label, of in reactions(scene.pins).items()},
         "clamps": reactions(scene.clamps),
         "motions": reactions(scene.motions),
         "ties": {name: tie_force(model, scene, tie, at.reaction, at.q) for name, tie in scene.ties.items()
                  if asked(name)},
-        "joints": {joint.name: state for joint, state in of_joints if joint.slide is None},
-        PointForce.group: {force.name: point_force_state(model, force, at.outputs("point_force", k)["force"], at.q)
-                           for k, force in enumerate(model.point_forces) if asked(force.name)},
-        Drag.group: drag_states(model, at),
-        Crossing.group: {crossing.name: at.outputs("crossing", k)
-                         for k, crossing in enumerate(model.crossings)},
-        Contact.group: {contact.name: contact_state(contact, at.outputs("contact", k))
-                        for k, contact in enumerate(model.contacts)}
-        | hard_contact_states(model, at),
-    }
+    } | couplings
 
 
-def _slide_state(outputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the outputs of a slide with the size of its residual."""
-    return outputs | {"residual": np.linalg.norm(outputs["residual"], axis=-1)}
+def _outputs(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return the outputs of all couplings of a kind as the results of their parts."""
+    named = [coupling.name for coupling in model.couplings if coupling.type == kind]
+    return {name: at.outputs(kind, k) for k, name in enumerate(named) if asked(name)}
 
 
-def contact_state(contact: ContactModel, outputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the outputs of a contact, without arc-lengths where nothing touches."""
-    touching = outputs["touching"]
-    touches = touching > 0 if contact.cable >= 0 else np.zeros(len(touching), dtype=bool)
-    ends = {name: np.where(touches, outputs[name], np.nan) for name in ("first", "last")}
-    return outputs | ends | {"gap": np.full(len(touching), np.nan)}
+def _slides(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return arc-length and outputs of slides, with the size of the residual, and the moment of those that tie axes."""
+    found: Values = {}
+    for k, slide in enumerate(model.slides):
+        outputs = at.outputs(kind, k)
+        found[slide.name] = {"s": at.s[:, k]} | outputs | {"residual": np.linalg.norm(outputs["residual"], axis=-1)}
+    for k, joint in enumerate(model.joints):
+        if joint.slide is not None:
+            found[joint.slide]["moment"] = joint_state(joint, at.outputs("joint", k))["moment"]
+    return found
 
 
-def hard_contact_states(model: Model, at: States) -> Values:
+def _joints(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return the results of the scene's joints, without those that tie the axes of slides."""
+    return {joint.name: joint_state(joint, at.outputs(kind, k)) for k, joint in enumerate(model.joints)
+            if joint.slide is None}
+
+
+def _point_forces(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return the forces between two points, with length and tension."""
+    return {force.name: point_force_state(model, force, at.outputs(kind, k)["force"], at.q)
+            for k, force in enumerate(model.point_forces) if asked(force.name)}
+
+
+def _contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return the outputs of contacts, without arc-lengths where nothing touches."""
+    found: Values = {}
+    for k, contact in enumerate(model.contacts):
+        outputs = at.outputs(kind, k)
+        touching = outputs["touching"]
+        touches = touching > 0 if contact.cable >= 0 else np.zeros(len(touching), dtype=bool)
+        ends = {name: np.where(touches, outputs[name], np.nan) for name in ("first", "last")}
+        found[contact.name] = outputs | ends | {"gap": np.full(len(touching), np.nan)}
+    return found
+
+
+def _hard_contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of hard contacts by name: sums and extremes over the outputs of their points."""
     found: Values = {}
     for name in dict.fromkeys(point.name for point in model.hard_contacts):
         points = [k for k, point in enumerate(model.hard_contacts) if point.name == name]
-        of = outputs_by_name("hard_contact", at.numbers["hard_contact"][:, points])
+        of = outputs_by_name(kind, at.numbers[kind][:, points])
         none, depth = np.full(len(at.q), np.nan), -of["gap"].min(axis=1)
         found[name] = {"force": of["force"].sum(axis=1), "friction_force": of["friction_force"].sum(axis=1),
                        "penetration": np.maximum(depth, 0.0),
@@ -172,10 +189,15 @@ def hard_contact_states(model: Model, at: States) -> Values:
     return found
 
 
-def drag_states(model: Model, at: States) -> Values:
+def _drags(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of drags by name: the sum of the forces of all their fluids."""
     found: Values = {}
     for k, drag in enumerate(model.drags):
-        force = at.outputs("drag", k)["force"]
+        force = at.outputs(kind, k)["force"]
         found[drag.name] = {"force": force + (found[drag.name]["force"] if drag.name in found else 0.0)}
     return found
+
+
+RESULTS = {"slide": _slides, "joint": _joints, "point_force": _point_forces, "drag": _drags, "contact": _contacts,
+           "hard_contact": _hard_contacts}
+"""What makes the results of parts from outputs, by kind of coupling, where they are not the outputs themselves."""

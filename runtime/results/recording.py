@@ -9,8 +9,7 @@ import numpy as np
 
 from ..checks.velocity_jumps import velocity_jumps
 from ..engine import Engine
-from ..model.joints import JointModel
-from ..model.model import Model, SlideModel
+from ..model.model import Model
 from ..model.part_states import States, part_states
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
@@ -93,9 +92,9 @@ def _costs(model: Model, engine: Engine) -> dict[str, float]:
     """Return the µs of a step that each slide and joint takes; a slide that ties its rider's axes has both its parts.
     """
     found: dict[str, float] = {}
-    if model.slides or model.joints:
+    if any(coupling.reports_cost for coupling in model.couplings):
         for coupling, seconds in zip(model.couplings, engine.costs(), strict=True):
-            if isinstance(coupling, SlideModel | JointModel):
+            if coupling.reports_cost:
                 found[coupling.name] = found.get(coupling.name, 0.0) + 1e6 * float(seconds)
     return found
 

@@ -1,8 +1,14 @@
 """One description of a coupling: fields in C say what its outputs are, and Python reads them."""
 
+from dataclasses import fields
+
+import funicular as fu
 import numpy as np
 import pytest
-from funicular.engine import OUTPUTS, outputs_by_name
+from funicular.engine import OUTPUTS, Engine, outputs_by_name
+from funicular.model.build import build
+from funicular.model.kinds import COUPLINGS, in_order
+from funicular.model.model import SlideModel
 from funicular.parts.kinds import KINDS
 from funicular.parts.plane import Plane
 from funicular.parts.plane_axes import PlaneAxes
@@ -66,3 +72,36 @@ def test_a_result_without_a_declaration_is_refused():
 
 def test_every_result_of_a_part_has_a_turning():
     assert {name for kind in KINDS for name in kind.results} <= set(TURNING)
+
+
+def test_the_model_has_one_list_of_couplings():
+    """Each kind of coupling is a type of the engine; the order of the list is that of the kinds."""
+    model = build(fu.load_scene("cable_car"))
+    kinds = [kind.name for kind in COUPLINGS]
+    numbers = [kinds.index(coupling.type) for coupling in model.couplings]
+    assert numbers == sorted(numbers) and {*OUTPUTS} == {*kinds} - {"dead load", "load"}
+    assert in_order(reversed(model.couplings[:1] + model.couplings[-1:])) == [model.couplings[0], model.couplings[-1]]
+    assert [*model.of(SlideModel)] == model.slides and model.slides
+    assert [each.name for each in fields(model) if isinstance(getattr(model, each.name), list)] == [
+        "cables", "bodies", "couplings", "signals", "motions", "tables"]
+
+
+def test_all_groups_of_couplings_have_results():
+    groups = {kind.group for kind in COUPLINGS}
+    assert all(kind.results for kind in KINDS if kind.group in groups - {"loads"})
+    assert {kind.group for kind in COUPLINGS if kind.name in OUTPUTS} == groups - {"loads"}
+
+
+def test_a_state_of_rest_keeps_forces_by_kind():
+    state = fu.load_scene("cable_car").equilibrium()
+    kept, model = state.static_state, build(fu.load_scene("cable_car"))
+    assert kept["slide"].shape == (len(model.slides), 2) and kept["crossing"].shape == (0, 0)
+    assert np.abs(kept["joint"]).max() > 0
+
+
+def test_forces_that_are_not_kept_begin_at_zero():
+    model = build(fu.load_scene("catenary"))
+    engine = Engine(model)
+    engine.set_state(0.0, **engine.state())
+    kept = engine.state()
+    assert model.crossings[0].n_forces and kept["crossing"].shape == (1, 0)

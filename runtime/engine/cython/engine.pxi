@@ -159,6 +159,8 @@ cdef extern from * nogil:
         const fu_field *fields
         const fu_output *output_fields
         const char *(*excess)(const fu_coupling *coupling)
+        void (*residual)(const fu_model *model, const fu_coupling *coupling, const void *at, double *f, double *own)
+        void (*step_residual)(const fu_model *model, const fu_coupling *coupling, const void *at, double *f, double *own)
         void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
         void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                         const double *acceleration, const void *work, double *out)

@@ -16,6 +16,11 @@ cdef class Report(Statics):
         """Numbers of the cables whose law has no kernel for algorithmic dissipation."""
         return [i for i in range(self.model.n_cables) if self.cables[i].law.algorithmic_force == NULL]
 
+    def without_step_equations(self):
+        """Numbers of the couplings that have equations at an instant, and none over a step that conserves energy."""
+        return [i for i in range(self.model.n_couplings)
+                if self.couplings[i].type.residual != NULL and self.couplings[i].type.step_residual == NULL]
+
     @property
     def knots_passed(self):
         """Return at how many knots of signals steps have ended."""

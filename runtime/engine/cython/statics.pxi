@@ -73,10 +73,9 @@ cdef class Statics(Translation):
         how = " and ".join(name for k, name in enumerate(("symmetric", "unpivoted", "pivoted")) if k in ways)
         return np.array([self.run.rhs[i] for i in range(total)]), how
 
-    def set_state(self, double t=0.0, q=None, s=None, force=None, multipliers=None, point_force=None, hard_contact=None,
-                  prescribe=True):
-        """Set the static state: time, configuration (n_q,), arc-lengths, forces of slides (n, 3), multipliers of joints
-        (n, 6), forces between points (n, 3), of hard contacts (n, 3); None: as built.
+    def set_state(self, double t=0.0, q=None, s=None, prescribe=True, **given):
+        """Set the static state: time, configuration (n_q,), arc-lengths, None: as built; by the name of a kind the own forces of
+        its couplings, (n, most that one has), zero of kinds that are not given.
 
         prescribe: whether prescribed dofs take their values at t, and else those of q.
         """
@@ -91,13 +90,11 @@ cdef class Statics(Translation):
         self._view(state, "s")[:] = self._view(&self.run.now, "s") if s is None else s
         fu_find_pieces(&self.model, state)
         forces = self._view(state, "forces")
-        given = {"slide": force, "joint": multipliers, "point_force": point_force,
-                 "hard_contact": hard_contact}
         for i in range(self.model.n_couplings):
             c = self.couplings[i]
             values = given.get(self._kind(c))
             for k in range(c.n_forces):
-                forces[c.force + k] = 0.0 if values is None else values[c.index][k]
+                forces[c.force + k] = 0.0 if values is None or k >= values.shape[1] else values[c.index][k]
         fu_touch(&self.model, state)
 
     cdef _rest(self, fu_state *state):
@@ -108,10 +105,8 @@ cdef class Statics(Translation):
         """The static state as the arguments of `set_state` (but t)."""
         cdef fu_state *state = &self.run.next
         forces = self._view(state, "forces")
-        return {"q": self._view(state, "q").copy(), "s": self._view(state, "s").copy(),
-                "force": self._own("slide", forces, 3), "multipliers": self._own("joint", forces, 6),
-                "point_force": self._own("point_force", forces, 3),
-                "hard_contact": self._own("hard_contact", forces, 3)}
+        own = {kind: self._own(kind, forces, width) for kind, width in self.kept_forces.items()}
+        return {"q": self._view(state, "q").copy(), "s": self._view(state, "s").copy()} | own
 
     cdef _own(self, str kind, forces, int width):
         """(couplings of a kind, width): entries of `forces`, zeros after those that one has."""
@@ -120,7 +115,7 @@ cdef class Statics(Translation):
         for i in self._of(kind):
             c = self.couplings[i]
             found.append([forces[c.force + k] if k < c.n_forces else 0.0 for k in range(width)])
-        return np.array(found).reshape(-1, width)
+        return np.array(found).reshape(len(found), width)
 
     def load(self, double fraction, gravity=True):
         """Apply this fraction of all loads at states that `set_state` set; gravity: of the weight, too, which else stays whole.

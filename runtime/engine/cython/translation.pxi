@@ -27,6 +27,7 @@ cdef class Translation(Arrays):
     cdef fu_run run
     cdef fu_fronts newton_fronts, mass_fronts
     cdef object newton_elimination
+    cdef dict kept_forces  # by kind of coupling: the most own forces that one has, of which a static state goes on
 
     def __cinit__(self, model, blocks=True):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
@@ -171,7 +172,7 @@ cdef class Translation(Arrays):
         cdef size_t at = 0
         cdef fu_coupling *coupling
         cdef int n = len(model.couplings)
-        counts = {}
+        counts, self.kept_forces = {}, dict.fromkeys(OUTPUTS, 0)
         for k, given in enumerate(model.couplings):
             coupling = self.couplings[k] = <fu_coupling *>(self.coupling_memory + at)
             coupling.type = _type_of(given)
@@ -184,6 +185,8 @@ cdef class Translation(Arrays):
             if coupling.type.excess != NULL and coupling.type.excess(coupling) != NULL:
                 raise ValueError(f"{given.type} {given.name!r}: more {coupling.type.excess(coupling).decode()} than the "
                                  "engine has room for")
+            if given.keeps_forces and given.n_forces:
+                self.kept_forces[kind] = max(self.kept_forces.get(kind, 0), given.n_forces)
             at += coupling.type.size
         fu_number_couplings(self.couplings, n, <const fu_coupling **>self._memory(2.0 * n * sizeof(fu_coupling *)), &self.model)
 

@@ -8,10 +8,15 @@ from typing import Literal
 import numpy as np
 
 from ...base.rotations import product, rotate, turned_by
+from ...model.kinds import COUPLINGS
 from ...parts.attachment import Attachment
+from ...parts.crossing import Crossing
+from ...parts.joint import Joint
 from ...parts.load import DistributedForce, Force, Load, Moment
 from ...parts.locations import ends_of, node_of
 from ...parts.modal_body import ModalBody
+from ...parts.part import Part
+from ...parts.scene_data import SceneData
 from ...parts.support import Clamp, Motion, Support
 from ...parts.validation import Vector, show, vector3
 from ...view.animation import Mark, Segment
@@ -64,10 +69,10 @@ def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
     for name, slide in scene.slides.items():
         yield Mark(name, "slide", still(slide_place(frames, name)),
                    f'slide of {_on(slide.rider)} along "{slide.along}"', slide_reference(frames, name))
-    for name, crossing in scene.crossings.items():
-        if frames.has(f"{name}.position"):
-            other = "a bar" if crossing.at is not None else f'"{crossing.b}"'
-            yield Mark(name, "point", still(frames.value(f"{name}.position")), f'contact of "{crossing.a}" and {other}')
+    for part in coupling_parts(scene):
+        name = part.given_name or part.kind
+        if "position" in part.results and frames.has(f"{name}.position"):
+            yield Mark(name, "point", still(frames.value(f"{name}.position")), _touching(part))
     for part in scene.parts():
         for end in (value for _, value in part if isinstance(value, Attachment)):
             if end.on is None:
@@ -77,6 +82,20 @@ def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
             end = _loaded(frames, load)
             yield Mark(name, "point", still(place(frames, end)), f"moment {show(load.value, 'N m')} on {_on(end)}",
                        one_or_all(place(refs, end)))
+
+
+def coupling_parts(scene: SceneData) -> Iterator[Part]:
+    """Yield the parts that act between others, in the order of the kinds of couplings."""
+    for group in dict.fromkeys(kind.group for kind in COUPLINGS):
+        yield from scene.group(group)
+
+
+def _touching(part: Part) -> str:
+    """Return what acts at a point, in words."""
+    if not isinstance(part, Crossing):
+        return part.where
+    other = "a bar" if part.at is not None else f'"{part.b}"'
+    return f'contact of "{part.a}" and {other}'
 
 
 def _support(support: Support) -> tuple[Literal["pin", "clamp"], str]:
@@ -115,8 +134,11 @@ def segments(frames: Frames, refs: Frames, size: float, arrow: float) -> Iterato
     refs: see `references`; size: of the scene, arrow: the length of the largest arrow, in m.
     """
     scene = frames.scene
-    for name, spring in scene.point_forces.items():
-        yield _between(frames, refs, name, "hanger" if spring.only_pulls else "spring", spring.a, spring.b)
+    for part in coupling_parts(scene):
+        ends = [value for _, value in part if isinstance(value, Attachment)]
+        if len(ends) == 2 and not isinstance(part, Joint):
+            kind: Literal["hanger", "spring"] = "hanger" if getattr(part, "only_pulls", False) else "spring"
+            yield _between(frames, refs, part.given_name or part.kind, kind, *ends)
     for name, joint in scene.joints.items():
         if _apart(place(frames, joint.a), place(frames, joint.b), size):
             yield _between(frames, refs, name, "joint", joint.a, joint.b)

@@ -11,11 +11,13 @@ import numpy as np
 
 from ...base.rotations import rotate
 from ...engine import Engine
+from ...errors import SceneError
 from ...kernels.libraries import kernels_of
 from ...model.attachments import CARRIED, UP, AttachmentModel
 from ...model.drag_forces import Turning, densities
 from ...model.drags import DragModel
 from ...model.element_coordinates import element_coordinates, positions
+from ...model.kinds import COUPLINGS
 from ...model.loads import GAUSS
 from ...model.model import CableModel, Model
 from ...model.states import attachment_points, spatial
@@ -80,13 +82,12 @@ class CableLoads:
         self.cables = cables
         names = [cable.name for cable in model.cables]
         self.number = {name: k for k, name in enumerate(names)}
-        self._loads()
-        self._drags()
-        self._contacts()
-        self._slides()
-        self._joints()
-        self._point_forces()
-        self._crossings()
+        for kind in COUPLINGS:
+            collect = COLLECTED.get(kind.name)
+            if collect is None:
+                self._between_ends(kind.name)
+            else:
+                collect(self)
 
     def _add(self, cable: int, element: ArrayLike, x: ArrayLike, f: np.ndarray) -> None:
         of, at = (np.broadcast_to(value, self.times) for value in (element, x))
@@ -245,12 +246,19 @@ class CableLoads:
             arm = spatial(end.modal[0] + self.at.value(f"{body.name}.modal_coordinates") @ end.modal[1])
         return self.at.value(f"{body.name}.position") + rotate(self.at.value(f"{body.name}.orientation"), arm)
 
-    def _point_forces(self) -> None:
-        for between in self.model.point_forces:
-            if any(end.cable >= 0 for end in between.attachments):
-                force = self.at.value(f"{between.name}.force")
-                self._on_end(between.attachments[0], force, None)
-                self._on_end(between.attachments[1], -force, None)
+    def _between_ends(self, kind: str) -> None:
+        """Add the force of each coupling of a kind on its first end, with the opposite on the second. Raises SceneError
+        for one that acts on cables in another way.
+        """
+        for coupling in self.model.couplings:
+            if coupling.type != kind or not (coupling.along or any(end.cable >= 0 for end in coupling.ends)):
+                continue
+            if coupling.along or len(coupling.ends) != 2:
+                raise SceneError(f'{kind} "{coupling.name}"', "acts on a cable, and no balance of forces knows how",
+                                 'take method="constitutive", which follows from the strains')
+            force = self.at.value(f"{coupling.name}.force")
+            for end, sign in zip(coupling.ends, (1.0, -1.0), strict=True):
+                self._on_end(end, sign * force, None)
 
     def _crossings(self) -> None:
         """Add contact forces at closest points, with the opposite on the other cable."""
@@ -312,6 +320,12 @@ class CableLoads:
             elif name == "r" and k >= len(cable.vectors):
                 straight[k] = length
         return float(np.clip(end.N @ straight, 0.0, length))
+
+
+COLLECTED: dict[str, Callable[[CableLoads], None]] = {
+    "dead load": CableLoads._loads, "slide": CableLoads._slides, "joint": CableLoads._joints,
+    "drag": CableLoads._drags, "crossing": CableLoads._crossings, "contact": CableLoads._contacts}
+"""What collects the couplings of a kind, "dead load" all loads; others act on their two ends, by opposite forces."""
 
 
 def across(tangent: np.ndarray) -> np.ndarray:

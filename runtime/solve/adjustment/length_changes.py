@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...model.contacts import ContactModel
+from ...model.kinds import COUPLINGS, in_order
 from ...parts.cable import Cable
 from ...parts.load import DistributedForce
 from .cable_changes import by_length as of_elements
@@ -13,8 +15,10 @@ from .cable_changes import same_points
 from .change import Change, Rest, altered, named
 from .load_changes import by_values
 
-SLIDING = "slides", "crossings", "drags"
-"""Groups of parts that have places on a cable that are no part of its length, or forces of its length and size."""
+KEEP_PLACE = "loads", "joints", "point_forces", "contacts"
+"""Groups of couplings whose places on a cable are parts of its length."""
+SLIDING = tuple({kind.group for kind in COUPLINGS} - {*KEEP_PLACE})
+"""Others have places on a cable that are no part of its length, or forces of its length and size."""
 
 
 def lengthens_plainly(rest: Rest, cable: Cable) -> bool:
@@ -67,9 +71,10 @@ def _touching(rest: Rest, cable: int) -> np.ndarray:
         return np.zeros(model.n_dof)
     doubled = [replace(contact, stiffness=2 * contact.stiffness, tangential=2 * contact.tangential)
                if contact.cable == cable else contact for contact in model.contacts]
+    others = [coupling for coupling in model.couplings if type(coupling) is not ContactModel]
     found = []
     for contacts in (model.contacts, doubled):
-        engine = rest.engine(altered(model, contacts=contacts))
+        engine = rest.engine(altered(model, couplings=in_order([*others, *contacts])))
         engine.static_residual()
         found.append(engine.reaction())
     return np.asarray(found[1] - found[0])

@@ -8,7 +8,8 @@ from typing import cast
 import numpy as np
 
 from ...model.attachments import AttachmentBuilder
-from ...model.loads import LoadBuilder
+from ...model.kinds import in_order
+from ...model.loads import DeadLoadModel, LoadBuilder, LoadModel
 from ...model.states import attachment_points
 from ...parts.laid import turned
 from ...parts.load import DistributedForce, Force, Moment
@@ -41,7 +42,9 @@ def by_values(rest: Rest, units: Mapping[int, AnyLoad]) -> dict[int, Change]:
         builder.load(unit)
         owners["dead"] += [k] * (len(builder.dead) - len(owners["dead"]))
         owners["turning"] += [k] * (len(builder.turning) - len(owners["turning"]))
-    loaded = altered(model, loads=[*builder.dead, *builder.turning], signals=builder.signals)
+    others = [coupling for coupling in model.couplings if not isinstance(coupling, DeadLoadModel | LoadModel)]
+    couplings = in_order([*builder.dead, *builder.turning, *others])
+    loaded = altered(model, couplings=couplings, signals=builder.signals)
     engine = rest.engine(loaded)
     found = {k: np.zeros(model.n_dof) for k in units}
     for number, k in enumerate([*owners["dead"], *owners["turning"]]):

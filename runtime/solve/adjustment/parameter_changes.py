@@ -21,6 +21,7 @@ from ...errors import SceneError
 from ...model.bodies import body_gravity
 from ...model.border import ACCELERATIONS, NEWTON, elimination
 from ...model.cables import cable_gravity
+from ...model.kinds import COUPLINGS
 from ...model.model import Model
 from ...model.numbering import as_drawn
 from ...model.unknowns import by_unknowns
@@ -40,8 +41,9 @@ from .length_changes import SLIDING, by_length, hangs_plainly, lengthens_plainly
 from .load_changes import AnyLoad, by_end, by_place, by_values, unit_of
 from .snapshots import Reader
 
-OF_SECTIONS = "contacts", "crossings", "drags"
-"""Groups of parts that depend on the size and the weight of a cable's section."""
+APART_FROM_SECTIONS = "loads", "slides", "joints", "point_forces"
+OF_SECTIONS = tuple({kind.group for kind in COUPLINGS} - {*APART_FROM_SECTIONS})
+"""Groups of parts that may depend on the size and the weight of a cable's section: all but those that do not."""
 STEP = 1e-6
 """Of a number of a section, to either side: where the forces of its cable are differenced."""
 

@@ -228,7 +228,10 @@ def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, eng
             raise SceneError(scene.cables[cable.name].where,
                              f'{who} has no algorithmic dissipation of the law "{cable.law}"',
                              "take spectral_radius = 1, another law, or another integrator")
-    parts = [*(scene.joints[joint.name] for joint in model.joints if joint.slide is None),
+    own = [model.couplings[k] for k in engine.without_step_equations()]
+    tied = {joint.name for joint in model.joints if joint.slide is not None}
+    labels = dict.fromkeys(coupling.name for coupling in own if coupling.name not in tied)
+    parts = [*(part for part in scene.parts() if part.given_name in labels),
              *(part for part, slide in zip(scene.slides.values(), model.slides, strict=True)
                if not slide.rider_is_rigid or slide.drive >= 0 or part.frame != "point")]
     for part in parts:

@@ -105,5 +105,5 @@ class CoarseSlides:
 def coarse_at_slides(scene: SceneData, model: Model, state: dict[str, np.ndarray]) -> list[str]:
     """Return the notes on a state of rest: coordinates q (n,), arc-lengths s and forces on riders of slides."""
     found = CoarseSlides(scene, model)
-    found.take(state["q"][None], state["s"][None], state["force"][None], every=1)
+    found.take(state["q"][None], state["s"][None], state["slide"][None], every=1)
     return found.told(every=1)

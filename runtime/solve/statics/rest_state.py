@@ -9,9 +9,12 @@ import numpy as np
 
 from ...base.named_arrays import NamedArrays
 from ...errors import EquilibriumError, SceneError, UnknownResultError, near
+from ...model.kinds import COUPLINGS
 from ...model.model import Model
 from ...model.part_states import States, numbers_at_rest, part_states
 from ...model.states import attachment_points
+from ...parts.joint import Joint
+from ...parts.part import Part
 from ...parts.paths import path_of, value_at
 from ...parts.plane import called
 from ...parts.scene_data import SceneData
@@ -35,10 +38,16 @@ def in_loads(fraction: float) -> str:
 
 def layout(scene: SceneData) -> dict[str, list]:
     """Return what must be the same in two scenes for a state of one to be a state of the other."""
+    couplings = {kind.group: [_without_ends(part) for part in scene.group(kind.group)]
+                 for kind in COUPLINGS if kind.has_state}
     return {"cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes) for c in scene.cables.values()],
-            "plane": [called(scene.plane)], "bodies": list(scene.bodies), "slides": list(scene.slides),
-            "joints": [(j.name, j.joint_kind) for j in scene.joints.values()], "point_forces": list(scene.point_forces),
-            "crossings": list(scene.crossings)}
+            "plane": [called(scene.plane)], "bodies": list(scene.bodies)} | couplings
+
+
+def _without_ends(part: Part) -> str | tuple[str, str]:
+    """Return the name of a part, of a joint with its kind, which says how many unknowns it has."""
+    name = part.given_name or part.kind
+    return (name, part.joint_kind) if isinstance(part, Joint) else name
 
 
 def _without_mesh(cable: tuple) -> tuple:
