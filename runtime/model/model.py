@@ -162,7 +162,7 @@ class SlideModel(CouplingModel):
 
     @property
     def ends(self) -> Sequence[AttachmentModel]:
-        """Return its rider."""
+        """Return its one end, the rider."""
         return (self.rider,)
 
     @property
@@ -232,12 +232,12 @@ class Model:
 
     @cached_property
     def loads(self) -> list[DeadLoadModel | LoadModel]:
-        """Return the loads."""
+        """Return the loads among the couplings."""
         return self.of(DeadLoadModel, LoadModel)
 
     @cached_property
     def slides(self) -> list[SlideModel]:
-        """Return the slides."""
+        """Return the slides among the couplings."""
         return self.of(SlideModel)
 
     @cached_property

@@ -42,7 +42,7 @@ def functions(file: str) -> dict[str, ast.FunctionDef]:
 def test_each_row_of_validation_names_a_test_and_each_test_has_a_row():
     named = {tuple(row["test"].partition("[")[0].split("::", 1)) for row in ROWS}
     there = {(file.relative_to(ROOT).as_posix(), name) for file in (ROOT / "tests").rglob("test_*.py")
-             for name in functions(f"tests/{file.name}") if name.rpartition("::")[2].startswith("test_")}
+             for name in functions(file.relative_to(ROOT).as_posix()) if name.rpartition("::")[2].startswith("test_")}
     assert named == there
     assert len(named) > 40
 
