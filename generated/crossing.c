@@ -7,7 +7,7 @@
  *   crossing_motion: 49 add, 62 mul, 1 div
  *   crossing_stretch: 134 add, 208 mul, 10 div, 4 sqrt
  *   crossing_sticking: 1409 add, 2442 mul, 95 div, 4 sqrt
- *   crossing_sliding: 1602 add, 3075 mul, 114 div, 7 sqrt
+ *   crossing_sliding: 2674 add, 4855 mul, 214 div, 9 sqrt
  *   crossing_step: 41 add, 76 mul, 7 div, 5 sqrt
  */
 #include "kernels.h"
@@ -118,96 +118,48 @@
 /* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
 #define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_7 \
     const fu_real \
-        d_t3_len_t = inv_t*t[3], \
-        d_t3_inv_t = -(d_t3_len_t*inv_t*inv_t), \
-        d_t3_tau_y = d_t3_inv_t*t[4], \
-        d_t3_tau_z = d_t3_inv_t*t[5], \
-        d_t3_across_x = d_t3_n_y*tau_z - d_t3_n_z*tau_y - d_t3_tau_y*n_z + d_t3_tau_z*n_y, \
-        d_t3_tau_x = d_t3_inv_t*t[3] + inv_t, \
-        d_t3_x_0 = (1.0/6.0)*d_t3_tau_x*h*u[0] + (1.0/6.0)*d_t3_tau_y*h*u[1] + (1.0/6.0)*d_t3_tau_z*h*u[2];
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_8 \
-    const fu_real \
-        d_t3_across_y = -d_t3_n_x*tau_z + d_t3_n_z*tau_x + d_t3_tau_x*n_z - d_t3_tau_z*n_x, \
-        d_t3_across_z = d_t3_n_x*tau_y - d_t3_n_y*tau_x - d_t3_tau_x*n_y + d_t3_tau_y*n_x, \
-        d_t3_x_1 = (1.0/6.0)*d_t3_across_x*h*u[0] + (1.0/6.0)*d_t3_across_y*h*u[1] + (1.0/6.0)*d_t3_across_z*h*u[2], \
-        d_t3_x_now_x = across_x*d_t3_x_1 + d_t3_across_x*x_1 + d_t3_tau_x*x_0 + d_t3_x_0*tau_x;
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_9 \
-    const fu_real \
-        d_t4_len_t = inv_t*t[4], \
-        d_t4_inv_t = -(d_t4_len_t*inv_t*inv_t), \
-        d_t4_tau_y = d_t4_inv_t*t[4] + inv_t, \
-        d_t4_tau_z = d_t4_inv_t*t[5], \
-        d_t4_across_x = d_t4_n_y*tau_z - d_t4_n_z*tau_y - d_t4_tau_y*n_z + d_t4_tau_z*n_y, \
-        d_t4_tau_x = d_t4_inv_t*t[3], \
-        d_t4_x_0 = (1.0/6.0)*d_t4_tau_x*h*u[0] + (1.0/6.0)*d_t4_tau_y*h*u[1] + (1.0/6.0)*d_t4_tau_z*h*u[2];
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_10 \
-    const fu_real \
-        d_t4_across_y = -d_t4_n_x*tau_z + d_t4_n_z*tau_x + d_t4_tau_x*n_z - d_t4_tau_z*n_x, \
-        d_t4_across_z = d_t4_n_x*tau_y - d_t4_n_y*tau_x - d_t4_tau_x*n_y + d_t4_tau_y*n_x, \
-        d_t4_x_1 = (1.0/6.0)*d_t4_across_x*h*u[0] + (1.0/6.0)*d_t4_across_y*h*u[1] + (1.0/6.0)*d_t4_across_z*h*u[2], \
-        d_t4_x_now_x = across_x*d_t4_x_1 + d_t4_across_x*x_1 + d_t4_tau_x*x_0 + d_t4_x_0*tau_x;
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_11 \
-    const fu_real \
-        d_t5_len_t = inv_t*t[5], \
-        d_t5_inv_t = -(d_t5_len_t*inv_t*inv_t), \
-        d_t5_tau_y = d_t5_inv_t*t[4], \
-        d_t5_tau_z = d_t5_inv_t*t[5] + inv_t, \
-        d_t5_across_x = d_t5_n_y*tau_z - d_t5_n_z*tau_y - d_t5_tau_y*n_z + d_t5_tau_z*n_y, \
-        d_t5_tau_x = d_t5_inv_t*t[3], \
-        d_t5_x_0 = (1.0/6.0)*d_t5_tau_x*h*u[0] + (1.0/6.0)*d_t5_tau_y*h*u[1] + (1.0/6.0)*d_t5_tau_z*h*u[2];
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_12 \
-    const fu_real \
-        d_t5_across_y = -d_t5_n_x*tau_z + d_t5_n_z*tau_x + d_t5_tau_x*n_z - d_t5_tau_z*n_x, \
-        d_t5_across_z = d_t5_n_x*tau_y - d_t5_n_y*tau_x - d_t5_tau_x*n_y + d_t5_tau_y*n_x, \
-        d_t5_x_1 = (1.0/6.0)*d_t5_across_x*h*u[0] + (1.0/6.0)*d_t5_across_y*h*u[1] + (1.0/6.0)*d_t5_across_z*h*u[2], \
-        d_t5_x_now_x = across_x*d_t5_x_1 + d_t5_across_x*x_1 + d_t5_tau_x*x_0 + d_t5_x_0*tau_x;
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_13 \
-    const fu_real \
+        d_u0_x_0 = (1.0/6.0)*h*tau_x, \
+        d_u0_x_1 = (1.0/6.0)*across_x*h, \
+        d_u0_x_now_x = across_x*d_u0_x_1 + d_u0_x_0*tau_x, \
+        d_u0_x_now_y = across_y*d_u0_x_1 + d_u0_x_0*tau_y, \
+        d_u0_x_now_z = across_z*d_u0_x_1 + d_u0_x_0*tau_z, \
+        d_u1_x_0 = (1.0/6.0)*h*tau_y, \
+        d_u1_x_1 = (1.0/6.0)*across_y*h, \
+        d_u1_x_now_x = across_x*d_u1_x_1 + d_u1_x_0*tau_x, \
+        d_u1_x_now_y = across_y*d_u1_x_1 + d_u1_x_0*tau_y, \
+        d_u1_x_now_z = across_z*d_u1_x_1 + d_u1_x_0*tau_z, \
+        d_u2_x_0 = (1.0/6.0)*h*tau_z, \
+        d_u2_x_1 = (1.0/6.0)*across_z*h, \
+        d_u2_x_now_x = across_x*d_u2_x_1 + d_u2_x_0*tau_x, \
+        d_u2_x_now_y = across_y*d_u2_x_1 + d_u2_x_0*tau_y, \
+        d_u2_x_now_z = across_z*d_u2_x_1 + d_u2_x_0*tau_z, \
         d_t_half0_x_m_half_y = -t_half_z[1], \
         d_t_half0_x_len_m_half = (d_t_half0_x_m_half_y*m_half_y + m_half_z*t_half_y[1])/len_m_half, \
         d_t_half0_x_across_half_x = c[1]*d_t_half0_x_m_half_y*tau_half_z/len_m_half - c[1]*t_half_y[1]*tau_half_y/len_m_half + d_t_half0_x_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)), \
         d_t_half0_x_across_half_y = c[1]*t_half_y[1]*tau_half_x/len_m_half + d_t_half0_x_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half0_x_across_half_z = -c[1]*d_t_half0_x_m_half_y*tau_half_x/len_m_half + d_t_half0_x_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half0_x_x_1 = (2.0/3.0)*d_t_half0_x_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_x_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_x_across_half_z*slip_half_z, \
-        d_t_half0_x_x_now_x = across_x*d_t_half0_x_x_1;
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_14 \
-    const fu_real \
+        d_t_half0_x_x_now_x = across_x*d_t_half0_x_x_1, \
+        d_t_half0_x_x_now_y = across_y*d_t_half0_x_x_1, \
+        d_t_half0_x_x_now_z = across_z*d_t_half0_x_x_1, \
         d_t_half0_y_m_half_z = -t_half_x[1], \
         d_t_half0_y_len_m_half = (d_t_half0_y_m_half_z*m_half_z + m_half_x*t_half_z[1])/len_m_half, \
         d_t_half0_y_across_half_x = -c[1]*d_t_half0_y_m_half_z*tau_half_y/len_m_half + d_t_half0_y_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)), \
         d_t_half0_y_across_half_y = c[1]*d_t_half0_y_m_half_z*tau_half_x/len_m_half - c[1]*t_half_z[1]*tau_half_z/len_m_half + d_t_half0_y_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half0_y_across_half_z = c[1]*t_half_z[1]*tau_half_y/len_m_half + d_t_half0_y_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half0_y_x_1 = (2.0/3.0)*d_t_half0_y_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_y_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_y_across_half_z*slip_half_z, \
-        d_t_half0_y_x_now_x = across_x*d_t_half0_y_x_1;
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_15 \
-    const fu_real \
+        d_t_half0_y_x_now_x = across_x*d_t_half0_y_x_1, \
+        d_t_half0_y_x_now_y = across_y*d_t_half0_y_x_1, \
+        d_t_half0_y_x_now_z = across_z*d_t_half0_y_x_1, \
         d_t_half0_z_m_half_x = -t_half_y[1], \
         d_t_half0_z_len_m_half = (d_t_half0_z_m_half_x*m_half_x + m_half_y*t_half_x[1])/len_m_half, \
         d_t_half0_z_across_half_x = c[1]*t_half_x[1]*tau_half_z/len_m_half + d_t_half0_z_len_m_half*(-c[1]*m_half_y*tau_half_z/(len_m_half*len_m_half) + c[1]*m_half_z*tau_half_y/(len_m_half*len_m_half)), \
         d_t_half0_z_across_half_y = -c[1]*d_t_half0_z_m_half_x*tau_half_z/len_m_half + d_t_half0_z_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half0_z_across_half_z = c[1]*d_t_half0_z_m_half_x*tau_half_y/len_m_half - c[1]*t_half_x[1]*tau_half_x/len_m_half + d_t_half0_z_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half0_z_x_1 = (2.0/3.0)*d_t_half0_z_across_half_x*slip_half_x + (2.0/3.0)*d_t_half0_z_across_half_y*slip_half_y + (2.0/3.0)*d_t_half0_z_across_half_z*slip_half_z, \
-        d_t_half0_z_x_now_x = across_x*d_t_half0_z_x_1;
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_16 \
-    const fu_real \
+        d_t_half0_z_x_now_x = across_x*d_t_half0_z_x_1, \
+        d_t_half0_z_x_now_y = across_y*d_t_half0_z_x_1, \
+        d_t_half0_z_x_now_z = across_z*d_t_half0_z_x_1, \
         d_t_half1_x_len_t_half = inv_t_half*t_half_x[1], \
         d_t_half1_x_inv_t_half = -(d_t_half1_x_len_t_half*inv_t_half*inv_t_half), \
         d_t_half1_x_tau_half_x = d_t_half1_x_inv_t_half*t_half_x[1] + inv_t_half, \
@@ -220,11 +172,9 @@
         d_t_half1_x_across_half_y = c[1]*d_t_half1_x_m_half_z*tau_half_x/len_m_half + c[1]*d_t_half1_x_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_x_tau_half_z*m_half_x/len_m_half + d_t_half1_x_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half1_x_across_half_z = -c[1]*d_t_half1_x_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_x_tau_half_y*m_half_x/len_m_half - c[1]*t_half_z[0]*tau_half_x/len_m_half + d_t_half1_x_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half1_x_x_1 = (2.0/3.0)*d_t_half1_x_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_x_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_x_across_half_z*slip_half_z, \
-        d_t_half1_x_x_now_x = across_x*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_x;
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_17 \
-    const fu_real \
+        d_t_half1_x_x_now_x = across_x*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_x, \
+        d_t_half1_x_x_now_y = across_y*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_y, \
+        d_t_half1_x_x_now_z = across_z*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_z, \
         d_t_half1_y_len_t_half = inv_t_half*t_half_y[1], \
         d_t_half1_y_inv_t_half = -(d_t_half1_y_len_t_half*inv_t_half*inv_t_half), \
         d_t_half1_y_tau_half_x = d_t_half1_y_inv_t_half*t_half_x[1], \
@@ -237,11 +187,9 @@
         d_t_half1_y_across_half_y = -c[1]*d_t_half1_y_m_half_x*tau_half_z/len_m_half + c[1]*d_t_half1_y_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_y_tau_half_z*m_half_x/len_m_half + c[1]*t_half_x[0]*tau_half_x/len_m_half + d_t_half1_y_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half1_y_across_half_z = c[1]*d_t_half1_y_m_half_x*tau_half_y/len_m_half - c[1]*d_t_half1_y_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_y_tau_half_y*m_half_x/len_m_half + d_t_half1_y_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half1_y_x_1 = (2.0/3.0)*d_t_half1_y_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_y_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_y_across_half_z*slip_half_z, \
-        d_t_half1_y_x_now_x = across_x*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_x;
-
-/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_18 \
-    const fu_real \
+        d_t_half1_y_x_now_x = across_x*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_x, \
+        d_t_half1_y_x_now_y = across_y*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_y, \
+        d_t_half1_y_x_now_z = across_z*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_z, \
         d_t_half1_z_len_t_half = inv_t_half*t_half_z[1], \
         d_t_half1_z_inv_t_half = -(d_t_half1_z_len_t_half*inv_t_half*inv_t_half), \
         d_t_half1_z_tau_half_x = d_t_half1_z_inv_t_half*t_half_x[1], \
@@ -254,10 +202,27 @@
         d_t_half1_z_across_half_y = c[1]*d_t_half1_z_tau_half_x*m_half_z/len_m_half - c[1]*d_t_half1_z_tau_half_z*m_half_x/len_m_half - c[1]*t_half_y[0]*tau_half_z/len_m_half + d_t_half1_z_len_m_half*(c[1]*m_half_x*tau_half_z/(len_m_half*len_m_half) - c[1]*m_half_z*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half1_z_across_half_z = -c[1]*d_t_half1_z_m_half_y*tau_half_x/len_m_half - c[1]*d_t_half1_z_tau_half_x*m_half_y/len_m_half + c[1]*d_t_half1_z_tau_half_y*m_half_x/len_m_half + c[1]*t_half_y[0]*tau_half_y/len_m_half + d_t_half1_z_len_m_half*(-c[1]*m_half_x*tau_half_y/(len_m_half*len_m_half) + c[1]*m_half_y*tau_half_x/(len_m_half*len_m_half)), \
         d_t_half1_z_x_1 = (2.0/3.0)*d_t_half1_z_across_half_x*slip_half_x + (2.0/3.0)*d_t_half1_z_across_half_y*slip_half_y + (2.0/3.0)*d_t_half1_z_across_half_z*slip_half_z, \
-        d_t_half1_z_x_now_x = across_x*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_x;
+        d_t_half1_z_x_now_x = across_x*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_x, \
+        d_t_half1_z_x_now_y = across_y*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_y, \
+        d_t_half1_z_x_now_z = across_z*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_z, \
+        d_slip_half_x_x_0 = (2.0/3.0)*tau_half_x, \
+        d_slip_half_x_x_1 = (2.0/3.0)*across_half_x, \
+        d_slip_half_x_x_now_x = across_x*d_slip_half_x_x_1 + d_slip_half_x_x_0*tau_x, \
+        d_slip_half_x_x_now_y = across_y*d_slip_half_x_x_1 + d_slip_half_x_x_0*tau_y, \
+        d_slip_half_x_x_now_z = across_z*d_slip_half_x_x_1 + d_slip_half_x_x_0*tau_z, \
+        d_slip_half_y_x_0 = (2.0/3.0)*tau_half_y, \
+        d_slip_half_y_x_1 = (2.0/3.0)*across_half_y, \
+        d_slip_half_y_x_now_x = across_x*d_slip_half_y_x_1 + d_slip_half_y_x_0*tau_x, \
+        d_slip_half_y_x_now_y = across_y*d_slip_half_y_x_1 + d_slip_half_y_x_0*tau_y, \
+        d_slip_half_y_x_now_z = across_z*d_slip_half_y_x_1 + d_slip_half_y_x_0*tau_z, \
+        d_slip_half_z_x_0 = (2.0/3.0)*tau_half_z, \
+        d_slip_half_z_x_1 = (2.0/3.0)*across_half_z, \
+        d_slip_half_z_x_now_x = across_x*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_x, \
+        d_slip_half_z_x_now_y = across_y*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_y, \
+        d_slip_half_z_x_now_z = across_z*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_z;
 
 /* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_19 \
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_8 \
     const fu_real \
         d_t0_slip_half_x = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]), \
         d_t1_slip_half_y = -0.75*e[0] - 0.25*h*s_rate_at[0] + 0.125*h*(s_rate[0] + s_rate_at[0]), \
@@ -318,7 +283,91 @@
         d_s_rate_1_slip_half_z = -0.25*d_s_rate_1_rate_d_z*h + d_s_rate_1_t_half1_z*(1.5*e[1] - 0.25*h*(s_rate[1] + s_rate_at[1])) - 0.25*h*t_half_z[1];
 
 /* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
-#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_20 \
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_9 \
+    F0_2_at[0] = 0.5*F0_26 + F0[0] + F0_32*d_t0_slip_half_x; \
+    F0_2_at[1] = 0.5*F0_27 + F0_33*d_t1_slip_half_y + F0[1]; \
+    F0_2_at[2] = 0.5*F0_28 + F0_34*d_t2_slip_half_z + F0[2]; \
+    F0_2_at[3] = 0.5*F0_29 + F0_32*d_t3_slip_half_x + F0[3]; \
+    F0_2_at[4] = 0.5*F0_30 + F0_33*d_t4_slip_half_y + F0[4]; \
+    F0_2_at[5] = 0.5*F0_31 + F0_34*d_t5_slip_half_z + F0[5]; \
+    const fu_real \
+        F0_9_2 = F0_32*d_u0_slip_half_x + F0_9, \
+        F0_10_2 = F0_10 + F0_33*d_u1_slip_half_y, \
+        F0_11_2 = F0_11 + F0_34*d_u2_slip_half_z, \
+        F0_12 = F0_26*d_w0_t_half0_x + F0_32*d_w0_slip_half_x, \
+        F0_13 = F0_27*d_w1_t_half0_y + F0_33*d_w1_slip_half_y, \
+        F0_14 = F0_28*d_w2_t_half0_z + F0_34*d_w2_slip_half_z, \
+        F0_15 = F0_29*d_w3_t_half1_x + F0_32*d_w3_slip_half_x, \
+        F0_16 = F0_30*d_w4_t_half1_y + F0_33*d_w4_slip_half_y, \
+        F0_17 = F0_31*d_w5_t_half1_z + F0_34*d_w5_slip_half_z, \
+        F0_18 = F0_26*d_k0_t_half0_x + F0_32*d_k0_slip_half_x, \
+        F0_19 = F0_27*d_k1_t_half0_y + F0_33*d_k1_slip_half_y, \
+        F0_20 = F0_28*d_k2_t_half0_z + F0_34*d_k2_slip_half_z, \
+        F0_21 = F0_29*d_k3_t_half1_x + F0_32*d_k3_slip_half_x, \
+        F0_22 = F0_30*d_k4_t_half1_y + F0_33*d_k4_slip_half_y, \
+        F0_23 = F0_31*d_k5_t_half1_z + F0_34*d_k5_slip_half_z, \
+        F0_24 = F0_32*d_e0_slip_half_x + F0_33*d_e0_slip_half_y + F0_34*d_e0_slip_half_z, \
+        F0_25 = F0_32*d_e1_slip_half_x + F0_33*d_e1_slip_half_y + F0_34*d_e1_slip_half_z, \
+        F0_26_2 = F0_26*d_s_rate_0_t_half0_x + F0_27*d_s_rate_0_t_half0_y + F0_28*d_s_rate_0_t_half0_z + F0_32*d_s_rate_0_slip_half_x + F0_33*d_s_rate_0_slip_half_y + F0_34*d_s_rate_0_slip_half_z, \
+        F0_27_2 = F0_29*d_s_rate_1_t_half1_x + F0_30*d_s_rate_1_t_half1_y + F0_31*d_s_rate_1_t_half1_z + F0_32*d_s_rate_1_slip_half_x + F0_33*d_s_rate_1_slip_half_y + F0_34*d_s_rate_1_slip_half_z;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_10 \
+    F1_2_at[0] = 0.5*F1_26 + F1[0] + F1_32*d_t0_slip_half_x; \
+    F1_2_at[1] = 0.5*F1_27 + F1_33*d_t1_slip_half_y + F1[1]; \
+    F1_2_at[2] = 0.5*F1_28 + F1_34*d_t2_slip_half_z + F1[2]; \
+    F1_2_at[3] = 0.5*F1_29 + F1_32*d_t3_slip_half_x + F1[3]; \
+    F1_2_at[4] = 0.5*F1_30 + F1_33*d_t4_slip_half_y + F1[4]; \
+    F1_2_at[5] = 0.5*F1_31 + F1_34*d_t5_slip_half_z + F1[5]; \
+    const fu_real \
+        F1_9_2 = F1_32*d_u0_slip_half_x + F1_9, \
+        F1_10_2 = F1_10 + F1_33*d_u1_slip_half_y, \
+        F1_11_2 = F1_11 + F1_34*d_u2_slip_half_z, \
+        F1_12 = F1_26*d_w0_t_half0_x + F1_32*d_w0_slip_half_x, \
+        F1_13 = F1_27*d_w1_t_half0_y + F1_33*d_w1_slip_half_y, \
+        F1_14 = F1_28*d_w2_t_half0_z + F1_34*d_w2_slip_half_z, \
+        F1_15 = F1_29*d_w3_t_half1_x + F1_32*d_w3_slip_half_x, \
+        F1_16 = F1_30*d_w4_t_half1_y + F1_33*d_w4_slip_half_y, \
+        F1_17 = F1_31*d_w5_t_half1_z + F1_34*d_w5_slip_half_z, \
+        F1_18 = F1_26*d_k0_t_half0_x + F1_32*d_k0_slip_half_x, \
+        F1_19 = F1_27*d_k1_t_half0_y + F1_33*d_k1_slip_half_y, \
+        F1_20 = F1_28*d_k2_t_half0_z + F1_34*d_k2_slip_half_z, \
+        F1_21 = F1_29*d_k3_t_half1_x + F1_32*d_k3_slip_half_x, \
+        F1_22 = F1_30*d_k4_t_half1_y + F1_33*d_k4_slip_half_y, \
+        F1_23 = F1_31*d_k5_t_half1_z + F1_34*d_k5_slip_half_z, \
+        F1_24 = F1_32*d_e0_slip_half_x + F1_33*d_e0_slip_half_y + F1_34*d_e0_slip_half_z, \
+        F1_25 = F1_32*d_e1_slip_half_x + F1_33*d_e1_slip_half_y + F1_34*d_e1_slip_half_z, \
+        F1_26_2 = F1_26*d_s_rate_0_t_half0_x + F1_27*d_s_rate_0_t_half0_y + F1_28*d_s_rate_0_t_half0_z + F1_32*d_s_rate_0_slip_half_x + F1_33*d_s_rate_0_slip_half_y + F1_34*d_s_rate_0_slip_half_z, \
+        F1_27_2 = F1_29*d_s_rate_1_t_half1_x + F1_30*d_s_rate_1_t_half1_y + F1_31*d_s_rate_1_t_half1_z + F1_32*d_s_rate_1_slip_half_x + F1_33*d_s_rate_1_slip_half_y + F1_34*d_s_rate_1_slip_half_z;
+
+/* part of derivatives of the force where the points stay: of crossing_sticking and 1 more */
+#define CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_11 \
+    F2_2_at[0] = 0.5*F2_26 + F2[0] + F2_32*d_t0_slip_half_x; \
+    F2_2_at[1] = 0.5*F2_27 + F2_33*d_t1_slip_half_y + F2[1]; \
+    F2_2_at[2] = 0.5*F2_28 + F2_34*d_t2_slip_half_z + F2[2]; \
+    F2_2_at[3] = 0.5*F2_29 + F2_32*d_t3_slip_half_x + F2[3]; \
+    F2_2_at[4] = 0.5*F2_30 + F2_33*d_t4_slip_half_y + F2[4]; \
+    F2_2_at[5] = 0.5*F2_31 + F2_34*d_t5_slip_half_z + F2[5]; \
+    const fu_real \
+        F2_9_2 = F2_32*d_u0_slip_half_x + F2_9, \
+        F2_10_2 = F2_10 + F2_33*d_u1_slip_half_y, \
+        F2_11_2 = F2_11 + F2_34*d_u2_slip_half_z, \
+        F2_12 = F2_26*d_w0_t_half0_x + F2_32*d_w0_slip_half_x, \
+        F2_13 = F2_27*d_w1_t_half0_y + F2_33*d_w1_slip_half_y, \
+        F2_14 = F2_28*d_w2_t_half0_z + F2_34*d_w2_slip_half_z, \
+        F2_15 = F2_29*d_w3_t_half1_x + F2_32*d_w3_slip_half_x, \
+        F2_16 = F2_30*d_w4_t_half1_y + F2_33*d_w4_slip_half_y, \
+        F2_17 = F2_31*d_w5_t_half1_z + F2_34*d_w5_slip_half_z, \
+        F2_18 = F2_26*d_k0_t_half0_x + F2_32*d_k0_slip_half_x, \
+        F2_19 = F2_27*d_k1_t_half0_y + F2_33*d_k1_slip_half_y, \
+        F2_20 = F2_28*d_k2_t_half0_z + F2_34*d_k2_slip_half_z, \
+        F2_21 = F2_29*d_k3_t_half1_x + F2_32*d_k3_slip_half_x, \
+        F2_22 = F2_30*d_k4_t_half1_y + F2_33*d_k4_slip_half_y, \
+        F2_23 = F2_31*d_k5_t_half1_z + F2_34*d_k5_slip_half_z, \
+        F2_24 = F2_32*d_e0_slip_half_x + F2_33*d_e0_slip_half_y + F2_34*d_e0_slip_half_z, \
+        F2_25 = F2_32*d_e1_slip_half_x + F2_33*d_e1_slip_half_y + F2_34*d_e1_slip_half_z, \
+        F2_26_2 = F2_26*d_s_rate_0_t_half0_x + F2_27*d_s_rate_0_t_half0_y + F2_28*d_s_rate_0_t_half0_z + F2_32*d_s_rate_0_slip_half_x + F2_33*d_s_rate_0_slip_half_y + F2_34*d_s_rate_0_slip_half_z, \
+        F2_27_2 = F2_29*d_s_rate_1_t_half1_x + F2_30*d_s_rate_1_t_half1_y + F2_31*d_s_rate_1_t_half1_z + F2_32*d_s_rate_1_slip_half_x + F2_33*d_s_rate_1_slip_half_y + F2_34*d_s_rate_1_slip_half_z; \
     FU_EACH(g, 3, \
         d_d_det_J[g] = J_00*k[g + 3] + J_11*k[g]; \
         d_d_inv_J[g] = -(d_d_det_J[g]*inv_J*inv_J); \
@@ -358,69 +407,69 @@
         d_k_s_rate_0_at[g] = d[g]*inv_J*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]) + d_k_inv_J_at[g]*(-J_01*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) + J_11*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2])); \
         d_k_s_rate_1_at[g] = d_k_inv_J_at[g]*(J_00*(-d[0]*w[3] - d[1]*w[4] - d[2]*w[5] - t[3]*u[0] - t[4]*u[1] - t[5]*u[2]) - J_10*(-d[0]*w[0] - d[1]*w[1] - d[2]*w[2] - t[0]*u[0] - t[1]*u[1] - t[2]*u[2]));) \
     const fu_real \
-        F0_0_2 = F0_0 + F0_26*d_d_s_rate_0[0] + F0_27*d_d_s_rate_1[0], \
-        F0_1_2 = F0_1 + F0_26*d_d_s_rate_0[1] + F0_27*d_d_s_rate_1[1], \
-        F0_2_2 = F0_2 + F0_26*d_d_s_rate_0[2] + F0_27*d_d_s_rate_1[2]; \
+        F0_0_2 = F0_0 + F0_26_2*d_d_s_rate_0[0] + F0_27_2*d_d_s_rate_1[0], \
+        F0_1_2 = F0_1 + F0_26_2*d_d_s_rate_0[1] + F0_27_2*d_d_s_rate_1[1], \
+        F0_2_2 = F0_2 + F0_26_2*d_d_s_rate_0[2] + F0_27_2*d_d_s_rate_1[2]; \
     FU_EACH(g, 6, \
-        F0_2_at[g] = F0_26*d_t_s_rate_0[g] + F0_27*d_t_s_rate_1[g] + F0[g];) \
+        F0_3_at[g] = F0_26_2*d_t_s_rate_0[g] + F0_27_2*d_t_s_rate_1[g] + F0_2_at[g];) \
     const fu_real \
-        F0_9_2 = F0_26*d_u_s_rate_0[0] + F0_27*d_u_s_rate_1[0] + F0_9, \
-        F0_10_2 = F0_10 + F0_26*d_u_s_rate_0[1] + F0_27*d_u_s_rate_1[1], \
-        F0_11_2 = F0_11 + F0_26*d_u_s_rate_0[2] + F0_27*d_u_s_rate_1[2], \
-        F0_12_2 = F0_12 + F0_26*d_w_s_rate_0[0] + F0_27*d_w_s_rate_1[0], \
-        F0_13_2 = F0_13 + F0_26*d_w_s_rate_0[1] + F0_27*d_w_s_rate_1[1], \
-        F0_14_2 = F0_14 + F0_26*d_w_s_rate_0[2] + F0_27*d_w_s_rate_1[2], \
-        F0_15_2 = F0_15 + F0_26*d_w_s_rate_0_at[0] + F0_27*d_w_s_rate_1_at[0], \
-        F0_16_2 = F0_16 + F0_26*d_w_s_rate_0_at[1] + F0_27*d_w_s_rate_1_at[1], \
-        F0_17_2 = F0_17 + F0_26*d_w_s_rate_0_at[2] + F0_27*d_w_s_rate_1_at[2], \
-        F0_18_2 = F0_18 + F0_26*d_k_s_rate_0[0] + F0_27*d_k_s_rate_1[0], \
-        F0_19_2 = F0_19 + F0_26*d_k_s_rate_0[1] + F0_27*d_k_s_rate_1[1], \
-        F0_20_2 = F0_20 + F0_26*d_k_s_rate_0[2] + F0_27*d_k_s_rate_1[2], \
-        F0_21_2 = F0_21 + F0_26*d_k_s_rate_0_at[0] + F0_27*d_k_s_rate_1_at[0], \
-        F0_22_2 = F0_22 + F0_26*d_k_s_rate_0_at[1] + F0_27*d_k_s_rate_1_at[1], \
-        F0_23_2 = F0_23 + F0_26*d_k_s_rate_0_at[2] + F0_27*d_k_s_rate_1_at[2], \
-        F1_0_2 = F1_0 + F1_26*d_d_s_rate_0[0] + F1_27*d_d_s_rate_1[0], \
-        F1_1_2 = F1_1 + F1_26*d_d_s_rate_0[1] + F1_27*d_d_s_rate_1[1], \
-        F1_2_2 = F1_2 + F1_26*d_d_s_rate_0[2] + F1_27*d_d_s_rate_1[2]; \
+        F0_9_3 = F0_26_2*d_u_s_rate_0[0] + F0_27_2*d_u_s_rate_1[0] + F0_9_2, \
+        F0_10_3 = F0_10_2 + F0_26_2*d_u_s_rate_0[1] + F0_27_2*d_u_s_rate_1[1], \
+        F0_11_3 = F0_11_2 + F0_26_2*d_u_s_rate_0[2] + F0_27_2*d_u_s_rate_1[2], \
+        F0_12_2 = F0_12 + F0_26_2*d_w_s_rate_0[0] + F0_27_2*d_w_s_rate_1[0], \
+        F0_13_2 = F0_13 + F0_26_2*d_w_s_rate_0[1] + F0_27_2*d_w_s_rate_1[1], \
+        F0_14_2 = F0_14 + F0_26_2*d_w_s_rate_0[2] + F0_27_2*d_w_s_rate_1[2], \
+        F0_15_2 = F0_15 + F0_26_2*d_w_s_rate_0_at[0] + F0_27_2*d_w_s_rate_1_at[0], \
+        F0_16_2 = F0_16 + F0_26_2*d_w_s_rate_0_at[1] + F0_27_2*d_w_s_rate_1_at[1], \
+        F0_17_2 = F0_17 + F0_26_2*d_w_s_rate_0_at[2] + F0_27_2*d_w_s_rate_1_at[2], \
+        F0_18_2 = F0_18 + F0_26_2*d_k_s_rate_0[0] + F0_27_2*d_k_s_rate_1[0], \
+        F0_19_2 = F0_19 + F0_26_2*d_k_s_rate_0[1] + F0_27_2*d_k_s_rate_1[1], \
+        F0_20_2 = F0_20 + F0_26_2*d_k_s_rate_0[2] + F0_27_2*d_k_s_rate_1[2], \
+        F0_21_2 = F0_21 + F0_26_2*d_k_s_rate_0_at[0] + F0_27_2*d_k_s_rate_1_at[0], \
+        F0_22_2 = F0_22 + F0_26_2*d_k_s_rate_0_at[1] + F0_27_2*d_k_s_rate_1_at[1], \
+        F0_23_2 = F0_23 + F0_26_2*d_k_s_rate_0_at[2] + F0_27_2*d_k_s_rate_1_at[2], \
+        F1_0_2 = F1_0 + F1_26_2*d_d_s_rate_0[0] + F1_27_2*d_d_s_rate_1[0], \
+        F1_1_2 = F1_1 + F1_26_2*d_d_s_rate_0[1] + F1_27_2*d_d_s_rate_1[1], \
+        F1_2_2 = F1_2 + F1_26_2*d_d_s_rate_0[2] + F1_27_2*d_d_s_rate_1[2]; \
     FU_EACH(g, 6, \
-        F1_2_at[g] = F1_26*d_t_s_rate_0[g] + F1_27*d_t_s_rate_1[g] + F1[g];) \
+        F1_3_at[g] = F1_26_2*d_t_s_rate_0[g] + F1_27_2*d_t_s_rate_1[g] + F1_2_at[g];) \
     const fu_real \
-        F1_9_2 = F1_26*d_u_s_rate_0[0] + F1_27*d_u_s_rate_1[0] + F1_9, \
-        F1_10_2 = F1_10 + F1_26*d_u_s_rate_0[1] + F1_27*d_u_s_rate_1[1], \
-        F1_11_2 = F1_11 + F1_26*d_u_s_rate_0[2] + F1_27*d_u_s_rate_1[2], \
-        F1_12_2 = F1_12 + F1_26*d_w_s_rate_0[0] + F1_27*d_w_s_rate_1[0], \
-        F1_13_2 = F1_13 + F1_26*d_w_s_rate_0[1] + F1_27*d_w_s_rate_1[1], \
-        F1_14_2 = F1_14 + F1_26*d_w_s_rate_0[2] + F1_27*d_w_s_rate_1[2], \
-        F1_15_2 = F1_15 + F1_26*d_w_s_rate_0_at[0] + F1_27*d_w_s_rate_1_at[0], \
-        F1_16_2 = F1_16 + F1_26*d_w_s_rate_0_at[1] + F1_27*d_w_s_rate_1_at[1], \
-        F1_17_2 = F1_17 + F1_26*d_w_s_rate_0_at[2] + F1_27*d_w_s_rate_1_at[2], \
-        F1_18_2 = F1_18 + F1_26*d_k_s_rate_0[0] + F1_27*d_k_s_rate_1[0], \
-        F1_19_2 = F1_19 + F1_26*d_k_s_rate_0[1] + F1_27*d_k_s_rate_1[1], \
-        F1_20_2 = F1_20 + F1_26*d_k_s_rate_0[2] + F1_27*d_k_s_rate_1[2], \
-        F1_21_2 = F1_21 + F1_26*d_k_s_rate_0_at[0] + F1_27*d_k_s_rate_1_at[0], \
-        F1_22_2 = F1_22 + F1_26*d_k_s_rate_0_at[1] + F1_27*d_k_s_rate_1_at[1], \
-        F1_23_2 = F1_23 + F1_26*d_k_s_rate_0_at[2] + F1_27*d_k_s_rate_1_at[2], \
-        F2_0_2 = F2_0 + F2_26*d_d_s_rate_0[0] + F2_27*d_d_s_rate_1[0], \
-        F2_1_2 = F2_1 + F2_26*d_d_s_rate_0[1] + F2_27*d_d_s_rate_1[1], \
-        F2_2_2 = F2_2 + F2_26*d_d_s_rate_0[2] + F2_27*d_d_s_rate_1[2]; \
+        F1_9_3 = F1_26_2*d_u_s_rate_0[0] + F1_27_2*d_u_s_rate_1[0] + F1_9_2, \
+        F1_10_3 = F1_10_2 + F1_26_2*d_u_s_rate_0[1] + F1_27_2*d_u_s_rate_1[1], \
+        F1_11_3 = F1_11_2 + F1_26_2*d_u_s_rate_0[2] + F1_27_2*d_u_s_rate_1[2], \
+        F1_12_2 = F1_12 + F1_26_2*d_w_s_rate_0[0] + F1_27_2*d_w_s_rate_1[0], \
+        F1_13_2 = F1_13 + F1_26_2*d_w_s_rate_0[1] + F1_27_2*d_w_s_rate_1[1], \
+        F1_14_2 = F1_14 + F1_26_2*d_w_s_rate_0[2] + F1_27_2*d_w_s_rate_1[2], \
+        F1_15_2 = F1_15 + F1_26_2*d_w_s_rate_0_at[0] + F1_27_2*d_w_s_rate_1_at[0], \
+        F1_16_2 = F1_16 + F1_26_2*d_w_s_rate_0_at[1] + F1_27_2*d_w_s_rate_1_at[1], \
+        F1_17_2 = F1_17 + F1_26_2*d_w_s_rate_0_at[2] + F1_27_2*d_w_s_rate_1_at[2], \
+        F1_18_2 = F1_18 + F1_26_2*d_k_s_rate_0[0] + F1_27_2*d_k_s_rate_1[0], \
+        F1_19_2 = F1_19 + F1_26_2*d_k_s_rate_0[1] + F1_27_2*d_k_s_rate_1[1], \
+        F1_20_2 = F1_20 + F1_26_2*d_k_s_rate_0[2] + F1_27_2*d_k_s_rate_1[2], \
+        F1_21_2 = F1_21 + F1_26_2*d_k_s_rate_0_at[0] + F1_27_2*d_k_s_rate_1_at[0], \
+        F1_22_2 = F1_22 + F1_26_2*d_k_s_rate_0_at[1] + F1_27_2*d_k_s_rate_1_at[1], \
+        F1_23_2 = F1_23 + F1_26_2*d_k_s_rate_0_at[2] + F1_27_2*d_k_s_rate_1_at[2], \
+        F2_0_2 = F2_0 + F2_26_2*d_d_s_rate_0[0] + F2_27_2*d_d_s_rate_1[0], \
+        F2_1_2 = F2_1 + F2_26_2*d_d_s_rate_0[1] + F2_27_2*d_d_s_rate_1[1], \
+        F2_2_2 = F2_2 + F2_26_2*d_d_s_rate_0[2] + F2_27_2*d_d_s_rate_1[2]; \
     FU_EACH(g, 6, \
-        F2_2_at[g] = F2_26*d_t_s_rate_0[g] + F2_27*d_t_s_rate_1[g] + F2[g];) \
+        F2_3_at[g] = F2_26_2*d_t_s_rate_0[g] + F2_27_2*d_t_s_rate_1[g] + F2_2_at[g];) \
     const fu_real \
-        F2_9_2 = F2_26*d_u_s_rate_0[0] + F2_27*d_u_s_rate_1[0] + F2_9, \
-        F2_10_2 = F2_10 + F2_26*d_u_s_rate_0[1] + F2_27*d_u_s_rate_1[1], \
-        F2_11_2 = F2_11 + F2_26*d_u_s_rate_0[2] + F2_27*d_u_s_rate_1[2], \
-        F2_12_2 = F2_12 + F2_26*d_w_s_rate_0[0] + F2_27*d_w_s_rate_1[0], \
-        F2_13_2 = F2_13 + F2_26*d_w_s_rate_0[1] + F2_27*d_w_s_rate_1[1], \
-        F2_14_2 = F2_14 + F2_26*d_w_s_rate_0[2] + F2_27*d_w_s_rate_1[2], \
-        F2_15_2 = F2_15 + F2_26*d_w_s_rate_0_at[0] + F2_27*d_w_s_rate_1_at[0], \
-        F2_16_2 = F2_16 + F2_26*d_w_s_rate_0_at[1] + F2_27*d_w_s_rate_1_at[1], \
-        F2_17_2 = F2_17 + F2_26*d_w_s_rate_0_at[2] + F2_27*d_w_s_rate_1_at[2], \
-        F2_18_2 = F2_18 + F2_26*d_k_s_rate_0[0] + F2_27*d_k_s_rate_1[0], \
-        F2_19_2 = F2_19 + F2_26*d_k_s_rate_0[1] + F2_27*d_k_s_rate_1[1], \
-        F2_20_2 = F2_20 + F2_26*d_k_s_rate_0[2] + F2_27*d_k_s_rate_1[2], \
-        F2_21_2 = F2_21 + F2_26*d_k_s_rate_0_at[0] + F2_27*d_k_s_rate_1_at[0], \
-        F2_22_2 = F2_22 + F2_26*d_k_s_rate_0_at[1] + F2_27*d_k_s_rate_1_at[1], \
-        F2_23_2 = F2_23 + F2_26*d_k_s_rate_0_at[2] + F2_27*d_k_s_rate_1_at[2];
+        F2_9_3 = F2_26_2*d_u_s_rate_0[0] + F2_27_2*d_u_s_rate_1[0] + F2_9_2, \
+        F2_10_3 = F2_10_2 + F2_26_2*d_u_s_rate_0[1] + F2_27_2*d_u_s_rate_1[1], \
+        F2_11_3 = F2_11_2 + F2_26_2*d_u_s_rate_0[2] + F2_27_2*d_u_s_rate_1[2], \
+        F2_12_2 = F2_12 + F2_26_2*d_w_s_rate_0[0] + F2_27_2*d_w_s_rate_1[0], \
+        F2_13_2 = F2_13 + F2_26_2*d_w_s_rate_0[1] + F2_27_2*d_w_s_rate_1[1], \
+        F2_14_2 = F2_14 + F2_26_2*d_w_s_rate_0[2] + F2_27_2*d_w_s_rate_1[2], \
+        F2_15_2 = F2_15 + F2_26_2*d_w_s_rate_0_at[0] + F2_27_2*d_w_s_rate_1_at[0], \
+        F2_16_2 = F2_16 + F2_26_2*d_w_s_rate_0_at[1] + F2_27_2*d_w_s_rate_1_at[1], \
+        F2_17_2 = F2_17 + F2_26_2*d_w_s_rate_0_at[2] + F2_27_2*d_w_s_rate_1_at[2], \
+        F2_18_2 = F2_18 + F2_26_2*d_k_s_rate_0[0] + F2_27_2*d_k_s_rate_1[0], \
+        F2_19_2 = F2_19 + F2_26_2*d_k_s_rate_0[1] + F2_27_2*d_k_s_rate_1[1], \
+        F2_20_2 = F2_20 + F2_26_2*d_k_s_rate_0[2] + F2_27_2*d_k_s_rate_1[2], \
+        F2_21_2 = F2_21 + F2_26_2*d_k_s_rate_0_at[0] + F2_27_2*d_k_s_rate_1_at[0], \
+        F2_22_2 = F2_22 + F2_26_2*d_k_s_rate_0_at[1] + F2_27_2*d_k_s_rate_1_at[1], \
+        F2_23_2 = F2_23 + F2_26_2*d_k_s_rate_0_at[2] + F2_27_2*d_k_s_rate_1_at[2];
 
 /* part of outputs: of crossing_sticking and 1 more */
 #define CROSSING_PART_OF_OUTPUTS \
@@ -433,33 +482,33 @@
     F_d[6] = F2_0_2 + F_s0_z*s0_0 + F_s1_z*s1_0; \
     F_d[7] = F2_1_2 + F_s0_z*s0_1 + F_s1_z*s1_1; \
     F_d[8] = F2_2_2 + F_s0_z*s0_2 + F_s1_z*s1_2; \
-    F_t[0] = F0_2_at[0] + F_s0_x*s0_3 + F_s1_x*s1_3; \
-    F_t[1] = F0_2_at[1] + F_s0_x*s0_4 + F_s1_x*s1_4; \
-    F_t[2] = F0_2_at[2] + F_s0_x*s0_5 + F_s1_x*s1_5; \
-    F_t[3] = F0_2_at[3] + F_s0_x*s0_6 + F_s1_x*s1_6; \
-    F_t[4] = F0_2_at[4] + F_s0_x*s0_7 + F_s1_x*s1_7; \
-    F_t[5] = F0_2_at[5] + F_s0_x*s0_8 + F_s1_x*s1_8; \
-    F_t[6] = F1_2_at[0] + F_s0_y*s0_3 + F_s1_y*s1_3; \
-    F_t[7] = F1_2_at[1] + F_s0_y*s0_4 + F_s1_y*s1_4; \
-    F_t[8] = F1_2_at[2] + F_s0_y*s0_5 + F_s1_y*s1_5; \
-    F_t[9] = F1_2_at[3] + F_s0_y*s0_6 + F_s1_y*s1_6; \
-    F_t[10] = F1_2_at[4] + F_s0_y*s0_7 + F_s1_y*s1_7; \
-    F_t[11] = F1_2_at[5] + F_s0_y*s0_8 + F_s1_y*s1_8; \
-    F_t[12] = F2_2_at[0] + F_s0_z*s0_3 + F_s1_z*s1_3; \
-    F_t[13] = F2_2_at[1] + F_s0_z*s0_4 + F_s1_z*s1_4; \
-    F_t[14] = F2_2_at[2] + F_s0_z*s0_5 + F_s1_z*s1_5; \
-    F_t[15] = F2_2_at[3] + F_s0_z*s0_6 + F_s1_z*s1_6; \
-    F_t[16] = F2_2_at[4] + F_s0_z*s0_7 + F_s1_z*s1_7; \
-    F_t[17] = F2_2_at[5] + F_s0_z*s0_8 + F_s1_z*s1_8; \
-    F_u[0] = F0_9_2; \
-    F_u[1] = F0_10_2; \
-    F_u[2] = F0_11_2; \
-    F_u[3] = F1_9_2; \
-    F_u[4] = F1_10_2; \
-    F_u[5] = F1_11_2; \
-    F_u[6] = F2_9_2; \
-    F_u[7] = F2_10_2; \
-    F_u[8] = F2_11_2; \
+    F_t[0] = F0_3_at[0] + F_s0_x*s0_3 + F_s1_x*s1_3; \
+    F_t[1] = F0_3_at[1] + F_s0_x*s0_4 + F_s1_x*s1_4; \
+    F_t[2] = F0_3_at[2] + F_s0_x*s0_5 + F_s1_x*s1_5; \
+    F_t[3] = F0_3_at[3] + F_s0_x*s0_6 + F_s1_x*s1_6; \
+    F_t[4] = F0_3_at[4] + F_s0_x*s0_7 + F_s1_x*s1_7; \
+    F_t[5] = F0_3_at[5] + F_s0_x*s0_8 + F_s1_x*s1_8; \
+    F_t[6] = F1_3_at[0] + F_s0_y*s0_3 + F_s1_y*s1_3; \
+    F_t[7] = F1_3_at[1] + F_s0_y*s0_4 + F_s1_y*s1_4; \
+    F_t[8] = F1_3_at[2] + F_s0_y*s0_5 + F_s1_y*s1_5; \
+    F_t[9] = F1_3_at[3] + F_s0_y*s0_6 + F_s1_y*s1_6; \
+    F_t[10] = F1_3_at[4] + F_s0_y*s0_7 + F_s1_y*s1_7; \
+    F_t[11] = F1_3_at[5] + F_s0_y*s0_8 + F_s1_y*s1_8; \
+    F_t[12] = F2_3_at[0] + F_s0_z*s0_3 + F_s1_z*s1_3; \
+    F_t[13] = F2_3_at[1] + F_s0_z*s0_4 + F_s1_z*s1_4; \
+    F_t[14] = F2_3_at[2] + F_s0_z*s0_5 + F_s1_z*s1_5; \
+    F_t[15] = F2_3_at[3] + F_s0_z*s0_6 + F_s1_z*s1_6; \
+    F_t[16] = F2_3_at[4] + F_s0_z*s0_7 + F_s1_z*s1_7; \
+    F_t[17] = F2_3_at[5] + F_s0_z*s0_8 + F_s1_z*s1_8; \
+    F_u[0] = F0_9_3; \
+    F_u[1] = F0_10_3; \
+    F_u[2] = F0_11_3; \
+    F_u[3] = F1_9_3; \
+    F_u[4] = F1_10_3; \
+    F_u[5] = F1_11_3; \
+    F_u[6] = F2_9_3; \
+    F_u[7] = F2_10_3; \
+    F_u[8] = F2_11_3; \
     F_w[0] = F0_12_2; \
     F_w[1] = F0_13_2; \
     F_w[2] = F0_14_2; \
@@ -576,12 +625,12 @@
 /* derivatives of the force along the lines: of crossing_sticking and 1 more */
 #define CROSSING_DERIVATIVES_OF_THE_FORCE_ALONG_THE_LINES \
     const fu_real \
-        F_s0_x = F0_0_2*t[0] + F0_10_2*w[1] + F0_11_2*w[2] + F0_12_2*k_rate[0] + F0_13_2*k_rate[1] + F0_14_2*k_rate[2] + F0_18_2*third[0] + F0_19_2*third[1] + F0_1_2*t[1] + F0_20_2*third[2] + F0_24 + F0_2_2*t[2] + F0_2_at[0]*k[0] + F0_2_at[1]*k[1] + F0_2_at[2]*k[2] + F0_9_2*w[0], \
-        F_s0_y = F1_0_2*t[0] + F1_10_2*w[1] + F1_11_2*w[2] + F1_12_2*k_rate[0] + F1_13_2*k_rate[1] + F1_14_2*k_rate[2] + F1_18_2*third[0] + F1_19_2*third[1] + F1_1_2*t[1] + F1_20_2*third[2] + F1_24 + F1_2_2*t[2] + F1_2_at[0]*k[0] + F1_2_at[1]*k[1] + F1_2_at[2]*k[2] + F1_9_2*w[0], \
-        F_s0_z = F2_0_2*t[0] + F2_10_2*w[1] + F2_11_2*w[2] + F2_12_2*k_rate[0] + F2_13_2*k_rate[1] + F2_14_2*k_rate[2] + F2_18_2*third[0] + F2_19_2*third[1] + F2_1_2*t[1] + F2_20_2*third[2] + F2_24 + F2_2_2*t[2] + F2_2_at[0]*k[0] + F2_2_at[1]*k[1] + F2_2_at[2]*k[2] + F2_9_2*w[0], \
-        F_s1_x = -F0_0_2*t[3] - F0_10_2*w[4] - F0_11_2*w[5] + F0_15_2*k_rate[3] + F0_16_2*k_rate[4] + F0_17_2*k_rate[5] - F0_1_2*t[4] + F0_21_2*third[3] + F0_22_2*third[4] + F0_23_2*third[5] + F0_25 - F0_2_2*t[5] + F0_2_at[3]*k[3] + F0_2_at[4]*k[4] + F0_2_at[5]*k[5] - F0_9_2*w[3], \
-        F_s1_y = -F1_0_2*t[3] - F1_10_2*w[4] - F1_11_2*w[5] + F1_15_2*k_rate[3] + F1_16_2*k_rate[4] + F1_17_2*k_rate[5] - F1_1_2*t[4] + F1_21_2*third[3] + F1_22_2*third[4] + F1_23_2*third[5] + F1_25 - F1_2_2*t[5] + F1_2_at[3]*k[3] + F1_2_at[4]*k[4] + F1_2_at[5]*k[5] - F1_9_2*w[3], \
-        F_s1_z = -F2_0_2*t[3] - F2_10_2*w[4] - F2_11_2*w[5] + F2_15_2*k_rate[3] + F2_16_2*k_rate[4] + F2_17_2*k_rate[5] - F2_1_2*t[4] + F2_21_2*third[3] + F2_22_2*third[4] + F2_23_2*third[5] + F2_25 - F2_2_2*t[5] + F2_2_at[3]*k[3] + F2_2_at[4]*k[4] + F2_2_at[5]*k[5] - F2_9_2*w[3];
+        F_s0_x = F0_0_2*t[0] + F0_10_3*w[1] + F0_11_3*w[2] + F0_12_2*k_rate[0] + F0_13_2*k_rate[1] + F0_14_2*k_rate[2] + F0_18_2*third[0] + F0_19_2*third[1] + F0_1_2*t[1] + F0_20_2*third[2] + F0_24 + F0_2_2*t[2] + F0_3_at[0]*k[0] + F0_3_at[1]*k[1] + F0_3_at[2]*k[2] + F0_9_3*w[0], \
+        F_s0_y = F1_0_2*t[0] + F1_10_3*w[1] + F1_11_3*w[2] + F1_12_2*k_rate[0] + F1_13_2*k_rate[1] + F1_14_2*k_rate[2] + F1_18_2*third[0] + F1_19_2*third[1] + F1_1_2*t[1] + F1_20_2*third[2] + F1_24 + F1_2_2*t[2] + F1_3_at[0]*k[0] + F1_3_at[1]*k[1] + F1_3_at[2]*k[2] + F1_9_3*w[0], \
+        F_s0_z = F2_0_2*t[0] + F2_10_3*w[1] + F2_11_3*w[2] + F2_12_2*k_rate[0] + F2_13_2*k_rate[1] + F2_14_2*k_rate[2] + F2_18_2*third[0] + F2_19_2*third[1] + F2_1_2*t[1] + F2_20_2*third[2] + F2_24 + F2_2_2*t[2] + F2_3_at[0]*k[0] + F2_3_at[1]*k[1] + F2_3_at[2]*k[2] + F2_9_3*w[0], \
+        F_s1_x = -F0_0_2*t[3] - F0_10_3*w[4] - F0_11_3*w[5] + F0_15_2*k_rate[3] + F0_16_2*k_rate[4] + F0_17_2*k_rate[5] - F0_1_2*t[4] + F0_21_2*third[3] + F0_22_2*third[4] + F0_23_2*third[5] + F0_25 - F0_2_2*t[5] + F0_3_at[3]*k[3] + F0_3_at[4]*k[4] + F0_3_at[5]*k[5] - F0_9_3*w[3], \
+        F_s1_y = -F1_0_2*t[3] - F1_10_3*w[4] - F1_11_3*w[5] + F1_15_2*k_rate[3] + F1_16_2*k_rate[4] + F1_17_2*k_rate[5] - F1_1_2*t[4] + F1_21_2*third[3] + F1_22_2*third[4] + F1_23_2*third[5] + F1_25 - F1_2_2*t[5] + F1_3_at[3]*k[3] + F1_3_at[4]*k[4] + F1_3_at[5]*k[5] - F1_9_3*w[3], \
+        F_s1_z = -F2_0_2*t[3] - F2_10_3*w[4] - F2_11_3*w[5] + F2_15_2*k_rate[3] + F2_16_2*k_rate[4] + F2_17_2*k_rate[5] - F2_1_2*t[4] + F2_21_2*third[3] + F2_22_2*third[4] + F2_23_2*third[5] + F2_25 - F2_2_2*t[5] + F2_3_at[3]*k[3] + F2_3_at[4]*k[4] + F2_3_at[5]*k[5] - F2_9_3*w[3];
 
 /* a step of Newton's method to the closest points (Hunt & Crossley 1975; closest points by the implicit function theorem) */
 void crossing_closest(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step)
@@ -989,12 +1038,16 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
         F_z = -(k_t*x_now_z);
     CROSSING_CLOSEST_POINTS_DERIVATIVES_OF_THE_ARC_LENGTHS_BY_D_AND_BY_THE_SLOPES
     /* derivatives of the force where the points stay */
-    fu_real F0[6], F1[6], F2[6], d_d_det_J[3], d_d_inv_J[3], d_d_s_rate_0[3], d_d_s_rate_1[3], d_t_J_01[3], d_t_J_00[3],
-        d_t_det_J[3], d_t_inv_J[3], d_t_s_rate_0[6], d_t_s_rate_1[6], d_t_J_01_at[3], d_t_J_11[3], d_t_det_J_at[3],
-        d_t_inv_J_at[3], d_u_s_rate_0[3], d_u_s_rate_1[3], d_w_s_rate_0[3], d_w_s_rate_1[3], d_w_s_rate_0_at[3],
-        d_w_s_rate_1_at[3], d_k_det_J[3], d_k_inv_J[3], d_k_s_rate_0[3], d_k_s_rate_1[3], d_k_det_J_at[3],
-        d_k_inv_J_at[3], d_k_s_rate_0_at[3], d_k_s_rate_1_at[3], F0_2_at[6], F1_2_at[6], F2_2_at[6];
+    fu_real d_t_x_now_x[6], d_t_x_now_y[6], d_t_x_now_z[6], F0[6], F1[6], F2[6], F0_2_at[6], F1_2_at[6], F2_2_at[6],
+        d_d_det_J[3], d_d_inv_J[3], d_d_s_rate_0[3], d_d_s_rate_1[3], d_t_J_01[3], d_t_J_00[3], d_t_det_J[3],
+        d_t_inv_J[3], d_t_s_rate_0[6], d_t_s_rate_1[6], d_t_J_01_at[3], d_t_J_11[3], d_t_det_J_at[3], d_t_inv_J_at[3],
+        d_u_s_rate_0[3], d_u_s_rate_1[3], d_w_s_rate_0[3], d_w_s_rate_1[3], d_w_s_rate_0_at[3], d_w_s_rate_1_at[3],
+        d_k_det_J[3], d_k_inv_J[3], d_k_s_rate_0[3], d_k_s_rate_1[3], d_k_det_J_at[3], d_k_inv_J_at[3],
+        d_k_s_rate_0_at[3], d_k_s_rate_1_at[3], F0_3_at[6], F1_3_at[6], F2_3_at[6];
     const fu_real
+        d_x_now_x_F_x = -k_t,
+        d_x_now_y_F_y = -k_t,
+        d_x_now_z_F_z = -k_t,
         d_t0_m_y = -t[5],
         d_t0_len_m = inv_m*(d_t0_m_y*m_y + m_z*t[4]),
         d_t0_inv_m = -(d_t0_len_m*inv_m*inv_m),
@@ -1005,13 +1058,11 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
         d_t0_n_x = d_t0_side_m*m_x,
         d_t0_across_y = -d_t0_n_x*tau_z + d_t0_n_z*tau_x,
         d_t0_across_z = d_t0_n_x*tau_y - d_t0_n_y*tau_x,
-        d_t0_x_1 = (1.0/6.0)*d_t0_across_x*h*u[0] + (1.0/6.0)*d_t0_across_y*h*u[1] + (1.0/6.0)*d_t0_across_z*h*u[2],
-        d_t0_x_now_x = across_x*d_t0_x_1 + d_t0_across_x*x_1,
-        d_t0_F_x = -(d_t0_x_now_x*k_t),
-        d_t0_x_now_y = across_y*d_t0_x_1 + d_t0_across_y*x_1,
-        d_t0_F_y = -(d_t0_x_now_y*k_t),
-        d_t0_x_now_z = across_z*d_t0_x_1 + d_t0_across_z*x_1,
-        d_t0_F_z = -(d_t0_x_now_z*k_t),
+        d_t0_x_1 = (1.0/6.0)*d_t0_across_x*h*u[0] + (1.0/6.0)*d_t0_across_y*h*u[1] + (1.0/6.0)*d_t0_across_z*h*u[2];
+    d_t_x_now_x[0] = across_x*d_t0_x_1 + d_t0_across_x*x_1;
+    d_t_x_now_y[0] = across_y*d_t0_x_1 + d_t0_across_y*x_1;
+    d_t_x_now_z[0] = across_z*d_t0_x_1 + d_t0_across_z*x_1;
+    const fu_real
         d_t1_m_z = -t[3],
         d_t1_len_m = inv_m*(d_t1_m_z*m_z + m_x*t[5]),
         d_t1_inv_m = -(d_t1_len_m*inv_m*inv_m),
@@ -1022,13 +1073,11 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
         d_t1_n_x = d_t1_side_m*m_x + side_m*t[5],
         d_t1_across_y = -d_t1_n_x*tau_z + d_t1_n_z*tau_x,
         d_t1_across_z = d_t1_n_x*tau_y - d_t1_n_y*tau_x,
-        d_t1_x_1 = (1.0/6.0)*d_t1_across_x*h*u[0] + (1.0/6.0)*d_t1_across_y*h*u[1] + (1.0/6.0)*d_t1_across_z*h*u[2],
-        d_t1_x_now_x = across_x*d_t1_x_1 + d_t1_across_x*x_1,
-        d_t1_F_x = -(d_t1_x_now_x*k_t),
-        d_t1_x_now_y = across_y*d_t1_x_1 + d_t1_across_y*x_1,
-        d_t1_F_y = -(d_t1_x_now_y*k_t),
-        d_t1_x_now_z = across_z*d_t1_x_1 + d_t1_across_z*x_1,
-        d_t1_F_z = -(d_t1_x_now_z*k_t),
+        d_t1_x_1 = (1.0/6.0)*d_t1_across_x*h*u[0] + (1.0/6.0)*d_t1_across_y*h*u[1] + (1.0/6.0)*d_t1_across_z*h*u[2];
+    d_t_x_now_x[1] = across_x*d_t1_x_1 + d_t1_across_x*x_1;
+    d_t_x_now_y[1] = across_y*d_t1_x_1 + d_t1_across_y*x_1;
+    d_t_x_now_z[1] = across_z*d_t1_x_1 + d_t1_across_z*x_1;
+    const fu_real
         d_t2_m_x = -t[4],
         d_t2_len_m = inv_m*(d_t2_m_x*m_x + m_y*t[3]),
         d_t2_inv_m = -(d_t2_len_m*inv_m*inv_m),
@@ -1039,238 +1088,135 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
         d_t2_n_x = d_t2_m_x*side_m + d_t2_side_m*m_x,
         d_t2_across_y = -d_t2_n_x*tau_z + d_t2_n_z*tau_x,
         d_t2_across_z = d_t2_n_x*tau_y - d_t2_n_y*tau_x,
-        d_t2_x_1 = (1.0/6.0)*d_t2_across_x*h*u[0] + (1.0/6.0)*d_t2_across_y*h*u[1] + (1.0/6.0)*d_t2_across_z*h*u[2],
-        d_t2_x_now_x = across_x*d_t2_x_1 + d_t2_across_x*x_1,
-        d_t2_F_x = -(d_t2_x_now_x*k_t),
-        d_t2_x_now_y = across_y*d_t2_x_1 + d_t2_across_y*x_1,
-        d_t2_F_y = -(d_t2_x_now_y*k_t),
-        d_t2_x_now_z = across_z*d_t2_x_1 + d_t2_across_z*x_1,
-        d_t2_F_z = -(d_t2_x_now_z*k_t),
+        d_t2_x_1 = (1.0/6.0)*d_t2_across_x*h*u[0] + (1.0/6.0)*d_t2_across_y*h*u[1] + (1.0/6.0)*d_t2_across_z*h*u[2];
+    d_t_x_now_x[2] = across_x*d_t2_x_1 + d_t2_across_x*x_1;
+    d_t_x_now_y[2] = across_y*d_t2_x_1 + d_t2_across_y*x_1;
+    d_t_x_now_z[2] = across_z*d_t2_x_1 + d_t2_across_z*x_1;
+    const fu_real
         d_t3_m_z = -t[1],
         d_t3_len_m = inv_m*(d_t3_m_z*m_z + m_y*t[2]),
         d_t3_inv_m = -(d_t3_len_m*inv_m*inv_m),
         d_t3_side_m = c[1]*d_t3_inv_m,
         d_t3_n_y = d_t3_side_m*m_y + side_m*t[2],
-        d_t3_n_z = d_t3_m_z*side_m + d_t3_side_m*m_z;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_7
-    const fu_real d_t3_n_x = d_t3_side_m*m_x;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_8
+        d_t3_n_z = d_t3_m_z*side_m + d_t3_side_m*m_z,
+        d_t3_len_t = inv_t*t[3],
+        d_t3_inv_t = -(d_t3_len_t*inv_t*inv_t),
+        d_t3_tau_y = d_t3_inv_t*t[4],
+        d_t3_tau_z = d_t3_inv_t*t[5],
+        d_t3_across_x = d_t3_n_y*tau_z - d_t3_n_z*tau_y - d_t3_tau_y*n_z + d_t3_tau_z*n_y,
+        d_t3_tau_x = d_t3_inv_t*t[3] + inv_t,
+        d_t3_x_0 = (1.0/6.0)*d_t3_tau_x*h*u[0] + (1.0/6.0)*d_t3_tau_y*h*u[1] + (1.0/6.0)*d_t3_tau_z*h*u[2],
+        d_t3_n_x = d_t3_side_m*m_x,
+        d_t3_across_y = -d_t3_n_x*tau_z + d_t3_n_z*tau_x + d_t3_tau_x*n_z - d_t3_tau_z*n_x,
+        d_t3_across_z = d_t3_n_x*tau_y - d_t3_n_y*tau_x - d_t3_tau_x*n_y + d_t3_tau_y*n_x,
+        d_t3_x_1 = (1.0/6.0)*d_t3_across_x*h*u[0] + (1.0/6.0)*d_t3_across_y*h*u[1] + (1.0/6.0)*d_t3_across_z*h*u[2];
+    d_t_x_now_x[3] = across_x*d_t3_x_1 + d_t3_across_x*x_1 + d_t3_tau_x*x_0 + d_t3_x_0*tau_x;
+    d_t_x_now_y[3] = across_y*d_t3_x_1 + d_t3_across_y*x_1 + d_t3_tau_y*x_0 + d_t3_x_0*tau_y;
+    d_t_x_now_z[3] = across_z*d_t3_x_1 + d_t3_across_z*x_1 + d_t3_tau_z*x_0 + d_t3_x_0*tau_z;
     const fu_real
-        d_t3_F_x = -(d_t3_x_now_x*k_t),
-        d_t3_x_now_y = across_y*d_t3_x_1 + d_t3_across_y*x_1 + d_t3_tau_y*x_0 + d_t3_x_0*tau_y,
-        d_t3_F_y = -(d_t3_x_now_y*k_t),
-        d_t3_x_now_z = across_z*d_t3_x_1 + d_t3_across_z*x_1 + d_t3_tau_z*x_0 + d_t3_x_0*tau_z,
-        d_t3_F_z = -(d_t3_x_now_z*k_t),
         d_t4_m_x = -t[2],
         d_t4_len_m = inv_m*(d_t4_m_x*m_x + m_z*t[0]),
         d_t4_inv_m = -(d_t4_len_m*inv_m*inv_m),
         d_t4_side_m = c[1]*d_t4_inv_m,
         d_t4_n_y = d_t4_side_m*m_y,
-        d_t4_n_z = d_t4_side_m*m_z + side_m*t[0];
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_9
-    const fu_real d_t4_n_x = d_t4_m_x*side_m + d_t4_side_m*m_x;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_10
+        d_t4_n_z = d_t4_side_m*m_z + side_m*t[0],
+        d_t4_len_t = inv_t*t[4],
+        d_t4_inv_t = -(d_t4_len_t*inv_t*inv_t),
+        d_t4_tau_y = d_t4_inv_t*t[4] + inv_t,
+        d_t4_tau_z = d_t4_inv_t*t[5],
+        d_t4_across_x = d_t4_n_y*tau_z - d_t4_n_z*tau_y - d_t4_tau_y*n_z + d_t4_tau_z*n_y,
+        d_t4_tau_x = d_t4_inv_t*t[3],
+        d_t4_x_0 = (1.0/6.0)*d_t4_tau_x*h*u[0] + (1.0/6.0)*d_t4_tau_y*h*u[1] + (1.0/6.0)*d_t4_tau_z*h*u[2],
+        d_t4_n_x = d_t4_m_x*side_m + d_t4_side_m*m_x,
+        d_t4_across_y = -d_t4_n_x*tau_z + d_t4_n_z*tau_x + d_t4_tau_x*n_z - d_t4_tau_z*n_x,
+        d_t4_across_z = d_t4_n_x*tau_y - d_t4_n_y*tau_x - d_t4_tau_x*n_y + d_t4_tau_y*n_x,
+        d_t4_x_1 = (1.0/6.0)*d_t4_across_x*h*u[0] + (1.0/6.0)*d_t4_across_y*h*u[1] + (1.0/6.0)*d_t4_across_z*h*u[2];
+    d_t_x_now_x[4] = across_x*d_t4_x_1 + d_t4_across_x*x_1 + d_t4_tau_x*x_0 + d_t4_x_0*tau_x;
+    d_t_x_now_y[4] = across_y*d_t4_x_1 + d_t4_across_y*x_1 + d_t4_tau_y*x_0 + d_t4_x_0*tau_y;
+    d_t_x_now_z[4] = across_z*d_t4_x_1 + d_t4_across_z*x_1 + d_t4_tau_z*x_0 + d_t4_x_0*tau_z;
     const fu_real
-        d_t4_F_x = -(d_t4_x_now_x*k_t),
-        d_t4_x_now_y = across_y*d_t4_x_1 + d_t4_across_y*x_1 + d_t4_tau_y*x_0 + d_t4_x_0*tau_y,
-        d_t4_F_y = -(d_t4_x_now_y*k_t),
-        d_t4_x_now_z = across_z*d_t4_x_1 + d_t4_across_z*x_1 + d_t4_tau_z*x_0 + d_t4_x_0*tau_z,
-        d_t4_F_z = -(d_t4_x_now_z*k_t),
         d_t5_m_y = -t[0],
         d_t5_len_m = inv_m*(d_t5_m_y*m_y + m_x*t[1]),
         d_t5_inv_m = -(d_t5_len_m*inv_m*inv_m),
         d_t5_side_m = c[1]*d_t5_inv_m,
         d_t5_n_y = d_t5_m_y*side_m + d_t5_side_m*m_y,
-        d_t5_n_z = d_t5_side_m*m_z;
+        d_t5_n_z = d_t5_side_m*m_z,
+        d_t5_len_t = inv_t*t[5],
+        d_t5_inv_t = -(d_t5_len_t*inv_t*inv_t),
+        d_t5_tau_y = d_t5_inv_t*t[4],
+        d_t5_tau_z = d_t5_inv_t*t[5] + inv_t,
+        d_t5_across_x = d_t5_n_y*tau_z - d_t5_n_z*tau_y - d_t5_tau_y*n_z + d_t5_tau_z*n_y,
+        d_t5_tau_x = d_t5_inv_t*t[3],
+        d_t5_x_0 = (1.0/6.0)*d_t5_tau_x*h*u[0] + (1.0/6.0)*d_t5_tau_y*h*u[1] + (1.0/6.0)*d_t5_tau_z*h*u[2],
+        d_t5_n_x = d_t5_side_m*m_x + side_m*t[1],
+        d_t5_across_y = -d_t5_n_x*tau_z + d_t5_n_z*tau_x + d_t5_tau_x*n_z - d_t5_tau_z*n_x,
+        d_t5_across_z = d_t5_n_x*tau_y - d_t5_n_y*tau_x - d_t5_tau_x*n_y + d_t5_tau_y*n_x,
+        d_t5_x_1 = (1.0/6.0)*d_t5_across_x*h*u[0] + (1.0/6.0)*d_t5_across_y*h*u[1] + (1.0/6.0)*d_t5_across_z*h*u[2];
+    d_t_x_now_x[5] = across_x*d_t5_x_1 + d_t5_across_x*x_1 + d_t5_tau_x*x_0 + d_t5_x_0*tau_x;
+    d_t_x_now_y[5] = across_y*d_t5_x_1 + d_t5_across_y*x_1 + d_t5_tau_y*x_0 + d_t5_x_0*tau_y;
+    d_t_x_now_z[5] = across_z*d_t5_x_1 + d_t5_across_z*x_1 + d_t5_tau_z*x_0 + d_t5_x_0*tau_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_7
+    FU_EACH(g, 6,
+        F0[g] = d_t_x_now_x[g]*d_x_now_x_F_x;)
+    const fu_real
+        F0_9 = d_u0_x_now_x*d_x_now_x_F_x,
+        F0_10 = d_u1_x_now_x*d_x_now_x_F_x,
+        F0_11 = d_u2_x_now_x*d_x_now_x_F_x,
+        F0_26 = d_t_half0_x_x_now_x*d_x_now_x_F_x,
+        F0_27 = d_t_half0_y_x_now_x*d_x_now_x_F_x,
+        F0_28 = d_t_half0_z_x_now_x*d_x_now_x_F_x,
+        F0_29 = d_t_half1_x_x_now_x*d_x_now_x_F_x,
+        F0_30 = d_t_half1_y_x_now_x*d_x_now_x_F_x,
+        F0_31 = d_t_half1_z_x_now_x*d_x_now_x_F_x,
+        F0_32 = d_slip_half_x_x_now_x*d_x_now_x_F_x,
+        F0_33 = d_slip_half_y_x_now_x*d_x_now_x_F_x,
+        F0_34 = d_slip_half_z_x_now_x*d_x_now_x_F_x;
+    FU_EACH(g, 6,
+        F1[g] = d_t_x_now_y[g]*d_x_now_y_F_y;)
+    const fu_real
+        F1_9 = d_u0_x_now_y*d_x_now_y_F_y,
+        F1_10 = d_u1_x_now_y*d_x_now_y_F_y,
+        F1_11 = d_u2_x_now_y*d_x_now_y_F_y,
+        F1_26 = d_t_half0_x_x_now_y*d_x_now_y_F_y,
+        F1_27 = d_t_half0_y_x_now_y*d_x_now_y_F_y,
+        F1_28 = d_t_half0_z_x_now_y*d_x_now_y_F_y,
+        F1_29 = d_t_half1_x_x_now_y*d_x_now_y_F_y,
+        F1_30 = d_t_half1_y_x_now_y*d_x_now_y_F_y,
+        F1_31 = d_t_half1_z_x_now_y*d_x_now_y_F_y,
+        F1_32 = d_slip_half_x_x_now_y*d_x_now_y_F_y,
+        F1_33 = d_slip_half_y_x_now_y*d_x_now_y_F_y,
+        F1_34 = d_slip_half_z_x_now_y*d_x_now_y_F_y;
+    FU_EACH(g, 6,
+        F2[g] = d_t_x_now_z[g]*d_x_now_z_F_z;)
+    const fu_real
+        F2_9 = d_u0_x_now_z*d_x_now_z_F_z,
+        F2_10 = d_u1_x_now_z*d_x_now_z_F_z,
+        F2_11 = d_u2_x_now_z*d_x_now_z_F_z,
+        F2_26 = d_t_half0_x_x_now_z*d_x_now_z_F_z,
+        F2_27 = d_t_half0_y_x_now_z*d_x_now_z_F_z,
+        F2_28 = d_t_half0_z_x_now_z*d_x_now_z_F_z,
+        F2_29 = d_t_half1_x_x_now_z*d_x_now_z_F_z,
+        F2_30 = d_t_half1_y_x_now_z*d_x_now_z_F_z,
+        F2_31 = d_t_half1_z_x_now_z*d_x_now_z_F_z,
+        F2_32 = d_slip_half_x_x_now_z*d_x_now_z_F_z,
+        F2_33 = d_slip_half_y_x_now_z*d_x_now_z_F_z,
+        F2_34 = d_slip_half_z_x_now_z*d_x_now_z_F_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_8
+    const fu_real
+        F0_0 = 1.5*F0_32,
+        F0_1 = 1.5*F0_33,
+        F0_2 = 1.5*F0_34;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_9
+    const fu_real
+        F1_0 = 1.5*F1_32,
+        F1_1 = 1.5*F1_33,
+        F1_2 = 1.5*F1_34;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_10
+    const fu_real
+        F2_0 = 1.5*F2_32,
+        F2_1 = 1.5*F2_33,
+        F2_2 = 1.5*F2_34;
     CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_11
-    const fu_real d_t5_n_x = d_t5_side_m*m_x + side_m*t[1];
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_12
-    const fu_real
-        d_t5_F_x = -(d_t5_x_now_x*k_t),
-        d_t5_x_now_y = across_y*d_t5_x_1 + d_t5_across_y*x_1 + d_t5_tau_y*x_0 + d_t5_x_0*tau_y,
-        d_t5_F_y = -(d_t5_x_now_y*k_t),
-        d_t5_x_now_z = across_z*d_t5_x_1 + d_t5_across_z*x_1 + d_t5_tau_z*x_0 + d_t5_x_0*tau_z,
-        d_t5_F_z = -(d_t5_x_now_z*k_t),
-        d_u0_x_0 = (1.0/6.0)*h*tau_x,
-        d_u0_x_1 = (1.0/6.0)*across_x*h,
-        d_u0_x_now_x = across_x*d_u0_x_1 + d_u0_x_0*tau_x,
-        d_u0_F_x = -(d_u0_x_now_x*k_t),
-        d_u0_x_now_y = across_y*d_u0_x_1 + d_u0_x_0*tau_y,
-        d_u0_F_y = -(d_u0_x_now_y*k_t),
-        d_u0_x_now_z = across_z*d_u0_x_1 + d_u0_x_0*tau_z,
-        d_u0_F_z = -(d_u0_x_now_z*k_t),
-        d_u1_x_0 = (1.0/6.0)*h*tau_y,
-        d_u1_x_1 = (1.0/6.0)*across_y*h,
-        d_u1_x_now_x = across_x*d_u1_x_1 + d_u1_x_0*tau_x,
-        d_u1_F_x = -(d_u1_x_now_x*k_t),
-        d_u1_x_now_y = across_y*d_u1_x_1 + d_u1_x_0*tau_y,
-        d_u1_F_y = -(d_u1_x_now_y*k_t),
-        d_u1_x_now_z = across_z*d_u1_x_1 + d_u1_x_0*tau_z,
-        d_u1_F_z = -(d_u1_x_now_z*k_t),
-        d_u2_x_0 = (1.0/6.0)*h*tau_z,
-        d_u2_x_1 = (1.0/6.0)*across_z*h,
-        d_u2_x_now_x = across_x*d_u2_x_1 + d_u2_x_0*tau_x,
-        d_u2_F_x = -(d_u2_x_now_x*k_t),
-        d_u2_x_now_y = across_y*d_u2_x_1 + d_u2_x_0*tau_y,
-        d_u2_F_y = -(d_u2_x_now_y*k_t),
-        d_u2_x_now_z = across_z*d_u2_x_1 + d_u2_x_0*tau_z,
-        d_u2_F_z = -(d_u2_x_now_z*k_t);
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_13
-    const fu_real
-        d_t_half0_x_F_x = -(d_t_half0_x_x_now_x*k_t),
-        d_t_half0_x_x_now_y = across_y*d_t_half0_x_x_1,
-        d_t_half0_x_F_y = -(d_t_half0_x_x_now_y*k_t),
-        d_t_half0_x_x_now_z = across_z*d_t_half0_x_x_1,
-        d_t_half0_x_F_z = -(d_t_half0_x_x_now_z*k_t);
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_14
-    const fu_real
-        d_t_half0_y_F_x = -(d_t_half0_y_x_now_x*k_t),
-        d_t_half0_y_x_now_y = across_y*d_t_half0_y_x_1,
-        d_t_half0_y_F_y = -(d_t_half0_y_x_now_y*k_t),
-        d_t_half0_y_x_now_z = across_z*d_t_half0_y_x_1,
-        d_t_half0_y_F_z = -(d_t_half0_y_x_now_z*k_t);
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_15
-    const fu_real
-        d_t_half0_z_F_x = -(d_t_half0_z_x_now_x*k_t),
-        d_t_half0_z_x_now_y = across_y*d_t_half0_z_x_1,
-        d_t_half0_z_F_y = -(d_t_half0_z_x_now_y*k_t),
-        d_t_half0_z_x_now_z = across_z*d_t_half0_z_x_1,
-        d_t_half0_z_F_z = -(d_t_half0_z_x_now_z*k_t);
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_16
-    const fu_real
-        d_t_half1_x_F_x = -(d_t_half1_x_x_now_x*k_t),
-        d_t_half1_x_x_now_y = across_y*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_y,
-        d_t_half1_x_F_y = -(d_t_half1_x_x_now_y*k_t),
-        d_t_half1_x_x_now_z = across_z*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_z,
-        d_t_half1_x_F_z = -(d_t_half1_x_x_now_z*k_t);
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_17
-    const fu_real
-        d_t_half1_y_F_x = -(d_t_half1_y_x_now_x*k_t),
-        d_t_half1_y_x_now_y = across_y*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_y,
-        d_t_half1_y_F_y = -(d_t_half1_y_x_now_y*k_t),
-        d_t_half1_y_x_now_z = across_z*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_z,
-        d_t_half1_y_F_z = -(d_t_half1_y_x_now_z*k_t);
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_18
-    const fu_real
-        d_t_half1_z_F_x = -(d_t_half1_z_x_now_x*k_t),
-        d_t_half1_z_x_now_y = across_y*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_y,
-        d_t_half1_z_F_y = -(d_t_half1_z_x_now_y*k_t),
-        d_t_half1_z_x_now_z = across_z*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_z,
-        d_t_half1_z_F_z = -(d_t_half1_z_x_now_z*k_t),
-        d_slip_half_x_x_0 = (2.0/3.0)*tau_half_x,
-        d_slip_half_x_x_1 = (2.0/3.0)*across_half_x,
-        d_slip_half_x_x_now_x = across_x*d_slip_half_x_x_1 + d_slip_half_x_x_0*tau_x,
-        d_slip_half_x_F_x = -(d_slip_half_x_x_now_x*k_t),
-        d_slip_half_x_x_now_y = across_y*d_slip_half_x_x_1 + d_slip_half_x_x_0*tau_y,
-        d_slip_half_x_F_y = -(d_slip_half_x_x_now_y*k_t),
-        d_slip_half_x_x_now_z = across_z*d_slip_half_x_x_1 + d_slip_half_x_x_0*tau_z,
-        d_slip_half_x_F_z = -(d_slip_half_x_x_now_z*k_t),
-        d_slip_half_y_x_0 = (2.0/3.0)*tau_half_y,
-        d_slip_half_y_x_1 = (2.0/3.0)*across_half_y,
-        d_slip_half_y_x_now_x = across_x*d_slip_half_y_x_1 + d_slip_half_y_x_0*tau_x,
-        d_slip_half_y_F_x = -(d_slip_half_y_x_now_x*k_t),
-        d_slip_half_y_x_now_y = across_y*d_slip_half_y_x_1 + d_slip_half_y_x_0*tau_y,
-        d_slip_half_y_F_y = -(d_slip_half_y_x_now_y*k_t),
-        d_slip_half_y_x_now_z = across_z*d_slip_half_y_x_1 + d_slip_half_y_x_0*tau_z,
-        d_slip_half_y_F_z = -(d_slip_half_y_x_now_z*k_t),
-        d_slip_half_z_x_0 = (2.0/3.0)*tau_half_z,
-        d_slip_half_z_x_1 = (2.0/3.0)*across_half_z,
-        d_slip_half_z_x_now_x = across_x*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_x,
-        d_slip_half_z_F_x = -(d_slip_half_z_x_now_x*k_t),
-        d_slip_half_z_x_now_y = across_y*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_y,
-        d_slip_half_z_F_y = -(d_slip_half_z_x_now_y*k_t),
-        d_slip_half_z_x_now_z = across_z*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_z,
-        d_slip_half_z_F_z = -(d_slip_half_z_x_now_z*k_t);
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_19
-    const fu_real
-        F0_0 = 1.5*d_slip_half_x_F_x,
-        F0_1 = 1.5*d_slip_half_y_F_x,
-        F0_2 = 1.5*d_slip_half_z_F_x;
-    F0[0] = d_slip_half_x_F_x*d_t0_slip_half_x + d_t0_F_x + 0.5*d_t_half0_x_F_x;
-    F0[1] = d_slip_half_y_F_x*d_t1_slip_half_y + d_t1_F_x + 0.5*d_t_half0_y_F_x;
-    F0[2] = d_slip_half_z_F_x*d_t2_slip_half_z + d_t2_F_x + 0.5*d_t_half0_z_F_x;
-    F0[3] = d_slip_half_x_F_x*d_t3_slip_half_x + d_t3_F_x + 0.5*d_t_half1_x_F_x;
-    F0[4] = d_slip_half_y_F_x*d_t4_slip_half_y + d_t4_F_x + 0.5*d_t_half1_y_F_x;
-    F0[5] = d_slip_half_z_F_x*d_t5_slip_half_z + d_t5_F_x + 0.5*d_t_half1_z_F_x;
-    const fu_real
-        F0_9 = d_slip_half_x_F_x*d_u0_slip_half_x + d_u0_F_x,
-        F0_10 = d_slip_half_y_F_x*d_u1_slip_half_y + d_u1_F_x,
-        F0_11 = d_slip_half_z_F_x*d_u2_slip_half_z + d_u2_F_x,
-        F0_12 = d_slip_half_x_F_x*d_w0_slip_half_x + d_t_half0_x_F_x*d_w0_t_half0_x,
-        F0_13 = d_slip_half_y_F_x*d_w1_slip_half_y + d_t_half0_y_F_x*d_w1_t_half0_y,
-        F0_14 = d_slip_half_z_F_x*d_w2_slip_half_z + d_t_half0_z_F_x*d_w2_t_half0_z,
-        F0_15 = d_slip_half_x_F_x*d_w3_slip_half_x + d_t_half1_x_F_x*d_w3_t_half1_x,
-        F0_16 = d_slip_half_y_F_x*d_w4_slip_half_y + d_t_half1_y_F_x*d_w4_t_half1_y,
-        F0_17 = d_slip_half_z_F_x*d_w5_slip_half_z + d_t_half1_z_F_x*d_w5_t_half1_z,
-        F0_18 = d_k0_slip_half_x*d_slip_half_x_F_x + d_k0_t_half0_x*d_t_half0_x_F_x,
-        F0_19 = d_k1_slip_half_y*d_slip_half_y_F_x + d_k1_t_half0_y*d_t_half0_y_F_x,
-        F0_20 = d_k2_slip_half_z*d_slip_half_z_F_x + d_k2_t_half0_z*d_t_half0_z_F_x,
-        F0_21 = d_k3_slip_half_x*d_slip_half_x_F_x + d_k3_t_half1_x*d_t_half1_x_F_x,
-        F0_22 = d_k4_slip_half_y*d_slip_half_y_F_x + d_k4_t_half1_y*d_t_half1_y_F_x,
-        F0_23 = d_k5_slip_half_z*d_slip_half_z_F_x + d_k5_t_half1_z*d_t_half1_z_F_x,
-        F0_24 = d_e0_slip_half_x*d_slip_half_x_F_x + d_e0_slip_half_y*d_slip_half_y_F_x + d_e0_slip_half_z*d_slip_half_z_F_x,
-        F0_25 = d_e1_slip_half_x*d_slip_half_x_F_x + d_e1_slip_half_y*d_slip_half_y_F_x + d_e1_slip_half_z*d_slip_half_z_F_x,
-        F0_26 = d_s_rate_0_slip_half_x*d_slip_half_x_F_x + d_s_rate_0_slip_half_y*d_slip_half_y_F_x + d_s_rate_0_slip_half_z*d_slip_half_z_F_x + d_s_rate_0_t_half0_x*d_t_half0_x_F_x + d_s_rate_0_t_half0_y*d_t_half0_y_F_x + d_s_rate_0_t_half0_z*d_t_half0_z_F_x,
-        F0_27 = d_s_rate_1_slip_half_x*d_slip_half_x_F_x + d_s_rate_1_slip_half_y*d_slip_half_y_F_x + d_s_rate_1_slip_half_z*d_slip_half_z_F_x + d_s_rate_1_t_half1_x*d_t_half1_x_F_x + d_s_rate_1_t_half1_y*d_t_half1_y_F_x + d_s_rate_1_t_half1_z*d_t_half1_z_F_x,
-        F1_0 = 1.5*d_slip_half_x_F_y,
-        F1_1 = 1.5*d_slip_half_y_F_y,
-        F1_2 = 1.5*d_slip_half_z_F_y;
-    F1[0] = d_slip_half_x_F_y*d_t0_slip_half_x + d_t0_F_y + 0.5*d_t_half0_x_F_y;
-    F1[1] = d_slip_half_y_F_y*d_t1_slip_half_y + d_t1_F_y + 0.5*d_t_half0_y_F_y;
-    F1[2] = d_slip_half_z_F_y*d_t2_slip_half_z + d_t2_F_y + 0.5*d_t_half0_z_F_y;
-    F1[3] = d_slip_half_x_F_y*d_t3_slip_half_x + d_t3_F_y + 0.5*d_t_half1_x_F_y;
-    F1[4] = d_slip_half_y_F_y*d_t4_slip_half_y + d_t4_F_y + 0.5*d_t_half1_y_F_y;
-    F1[5] = d_slip_half_z_F_y*d_t5_slip_half_z + d_t5_F_y + 0.5*d_t_half1_z_F_y;
-    const fu_real
-        F1_9 = d_slip_half_x_F_y*d_u0_slip_half_x + d_u0_F_y,
-        F1_10 = d_slip_half_y_F_y*d_u1_slip_half_y + d_u1_F_y,
-        F1_11 = d_slip_half_z_F_y*d_u2_slip_half_z + d_u2_F_y,
-        F1_12 = d_slip_half_x_F_y*d_w0_slip_half_x + d_t_half0_x_F_y*d_w0_t_half0_x,
-        F1_13 = d_slip_half_y_F_y*d_w1_slip_half_y + d_t_half0_y_F_y*d_w1_t_half0_y,
-        F1_14 = d_slip_half_z_F_y*d_w2_slip_half_z + d_t_half0_z_F_y*d_w2_t_half0_z,
-        F1_15 = d_slip_half_x_F_y*d_w3_slip_half_x + d_t_half1_x_F_y*d_w3_t_half1_x,
-        F1_16 = d_slip_half_y_F_y*d_w4_slip_half_y + d_t_half1_y_F_y*d_w4_t_half1_y,
-        F1_17 = d_slip_half_z_F_y*d_w5_slip_half_z + d_t_half1_z_F_y*d_w5_t_half1_z,
-        F1_18 = d_k0_slip_half_x*d_slip_half_x_F_y + d_k0_t_half0_x*d_t_half0_x_F_y,
-        F1_19 = d_k1_slip_half_y*d_slip_half_y_F_y + d_k1_t_half0_y*d_t_half0_y_F_y,
-        F1_20 = d_k2_slip_half_z*d_slip_half_z_F_y + d_k2_t_half0_z*d_t_half0_z_F_y,
-        F1_21 = d_k3_slip_half_x*d_slip_half_x_F_y + d_k3_t_half1_x*d_t_half1_x_F_y,
-        F1_22 = d_k4_slip_half_y*d_slip_half_y_F_y + d_k4_t_half1_y*d_t_half1_y_F_y,
-        F1_23 = d_k5_slip_half_z*d_slip_half_z_F_y + d_k5_t_half1_z*d_t_half1_z_F_y,
-        F1_24 = d_e0_slip_half_x*d_slip_half_x_F_y + d_e0_slip_half_y*d_slip_half_y_F_y + d_e0_slip_half_z*d_slip_half_z_F_y,
-        F1_25 = d_e1_slip_half_x*d_slip_half_x_F_y + d_e1_slip_half_y*d_slip_half_y_F_y + d_e1_slip_half_z*d_slip_half_z_F_y,
-        F1_26 = d_s_rate_0_slip_half_x*d_slip_half_x_F_y + d_s_rate_0_slip_half_y*d_slip_half_y_F_y + d_s_rate_0_slip_half_z*d_slip_half_z_F_y + d_s_rate_0_t_half0_x*d_t_half0_x_F_y + d_s_rate_0_t_half0_y*d_t_half0_y_F_y + d_s_rate_0_t_half0_z*d_t_half0_z_F_y,
-        F1_27 = d_s_rate_1_slip_half_x*d_slip_half_x_F_y + d_s_rate_1_slip_half_y*d_slip_half_y_F_y + d_s_rate_1_slip_half_z*d_slip_half_z_F_y + d_s_rate_1_t_half1_x*d_t_half1_x_F_y + d_s_rate_1_t_half1_y*d_t_half1_y_F_y + d_s_rate_1_t_half1_z*d_t_half1_z_F_y,
-        F2_0 = 1.5*d_slip_half_x_F_z,
-        F2_1 = 1.5*d_slip_half_y_F_z,
-        F2_2 = 1.5*d_slip_half_z_F_z;
-    F2[0] = d_slip_half_x_F_z*d_t0_slip_half_x + d_t0_F_z + 0.5*d_t_half0_x_F_z;
-    F2[1] = d_slip_half_y_F_z*d_t1_slip_half_y + d_t1_F_z + 0.5*d_t_half0_y_F_z;
-    F2[2] = d_slip_half_z_F_z*d_t2_slip_half_z + d_t2_F_z + 0.5*d_t_half0_z_F_z;
-    F2[3] = d_slip_half_x_F_z*d_t3_slip_half_x + d_t3_F_z + 0.5*d_t_half1_x_F_z;
-    F2[4] = d_slip_half_y_F_z*d_t4_slip_half_y + d_t4_F_z + 0.5*d_t_half1_y_F_z;
-    F2[5] = d_slip_half_z_F_z*d_t5_slip_half_z + d_t5_F_z + 0.5*d_t_half1_z_F_z;
-    const fu_real
-        F2_9 = d_slip_half_x_F_z*d_u0_slip_half_x + d_u0_F_z,
-        F2_10 = d_slip_half_y_F_z*d_u1_slip_half_y + d_u1_F_z,
-        F2_11 = d_slip_half_z_F_z*d_u2_slip_half_z + d_u2_F_z,
-        F2_12 = d_slip_half_x_F_z*d_w0_slip_half_x + d_t_half0_x_F_z*d_w0_t_half0_x,
-        F2_13 = d_slip_half_y_F_z*d_w1_slip_half_y + d_t_half0_y_F_z*d_w1_t_half0_y,
-        F2_14 = d_slip_half_z_F_z*d_w2_slip_half_z + d_t_half0_z_F_z*d_w2_t_half0_z,
-        F2_15 = d_slip_half_x_F_z*d_w3_slip_half_x + d_t_half1_x_F_z*d_w3_t_half1_x,
-        F2_16 = d_slip_half_y_F_z*d_w4_slip_half_y + d_t_half1_y_F_z*d_w4_t_half1_y,
-        F2_17 = d_slip_half_z_F_z*d_w5_slip_half_z + d_t_half1_z_F_z*d_w5_t_half1_z,
-        F2_18 = d_k0_slip_half_x*d_slip_half_x_F_z + d_k0_t_half0_x*d_t_half0_x_F_z,
-        F2_19 = d_k1_slip_half_y*d_slip_half_y_F_z + d_k1_t_half0_y*d_t_half0_y_F_z,
-        F2_20 = d_k2_slip_half_z*d_slip_half_z_F_z + d_k2_t_half0_z*d_t_half0_z_F_z,
-        F2_21 = d_k3_slip_half_x*d_slip_half_x_F_z + d_k3_t_half1_x*d_t_half1_x_F_z,
-        F2_22 = d_k4_slip_half_y*d_slip_half_y_F_z + d_k4_t_half1_y*d_t_half1_y_F_z,
-        F2_23 = d_k5_slip_half_z*d_slip_half_z_F_z + d_k5_t_half1_z*d_t_half1_z_F_z,
-        F2_24 = d_e0_slip_half_x*d_slip_half_x_F_z + d_e0_slip_half_y*d_slip_half_y_F_z + d_e0_slip_half_z*d_slip_half_z_F_z,
-        F2_25 = d_e1_slip_half_x*d_slip_half_x_F_z + d_e1_slip_half_y*d_slip_half_y_F_z + d_e1_slip_half_z*d_slip_half_z_F_z,
-        F2_26 = d_s_rate_0_slip_half_x*d_slip_half_x_F_z + d_s_rate_0_slip_half_y*d_slip_half_y_F_z + d_s_rate_0_slip_half_z*d_slip_half_z_F_z + d_s_rate_0_t_half0_x*d_t_half0_x_F_z + d_s_rate_0_t_half0_y*d_t_half0_y_F_z + d_s_rate_0_t_half0_z*d_t_half0_z_F_z,
-        F2_27 = d_s_rate_1_slip_half_x*d_slip_half_x_F_z + d_s_rate_1_slip_half_y*d_slip_half_y_F_z + d_s_rate_1_slip_half_z*d_slip_half_z_F_z + d_s_rate_1_t_half1_x*d_t_half1_x_F_z + d_s_rate_1_t_half1_y*d_t_half1_y_F_z + d_s_rate_1_t_half1_z*d_t_half1_z_F_z;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_20
     CROSSING_DERIVATIVES_OF_THE_FORCE_ALONG_THE_LINES
     /* outputs */
     F[0] = F_x;
@@ -1280,7 +1226,7 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
 }
 
 /* friction that slides, its derivatives with the points moving (Hunt & Crossley 1975; closest points by the implicit function theorem) */
-void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
+void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real slid, fu_real r_0, fu_real turns, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
 {
     /* normal */
     const fu_real
@@ -1305,372 +1251,639 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
     CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP
     /* stretch of the spring */
     CROSSING_PART_OF_STRETCH_OF_THE_SPRING
+    const fu_real
+        old_x = across_x*x[1] + tau_x*x[0],
+        old_y = across_y*x[1] + tau_y*x[0],
+        old_z = across_z*x[1] + tau_z*x[0];
     CROSSING_PART_OF_STRETCH_OF_THE_SPRING_2
     const fu_real
-        size = FU_SQRT(x_now_x*x_now_x + x_now_y*x_now_y + x_now_z*x_now_z),
+        slip_old_x = across_x*v[1] + tau_x*v[0],
+        slip_old_y = across_y*v[1] + tau_y*v[0],
+        slip_old_z = across_z*v[1] + tau_z*v[0],
+        most = N_law*mu,
+        r_1 = most/k_t,
+        r = c[5] + r_1 + 0.5*slid*(r_0 - r_1),
+        change_x = -old_x + x_now_x,
+        change_y = -old_y + x_now_y,
+        change_z = -old_z + x_now_z,
+        size_path = FU_SQRT(c[5]*c[5] + change_x*change_x + change_y*change_y + change_z*change_z),
+        path = size_path*turns,
+        A = path/r,
+        speed_1 = FU_SQRT(c[5]*c[5] + (-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0])*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) + (-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1])*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + (-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2])*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2])),
+        old_more = 0.5*slid*(-r_0 + r_1)/r_0,
+        weight_0 = -((1.0/12.0)*h*(A*A + A)),
+        weight_1 = 0.25*A*A + 0.5*A,
+        weight_2 = path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1,
+        turned_x = change_x*weight_1 + old_more*old_x + slip_old_x*weight_0 + weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) + x_now_x,
+        turned_y = change_y*weight_1 + old_more*old_y + slip_old_y*weight_0 + weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + x_now_y,
+        turned_z = change_z*weight_1 + old_more*old_z + slip_old_z*weight_0 + weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + x_now_z,
+        size = FU_SQRT(turned_x*turned_x + turned_y*turned_y + turned_z*turned_z),
         inv_size = 1.0/size,
-        F_x_2 = -(N_law*inv_size*mu*x_now_x),
-        F_y_2 = -(N_law*inv_size*mu*x_now_y),
-        F_z_2 = -(N_law*inv_size*mu*x_now_z);
+        F_x_2 = -(inv_size*most*turned_x),
+        F_y_2 = -(inv_size*most*turned_y),
+        F_z_2 = -(inv_size*most*turned_z);
     CROSSING_CLOSEST_POINTS_DERIVATIVES_OF_THE_ARC_LENGTHS_BY_D_AND_BY_THE_SLOPES
     /* derivatives of the force where the points stay */
-    fu_real F0[6], F1[6], F2[6], d_d_det_J[3], d_d_inv_J[3], d_d_s_rate_0[3], d_d_s_rate_1[3], d_t_J_01[3], d_t_J_00[3],
-        d_t_det_J[3], d_t_inv_J[3], d_t_s_rate_0[6], d_t_s_rate_1[6], d_t_J_01_at[3], d_t_J_11[3], d_t_det_J_at[3],
-        d_t_inv_J_at[3], d_u_s_rate_0[3], d_u_s_rate_1[3], d_w_s_rate_0[3], d_w_s_rate_1[3], d_w_s_rate_0_at[3],
-        d_w_s_rate_1_at[3], d_k_det_J[3], d_k_inv_J[3], d_k_s_rate_0[3], d_k_s_rate_1[3], d_k_det_J_at[3],
-        d_k_inv_J_at[3], d_k_s_rate_0_at[3], d_k_s_rate_1_at[3], F0_2_at[6], F1_2_at[6], F2_2_at[6];
+    fu_real d_t_F_x_2[6], d_t_F_y_2[6], d_t_F_z_2[6], d_t_x_now_x[6], d_t_x_now_y[6], d_t_x_now_z[6], F0[6], F1[6],
+        F2[6], F0_2_at[6], F1_2_at[6], F2_2_at[6], d_d_det_J[3], d_d_inv_J[3], d_d_s_rate_0[3], d_d_s_rate_1[3],
+        d_t_J_01[3], d_t_J_00[3], d_t_det_J[3], d_t_inv_J[3], d_t_s_rate_0[6], d_t_s_rate_1[6], d_t_J_01_at[3],
+        d_t_J_11[3], d_t_det_J_at[3], d_t_inv_J_at[3], d_u_s_rate_0[3], d_u_s_rate_1[3], d_w_s_rate_0[3],
+        d_w_s_rate_1[3], d_w_s_rate_0_at[3], d_w_s_rate_1_at[3], d_k_det_J[3], d_k_inv_J[3], d_k_s_rate_0[3],
+        d_k_s_rate_1[3], d_k_det_J_at[3], d_k_inv_J_at[3], d_k_s_rate_0_at[3], d_k_s_rate_1_at[3], F0_3_at[6],
+        F1_3_at[6], F2_3_at[6];
     const fu_real
         d_d0_depth = -n_x,
         d_d0_size_p = d_d0_depth*depth/size_p,
         d_d0_root_p = 0.5*d_d0_size_p/root_p,
         d_d0_elastic = c[3]*d_d0_root_p*depth + d_d0_depth*(c[2] + c[3]*root_p),
         d_d0_N_law = d_d0_elastic*(c[4]*rate + 1.0),
-        d_d0_F_x_2 = -(d_d0_N_law*inv_size*mu*x_now_x),
-        d_d0_F_y_2 = -(d_d0_N_law*inv_size*mu*x_now_y),
-        d_d0_F_z_2 = -(d_d0_N_law*inv_size*mu*x_now_z),
+        d_d0_most = d_d0_N_law*mu,
+        d_d0_r_1 = d_d0_most/k_t,
+        d_d0_old_more = 0.5*d_d0_r_1*slid/r_0,
+        d_d0_r = d_d0_r_1*(-0.5*slid + 1.0),
+        d_d0_A = -(d_d0_r*path/(r*r)),
+        d_d0_weight_0 = -((1.0/12.0)*d_d0_A*h*(2.0*A + 1.0)),
+        d_d0_weight_1 = d_d0_A*(0.5*A + 0.5),
+        d_d0_weight_2 = d_d0_A*path*(0.125*A*A + 1.0/12.0)/speed_1,
+        d_d0_turned_x = change_x*d_d0_weight_1 + d_d0_old_more*old_x + d_d0_weight_0*slip_old_x + d_d0_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_d0_turned_y = change_y*d_d0_weight_1 + d_d0_old_more*old_y + d_d0_weight_0*slip_old_y + d_d0_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_d0_turned_z = change_z*d_d0_weight_1 + d_d0_old_more*old_z + d_d0_weight_0*slip_old_z + d_d0_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_d0_size = inv_size*(d_d0_turned_x*turned_x + d_d0_turned_y*turned_y + d_d0_turned_z*turned_z),
+        d_d0_inv_size = -(d_d0_size*inv_size*inv_size),
+        d_d0_F_x_2 = -d_d0_inv_size*most*turned_x - d_d0_most*inv_size*turned_x - d_d0_turned_x*inv_size*most,
+        d_d0_F_y_2 = -d_d0_inv_size*most*turned_y - d_d0_most*inv_size*turned_y - d_d0_turned_y*inv_size*most,
+        d_d0_F_z_2 = -d_d0_inv_size*most*turned_z - d_d0_most*inv_size*turned_z - d_d0_turned_z*inv_size*most,
         d_d1_depth = -n_y,
         d_d1_size_p = d_d1_depth*depth/size_p,
         d_d1_root_p = 0.5*d_d1_size_p/root_p,
         d_d1_elastic = c[3]*d_d1_root_p*depth + d_d1_depth*(c[2] + c[3]*root_p),
         d_d1_N_law = d_d1_elastic*(c[4]*rate + 1.0),
-        d_d1_F_x_2 = -(d_d1_N_law*inv_size*mu*x_now_x),
-        d_d1_F_y_2 = -(d_d1_N_law*inv_size*mu*x_now_y),
-        d_d1_F_z_2 = -(d_d1_N_law*inv_size*mu*x_now_z),
+        d_d1_most = d_d1_N_law*mu,
+        d_d1_r_1 = d_d1_most/k_t,
+        d_d1_old_more = 0.5*d_d1_r_1*slid/r_0,
+        d_d1_r = d_d1_r_1*(-0.5*slid + 1.0),
+        d_d1_A = -(d_d1_r*path/(r*r)),
+        d_d1_weight_0 = -((1.0/12.0)*d_d1_A*h*(2.0*A + 1.0)),
+        d_d1_weight_1 = d_d1_A*(0.5*A + 0.5),
+        d_d1_weight_2 = d_d1_A*path*(0.125*A*A + 1.0/12.0)/speed_1,
+        d_d1_turned_x = change_x*d_d1_weight_1 + d_d1_old_more*old_x + d_d1_weight_0*slip_old_x + d_d1_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_d1_turned_y = change_y*d_d1_weight_1 + d_d1_old_more*old_y + d_d1_weight_0*slip_old_y + d_d1_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_d1_turned_z = change_z*d_d1_weight_1 + d_d1_old_more*old_z + d_d1_weight_0*slip_old_z + d_d1_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_d1_size = inv_size*(d_d1_turned_x*turned_x + d_d1_turned_y*turned_y + d_d1_turned_z*turned_z),
+        d_d1_inv_size = -(d_d1_size*inv_size*inv_size),
+        d_d1_F_x_2 = -d_d1_inv_size*most*turned_x - d_d1_most*inv_size*turned_x - d_d1_turned_x*inv_size*most,
+        d_d1_F_y_2 = -d_d1_inv_size*most*turned_y - d_d1_most*inv_size*turned_y - d_d1_turned_y*inv_size*most,
+        d_d1_F_z_2 = -d_d1_inv_size*most*turned_z - d_d1_most*inv_size*turned_z - d_d1_turned_z*inv_size*most,
         d_d2_depth = -n_z,
         d_d2_size_p = d_d2_depth*depth/size_p,
         d_d2_root_p = 0.5*d_d2_size_p/root_p,
         d_d2_elastic = c[3]*d_d2_root_p*depth + d_d2_depth*(c[2] + c[3]*root_p),
         d_d2_N_law = d_d2_elastic*(c[4]*rate + 1.0),
-        d_d2_F_x_2 = -(d_d2_N_law*inv_size*mu*x_now_x),
-        d_d2_F_y_2 = -(d_d2_N_law*inv_size*mu*x_now_y),
-        d_d2_F_z_2 = -(d_d2_N_law*inv_size*mu*x_now_z),
+        d_d2_most = d_d2_N_law*mu,
+        d_d2_r_1 = d_d2_most/k_t,
+        d_d2_old_more = 0.5*d_d2_r_1*slid/r_0,
+        d_d2_r = d_d2_r_1*(-0.5*slid + 1.0),
+        d_d2_A = -(d_d2_r*path/(r*r)),
+        d_d2_weight_0 = -((1.0/12.0)*d_d2_A*h*(2.0*A + 1.0)),
+        d_d2_weight_1 = d_d2_A*(0.5*A + 0.5),
+        d_d2_weight_2 = d_d2_A*path*(0.125*A*A + 1.0/12.0)/speed_1,
+        d_d2_turned_x = change_x*d_d2_weight_1 + d_d2_old_more*old_x + d_d2_weight_0*slip_old_x + d_d2_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_d2_turned_y = change_y*d_d2_weight_1 + d_d2_old_more*old_y + d_d2_weight_0*slip_old_y + d_d2_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_d2_turned_z = change_z*d_d2_weight_1 + d_d2_old_more*old_z + d_d2_weight_0*slip_old_z + d_d2_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_d2_size = inv_size*(d_d2_turned_x*turned_x + d_d2_turned_y*turned_y + d_d2_turned_z*turned_z),
+        d_d2_inv_size = -(d_d2_size*inv_size*inv_size),
+        d_d2_F_x_2 = -d_d2_inv_size*most*turned_x - d_d2_most*inv_size*turned_x - d_d2_turned_x*inv_size*most,
+        d_d2_F_y_2 = -d_d2_inv_size*most*turned_y - d_d2_most*inv_size*turned_y - d_d2_turned_y*inv_size*most,
+        d_d2_F_z_2 = -d_d2_inv_size*most*turned_z - d_d2_most*inv_size*turned_z - d_d2_turned_z*inv_size*most,
         d_t0_m_y = -t[5],
         d_t0_len_m = inv_m*(d_t0_m_y*m_y + m_z*t[4]),
         d_t0_inv_m = -(d_t0_len_m*inv_m*inv_m),
         d_t0_side_m = c[1]*d_t0_inv_m,
-        d_t0_n_x = d_t0_side_m*m_x,
         d_t0_n_y = d_t0_m_y*side_m + d_t0_side_m*m_y,
-        d_t0_n_z = d_t0_side_m*m_z + side_m*t[4];
+        d_t0_n_z = d_t0_side_m*m_z + side_m*t[4],
+        d_t0_across_x = d_t0_n_y*tau_z - d_t0_n_z*tau_y,
+        d_t0_old_x = d_t0_across_x*x[1],
+        d_t0_change_x = -d_t0_old_x,
+        d_t0_n_x = d_t0_side_m*m_x;
     CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY
     const fu_real
-        d_t0_across_x = d_t0_n_y*tau_z - d_t0_n_z*tau_y,
+        d_t0_most = d_t0_N_law*mu,
+        d_t0_r_1 = d_t0_most/k_t,
+        d_t0_old_more = 0.5*d_t0_r_1*slid/r_0,
+        d_t0_slip_old_x = d_t0_across_x*v[1],
         d_t0_across_y = -d_t0_n_x*tau_z + d_t0_n_z*tau_x,
+        d_t0_old_y = d_t0_across_y*x[1],
+        d_t0_change_y = -d_t0_old_y,
         d_t0_across_z = d_t0_n_x*tau_y - d_t0_n_y*tau_x,
-        d_t0_x_1 = (1.0/6.0)*d_t0_across_x*h*u[0] + (1.0/6.0)*d_t0_across_y*h*u[1] + (1.0/6.0)*d_t0_across_z*h*u[2],
-        d_t0_x_now_x = across_x*d_t0_x_1 + d_t0_across_x*x_1,
-        d_t0_x_now_y = across_y*d_t0_x_1 + d_t0_across_y*x_1,
-        d_t0_x_now_z = across_z*d_t0_x_1 + d_t0_across_z*x_1,
-        d_t0_size = inv_size*(d_t0_x_now_x*x_now_x + d_t0_x_now_y*x_now_y + d_t0_x_now_z*x_now_z),
-        d_t0_inv_size = -(d_t0_size*inv_size*inv_size),
-        d_t0_F_x_2 = -N_law*d_t0_inv_size*mu*x_now_x - N_law*d_t0_x_now_x*inv_size*mu - d_t0_N_law*inv_size*mu*x_now_x,
-        d_t0_F_y_2 = -N_law*d_t0_inv_size*mu*x_now_y - N_law*d_t0_x_now_y*inv_size*mu - d_t0_N_law*inv_size*mu*x_now_y,
-        d_t0_F_z_2 = -N_law*d_t0_inv_size*mu*x_now_z - N_law*d_t0_x_now_z*inv_size*mu - d_t0_N_law*inv_size*mu*x_now_z,
+        d_t0_old_z = d_t0_across_z*x[1],
+        d_t0_change_z = -d_t0_old_z,
+        d_t0_size_path = (change_x*d_t0_change_x + change_y*d_t0_change_y + change_z*d_t0_change_z)/size_path,
+        d_t0_path = d_t0_size_path*turns,
+        d_t0_r = d_t0_r_1*(-0.5*slid + 1.0),
+        d_t0_A = d_t0_path/r - d_t0_r*path/(r*r),
+        d_t0_weight_0 = -((1.0/12.0)*d_t0_A*h*(2.0*A + 1.0)),
+        d_t0_weight_1 = d_t0_A*(0.5*A + 0.5),
+        d_t0_speed_1 = (0.5*d_t0_n_x*(-2.0*n_y*u[0]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) - 2.0*n_z*u[0]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0])*(-4.0*n_x*u[0] - 2.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t0_n_y*(-2.0*n_x*u[1]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_z*u[1]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1])*(-2.0*n_x*u[0] - 4.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t0_n_z*(-2.0*n_x*u[2]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_y*u[2]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + (-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2])*(-2.0*n_x*u[0] - 2.0*n_y*u[1] - 4.0*n_z*u[2])))/speed_1,
+        d_t0_weight_2 = d_t0_A*path*(0.125*A*A + 1.0/12.0)/speed_1 + d_t0_path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1 - d_t0_speed_1*path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/(speed_1*speed_1),
+        d_t0_turned_x = change_x*d_t0_weight_1 + d_t0_change_x*weight_1 + d_t0_n_x*weight_2*(-2.0*n_x*u[0] - n_y*u[1] - n_z*u[2]) - d_t0_n_y*n_x*u[1]*weight_2 - d_t0_n_z*n_x*u[2]*weight_2 + d_t0_old_more*old_x + d_t0_old_x*old_more + d_t0_slip_old_x*weight_0 + d_t0_weight_0*slip_old_x + d_t0_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_t0_slip_old_y = d_t0_across_y*v[1],
+        d_t0_turned_y = change_y*d_t0_weight_1 + d_t0_change_y*weight_1 - d_t0_n_x*n_y*u[0]*weight_2 + d_t0_n_y*weight_2*(-n_x*u[0] - 2.0*n_y*u[1] - n_z*u[2]) - d_t0_n_z*n_y*u[2]*weight_2 + d_t0_old_more*old_y + d_t0_old_y*old_more + d_t0_slip_old_y*weight_0 + d_t0_weight_0*slip_old_y + d_t0_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_t0_slip_old_z = d_t0_across_z*v[1],
+        d_t0_turned_z = change_z*d_t0_weight_1 + d_t0_change_z*weight_1 - d_t0_n_x*n_z*u[0]*weight_2 - d_t0_n_y*n_z*u[1]*weight_2 + d_t0_n_z*weight_2*(-n_x*u[0] - n_y*u[1] - 2.0*n_z*u[2]) + d_t0_old_more*old_z + d_t0_old_z*old_more + d_t0_slip_old_z*weight_0 + d_t0_weight_0*slip_old_z + d_t0_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_t0_size = inv_size*(d_t0_turned_x*turned_x + d_t0_turned_y*turned_y + d_t0_turned_z*turned_z),
+        d_t0_inv_size = -(d_t0_size*inv_size*inv_size);
+    d_t_F_x_2[0] = -d_t0_inv_size*most*turned_x - d_t0_most*inv_size*turned_x - d_t0_turned_x*inv_size*most;
+    d_t_F_y_2[0] = -d_t0_inv_size*most*turned_y - d_t0_most*inv_size*turned_y - d_t0_turned_y*inv_size*most;
+    d_t_F_z_2[0] = -d_t0_inv_size*most*turned_z - d_t0_most*inv_size*turned_z - d_t0_turned_z*inv_size*most;
+    const fu_real
         d_t1_m_z = -t[3],
         d_t1_len_m = inv_m*(d_t1_m_z*m_z + m_x*t[5]),
         d_t1_inv_m = -(d_t1_len_m*inv_m*inv_m),
         d_t1_side_m = c[1]*d_t1_inv_m,
-        d_t1_n_x = d_t1_side_m*m_x + side_m*t[5],
         d_t1_n_y = d_t1_side_m*m_y,
-        d_t1_n_z = d_t1_m_z*side_m + d_t1_side_m*m_z;
+        d_t1_n_z = d_t1_m_z*side_m + d_t1_side_m*m_z,
+        d_t1_across_x = d_t1_n_y*tau_z - d_t1_n_z*tau_y,
+        d_t1_old_x = d_t1_across_x*x[1],
+        d_t1_change_x = -d_t1_old_x,
+        d_t1_n_x = d_t1_side_m*m_x + side_m*t[5];
     CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_2
     const fu_real
-        d_t1_across_x = d_t1_n_y*tau_z - d_t1_n_z*tau_y,
+        d_t1_most = d_t1_N_law*mu,
+        d_t1_r_1 = d_t1_most/k_t,
+        d_t1_old_more = 0.5*d_t1_r_1*slid/r_0,
+        d_t1_slip_old_x = d_t1_across_x*v[1],
         d_t1_across_y = -d_t1_n_x*tau_z + d_t1_n_z*tau_x,
+        d_t1_old_y = d_t1_across_y*x[1],
+        d_t1_change_y = -d_t1_old_y,
         d_t1_across_z = d_t1_n_x*tau_y - d_t1_n_y*tau_x,
-        d_t1_x_1 = (1.0/6.0)*d_t1_across_x*h*u[0] + (1.0/6.0)*d_t1_across_y*h*u[1] + (1.0/6.0)*d_t1_across_z*h*u[2],
-        d_t1_x_now_x = across_x*d_t1_x_1 + d_t1_across_x*x_1,
-        d_t1_x_now_y = across_y*d_t1_x_1 + d_t1_across_y*x_1,
-        d_t1_x_now_z = across_z*d_t1_x_1 + d_t1_across_z*x_1,
-        d_t1_size = inv_size*(d_t1_x_now_x*x_now_x + d_t1_x_now_y*x_now_y + d_t1_x_now_z*x_now_z),
-        d_t1_inv_size = -(d_t1_size*inv_size*inv_size),
-        d_t1_F_x_2 = -N_law*d_t1_inv_size*mu*x_now_x - N_law*d_t1_x_now_x*inv_size*mu - d_t1_N_law*inv_size*mu*x_now_x,
-        d_t1_F_y_2 = -N_law*d_t1_inv_size*mu*x_now_y - N_law*d_t1_x_now_y*inv_size*mu - d_t1_N_law*inv_size*mu*x_now_y,
-        d_t1_F_z_2 = -N_law*d_t1_inv_size*mu*x_now_z - N_law*d_t1_x_now_z*inv_size*mu - d_t1_N_law*inv_size*mu*x_now_z,
+        d_t1_old_z = d_t1_across_z*x[1],
+        d_t1_change_z = -d_t1_old_z,
+        d_t1_size_path = (change_x*d_t1_change_x + change_y*d_t1_change_y + change_z*d_t1_change_z)/size_path,
+        d_t1_path = d_t1_size_path*turns,
+        d_t1_r = d_t1_r_1*(-0.5*slid + 1.0),
+        d_t1_A = d_t1_path/r - d_t1_r*path/(r*r),
+        d_t1_weight_0 = -((1.0/12.0)*d_t1_A*h*(2.0*A + 1.0)),
+        d_t1_weight_1 = d_t1_A*(0.5*A + 0.5),
+        d_t1_speed_1 = (0.5*d_t1_n_x*(-2.0*n_y*u[0]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) - 2.0*n_z*u[0]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0])*(-4.0*n_x*u[0] - 2.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t1_n_y*(-2.0*n_x*u[1]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_z*u[1]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1])*(-2.0*n_x*u[0] - 4.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t1_n_z*(-2.0*n_x*u[2]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_y*u[2]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + (-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2])*(-2.0*n_x*u[0] - 2.0*n_y*u[1] - 4.0*n_z*u[2])))/speed_1,
+        d_t1_weight_2 = d_t1_A*path*(0.125*A*A + 1.0/12.0)/speed_1 + d_t1_path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1 - d_t1_speed_1*path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/(speed_1*speed_1),
+        d_t1_turned_x = change_x*d_t1_weight_1 + d_t1_change_x*weight_1 + d_t1_n_x*weight_2*(-2.0*n_x*u[0] - n_y*u[1] - n_z*u[2]) - d_t1_n_y*n_x*u[1]*weight_2 - d_t1_n_z*n_x*u[2]*weight_2 + d_t1_old_more*old_x + d_t1_old_x*old_more + d_t1_slip_old_x*weight_0 + d_t1_weight_0*slip_old_x + d_t1_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_t1_slip_old_y = d_t1_across_y*v[1],
+        d_t1_turned_y = change_y*d_t1_weight_1 + d_t1_change_y*weight_1 - d_t1_n_x*n_y*u[0]*weight_2 + d_t1_n_y*weight_2*(-n_x*u[0] - 2.0*n_y*u[1] - n_z*u[2]) - d_t1_n_z*n_y*u[2]*weight_2 + d_t1_old_more*old_y + d_t1_old_y*old_more + d_t1_slip_old_y*weight_0 + d_t1_weight_0*slip_old_y + d_t1_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_t1_slip_old_z = d_t1_across_z*v[1],
+        d_t1_turned_z = change_z*d_t1_weight_1 + d_t1_change_z*weight_1 - d_t1_n_x*n_z*u[0]*weight_2 - d_t1_n_y*n_z*u[1]*weight_2 + d_t1_n_z*weight_2*(-n_x*u[0] - n_y*u[1] - 2.0*n_z*u[2]) + d_t1_old_more*old_z + d_t1_old_z*old_more + d_t1_slip_old_z*weight_0 + d_t1_weight_0*slip_old_z + d_t1_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_t1_size = inv_size*(d_t1_turned_x*turned_x + d_t1_turned_y*turned_y + d_t1_turned_z*turned_z),
+        d_t1_inv_size = -(d_t1_size*inv_size*inv_size);
+    d_t_F_x_2[1] = -d_t1_inv_size*most*turned_x - d_t1_most*inv_size*turned_x - d_t1_turned_x*inv_size*most;
+    d_t_F_y_2[1] = -d_t1_inv_size*most*turned_y - d_t1_most*inv_size*turned_y - d_t1_turned_y*inv_size*most;
+    d_t_F_z_2[1] = -d_t1_inv_size*most*turned_z - d_t1_most*inv_size*turned_z - d_t1_turned_z*inv_size*most;
+    const fu_real
         d_t2_m_x = -t[4],
         d_t2_len_m = inv_m*(d_t2_m_x*m_x + m_y*t[3]),
         d_t2_inv_m = -(d_t2_len_m*inv_m*inv_m),
         d_t2_side_m = c[1]*d_t2_inv_m,
-        d_t2_n_x = d_t2_m_x*side_m + d_t2_side_m*m_x,
         d_t2_n_y = d_t2_side_m*m_y + side_m*t[3],
-        d_t2_n_z = d_t2_side_m*m_z;
+        d_t2_n_z = d_t2_side_m*m_z,
+        d_t2_across_x = d_t2_n_y*tau_z - d_t2_n_z*tau_y,
+        d_t2_old_x = d_t2_across_x*x[1],
+        d_t2_change_x = -d_t2_old_x,
+        d_t2_n_x = d_t2_m_x*side_m + d_t2_side_m*m_x;
     CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_3
     const fu_real
-        d_t2_across_x = d_t2_n_y*tau_z - d_t2_n_z*tau_y,
+        d_t2_most = d_t2_N_law*mu,
+        d_t2_r_1 = d_t2_most/k_t,
+        d_t2_old_more = 0.5*d_t2_r_1*slid/r_0,
+        d_t2_slip_old_x = d_t2_across_x*v[1],
         d_t2_across_y = -d_t2_n_x*tau_z + d_t2_n_z*tau_x,
+        d_t2_old_y = d_t2_across_y*x[1],
+        d_t2_change_y = -d_t2_old_y,
         d_t2_across_z = d_t2_n_x*tau_y - d_t2_n_y*tau_x,
-        d_t2_x_1 = (1.0/6.0)*d_t2_across_x*h*u[0] + (1.0/6.0)*d_t2_across_y*h*u[1] + (1.0/6.0)*d_t2_across_z*h*u[2],
-        d_t2_x_now_x = across_x*d_t2_x_1 + d_t2_across_x*x_1,
-        d_t2_x_now_y = across_y*d_t2_x_1 + d_t2_across_y*x_1,
-        d_t2_x_now_z = across_z*d_t2_x_1 + d_t2_across_z*x_1,
-        d_t2_size = inv_size*(d_t2_x_now_x*x_now_x + d_t2_x_now_y*x_now_y + d_t2_x_now_z*x_now_z),
-        d_t2_inv_size = -(d_t2_size*inv_size*inv_size),
-        d_t2_F_x_2 = -N_law*d_t2_inv_size*mu*x_now_x - N_law*d_t2_x_now_x*inv_size*mu - d_t2_N_law*inv_size*mu*x_now_x,
-        d_t2_F_y_2 = -N_law*d_t2_inv_size*mu*x_now_y - N_law*d_t2_x_now_y*inv_size*mu - d_t2_N_law*inv_size*mu*x_now_y,
-        d_t2_F_z_2 = -N_law*d_t2_inv_size*mu*x_now_z - N_law*d_t2_x_now_z*inv_size*mu - d_t2_N_law*inv_size*mu*x_now_z,
+        d_t2_old_z = d_t2_across_z*x[1],
+        d_t2_change_z = -d_t2_old_z,
+        d_t2_size_path = (change_x*d_t2_change_x + change_y*d_t2_change_y + change_z*d_t2_change_z)/size_path,
+        d_t2_path = d_t2_size_path*turns,
+        d_t2_r = d_t2_r_1*(-0.5*slid + 1.0),
+        d_t2_A = d_t2_path/r - d_t2_r*path/(r*r),
+        d_t2_weight_0 = -((1.0/12.0)*d_t2_A*h*(2.0*A + 1.0)),
+        d_t2_weight_1 = d_t2_A*(0.5*A + 0.5),
+        d_t2_speed_1 = (0.5*d_t2_n_x*(-2.0*n_y*u[0]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) - 2.0*n_z*u[0]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0])*(-4.0*n_x*u[0] - 2.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t2_n_y*(-2.0*n_x*u[1]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_z*u[1]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1])*(-2.0*n_x*u[0] - 4.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t2_n_z*(-2.0*n_x*u[2]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_y*u[2]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + (-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2])*(-2.0*n_x*u[0] - 2.0*n_y*u[1] - 4.0*n_z*u[2])))/speed_1,
+        d_t2_weight_2 = d_t2_A*path*(0.125*A*A + 1.0/12.0)/speed_1 + d_t2_path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1 - d_t2_speed_1*path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/(speed_1*speed_1),
+        d_t2_turned_x = change_x*d_t2_weight_1 + d_t2_change_x*weight_1 + d_t2_n_x*weight_2*(-2.0*n_x*u[0] - n_y*u[1] - n_z*u[2]) - d_t2_n_y*n_x*u[1]*weight_2 - d_t2_n_z*n_x*u[2]*weight_2 + d_t2_old_more*old_x + d_t2_old_x*old_more + d_t2_slip_old_x*weight_0 + d_t2_weight_0*slip_old_x + d_t2_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_t2_slip_old_y = d_t2_across_y*v[1],
+        d_t2_turned_y = change_y*d_t2_weight_1 + d_t2_change_y*weight_1 - d_t2_n_x*n_y*u[0]*weight_2 + d_t2_n_y*weight_2*(-n_x*u[0] - 2.0*n_y*u[1] - n_z*u[2]) - d_t2_n_z*n_y*u[2]*weight_2 + d_t2_old_more*old_y + d_t2_old_y*old_more + d_t2_slip_old_y*weight_0 + d_t2_weight_0*slip_old_y + d_t2_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_t2_slip_old_z = d_t2_across_z*v[1],
+        d_t2_turned_z = change_z*d_t2_weight_1 + d_t2_change_z*weight_1 - d_t2_n_x*n_z*u[0]*weight_2 - d_t2_n_y*n_z*u[1]*weight_2 + d_t2_n_z*weight_2*(-n_x*u[0] - n_y*u[1] - 2.0*n_z*u[2]) + d_t2_old_more*old_z + d_t2_old_z*old_more + d_t2_slip_old_z*weight_0 + d_t2_weight_0*slip_old_z + d_t2_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_t2_size = inv_size*(d_t2_turned_x*turned_x + d_t2_turned_y*turned_y + d_t2_turned_z*turned_z),
+        d_t2_inv_size = -(d_t2_size*inv_size*inv_size);
+    d_t_F_x_2[2] = -d_t2_inv_size*most*turned_x - d_t2_most*inv_size*turned_x - d_t2_turned_x*inv_size*most;
+    d_t_F_y_2[2] = -d_t2_inv_size*most*turned_y - d_t2_most*inv_size*turned_y - d_t2_turned_y*inv_size*most;
+    d_t_F_z_2[2] = -d_t2_inv_size*most*turned_z - d_t2_most*inv_size*turned_z - d_t2_turned_z*inv_size*most;
+    const fu_real
         d_t3_m_z = -t[1],
         d_t3_len_m = inv_m*(d_t3_m_z*m_z + m_y*t[2]),
         d_t3_inv_m = -(d_t3_len_m*inv_m*inv_m),
         d_t3_side_m = c[1]*d_t3_inv_m,
-        d_t3_n_x = d_t3_side_m*m_x,
         d_t3_n_y = d_t3_side_m*m_y + side_m*t[2],
-        d_t3_n_z = d_t3_m_z*side_m + d_t3_side_m*m_z;
+        d_t3_n_z = d_t3_m_z*side_m + d_t3_side_m*m_z,
+        d_t3_len_t = inv_t*t[3],
+        d_t3_inv_t = -(d_t3_len_t*inv_t*inv_t),
+        d_t3_tau_y = d_t3_inv_t*t[4],
+        d_t3_tau_z = d_t3_inv_t*t[5],
+        d_t3_across_x = d_t3_n_y*tau_z - d_t3_n_z*tau_y - d_t3_tau_y*n_z + d_t3_tau_z*n_y,
+        d_t3_tau_x = d_t3_inv_t*t[3] + inv_t,
+        d_t3_old_x = d_t3_across_x*x[1] + d_t3_tau_x*x[0],
+        d_t3_change_x = -d_t3_old_x,
+        d_t3_n_x = d_t3_side_m*m_x;
     CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_4
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_7
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_8
     const fu_real
-        d_t3_x_now_y = across_y*d_t3_x_1 + d_t3_across_y*x_1 + d_t3_tau_y*x_0 + d_t3_x_0*tau_y,
-        d_t3_x_now_z = across_z*d_t3_x_1 + d_t3_across_z*x_1 + d_t3_tau_z*x_0 + d_t3_x_0*tau_z,
-        d_t3_size = inv_size*(d_t3_x_now_x*x_now_x + d_t3_x_now_y*x_now_y + d_t3_x_now_z*x_now_z),
-        d_t3_inv_size = -(d_t3_size*inv_size*inv_size),
-        d_t3_F_x_2 = -N_law*d_t3_inv_size*mu*x_now_x - N_law*d_t3_x_now_x*inv_size*mu - d_t3_N_law*inv_size*mu*x_now_x,
-        d_t3_F_y_2 = -N_law*d_t3_inv_size*mu*x_now_y - N_law*d_t3_x_now_y*inv_size*mu - d_t3_N_law*inv_size*mu*x_now_y,
-        d_t3_F_z_2 = -N_law*d_t3_inv_size*mu*x_now_z - N_law*d_t3_x_now_z*inv_size*mu - d_t3_N_law*inv_size*mu*x_now_z,
+        d_t3_most = d_t3_N_law*mu,
+        d_t3_r_1 = d_t3_most/k_t,
+        d_t3_old_more = 0.5*d_t3_r_1*slid/r_0,
+        d_t3_slip_old_x = d_t3_across_x*v[1] + d_t3_tau_x*v[0],
+        d_t3_across_y = -d_t3_n_x*tau_z + d_t3_n_z*tau_x + d_t3_tau_x*n_z - d_t3_tau_z*n_x,
+        d_t3_old_y = d_t3_across_y*x[1] + d_t3_tau_y*x[0],
+        d_t3_change_y = -d_t3_old_y,
+        d_t3_across_z = d_t3_n_x*tau_y - d_t3_n_y*tau_x - d_t3_tau_x*n_y + d_t3_tau_y*n_x,
+        d_t3_old_z = d_t3_across_z*x[1] + d_t3_tau_z*x[0],
+        d_t3_change_z = -d_t3_old_z,
+        d_t3_size_path = (change_x*d_t3_change_x + change_y*d_t3_change_y + change_z*d_t3_change_z)/size_path,
+        d_t3_path = d_t3_size_path*turns,
+        d_t3_r = d_t3_r_1*(-0.5*slid + 1.0),
+        d_t3_A = d_t3_path/r - d_t3_r*path/(r*r),
+        d_t3_weight_0 = -((1.0/12.0)*d_t3_A*h*(2.0*A + 1.0)),
+        d_t3_weight_1 = d_t3_A*(0.5*A + 0.5),
+        d_t3_speed_1 = (0.5*d_t3_n_x*(-2.0*n_y*u[0]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) - 2.0*n_z*u[0]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0])*(-4.0*n_x*u[0] - 2.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t3_n_y*(-2.0*n_x*u[1]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_z*u[1]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1])*(-2.0*n_x*u[0] - 4.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t3_n_z*(-2.0*n_x*u[2]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_y*u[2]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + (-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2])*(-2.0*n_x*u[0] - 2.0*n_y*u[1] - 4.0*n_z*u[2])))/speed_1,
+        d_t3_weight_2 = d_t3_A*path*(0.125*A*A + 1.0/12.0)/speed_1 + d_t3_path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1 - d_t3_speed_1*path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/(speed_1*speed_1),
+        d_t3_turned_x = change_x*d_t3_weight_1 + d_t3_change_x*weight_1 + d_t3_n_x*weight_2*(-2.0*n_x*u[0] - n_y*u[1] - n_z*u[2]) - d_t3_n_y*n_x*u[1]*weight_2 - d_t3_n_z*n_x*u[2]*weight_2 + d_t3_old_more*old_x + d_t3_old_x*old_more + d_t3_slip_old_x*weight_0 + d_t3_weight_0*slip_old_x + d_t3_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_t3_slip_old_y = d_t3_across_y*v[1] + d_t3_tau_y*v[0],
+        d_t3_turned_y = change_y*d_t3_weight_1 + d_t3_change_y*weight_1 - d_t3_n_x*n_y*u[0]*weight_2 + d_t3_n_y*weight_2*(-n_x*u[0] - 2.0*n_y*u[1] - n_z*u[2]) - d_t3_n_z*n_y*u[2]*weight_2 + d_t3_old_more*old_y + d_t3_old_y*old_more + d_t3_slip_old_y*weight_0 + d_t3_weight_0*slip_old_y + d_t3_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_t3_slip_old_z = d_t3_across_z*v[1] + d_t3_tau_z*v[0],
+        d_t3_turned_z = change_z*d_t3_weight_1 + d_t3_change_z*weight_1 - d_t3_n_x*n_z*u[0]*weight_2 - d_t3_n_y*n_z*u[1]*weight_2 + d_t3_n_z*weight_2*(-n_x*u[0] - n_y*u[1] - 2.0*n_z*u[2]) + d_t3_old_more*old_z + d_t3_old_z*old_more + d_t3_slip_old_z*weight_0 + d_t3_weight_0*slip_old_z + d_t3_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_t3_size = inv_size*(d_t3_turned_x*turned_x + d_t3_turned_y*turned_y + d_t3_turned_z*turned_z),
+        d_t3_inv_size = -(d_t3_size*inv_size*inv_size);
+    d_t_F_x_2[3] = -d_t3_inv_size*most*turned_x - d_t3_most*inv_size*turned_x - d_t3_turned_x*inv_size*most;
+    d_t_F_y_2[3] = -d_t3_inv_size*most*turned_y - d_t3_most*inv_size*turned_y - d_t3_turned_y*inv_size*most;
+    d_t_F_z_2[3] = -d_t3_inv_size*most*turned_z - d_t3_most*inv_size*turned_z - d_t3_turned_z*inv_size*most;
+    const fu_real
         d_t4_m_x = -t[2],
         d_t4_len_m = inv_m*(d_t4_m_x*m_x + m_z*t[0]),
         d_t4_inv_m = -(d_t4_len_m*inv_m*inv_m),
         d_t4_side_m = c[1]*d_t4_inv_m,
-        d_t4_n_x = d_t4_m_x*side_m + d_t4_side_m*m_x,
         d_t4_n_y = d_t4_side_m*m_y,
-        d_t4_n_z = d_t4_side_m*m_z + side_m*t[0];
+        d_t4_n_z = d_t4_side_m*m_z + side_m*t[0],
+        d_t4_len_t = inv_t*t[4],
+        d_t4_inv_t = -(d_t4_len_t*inv_t*inv_t),
+        d_t4_tau_y = d_t4_inv_t*t[4] + inv_t,
+        d_t4_tau_z = d_t4_inv_t*t[5],
+        d_t4_across_x = d_t4_n_y*tau_z - d_t4_n_z*tau_y - d_t4_tau_y*n_z + d_t4_tau_z*n_y,
+        d_t4_tau_x = d_t4_inv_t*t[3],
+        d_t4_old_x = d_t4_across_x*x[1] + d_t4_tau_x*x[0],
+        d_t4_change_x = -d_t4_old_x,
+        d_t4_n_x = d_t4_m_x*side_m + d_t4_side_m*m_x;
     CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_5
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_9
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_10
     const fu_real
-        d_t4_x_now_y = across_y*d_t4_x_1 + d_t4_across_y*x_1 + d_t4_tau_y*x_0 + d_t4_x_0*tau_y,
-        d_t4_x_now_z = across_z*d_t4_x_1 + d_t4_across_z*x_1 + d_t4_tau_z*x_0 + d_t4_x_0*tau_z,
-        d_t4_size = inv_size*(d_t4_x_now_x*x_now_x + d_t4_x_now_y*x_now_y + d_t4_x_now_z*x_now_z),
-        d_t4_inv_size = -(d_t4_size*inv_size*inv_size),
-        d_t4_F_x_2 = -N_law*d_t4_inv_size*mu*x_now_x - N_law*d_t4_x_now_x*inv_size*mu - d_t4_N_law*inv_size*mu*x_now_x,
-        d_t4_F_y_2 = -N_law*d_t4_inv_size*mu*x_now_y - N_law*d_t4_x_now_y*inv_size*mu - d_t4_N_law*inv_size*mu*x_now_y,
-        d_t4_F_z_2 = -N_law*d_t4_inv_size*mu*x_now_z - N_law*d_t4_x_now_z*inv_size*mu - d_t4_N_law*inv_size*mu*x_now_z,
+        d_t4_most = d_t4_N_law*mu,
+        d_t4_r_1 = d_t4_most/k_t,
+        d_t4_old_more = 0.5*d_t4_r_1*slid/r_0,
+        d_t4_slip_old_x = d_t4_across_x*v[1] + d_t4_tau_x*v[0],
+        d_t4_across_y = -d_t4_n_x*tau_z + d_t4_n_z*tau_x + d_t4_tau_x*n_z - d_t4_tau_z*n_x,
+        d_t4_old_y = d_t4_across_y*x[1] + d_t4_tau_y*x[0],
+        d_t4_change_y = -d_t4_old_y,
+        d_t4_across_z = d_t4_n_x*tau_y - d_t4_n_y*tau_x - d_t4_tau_x*n_y + d_t4_tau_y*n_x,
+        d_t4_old_z = d_t4_across_z*x[1] + d_t4_tau_z*x[0],
+        d_t4_change_z = -d_t4_old_z,
+        d_t4_size_path = (change_x*d_t4_change_x + change_y*d_t4_change_y + change_z*d_t4_change_z)/size_path,
+        d_t4_path = d_t4_size_path*turns,
+        d_t4_r = d_t4_r_1*(-0.5*slid + 1.0),
+        d_t4_A = d_t4_path/r - d_t4_r*path/(r*r),
+        d_t4_weight_0 = -((1.0/12.0)*d_t4_A*h*(2.0*A + 1.0)),
+        d_t4_weight_1 = d_t4_A*(0.5*A + 0.5),
+        d_t4_speed_1 = (0.5*d_t4_n_x*(-2.0*n_y*u[0]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) - 2.0*n_z*u[0]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0])*(-4.0*n_x*u[0] - 2.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t4_n_y*(-2.0*n_x*u[1]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_z*u[1]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1])*(-2.0*n_x*u[0] - 4.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t4_n_z*(-2.0*n_x*u[2]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_y*u[2]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + (-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2])*(-2.0*n_x*u[0] - 2.0*n_y*u[1] - 4.0*n_z*u[2])))/speed_1,
+        d_t4_weight_2 = d_t4_A*path*(0.125*A*A + 1.0/12.0)/speed_1 + d_t4_path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1 - d_t4_speed_1*path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/(speed_1*speed_1),
+        d_t4_turned_x = change_x*d_t4_weight_1 + d_t4_change_x*weight_1 + d_t4_n_x*weight_2*(-2.0*n_x*u[0] - n_y*u[1] - n_z*u[2]) - d_t4_n_y*n_x*u[1]*weight_2 - d_t4_n_z*n_x*u[2]*weight_2 + d_t4_old_more*old_x + d_t4_old_x*old_more + d_t4_slip_old_x*weight_0 + d_t4_weight_0*slip_old_x + d_t4_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_t4_slip_old_y = d_t4_across_y*v[1] + d_t4_tau_y*v[0],
+        d_t4_turned_y = change_y*d_t4_weight_1 + d_t4_change_y*weight_1 - d_t4_n_x*n_y*u[0]*weight_2 + d_t4_n_y*weight_2*(-n_x*u[0] - 2.0*n_y*u[1] - n_z*u[2]) - d_t4_n_z*n_y*u[2]*weight_2 + d_t4_old_more*old_y + d_t4_old_y*old_more + d_t4_slip_old_y*weight_0 + d_t4_weight_0*slip_old_y + d_t4_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_t4_slip_old_z = d_t4_across_z*v[1] + d_t4_tau_z*v[0],
+        d_t4_turned_z = change_z*d_t4_weight_1 + d_t4_change_z*weight_1 - d_t4_n_x*n_z*u[0]*weight_2 - d_t4_n_y*n_z*u[1]*weight_2 + d_t4_n_z*weight_2*(-n_x*u[0] - n_y*u[1] - 2.0*n_z*u[2]) + d_t4_old_more*old_z + d_t4_old_z*old_more + d_t4_slip_old_z*weight_0 + d_t4_weight_0*slip_old_z + d_t4_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_t4_size = inv_size*(d_t4_turned_x*turned_x + d_t4_turned_y*turned_y + d_t4_turned_z*turned_z),
+        d_t4_inv_size = -(d_t4_size*inv_size*inv_size);
+    d_t_F_x_2[4] = -d_t4_inv_size*most*turned_x - d_t4_most*inv_size*turned_x - d_t4_turned_x*inv_size*most;
+    d_t_F_y_2[4] = -d_t4_inv_size*most*turned_y - d_t4_most*inv_size*turned_y - d_t4_turned_y*inv_size*most;
+    d_t_F_z_2[4] = -d_t4_inv_size*most*turned_z - d_t4_most*inv_size*turned_z - d_t4_turned_z*inv_size*most;
+    const fu_real
         d_t5_m_y = -t[0],
         d_t5_len_m = inv_m*(d_t5_m_y*m_y + m_x*t[1]),
         d_t5_inv_m = -(d_t5_len_m*inv_m*inv_m),
         d_t5_side_m = c[1]*d_t5_inv_m,
-        d_t5_n_x = d_t5_side_m*m_x + side_m*t[1],
         d_t5_n_y = d_t5_m_y*side_m + d_t5_side_m*m_y,
-        d_t5_n_z = d_t5_side_m*m_z;
+        d_t5_n_z = d_t5_side_m*m_z,
+        d_t5_len_t = inv_t*t[5],
+        d_t5_inv_t = -(d_t5_len_t*inv_t*inv_t),
+        d_t5_tau_y = d_t5_inv_t*t[4],
+        d_t5_tau_z = d_t5_inv_t*t[5] + inv_t,
+        d_t5_across_x = d_t5_n_y*tau_z - d_t5_n_z*tau_y - d_t5_tau_y*n_z + d_t5_tau_z*n_y,
+        d_t5_tau_x = d_t5_inv_t*t[3],
+        d_t5_old_x = d_t5_across_x*x[1] + d_t5_tau_x*x[0],
+        d_t5_change_x = -d_t5_old_x,
+        d_t5_n_x = d_t5_side_m*m_x + side_m*t[1];
     CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_6
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_11
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_12
     const fu_real
-        d_t5_x_now_y = across_y*d_t5_x_1 + d_t5_across_y*x_1 + d_t5_tau_y*x_0 + d_t5_x_0*tau_y,
-        d_t5_x_now_z = across_z*d_t5_x_1 + d_t5_across_z*x_1 + d_t5_tau_z*x_0 + d_t5_x_0*tau_z,
-        d_t5_size = inv_size*(d_t5_x_now_x*x_now_x + d_t5_x_now_y*x_now_y + d_t5_x_now_z*x_now_z),
-        d_t5_inv_size = -(d_t5_size*inv_size*inv_size),
-        d_t5_F_x_2 = -N_law*d_t5_inv_size*mu*x_now_x - N_law*d_t5_x_now_x*inv_size*mu - d_t5_N_law*inv_size*mu*x_now_x,
-        d_t5_F_y_2 = -N_law*d_t5_inv_size*mu*x_now_y - N_law*d_t5_x_now_y*inv_size*mu - d_t5_N_law*inv_size*mu*x_now_y,
-        d_t5_F_z_2 = -N_law*d_t5_inv_size*mu*x_now_z - N_law*d_t5_x_now_z*inv_size*mu - d_t5_N_law*inv_size*mu*x_now_z,
+        d_t5_most = d_t5_N_law*mu,
+        d_t5_r_1 = d_t5_most/k_t,
+        d_t5_old_more = 0.5*d_t5_r_1*slid/r_0,
+        d_t5_slip_old_x = d_t5_across_x*v[1] + d_t5_tau_x*v[0],
+        d_t5_across_y = -d_t5_n_x*tau_z + d_t5_n_z*tau_x + d_t5_tau_x*n_z - d_t5_tau_z*n_x,
+        d_t5_old_y = d_t5_across_y*x[1] + d_t5_tau_y*x[0],
+        d_t5_change_y = -d_t5_old_y,
+        d_t5_across_z = d_t5_n_x*tau_y - d_t5_n_y*tau_x - d_t5_tau_x*n_y + d_t5_tau_y*n_x,
+        d_t5_old_z = d_t5_across_z*x[1] + d_t5_tau_z*x[0],
+        d_t5_change_z = -d_t5_old_z,
+        d_t5_size_path = (change_x*d_t5_change_x + change_y*d_t5_change_y + change_z*d_t5_change_z)/size_path,
+        d_t5_path = d_t5_size_path*turns,
+        d_t5_r = d_t5_r_1*(-0.5*slid + 1.0),
+        d_t5_A = d_t5_path/r - d_t5_r*path/(r*r),
+        d_t5_weight_0 = -((1.0/12.0)*d_t5_A*h*(2.0*A + 1.0)),
+        d_t5_weight_1 = d_t5_A*(0.5*A + 0.5),
+        d_t5_speed_1 = (0.5*d_t5_n_x*(-2.0*n_y*u[0]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) - 2.0*n_z*u[0]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0])*(-4.0*n_x*u[0] - 2.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t5_n_y*(-2.0*n_x*u[1]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_z*u[1]*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + (-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1])*(-2.0*n_x*u[0] - 4.0*n_y*u[1] - 2.0*n_z*u[2])) + 0.5*d_t5_n_z*(-2.0*n_x*u[2]*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - 2.0*n_y*u[2]*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + (-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2])*(-2.0*n_x*u[0] - 2.0*n_y*u[1] - 4.0*n_z*u[2])))/speed_1,
+        d_t5_weight_2 = d_t5_A*path*(0.125*A*A + 1.0/12.0)/speed_1 + d_t5_path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1 - d_t5_speed_1*path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/(speed_1*speed_1),
+        d_t5_turned_x = change_x*d_t5_weight_1 + d_t5_change_x*weight_1 + d_t5_n_x*weight_2*(-2.0*n_x*u[0] - n_y*u[1] - n_z*u[2]) - d_t5_n_y*n_x*u[1]*weight_2 - d_t5_n_z*n_x*u[2]*weight_2 + d_t5_old_more*old_x + d_t5_old_x*old_more + d_t5_slip_old_x*weight_0 + d_t5_weight_0*slip_old_x + d_t5_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_t5_slip_old_y = d_t5_across_y*v[1] + d_t5_tau_y*v[0],
+        d_t5_turned_y = change_y*d_t5_weight_1 + d_t5_change_y*weight_1 - d_t5_n_x*n_y*u[0]*weight_2 + d_t5_n_y*weight_2*(-n_x*u[0] - 2.0*n_y*u[1] - n_z*u[2]) - d_t5_n_z*n_y*u[2]*weight_2 + d_t5_old_more*old_y + d_t5_old_y*old_more + d_t5_slip_old_y*weight_0 + d_t5_weight_0*slip_old_y + d_t5_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_t5_slip_old_z = d_t5_across_z*v[1] + d_t5_tau_z*v[0],
+        d_t5_turned_z = change_z*d_t5_weight_1 + d_t5_change_z*weight_1 - d_t5_n_x*n_z*u[0]*weight_2 - d_t5_n_y*n_z*u[1]*weight_2 + d_t5_n_z*weight_2*(-n_x*u[0] - n_y*u[1] - 2.0*n_z*u[2]) + d_t5_old_more*old_z + d_t5_old_z*old_more + d_t5_slip_old_z*weight_0 + d_t5_weight_0*slip_old_z + d_t5_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_t5_size = inv_size*(d_t5_turned_x*turned_x + d_t5_turned_y*turned_y + d_t5_turned_z*turned_z),
+        d_t5_inv_size = -(d_t5_size*inv_size*inv_size);
+    d_t_F_x_2[5] = -d_t5_inv_size*most*turned_x - d_t5_most*inv_size*turned_x - d_t5_turned_x*inv_size*most;
+    d_t_F_y_2[5] = -d_t5_inv_size*most*turned_y - d_t5_most*inv_size*turned_y - d_t5_turned_y*inv_size*most;
+    d_t_F_z_2[5] = -d_t5_inv_size*most*turned_z - d_t5_most*inv_size*turned_z - d_t5_turned_z*inv_size*most;
+    const fu_real
         d_u0_rate = -n_x,
         d_u0_N_law = c[4]*d_u0_rate*elastic,
-        d_u0_x_0 = (1.0/6.0)*h*tau_x,
-        d_u0_x_1 = (1.0/6.0)*across_x*h,
-        d_u0_x_now_x = across_x*d_u0_x_1 + d_u0_x_0*tau_x,
-        d_u0_x_now_y = across_y*d_u0_x_1 + d_u0_x_0*tau_y,
-        d_u0_x_now_z = across_z*d_u0_x_1 + d_u0_x_0*tau_z,
-        d_u0_size = inv_size*(d_u0_x_now_x*x_now_x + d_u0_x_now_y*x_now_y + d_u0_x_now_z*x_now_z),
+        d_u0_most = d_u0_N_law*mu,
+        d_u0_r_1 = d_u0_most/k_t,
+        d_u0_old_more = 0.5*d_u0_r_1*slid/r_0,
+        d_u0_r = d_u0_r_1*(-0.5*slid + 1.0),
+        d_u0_A = -(d_u0_r*path/(r*r)),
+        d_u0_weight_0 = -((1.0/12.0)*d_u0_A*h*(2.0*A + 1.0)),
+        d_u0_weight_1 = d_u0_A*(0.5*A + 0.5),
+        d_u0_speed_1 = (-n_x*n_y*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) - n_x*n_z*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + 0.5*(-2.0*n_x*n_x + 2.0)*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]))/speed_1,
+        d_u0_weight_2 = d_u0_A*path*(0.125*A*A + 1.0/12.0)/speed_1 - d_u0_speed_1*path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/(speed_1*speed_1),
+        d_u0_turned_x = change_x*d_u0_weight_1 + d_u0_old_more*old_x + d_u0_weight_0*slip_old_x + d_u0_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) + weight_2*(-n_x*n_x + 1.0),
+        d_u0_turned_y = change_y*d_u0_weight_1 + d_u0_old_more*old_y + d_u0_weight_0*slip_old_y + d_u0_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) - n_x*n_y*weight_2,
+        d_u0_turned_z = change_z*d_u0_weight_1 + d_u0_old_more*old_z + d_u0_weight_0*slip_old_z + d_u0_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) - n_x*n_z*weight_2,
+        d_u0_size = inv_size*(d_u0_turned_x*turned_x + d_u0_turned_y*turned_y + d_u0_turned_z*turned_z),
         d_u0_inv_size = -(d_u0_size*inv_size*inv_size),
-        d_u0_F_x_2 = -N_law*d_u0_inv_size*mu*x_now_x - N_law*d_u0_x_now_x*inv_size*mu - d_u0_N_law*inv_size*mu*x_now_x,
-        d_u0_F_y_2 = -N_law*d_u0_inv_size*mu*x_now_y - N_law*d_u0_x_now_y*inv_size*mu - d_u0_N_law*inv_size*mu*x_now_y,
-        d_u0_F_z_2 = -N_law*d_u0_inv_size*mu*x_now_z - N_law*d_u0_x_now_z*inv_size*mu - d_u0_N_law*inv_size*mu*x_now_z,
+        d_u0_F_x_2 = -d_u0_inv_size*most*turned_x - d_u0_most*inv_size*turned_x - d_u0_turned_x*inv_size*most,
+        d_u0_F_y_2 = -d_u0_inv_size*most*turned_y - d_u0_most*inv_size*turned_y - d_u0_turned_y*inv_size*most,
+        d_u0_F_z_2 = -d_u0_inv_size*most*turned_z - d_u0_most*inv_size*turned_z - d_u0_turned_z*inv_size*most,
         d_u1_rate = -n_y,
         d_u1_N_law = c[4]*d_u1_rate*elastic,
-        d_u1_x_0 = (1.0/6.0)*h*tau_y,
-        d_u1_x_1 = (1.0/6.0)*across_y*h,
-        d_u1_x_now_x = across_x*d_u1_x_1 + d_u1_x_0*tau_x,
-        d_u1_x_now_y = across_y*d_u1_x_1 + d_u1_x_0*tau_y,
-        d_u1_x_now_z = across_z*d_u1_x_1 + d_u1_x_0*tau_z,
-        d_u1_size = inv_size*(d_u1_x_now_x*x_now_x + d_u1_x_now_y*x_now_y + d_u1_x_now_z*x_now_z),
+        d_u1_most = d_u1_N_law*mu,
+        d_u1_r_1 = d_u1_most/k_t,
+        d_u1_old_more = 0.5*d_u1_r_1*slid/r_0,
+        d_u1_r = d_u1_r_1*(-0.5*slid + 1.0),
+        d_u1_A = -(d_u1_r*path/(r*r)),
+        d_u1_weight_0 = -((1.0/12.0)*d_u1_A*h*(2.0*A + 1.0)),
+        d_u1_weight_1 = d_u1_A*(0.5*A + 0.5),
+        d_u1_speed_1 = (-n_x*n_y*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - n_y*n_z*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + 0.5*(-2.0*n_y*n_y + 2.0)*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]))/speed_1,
+        d_u1_weight_2 = d_u1_A*path*(0.125*A*A + 1.0/12.0)/speed_1 - d_u1_speed_1*path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/(speed_1*speed_1),
+        d_u1_turned_x = change_x*d_u1_weight_1 + d_u1_old_more*old_x + d_u1_weight_0*slip_old_x + d_u1_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - n_x*n_y*weight_2,
+        d_u1_turned_y = change_y*d_u1_weight_1 + d_u1_old_more*old_y + d_u1_weight_0*slip_old_y + d_u1_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + weight_2*(-n_y*n_y + 1.0),
+        d_u1_turned_z = change_z*d_u1_weight_1 + d_u1_old_more*old_z + d_u1_weight_0*slip_old_z + d_u1_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) - n_y*n_z*weight_2,
+        d_u1_size = inv_size*(d_u1_turned_x*turned_x + d_u1_turned_y*turned_y + d_u1_turned_z*turned_z),
         d_u1_inv_size = -(d_u1_size*inv_size*inv_size),
-        d_u1_F_x_2 = -N_law*d_u1_inv_size*mu*x_now_x - N_law*d_u1_x_now_x*inv_size*mu - d_u1_N_law*inv_size*mu*x_now_x,
-        d_u1_F_y_2 = -N_law*d_u1_inv_size*mu*x_now_y - N_law*d_u1_x_now_y*inv_size*mu - d_u1_N_law*inv_size*mu*x_now_y,
-        d_u1_F_z_2 = -N_law*d_u1_inv_size*mu*x_now_z - N_law*d_u1_x_now_z*inv_size*mu - d_u1_N_law*inv_size*mu*x_now_z,
+        d_u1_F_x_2 = -d_u1_inv_size*most*turned_x - d_u1_most*inv_size*turned_x - d_u1_turned_x*inv_size*most,
+        d_u1_F_y_2 = -d_u1_inv_size*most*turned_y - d_u1_most*inv_size*turned_y - d_u1_turned_y*inv_size*most,
+        d_u1_F_z_2 = -d_u1_inv_size*most*turned_z - d_u1_most*inv_size*turned_z - d_u1_turned_z*inv_size*most,
         d_u2_rate = -n_z,
         d_u2_N_law = c[4]*d_u2_rate*elastic,
-        d_u2_x_0 = (1.0/6.0)*h*tau_z,
-        d_u2_x_1 = (1.0/6.0)*across_z*h,
-        d_u2_x_now_x = across_x*d_u2_x_1 + d_u2_x_0*tau_x,
-        d_u2_x_now_y = across_y*d_u2_x_1 + d_u2_x_0*tau_y,
-        d_u2_x_now_z = across_z*d_u2_x_1 + d_u2_x_0*tau_z,
-        d_u2_size = inv_size*(d_u2_x_now_x*x_now_x + d_u2_x_now_y*x_now_y + d_u2_x_now_z*x_now_z),
+        d_u2_most = d_u2_N_law*mu,
+        d_u2_r_1 = d_u2_most/k_t,
+        d_u2_old_more = 0.5*d_u2_r_1*slid/r_0,
+        d_u2_r = d_u2_r_1*(-0.5*slid + 1.0),
+        d_u2_A = -(d_u2_r*path/(r*r)),
+        d_u2_weight_0 = -((1.0/12.0)*d_u2_A*h*(2.0*A + 1.0)),
+        d_u2_weight_1 = d_u2_A*(0.5*A + 0.5),
+        d_u2_speed_1 = (-n_x*n_z*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - n_y*n_z*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + 0.5*(-2.0*n_z*n_z + 2.0)*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]))/speed_1,
+        d_u2_weight_2 = d_u2_A*path*(0.125*A*A + 1.0/12.0)/speed_1 - d_u2_speed_1*path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/(speed_1*speed_1),
+        d_u2_turned_x = change_x*d_u2_weight_1 + d_u2_old_more*old_x + d_u2_weight_0*slip_old_x + d_u2_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) - n_x*n_z*weight_2,
+        d_u2_turned_y = change_y*d_u2_weight_1 + d_u2_old_more*old_y + d_u2_weight_0*slip_old_y + d_u2_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) - n_y*n_z*weight_2,
+        d_u2_turned_z = change_z*d_u2_weight_1 + d_u2_old_more*old_z + d_u2_weight_0*slip_old_z + d_u2_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + weight_2*(-n_z*n_z + 1.0),
+        d_u2_size = inv_size*(d_u2_turned_x*turned_x + d_u2_turned_y*turned_y + d_u2_turned_z*turned_z),
         d_u2_inv_size = -(d_u2_size*inv_size*inv_size),
-        d_u2_F_x_2 = -N_law*d_u2_inv_size*mu*x_now_x - N_law*d_u2_x_now_x*inv_size*mu - d_u2_N_law*inv_size*mu*x_now_x,
-        d_u2_F_y_2 = -N_law*d_u2_inv_size*mu*x_now_y - N_law*d_u2_x_now_y*inv_size*mu - d_u2_N_law*inv_size*mu*x_now_y,
-        d_u2_F_z_2 = -N_law*d_u2_inv_size*mu*x_now_z - N_law*d_u2_x_now_z*inv_size*mu - d_u2_N_law*inv_size*mu*x_now_z;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_13
+        d_u2_F_x_2 = -d_u2_inv_size*most*turned_x - d_u2_most*inv_size*turned_x - d_u2_turned_x*inv_size*most,
+        d_u2_F_y_2 = -d_u2_inv_size*most*turned_y - d_u2_most*inv_size*turned_y - d_u2_turned_y*inv_size*most,
+        d_u2_F_z_2 = -d_u2_inv_size*most*turned_z - d_u2_most*inv_size*turned_z - d_u2_turned_z*inv_size*most,
+        d_x_now_x_size_path = change_x/size_path,
+        d_x_now_x_path = d_x_now_x_size_path*turns,
+        d_x_now_x_A = d_x_now_x_path/r,
+        d_x_now_x_weight_0 = -((1.0/12.0)*d_x_now_x_A*h*(2.0*A + 1.0)),
+        d_x_now_x_weight_1 = d_x_now_x_A*(0.5*A + 0.5),
+        d_x_now_x_weight_2 = d_x_now_x_A*path*(0.125*A*A + 1.0/12.0)/speed_1 + d_x_now_x_path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1,
+        d_x_now_x_turned_x = change_x*d_x_now_x_weight_1 + d_x_now_x_weight_0*slip_old_x + d_x_now_x_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]) + weight_1 + 1.0,
+        d_x_now_x_turned_y = change_y*d_x_now_x_weight_1 + d_x_now_x_weight_0*slip_old_y + d_x_now_x_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_x_now_x_turned_z = change_z*d_x_now_x_weight_1 + d_x_now_x_weight_0*slip_old_z + d_x_now_x_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_x_now_x_size = inv_size*(d_x_now_x_turned_x*turned_x + d_x_now_x_turned_y*turned_y + d_x_now_x_turned_z*turned_z),
+        d_x_now_x_inv_size = -(d_x_now_x_size*inv_size*inv_size),
+        d_x_now_x_F_x_2 = -d_x_now_x_inv_size*most*turned_x - d_x_now_x_turned_x*inv_size*most,
+        d_x_now_x_F_y_2 = -d_x_now_x_inv_size*most*turned_y - d_x_now_x_turned_y*inv_size*most,
+        d_x_now_x_F_z_2 = -d_x_now_x_inv_size*most*turned_z - d_x_now_x_turned_z*inv_size*most,
+        d_x_now_y_size_path = change_y/size_path,
+        d_x_now_y_path = d_x_now_y_size_path*turns,
+        d_x_now_y_A = d_x_now_y_path/r,
+        d_x_now_y_weight_0 = -((1.0/12.0)*d_x_now_y_A*h*(2.0*A + 1.0)),
+        d_x_now_y_weight_1 = d_x_now_y_A*(0.5*A + 0.5),
+        d_x_now_y_weight_2 = d_x_now_y_A*path*(0.125*A*A + 1.0/12.0)/speed_1 + d_x_now_y_path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1,
+        d_x_now_y_turned_x = change_x*d_x_now_y_weight_1 + d_x_now_y_weight_0*slip_old_x + d_x_now_y_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_x_now_y_turned_y = change_y*d_x_now_y_weight_1 + d_x_now_y_weight_0*slip_old_y + d_x_now_y_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]) + weight_1 + 1.0,
+        d_x_now_y_turned_z = change_z*d_x_now_y_weight_1 + d_x_now_y_weight_0*slip_old_z + d_x_now_y_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]),
+        d_x_now_y_size = inv_size*(d_x_now_y_turned_x*turned_x + d_x_now_y_turned_y*turned_y + d_x_now_y_turned_z*turned_z),
+        d_x_now_y_inv_size = -(d_x_now_y_size*inv_size*inv_size),
+        d_x_now_y_F_x_2 = -d_x_now_y_inv_size*most*turned_x - d_x_now_y_turned_x*inv_size*most,
+        d_x_now_y_F_y_2 = -d_x_now_y_inv_size*most*turned_y - d_x_now_y_turned_y*inv_size*most,
+        d_x_now_y_F_z_2 = -d_x_now_y_inv_size*most*turned_z - d_x_now_y_turned_z*inv_size*most,
+        d_x_now_z_size_path = change_z/size_path,
+        d_x_now_z_path = d_x_now_z_size_path*turns,
+        d_x_now_z_A = d_x_now_z_path/r,
+        d_x_now_z_weight_0 = -((1.0/12.0)*d_x_now_z_A*h*(2.0*A + 1.0)),
+        d_x_now_z_weight_1 = d_x_now_z_A*(0.5*A + 0.5),
+        d_x_now_z_weight_2 = d_x_now_z_A*path*(0.125*A*A + 1.0/12.0)/speed_1 + d_x_now_z_path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1,
+        d_x_now_z_turned_x = change_x*d_x_now_z_weight_1 + d_x_now_z_weight_0*slip_old_x + d_x_now_z_weight_2*(-n_x*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[0]),
+        d_x_now_z_turned_y = change_y*d_x_now_z_weight_1 + d_x_now_z_weight_0*slip_old_y + d_x_now_z_weight_2*(-n_y*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[1]),
+        d_x_now_z_turned_z = change_z*d_x_now_z_weight_1 + d_x_now_z_weight_0*slip_old_z + d_x_now_z_weight_2*(-n_z*(n_x*u[0] + n_y*u[1] + n_z*u[2]) + u[2]) + weight_1 + 1.0,
+        d_x_now_z_size = inv_size*(d_x_now_z_turned_x*turned_x + d_x_now_z_turned_y*turned_y + d_x_now_z_turned_z*turned_z),
+        d_x_now_z_inv_size = -(d_x_now_z_size*inv_size*inv_size),
+        d_x_now_z_F_x_2 = -d_x_now_z_inv_size*most*turned_x - d_x_now_z_turned_x*inv_size*most,
+        d_x_now_z_F_y_2 = -d_x_now_z_inv_size*most*turned_y - d_x_now_z_turned_y*inv_size*most,
+        d_x_now_z_F_z_2 = -d_x_now_z_inv_size*most*turned_z - d_x_now_z_turned_z*inv_size*most,
+        d_t0_m_y_2 = -t[5],
+        d_t0_len_m_2 = inv_m*(d_t0_m_y_2*m_y + m_z*t[4]),
+        d_t0_inv_m_2 = -(d_t0_len_m_2*inv_m*inv_m),
+        d_t0_side_m_2 = c[1]*d_t0_inv_m_2,
+        d_t0_n_y_2 = d_t0_m_y_2*side_m + d_t0_side_m_2*m_y,
+        d_t0_n_z_2 = d_t0_side_m_2*m_z + side_m*t[4],
+        d_t0_across_x_2 = d_t0_n_y_2*tau_z - d_t0_n_z_2*tau_y,
+        d_t0_n_x_2 = d_t0_side_m_2*m_x,
+        d_t0_across_y_2 = -d_t0_n_x_2*tau_z + d_t0_n_z_2*tau_x,
+        d_t0_across_z_2 = d_t0_n_x_2*tau_y - d_t0_n_y_2*tau_x,
+        d_t0_x_1 = (1.0/6.0)*d_t0_across_x_2*h*u[0] + (1.0/6.0)*d_t0_across_y_2*h*u[1] + (1.0/6.0)*d_t0_across_z_2*h*u[2];
+    d_t_x_now_x[0] = across_x*d_t0_x_1 + d_t0_across_x_2*x_1;
+    d_t_x_now_y[0] = across_y*d_t0_x_1 + d_t0_across_y_2*x_1;
+    d_t_x_now_z[0] = across_z*d_t0_x_1 + d_t0_across_z_2*x_1;
     const fu_real
-        d_t_half0_x_x_now_y = across_y*d_t_half0_x_x_1,
-        d_t_half0_x_x_now_z = across_z*d_t_half0_x_x_1,
-        d_t_half0_x_size = inv_size*(d_t_half0_x_x_now_x*x_now_x + d_t_half0_x_x_now_y*x_now_y + d_t_half0_x_x_now_z*x_now_z),
-        d_t_half0_x_inv_size = -(d_t_half0_x_size*inv_size*inv_size),
-        d_t_half0_x_F_x_2 = -N_law*d_t_half0_x_inv_size*mu*x_now_x - N_law*d_t_half0_x_x_now_x*inv_size*mu,
-        d_t_half0_x_F_y_2 = -N_law*d_t_half0_x_inv_size*mu*x_now_y - N_law*d_t_half0_x_x_now_y*inv_size*mu,
-        d_t_half0_x_F_z_2 = -N_law*d_t_half0_x_inv_size*mu*x_now_z - N_law*d_t_half0_x_x_now_z*inv_size*mu;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_14
+        d_t1_m_z_2 = -t[3],
+        d_t1_len_m_2 = inv_m*(d_t1_m_z_2*m_z + m_x*t[5]),
+        d_t1_inv_m_2 = -(d_t1_len_m_2*inv_m*inv_m),
+        d_t1_side_m_2 = c[1]*d_t1_inv_m_2,
+        d_t1_n_y_2 = d_t1_side_m_2*m_y,
+        d_t1_n_z_2 = d_t1_m_z_2*side_m + d_t1_side_m_2*m_z,
+        d_t1_across_x_2 = d_t1_n_y_2*tau_z - d_t1_n_z_2*tau_y,
+        d_t1_n_x_2 = d_t1_side_m_2*m_x + side_m*t[5],
+        d_t1_across_y_2 = -d_t1_n_x_2*tau_z + d_t1_n_z_2*tau_x,
+        d_t1_across_z_2 = d_t1_n_x_2*tau_y - d_t1_n_y_2*tau_x,
+        d_t1_x_1 = (1.0/6.0)*d_t1_across_x_2*h*u[0] + (1.0/6.0)*d_t1_across_y_2*h*u[1] + (1.0/6.0)*d_t1_across_z_2*h*u[2];
+    d_t_x_now_x[1] = across_x*d_t1_x_1 + d_t1_across_x_2*x_1;
+    d_t_x_now_y[1] = across_y*d_t1_x_1 + d_t1_across_y_2*x_1;
+    d_t_x_now_z[1] = across_z*d_t1_x_1 + d_t1_across_z_2*x_1;
     const fu_real
-        d_t_half0_y_x_now_y = across_y*d_t_half0_y_x_1,
-        d_t_half0_y_x_now_z = across_z*d_t_half0_y_x_1,
-        d_t_half0_y_size = inv_size*(d_t_half0_y_x_now_x*x_now_x + d_t_half0_y_x_now_y*x_now_y + d_t_half0_y_x_now_z*x_now_z),
-        d_t_half0_y_inv_size = -(d_t_half0_y_size*inv_size*inv_size),
-        d_t_half0_y_F_x_2 = -N_law*d_t_half0_y_inv_size*mu*x_now_x - N_law*d_t_half0_y_x_now_x*inv_size*mu,
-        d_t_half0_y_F_y_2 = -N_law*d_t_half0_y_inv_size*mu*x_now_y - N_law*d_t_half0_y_x_now_y*inv_size*mu,
-        d_t_half0_y_F_z_2 = -N_law*d_t_half0_y_inv_size*mu*x_now_z - N_law*d_t_half0_y_x_now_z*inv_size*mu;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_15
+        d_t2_m_x_2 = -t[4],
+        d_t2_len_m_2 = inv_m*(d_t2_m_x_2*m_x + m_y*t[3]),
+        d_t2_inv_m_2 = -(d_t2_len_m_2*inv_m*inv_m),
+        d_t2_side_m_2 = c[1]*d_t2_inv_m_2,
+        d_t2_n_y_2 = d_t2_side_m_2*m_y + side_m*t[3],
+        d_t2_n_z_2 = d_t2_side_m_2*m_z,
+        d_t2_across_x_2 = d_t2_n_y_2*tau_z - d_t2_n_z_2*tau_y,
+        d_t2_n_x_2 = d_t2_m_x_2*side_m + d_t2_side_m_2*m_x,
+        d_t2_across_y_2 = -d_t2_n_x_2*tau_z + d_t2_n_z_2*tau_x,
+        d_t2_across_z_2 = d_t2_n_x_2*tau_y - d_t2_n_y_2*tau_x,
+        d_t2_x_1 = (1.0/6.0)*d_t2_across_x_2*h*u[0] + (1.0/6.0)*d_t2_across_y_2*h*u[1] + (1.0/6.0)*d_t2_across_z_2*h*u[2];
+    d_t_x_now_x[2] = across_x*d_t2_x_1 + d_t2_across_x_2*x_1;
+    d_t_x_now_y[2] = across_y*d_t2_x_1 + d_t2_across_y_2*x_1;
+    d_t_x_now_z[2] = across_z*d_t2_x_1 + d_t2_across_z_2*x_1;
     const fu_real
-        d_t_half0_z_x_now_y = across_y*d_t_half0_z_x_1,
-        d_t_half0_z_x_now_z = across_z*d_t_half0_z_x_1,
-        d_t_half0_z_size = inv_size*(d_t_half0_z_x_now_x*x_now_x + d_t_half0_z_x_now_y*x_now_y + d_t_half0_z_x_now_z*x_now_z),
-        d_t_half0_z_inv_size = -(d_t_half0_z_size*inv_size*inv_size),
-        d_t_half0_z_F_x_2 = -N_law*d_t_half0_z_inv_size*mu*x_now_x - N_law*d_t_half0_z_x_now_x*inv_size*mu,
-        d_t_half0_z_F_y_2 = -N_law*d_t_half0_z_inv_size*mu*x_now_y - N_law*d_t_half0_z_x_now_y*inv_size*mu,
-        d_t_half0_z_F_z_2 = -N_law*d_t_half0_z_inv_size*mu*x_now_z - N_law*d_t_half0_z_x_now_z*inv_size*mu;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_16
+        d_t3_m_z_2 = -t[1],
+        d_t3_len_m_2 = inv_m*(d_t3_m_z_2*m_z + m_y*t[2]),
+        d_t3_inv_m_2 = -(d_t3_len_m_2*inv_m*inv_m),
+        d_t3_side_m_2 = c[1]*d_t3_inv_m_2,
+        d_t3_n_y_2 = d_t3_side_m_2*m_y + side_m*t[2],
+        d_t3_n_z_2 = d_t3_m_z_2*side_m + d_t3_side_m_2*m_z,
+        d_t3_len_t_2 = inv_t*t[3],
+        d_t3_inv_t_2 = -(d_t3_len_t_2*inv_t*inv_t),
+        d_t3_tau_y_2 = d_t3_inv_t_2*t[4],
+        d_t3_tau_z_2 = d_t3_inv_t_2*t[5],
+        d_t3_across_x_2 = d_t3_n_y_2*tau_z - d_t3_n_z_2*tau_y - d_t3_tau_y_2*n_z + d_t3_tau_z_2*n_y,
+        d_t3_tau_x_2 = d_t3_inv_t_2*t[3] + inv_t,
+        d_t3_x_0 = (1.0/6.0)*d_t3_tau_x_2*h*u[0] + (1.0/6.0)*d_t3_tau_y_2*h*u[1] + (1.0/6.0)*d_t3_tau_z_2*h*u[2],
+        d_t3_n_x_2 = d_t3_side_m_2*m_x,
+        d_t3_across_y_2 = -d_t3_n_x_2*tau_z + d_t3_n_z_2*tau_x + d_t3_tau_x_2*n_z - d_t3_tau_z_2*n_x,
+        d_t3_across_z_2 = d_t3_n_x_2*tau_y - d_t3_n_y_2*tau_x - d_t3_tau_x_2*n_y + d_t3_tau_y_2*n_x,
+        d_t3_x_1 = (1.0/6.0)*d_t3_across_x_2*h*u[0] + (1.0/6.0)*d_t3_across_y_2*h*u[1] + (1.0/6.0)*d_t3_across_z_2*h*u[2];
+    d_t_x_now_x[3] = across_x*d_t3_x_1 + d_t3_across_x_2*x_1 + d_t3_tau_x_2*x_0 + d_t3_x_0*tau_x;
+    d_t_x_now_y[3] = across_y*d_t3_x_1 + d_t3_across_y_2*x_1 + d_t3_tau_y_2*x_0 + d_t3_x_0*tau_y;
+    d_t_x_now_z[3] = across_z*d_t3_x_1 + d_t3_across_z_2*x_1 + d_t3_tau_z_2*x_0 + d_t3_x_0*tau_z;
     const fu_real
-        d_t_half1_x_x_now_y = across_y*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_y,
-        d_t_half1_x_x_now_z = across_z*d_t_half1_x_x_1 + d_t_half1_x_x_0*tau_z,
-        d_t_half1_x_size = inv_size*(d_t_half1_x_x_now_x*x_now_x + d_t_half1_x_x_now_y*x_now_y + d_t_half1_x_x_now_z*x_now_z),
-        d_t_half1_x_inv_size = -(d_t_half1_x_size*inv_size*inv_size),
-        d_t_half1_x_F_x_2 = -N_law*d_t_half1_x_inv_size*mu*x_now_x - N_law*d_t_half1_x_x_now_x*inv_size*mu,
-        d_t_half1_x_F_y_2 = -N_law*d_t_half1_x_inv_size*mu*x_now_y - N_law*d_t_half1_x_x_now_y*inv_size*mu,
-        d_t_half1_x_F_z_2 = -N_law*d_t_half1_x_inv_size*mu*x_now_z - N_law*d_t_half1_x_x_now_z*inv_size*mu;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_17
+        d_t4_m_x_2 = -t[2],
+        d_t4_len_m_2 = inv_m*(d_t4_m_x_2*m_x + m_z*t[0]),
+        d_t4_inv_m_2 = -(d_t4_len_m_2*inv_m*inv_m),
+        d_t4_side_m_2 = c[1]*d_t4_inv_m_2,
+        d_t4_n_y_2 = d_t4_side_m_2*m_y,
+        d_t4_n_z_2 = d_t4_side_m_2*m_z + side_m*t[0],
+        d_t4_len_t_2 = inv_t*t[4],
+        d_t4_inv_t_2 = -(d_t4_len_t_2*inv_t*inv_t),
+        d_t4_tau_y_2 = d_t4_inv_t_2*t[4] + inv_t,
+        d_t4_tau_z_2 = d_t4_inv_t_2*t[5],
+        d_t4_across_x_2 = d_t4_n_y_2*tau_z - d_t4_n_z_2*tau_y - d_t4_tau_y_2*n_z + d_t4_tau_z_2*n_y,
+        d_t4_tau_x_2 = d_t4_inv_t_2*t[3],
+        d_t4_x_0 = (1.0/6.0)*d_t4_tau_x_2*h*u[0] + (1.0/6.0)*d_t4_tau_y_2*h*u[1] + (1.0/6.0)*d_t4_tau_z_2*h*u[2],
+        d_t4_n_x_2 = d_t4_m_x_2*side_m + d_t4_side_m_2*m_x,
+        d_t4_across_y_2 = -d_t4_n_x_2*tau_z + d_t4_n_z_2*tau_x + d_t4_tau_x_2*n_z - d_t4_tau_z_2*n_x,
+        d_t4_across_z_2 = d_t4_n_x_2*tau_y - d_t4_n_y_2*tau_x - d_t4_tau_x_2*n_y + d_t4_tau_y_2*n_x,
+        d_t4_x_1 = (1.0/6.0)*d_t4_across_x_2*h*u[0] + (1.0/6.0)*d_t4_across_y_2*h*u[1] + (1.0/6.0)*d_t4_across_z_2*h*u[2];
+    d_t_x_now_x[4] = across_x*d_t4_x_1 + d_t4_across_x_2*x_1 + d_t4_tau_x_2*x_0 + d_t4_x_0*tau_x;
+    d_t_x_now_y[4] = across_y*d_t4_x_1 + d_t4_across_y_2*x_1 + d_t4_tau_y_2*x_0 + d_t4_x_0*tau_y;
+    d_t_x_now_z[4] = across_z*d_t4_x_1 + d_t4_across_z_2*x_1 + d_t4_tau_z_2*x_0 + d_t4_x_0*tau_z;
     const fu_real
-        d_t_half1_y_x_now_y = across_y*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_y,
-        d_t_half1_y_x_now_z = across_z*d_t_half1_y_x_1 + d_t_half1_y_x_0*tau_z,
-        d_t_half1_y_size = inv_size*(d_t_half1_y_x_now_x*x_now_x + d_t_half1_y_x_now_y*x_now_y + d_t_half1_y_x_now_z*x_now_z),
-        d_t_half1_y_inv_size = -(d_t_half1_y_size*inv_size*inv_size),
-        d_t_half1_y_F_x_2 = -N_law*d_t_half1_y_inv_size*mu*x_now_x - N_law*d_t_half1_y_x_now_x*inv_size*mu,
-        d_t_half1_y_F_y_2 = -N_law*d_t_half1_y_inv_size*mu*x_now_y - N_law*d_t_half1_y_x_now_y*inv_size*mu,
-        d_t_half1_y_F_z_2 = -N_law*d_t_half1_y_inv_size*mu*x_now_z - N_law*d_t_half1_y_x_now_z*inv_size*mu;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_18
+        d_t5_m_y_2 = -t[0],
+        d_t5_len_m_2 = inv_m*(d_t5_m_y_2*m_y + m_x*t[1]),
+        d_t5_inv_m_2 = -(d_t5_len_m_2*inv_m*inv_m),
+        d_t5_side_m_2 = c[1]*d_t5_inv_m_2,
+        d_t5_n_y_2 = d_t5_m_y_2*side_m + d_t5_side_m_2*m_y,
+        d_t5_n_z_2 = d_t5_side_m_2*m_z,
+        d_t5_len_t_2 = inv_t*t[5],
+        d_t5_inv_t_2 = -(d_t5_len_t_2*inv_t*inv_t),
+        d_t5_tau_y_2 = d_t5_inv_t_2*t[4],
+        d_t5_tau_z_2 = d_t5_inv_t_2*t[5] + inv_t,
+        d_t5_across_x_2 = d_t5_n_y_2*tau_z - d_t5_n_z_2*tau_y - d_t5_tau_y_2*n_z + d_t5_tau_z_2*n_y,
+        d_t5_tau_x_2 = d_t5_inv_t_2*t[3],
+        d_t5_x_0 = (1.0/6.0)*d_t5_tau_x_2*h*u[0] + (1.0/6.0)*d_t5_tau_y_2*h*u[1] + (1.0/6.0)*d_t5_tau_z_2*h*u[2],
+        d_t5_n_x_2 = d_t5_side_m_2*m_x + side_m*t[1],
+        d_t5_across_y_2 = -d_t5_n_x_2*tau_z + d_t5_n_z_2*tau_x + d_t5_tau_x_2*n_z - d_t5_tau_z_2*n_x,
+        d_t5_across_z_2 = d_t5_n_x_2*tau_y - d_t5_n_y_2*tau_x - d_t5_tau_x_2*n_y + d_t5_tau_y_2*n_x,
+        d_t5_x_1 = (1.0/6.0)*d_t5_across_x_2*h*u[0] + (1.0/6.0)*d_t5_across_y_2*h*u[1] + (1.0/6.0)*d_t5_across_z_2*h*u[2];
+    d_t_x_now_x[5] = across_x*d_t5_x_1 + d_t5_across_x_2*x_1 + d_t5_tau_x_2*x_0 + d_t5_x_0*tau_x;
+    d_t_x_now_y[5] = across_y*d_t5_x_1 + d_t5_across_y_2*x_1 + d_t5_tau_y_2*x_0 + d_t5_x_0*tau_y;
+    d_t_x_now_z[5] = across_z*d_t5_x_1 + d_t5_across_z_2*x_1 + d_t5_tau_z_2*x_0 + d_t5_x_0*tau_z;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_7
+    FU_EACH(g, 6,
+        F0[g] = d_t_F_x_2[g] + d_t_x_now_x[g]*d_x_now_x_F_x_2 + d_t_x_now_y[g]*d_x_now_y_F_x_2 + d_t_x_now_z[g]*d_x_now_z_F_x_2;)
     const fu_real
-        d_t_half1_z_x_now_y = across_y*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_y,
-        d_t_half1_z_x_now_z = across_z*d_t_half1_z_x_1 + d_t_half1_z_x_0*tau_z,
-        d_t_half1_z_size = inv_size*(d_t_half1_z_x_now_x*x_now_x + d_t_half1_z_x_now_y*x_now_y + d_t_half1_z_x_now_z*x_now_z),
-        d_t_half1_z_inv_size = -(d_t_half1_z_size*inv_size*inv_size),
-        d_t_half1_z_F_x_2 = -N_law*d_t_half1_z_inv_size*mu*x_now_x - N_law*d_t_half1_z_x_now_x*inv_size*mu,
-        d_t_half1_z_F_y_2 = -N_law*d_t_half1_z_inv_size*mu*x_now_y - N_law*d_t_half1_z_x_now_y*inv_size*mu,
-        d_t_half1_z_F_z_2 = -N_law*d_t_half1_z_inv_size*mu*x_now_z - N_law*d_t_half1_z_x_now_z*inv_size*mu,
-        d_slip_half_x_x_0 = (2.0/3.0)*tau_half_x,
-        d_slip_half_x_x_1 = (2.0/3.0)*across_half_x,
-        d_slip_half_x_x_now_x = across_x*d_slip_half_x_x_1 + d_slip_half_x_x_0*tau_x,
-        d_slip_half_x_x_now_y = across_y*d_slip_half_x_x_1 + d_slip_half_x_x_0*tau_y,
-        d_slip_half_x_x_now_z = across_z*d_slip_half_x_x_1 + d_slip_half_x_x_0*tau_z,
-        d_slip_half_x_size = inv_size*(d_slip_half_x_x_now_x*x_now_x + d_slip_half_x_x_now_y*x_now_y + d_slip_half_x_x_now_z*x_now_z),
-        d_slip_half_x_inv_size = -(d_slip_half_x_size*inv_size*inv_size),
-        d_slip_half_x_F_x_2 = -N_law*d_slip_half_x_inv_size*mu*x_now_x - N_law*d_slip_half_x_x_now_x*inv_size*mu,
-        d_slip_half_x_F_y_2 = -N_law*d_slip_half_x_inv_size*mu*x_now_y - N_law*d_slip_half_x_x_now_y*inv_size*mu,
-        d_slip_half_x_F_z_2 = -N_law*d_slip_half_x_inv_size*mu*x_now_z - N_law*d_slip_half_x_x_now_z*inv_size*mu,
-        d_slip_half_y_x_0 = (2.0/3.0)*tau_half_y,
-        d_slip_half_y_x_1 = (2.0/3.0)*across_half_y,
-        d_slip_half_y_x_now_x = across_x*d_slip_half_y_x_1 + d_slip_half_y_x_0*tau_x,
-        d_slip_half_y_x_now_y = across_y*d_slip_half_y_x_1 + d_slip_half_y_x_0*tau_y,
-        d_slip_half_y_x_now_z = across_z*d_slip_half_y_x_1 + d_slip_half_y_x_0*tau_z,
-        d_slip_half_y_size = inv_size*(d_slip_half_y_x_now_x*x_now_x + d_slip_half_y_x_now_y*x_now_y + d_slip_half_y_x_now_z*x_now_z),
-        d_slip_half_y_inv_size = -(d_slip_half_y_size*inv_size*inv_size),
-        d_slip_half_y_F_x_2 = -N_law*d_slip_half_y_inv_size*mu*x_now_x - N_law*d_slip_half_y_x_now_x*inv_size*mu,
-        d_slip_half_y_F_y_2 = -N_law*d_slip_half_y_inv_size*mu*x_now_y - N_law*d_slip_half_y_x_now_y*inv_size*mu,
-        d_slip_half_y_F_z_2 = -N_law*d_slip_half_y_inv_size*mu*x_now_z - N_law*d_slip_half_y_x_now_z*inv_size*mu,
-        d_slip_half_z_x_0 = (2.0/3.0)*tau_half_z,
-        d_slip_half_z_x_1 = (2.0/3.0)*across_half_z,
-        d_slip_half_z_x_now_x = across_x*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_x,
-        d_slip_half_z_x_now_y = across_y*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_y,
-        d_slip_half_z_x_now_z = across_z*d_slip_half_z_x_1 + d_slip_half_z_x_0*tau_z,
-        d_slip_half_z_size = inv_size*(d_slip_half_z_x_now_x*x_now_x + d_slip_half_z_x_now_y*x_now_y + d_slip_half_z_x_now_z*x_now_z),
-        d_slip_half_z_inv_size = -(d_slip_half_z_size*inv_size*inv_size),
-        d_slip_half_z_F_x_2 = -N_law*d_slip_half_z_inv_size*mu*x_now_x - N_law*d_slip_half_z_x_now_x*inv_size*mu,
-        d_slip_half_z_F_y_2 = -N_law*d_slip_half_z_inv_size*mu*x_now_y - N_law*d_slip_half_z_x_now_y*inv_size*mu,
-        d_slip_half_z_F_z_2 = -N_law*d_slip_half_z_inv_size*mu*x_now_z - N_law*d_slip_half_z_x_now_z*inv_size*mu;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_19
+        F0_9 = d_u0_F_x_2 + d_u0_x_now_x*d_x_now_x_F_x_2 + d_u0_x_now_y*d_x_now_y_F_x_2 + d_u0_x_now_z*d_x_now_z_F_x_2,
+        F0_10 = d_u1_F_x_2 + d_u1_x_now_x*d_x_now_x_F_x_2 + d_u1_x_now_y*d_x_now_y_F_x_2 + d_u1_x_now_z*d_x_now_z_F_x_2,
+        F0_11 = d_u2_F_x_2 + d_u2_x_now_x*d_x_now_x_F_x_2 + d_u2_x_now_y*d_x_now_y_F_x_2 + d_u2_x_now_z*d_x_now_z_F_x_2,
+        F0_26 = d_t_half0_x_x_now_x*d_x_now_x_F_x_2 + d_t_half0_x_x_now_y*d_x_now_y_F_x_2 + d_t_half0_x_x_now_z*d_x_now_z_F_x_2,
+        F0_27 = d_t_half0_y_x_now_x*d_x_now_x_F_x_2 + d_t_half0_y_x_now_y*d_x_now_y_F_x_2 + d_t_half0_y_x_now_z*d_x_now_z_F_x_2,
+        F0_28 = d_t_half0_z_x_now_x*d_x_now_x_F_x_2 + d_t_half0_z_x_now_y*d_x_now_y_F_x_2 + d_t_half0_z_x_now_z*d_x_now_z_F_x_2,
+        F0_29 = d_t_half1_x_x_now_x*d_x_now_x_F_x_2 + d_t_half1_x_x_now_y*d_x_now_y_F_x_2 + d_t_half1_x_x_now_z*d_x_now_z_F_x_2,
+        F0_30 = d_t_half1_y_x_now_x*d_x_now_x_F_x_2 + d_t_half1_y_x_now_y*d_x_now_y_F_x_2 + d_t_half1_y_x_now_z*d_x_now_z_F_x_2,
+        F0_31 = d_t_half1_z_x_now_x*d_x_now_x_F_x_2 + d_t_half1_z_x_now_y*d_x_now_y_F_x_2 + d_t_half1_z_x_now_z*d_x_now_z_F_x_2,
+        F0_32 = d_slip_half_x_x_now_x*d_x_now_x_F_x_2 + d_slip_half_x_x_now_y*d_x_now_y_F_x_2 + d_slip_half_x_x_now_z*d_x_now_z_F_x_2,
+        F0_33 = d_slip_half_y_x_now_x*d_x_now_x_F_x_2 + d_slip_half_y_x_now_y*d_x_now_y_F_x_2 + d_slip_half_y_x_now_z*d_x_now_z_F_x_2,
+        F0_34 = d_slip_half_z_x_now_x*d_x_now_x_F_x_2 + d_slip_half_z_x_now_y*d_x_now_y_F_x_2 + d_slip_half_z_x_now_z*d_x_now_z_F_x_2;
+    FU_EACH(g, 6,
+        F1[g] = d_t_F_y_2[g] + d_t_x_now_x[g]*d_x_now_x_F_y_2 + d_t_x_now_y[g]*d_x_now_y_F_y_2 + d_t_x_now_z[g]*d_x_now_z_F_y_2;)
     const fu_real
-        F0_0 = d_d0_F_x_2 + 1.5*d_slip_half_x_F_x_2,
-        F0_1 = d_d1_F_x_2 + 1.5*d_slip_half_y_F_x_2,
-        F0_2 = d_d2_F_x_2 + 1.5*d_slip_half_z_F_x_2;
-    F0[0] = d_slip_half_x_F_x_2*d_t0_slip_half_x + d_t0_F_x_2 + 0.5*d_t_half0_x_F_x_2;
-    F0[1] = d_slip_half_y_F_x_2*d_t1_slip_half_y + d_t1_F_x_2 + 0.5*d_t_half0_y_F_x_2;
-    F0[2] = d_slip_half_z_F_x_2*d_t2_slip_half_z + d_t2_F_x_2 + 0.5*d_t_half0_z_F_x_2;
-    F0[3] = d_slip_half_x_F_x_2*d_t3_slip_half_x + d_t3_F_x_2 + 0.5*d_t_half1_x_F_x_2;
-    F0[4] = d_slip_half_y_F_x_2*d_t4_slip_half_y + d_t4_F_x_2 + 0.5*d_t_half1_y_F_x_2;
-    F0[5] = d_slip_half_z_F_x_2*d_t5_slip_half_z + d_t5_F_x_2 + 0.5*d_t_half1_z_F_x_2;
+        F1_9 = d_u0_F_y_2 + d_u0_x_now_x*d_x_now_x_F_y_2 + d_u0_x_now_y*d_x_now_y_F_y_2 + d_u0_x_now_z*d_x_now_z_F_y_2,
+        F1_10 = d_u1_F_y_2 + d_u1_x_now_x*d_x_now_x_F_y_2 + d_u1_x_now_y*d_x_now_y_F_y_2 + d_u1_x_now_z*d_x_now_z_F_y_2,
+        F1_11 = d_u2_F_y_2 + d_u2_x_now_x*d_x_now_x_F_y_2 + d_u2_x_now_y*d_x_now_y_F_y_2 + d_u2_x_now_z*d_x_now_z_F_y_2,
+        F1_26 = d_t_half0_x_x_now_x*d_x_now_x_F_y_2 + d_t_half0_x_x_now_y*d_x_now_y_F_y_2 + d_t_half0_x_x_now_z*d_x_now_z_F_y_2,
+        F1_27 = d_t_half0_y_x_now_x*d_x_now_x_F_y_2 + d_t_half0_y_x_now_y*d_x_now_y_F_y_2 + d_t_half0_y_x_now_z*d_x_now_z_F_y_2,
+        F1_28 = d_t_half0_z_x_now_x*d_x_now_x_F_y_2 + d_t_half0_z_x_now_y*d_x_now_y_F_y_2 + d_t_half0_z_x_now_z*d_x_now_z_F_y_2,
+        F1_29 = d_t_half1_x_x_now_x*d_x_now_x_F_y_2 + d_t_half1_x_x_now_y*d_x_now_y_F_y_2 + d_t_half1_x_x_now_z*d_x_now_z_F_y_2,
+        F1_30 = d_t_half1_y_x_now_x*d_x_now_x_F_y_2 + d_t_half1_y_x_now_y*d_x_now_y_F_y_2 + d_t_half1_y_x_now_z*d_x_now_z_F_y_2,
+        F1_31 = d_t_half1_z_x_now_x*d_x_now_x_F_y_2 + d_t_half1_z_x_now_y*d_x_now_y_F_y_2 + d_t_half1_z_x_now_z*d_x_now_z_F_y_2,
+        F1_32 = d_slip_half_x_x_now_x*d_x_now_x_F_y_2 + d_slip_half_x_x_now_y*d_x_now_y_F_y_2 + d_slip_half_x_x_now_z*d_x_now_z_F_y_2,
+        F1_33 = d_slip_half_y_x_now_x*d_x_now_x_F_y_2 + d_slip_half_y_x_now_y*d_x_now_y_F_y_2 + d_slip_half_y_x_now_z*d_x_now_z_F_y_2,
+        F1_34 = d_slip_half_z_x_now_x*d_x_now_x_F_y_2 + d_slip_half_z_x_now_y*d_x_now_y_F_y_2 + d_slip_half_z_x_now_z*d_x_now_z_F_y_2;
+    FU_EACH(g, 6,
+        F2[g] = d_t_F_z_2[g] + d_t_x_now_x[g]*d_x_now_x_F_z_2 + d_t_x_now_y[g]*d_x_now_y_F_z_2 + d_t_x_now_z[g]*d_x_now_z_F_z_2;)
     const fu_real
-        F0_9 = d_slip_half_x_F_x_2*d_u0_slip_half_x + d_u0_F_x_2,
-        F0_10 = d_slip_half_y_F_x_2*d_u1_slip_half_y + d_u1_F_x_2,
-        F0_11 = d_slip_half_z_F_x_2*d_u2_slip_half_z + d_u2_F_x_2,
-        F0_12 = d_slip_half_x_F_x_2*d_w0_slip_half_x + d_t_half0_x_F_x_2*d_w0_t_half0_x,
-        F0_13 = d_slip_half_y_F_x_2*d_w1_slip_half_y + d_t_half0_y_F_x_2*d_w1_t_half0_y,
-        F0_14 = d_slip_half_z_F_x_2*d_w2_slip_half_z + d_t_half0_z_F_x_2*d_w2_t_half0_z,
-        F0_15 = d_slip_half_x_F_x_2*d_w3_slip_half_x + d_t_half1_x_F_x_2*d_w3_t_half1_x,
-        F0_16 = d_slip_half_y_F_x_2*d_w4_slip_half_y + d_t_half1_y_F_x_2*d_w4_t_half1_y,
-        F0_17 = d_slip_half_z_F_x_2*d_w5_slip_half_z + d_t_half1_z_F_x_2*d_w5_t_half1_z,
-        F0_18 = d_k0_slip_half_x*d_slip_half_x_F_x_2 + d_k0_t_half0_x*d_t_half0_x_F_x_2,
-        F0_19 = d_k1_slip_half_y*d_slip_half_y_F_x_2 + d_k1_t_half0_y*d_t_half0_y_F_x_2,
-        F0_20 = d_k2_slip_half_z*d_slip_half_z_F_x_2 + d_k2_t_half0_z*d_t_half0_z_F_x_2,
-        F0_21 = d_k3_slip_half_x*d_slip_half_x_F_x_2 + d_k3_t_half1_x*d_t_half1_x_F_x_2,
-        F0_22 = d_k4_slip_half_y*d_slip_half_y_F_x_2 + d_k4_t_half1_y*d_t_half1_y_F_x_2,
-        F0_23 = d_k5_slip_half_z*d_slip_half_z_F_x_2 + d_k5_t_half1_z*d_t_half1_z_F_x_2,
-        F0_24 = d_e0_slip_half_x*d_slip_half_x_F_x_2 + d_e0_slip_half_y*d_slip_half_y_F_x_2 + d_e0_slip_half_z*d_slip_half_z_F_x_2,
-        F0_25 = d_e1_slip_half_x*d_slip_half_x_F_x_2 + d_e1_slip_half_y*d_slip_half_y_F_x_2 + d_e1_slip_half_z*d_slip_half_z_F_x_2,
-        F0_26 = d_s_rate_0_slip_half_x*d_slip_half_x_F_x_2 + d_s_rate_0_slip_half_y*d_slip_half_y_F_x_2 + d_s_rate_0_slip_half_z*d_slip_half_z_F_x_2 + d_s_rate_0_t_half0_x*d_t_half0_x_F_x_2 + d_s_rate_0_t_half0_y*d_t_half0_y_F_x_2 + d_s_rate_0_t_half0_z*d_t_half0_z_F_x_2,
-        F0_27 = d_s_rate_1_slip_half_x*d_slip_half_x_F_x_2 + d_s_rate_1_slip_half_y*d_slip_half_y_F_x_2 + d_s_rate_1_slip_half_z*d_slip_half_z_F_x_2 + d_s_rate_1_t_half1_x*d_t_half1_x_F_x_2 + d_s_rate_1_t_half1_y*d_t_half1_y_F_x_2 + d_s_rate_1_t_half1_z*d_t_half1_z_F_x_2,
-        F1_0 = d_d0_F_y_2 + 1.5*d_slip_half_x_F_y_2,
-        F1_1 = d_d1_F_y_2 + 1.5*d_slip_half_y_F_y_2,
-        F1_2 = d_d2_F_y_2 + 1.5*d_slip_half_z_F_y_2;
-    F1[0] = d_slip_half_x_F_y_2*d_t0_slip_half_x + d_t0_F_y_2 + 0.5*d_t_half0_x_F_y_2;
-    F1[1] = d_slip_half_y_F_y_2*d_t1_slip_half_y + d_t1_F_y_2 + 0.5*d_t_half0_y_F_y_2;
-    F1[2] = d_slip_half_z_F_y_2*d_t2_slip_half_z + d_t2_F_y_2 + 0.5*d_t_half0_z_F_y_2;
-    F1[3] = d_slip_half_x_F_y_2*d_t3_slip_half_x + d_t3_F_y_2 + 0.5*d_t_half1_x_F_y_2;
-    F1[4] = d_slip_half_y_F_y_2*d_t4_slip_half_y + d_t4_F_y_2 + 0.5*d_t_half1_y_F_y_2;
-    F1[5] = d_slip_half_z_F_y_2*d_t5_slip_half_z + d_t5_F_y_2 + 0.5*d_t_half1_z_F_y_2;
+        F2_9 = d_u0_F_z_2 + d_u0_x_now_x*d_x_now_x_F_z_2 + d_u0_x_now_y*d_x_now_y_F_z_2 + d_u0_x_now_z*d_x_now_z_F_z_2,
+        F2_10 = d_u1_F_z_2 + d_u1_x_now_x*d_x_now_x_F_z_2 + d_u1_x_now_y*d_x_now_y_F_z_2 + d_u1_x_now_z*d_x_now_z_F_z_2,
+        F2_11 = d_u2_F_z_2 + d_u2_x_now_x*d_x_now_x_F_z_2 + d_u2_x_now_y*d_x_now_y_F_z_2 + d_u2_x_now_z*d_x_now_z_F_z_2,
+        F2_26 = d_t_half0_x_x_now_x*d_x_now_x_F_z_2 + d_t_half0_x_x_now_y*d_x_now_y_F_z_2 + d_t_half0_x_x_now_z*d_x_now_z_F_z_2,
+        F2_27 = d_t_half0_y_x_now_x*d_x_now_x_F_z_2 + d_t_half0_y_x_now_y*d_x_now_y_F_z_2 + d_t_half0_y_x_now_z*d_x_now_z_F_z_2,
+        F2_28 = d_t_half0_z_x_now_x*d_x_now_x_F_z_2 + d_t_half0_z_x_now_y*d_x_now_y_F_z_2 + d_t_half0_z_x_now_z*d_x_now_z_F_z_2,
+        F2_29 = d_t_half1_x_x_now_x*d_x_now_x_F_z_2 + d_t_half1_x_x_now_y*d_x_now_y_F_z_2 + d_t_half1_x_x_now_z*d_x_now_z_F_z_2,
+        F2_30 = d_t_half1_y_x_now_x*d_x_now_x_F_z_2 + d_t_half1_y_x_now_y*d_x_now_y_F_z_2 + d_t_half1_y_x_now_z*d_x_now_z_F_z_2,
+        F2_31 = d_t_half1_z_x_now_x*d_x_now_x_F_z_2 + d_t_half1_z_x_now_y*d_x_now_y_F_z_2 + d_t_half1_z_x_now_z*d_x_now_z_F_z_2,
+        F2_32 = d_slip_half_x_x_now_x*d_x_now_x_F_z_2 + d_slip_half_x_x_now_y*d_x_now_y_F_z_2 + d_slip_half_x_x_now_z*d_x_now_z_F_z_2,
+        F2_33 = d_slip_half_y_x_now_x*d_x_now_x_F_z_2 + d_slip_half_y_x_now_y*d_x_now_y_F_z_2 + d_slip_half_y_x_now_z*d_x_now_z_F_z_2,
+        F2_34 = d_slip_half_z_x_now_x*d_x_now_x_F_z_2 + d_slip_half_z_x_now_y*d_x_now_y_F_z_2 + d_slip_half_z_x_now_z*d_x_now_z_F_z_2;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_8
     const fu_real
-        F1_9 = d_slip_half_x_F_y_2*d_u0_slip_half_x + d_u0_F_y_2,
-        F1_10 = d_slip_half_y_F_y_2*d_u1_slip_half_y + d_u1_F_y_2,
-        F1_11 = d_slip_half_z_F_y_2*d_u2_slip_half_z + d_u2_F_y_2,
-        F1_12 = d_slip_half_x_F_y_2*d_w0_slip_half_x + d_t_half0_x_F_y_2*d_w0_t_half0_x,
-        F1_13 = d_slip_half_y_F_y_2*d_w1_slip_half_y + d_t_half0_y_F_y_2*d_w1_t_half0_y,
-        F1_14 = d_slip_half_z_F_y_2*d_w2_slip_half_z + d_t_half0_z_F_y_2*d_w2_t_half0_z,
-        F1_15 = d_slip_half_x_F_y_2*d_w3_slip_half_x + d_t_half1_x_F_y_2*d_w3_t_half1_x,
-        F1_16 = d_slip_half_y_F_y_2*d_w4_slip_half_y + d_t_half1_y_F_y_2*d_w4_t_half1_y,
-        F1_17 = d_slip_half_z_F_y_2*d_w5_slip_half_z + d_t_half1_z_F_y_2*d_w5_t_half1_z,
-        F1_18 = d_k0_slip_half_x*d_slip_half_x_F_y_2 + d_k0_t_half0_x*d_t_half0_x_F_y_2,
-        F1_19 = d_k1_slip_half_y*d_slip_half_y_F_y_2 + d_k1_t_half0_y*d_t_half0_y_F_y_2,
-        F1_20 = d_k2_slip_half_z*d_slip_half_z_F_y_2 + d_k2_t_half0_z*d_t_half0_z_F_y_2,
-        F1_21 = d_k3_slip_half_x*d_slip_half_x_F_y_2 + d_k3_t_half1_x*d_t_half1_x_F_y_2,
-        F1_22 = d_k4_slip_half_y*d_slip_half_y_F_y_2 + d_k4_t_half1_y*d_t_half1_y_F_y_2,
-        F1_23 = d_k5_slip_half_z*d_slip_half_z_F_y_2 + d_k5_t_half1_z*d_t_half1_z_F_y_2,
-        F1_24 = d_e0_slip_half_x*d_slip_half_x_F_y_2 + d_e0_slip_half_y*d_slip_half_y_F_y_2 + d_e0_slip_half_z*d_slip_half_z_F_y_2,
-        F1_25 = d_e1_slip_half_x*d_slip_half_x_F_y_2 + d_e1_slip_half_y*d_slip_half_y_F_y_2 + d_e1_slip_half_z*d_slip_half_z_F_y_2,
-        F1_26 = d_s_rate_0_slip_half_x*d_slip_half_x_F_y_2 + d_s_rate_0_slip_half_y*d_slip_half_y_F_y_2 + d_s_rate_0_slip_half_z*d_slip_half_z_F_y_2 + d_s_rate_0_t_half0_x*d_t_half0_x_F_y_2 + d_s_rate_0_t_half0_y*d_t_half0_y_F_y_2 + d_s_rate_0_t_half0_z*d_t_half0_z_F_y_2,
-        F1_27 = d_s_rate_1_slip_half_x*d_slip_half_x_F_y_2 + d_s_rate_1_slip_half_y*d_slip_half_y_F_y_2 + d_s_rate_1_slip_half_z*d_slip_half_z_F_y_2 + d_s_rate_1_t_half1_x*d_t_half1_x_F_y_2 + d_s_rate_1_t_half1_y*d_t_half1_y_F_y_2 + d_s_rate_1_t_half1_z*d_t_half1_z_F_y_2,
-        F2_0 = d_d0_F_z_2 + 1.5*d_slip_half_x_F_z_2,
-        F2_1 = d_d1_F_z_2 + 1.5*d_slip_half_y_F_z_2,
-        F2_2 = d_d2_F_z_2 + 1.5*d_slip_half_z_F_z_2;
-    F2[0] = d_slip_half_x_F_z_2*d_t0_slip_half_x + d_t0_F_z_2 + 0.5*d_t_half0_x_F_z_2;
-    F2[1] = d_slip_half_y_F_z_2*d_t1_slip_half_y + d_t1_F_z_2 + 0.5*d_t_half0_y_F_z_2;
-    F2[2] = d_slip_half_z_F_z_2*d_t2_slip_half_z + d_t2_F_z_2 + 0.5*d_t_half0_z_F_z_2;
-    F2[3] = d_slip_half_x_F_z_2*d_t3_slip_half_x + d_t3_F_z_2 + 0.5*d_t_half1_x_F_z_2;
-    F2[4] = d_slip_half_y_F_z_2*d_t4_slip_half_y + d_t4_F_z_2 + 0.5*d_t_half1_y_F_z_2;
-    F2[5] = d_slip_half_z_F_z_2*d_t5_slip_half_z + d_t5_F_z_2 + 0.5*d_t_half1_z_F_z_2;
+        F0_0 = 1.5*F0_32 + d_d0_F_x_2,
+        F0_1 = 1.5*F0_33 + d_d1_F_x_2,
+        F0_2 = 1.5*F0_34 + d_d2_F_x_2;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_9
     const fu_real
-        F2_9 = d_slip_half_x_F_z_2*d_u0_slip_half_x + d_u0_F_z_2,
-        F2_10 = d_slip_half_y_F_z_2*d_u1_slip_half_y + d_u1_F_z_2,
-        F2_11 = d_slip_half_z_F_z_2*d_u2_slip_half_z + d_u2_F_z_2,
-        F2_12 = d_slip_half_x_F_z_2*d_w0_slip_half_x + d_t_half0_x_F_z_2*d_w0_t_half0_x,
-        F2_13 = d_slip_half_y_F_z_2*d_w1_slip_half_y + d_t_half0_y_F_z_2*d_w1_t_half0_y,
-        F2_14 = d_slip_half_z_F_z_2*d_w2_slip_half_z + d_t_half0_z_F_z_2*d_w2_t_half0_z,
-        F2_15 = d_slip_half_x_F_z_2*d_w3_slip_half_x + d_t_half1_x_F_z_2*d_w3_t_half1_x,
-        F2_16 = d_slip_half_y_F_z_2*d_w4_slip_half_y + d_t_half1_y_F_z_2*d_w4_t_half1_y,
-        F2_17 = d_slip_half_z_F_z_2*d_w5_slip_half_z + d_t_half1_z_F_z_2*d_w5_t_half1_z,
-        F2_18 = d_k0_slip_half_x*d_slip_half_x_F_z_2 + d_k0_t_half0_x*d_t_half0_x_F_z_2,
-        F2_19 = d_k1_slip_half_y*d_slip_half_y_F_z_2 + d_k1_t_half0_y*d_t_half0_y_F_z_2,
-        F2_20 = d_k2_slip_half_z*d_slip_half_z_F_z_2 + d_k2_t_half0_z*d_t_half0_z_F_z_2,
-        F2_21 = d_k3_slip_half_x*d_slip_half_x_F_z_2 + d_k3_t_half1_x*d_t_half1_x_F_z_2,
-        F2_22 = d_k4_slip_half_y*d_slip_half_y_F_z_2 + d_k4_t_half1_y*d_t_half1_y_F_z_2,
-        F2_23 = d_k5_slip_half_z*d_slip_half_z_F_z_2 + d_k5_t_half1_z*d_t_half1_z_F_z_2,
-        F2_24 = d_e0_slip_half_x*d_slip_half_x_F_z_2 + d_e0_slip_half_y*d_slip_half_y_F_z_2 + d_e0_slip_half_z*d_slip_half_z_F_z_2,
-        F2_25 = d_e1_slip_half_x*d_slip_half_x_F_z_2 + d_e1_slip_half_y*d_slip_half_y_F_z_2 + d_e1_slip_half_z*d_slip_half_z_F_z_2,
-        F2_26 = d_s_rate_0_slip_half_x*d_slip_half_x_F_z_2 + d_s_rate_0_slip_half_y*d_slip_half_y_F_z_2 + d_s_rate_0_slip_half_z*d_slip_half_z_F_z_2 + d_s_rate_0_t_half0_x*d_t_half0_x_F_z_2 + d_s_rate_0_t_half0_y*d_t_half0_y_F_z_2 + d_s_rate_0_t_half0_z*d_t_half0_z_F_z_2,
-        F2_27 = d_s_rate_1_slip_half_x*d_slip_half_x_F_z_2 + d_s_rate_1_slip_half_y*d_slip_half_y_F_z_2 + d_s_rate_1_slip_half_z*d_slip_half_z_F_z_2 + d_s_rate_1_t_half1_x*d_t_half1_x_F_z_2 + d_s_rate_1_t_half1_y*d_t_half1_y_F_z_2 + d_s_rate_1_t_half1_z*d_t_half1_z_F_z_2;
-    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_20
+        F1_0 = 1.5*F1_32 + d_d0_F_y_2,
+        F1_1 = 1.5*F1_33 + d_d1_F_y_2,
+        F1_2 = 1.5*F1_34 + d_d2_F_y_2;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_10
+    const fu_real
+        F2_0 = 1.5*F2_32 + d_d0_F_z_2,
+        F2_1 = 1.5*F2_33 + d_d1_F_z_2,
+        F2_2 = 1.5*F2_34 + d_d2_F_z_2;
+    CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_11
     CROSSING_DERIVATIVES_OF_THE_FORCE_ALONG_THE_LINES
     /* outputs */
     F[0] = F_x_2;

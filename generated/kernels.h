@@ -1495,10 +1495,10 @@ void crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, cons
  * 3x6[N]; F_u 3x3[N s/m]; F_w 3x6[N s]; F_k 3x6[N m] */
 void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
 /* friction that slides, its derivatives with the points moving: d 3[m]; t 2x3[1]; k 2x3[1/m]; w 2x3[1/s]; u 3[m/s];
- * third 2x3[1/m^2]; k_rate 2x3[1/(m s)]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 2[m]; h [s]; d_0 3[m];
- * d_rate 3[m/s]; t_0 2x3[1]; t_rate 2x3[1/s]; s_rate 2[m/s]; x 2[m]; v 2[m/s] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N];
- * F_u 3x3[N s/m]; F_w 3x6[N s]; F_k 3x6[N m] */
-void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
+ * third 2x3[1/m^2]; k_rate 2x3[1/(m s)]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; k_t [N/m]; e 2[m]; h [s];
+ * d_0 3[m]; d_rate 3[m/s]; t_0 2x3[1]; t_rate 2x3[1/s]; s_rate 2[m/s]; x 2[m]; v 2[m/s]; slid [1]; r_0 [m]; turns
+ * [1] -> F 3[N]; F_d 3x3[N/m]; F_t 3x6[N]; F_u 3x3[N s/m]; F_w 3x6[N s]; F_k 3x6[N m] */
+void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real slid, fu_real r_0, fu_real turns, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
 /* forces over a step that balance energy: n 3[1]; way 3[m]; turn 2x3[1]; size 2[m]; p [m]; p_next [m]; h [s]; c 8[m,
  * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 3[N]; M 2x3[N m]; lost 1[J] */
 void crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
@@ -1526,10 +1526,10 @@ void planar_crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *
  * 2x2[N]; F_u 2x2[N s/m]; F_w 2x2[N s]; F_k 2x2[N m] */
 void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
 /* friction that slides, its derivatives with the points moving: d 2[m]; t 1x2[1]; k 1x2[1/m]; w 1x2[1/s]; u 2[m/s];
- * third 1x2[1/m^2]; k_rate 1x2[1/(m s)]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; e 1[m]; h [s]; d_0 2[m];
- * d_rate 2[m/s]; t_0 1x2[1]; t_rate 1x2[1/s]; s_rate 1[m/s]; x 1[m]; v 1[m/s] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N];
- * F_u 2x2[N s/m]; F_w 2x2[N s]; F_k 2x2[N m] */
-void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
+ * third 1x2[1/m^2]; k_rate 1x2[1/(m s)]; c 8[m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; k_t [N/m]; e 1[m]; h [s];
+ * d_0 2[m]; d_rate 2[m/s]; t_0 1x2[1]; t_rate 1x2[1/s]; s_rate 1[m/s]; x 1[m]; v 1[m/s]; slid [1]; r_0 [m]; turns
+ * [1] -> F 2[N]; F_d 2x2[N/m]; F_t 2x2[N]; F_u 2x2[N s/m]; F_w 2x2[N s]; F_k 2x2[N m] */
+void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real slid, fu_real r_0, fu_real turns, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
 /* forces over a step that balance energy: n 2[1]; way 2[m]; turn 1x2[1]; size 1[m]; p [m]; p_next [m]; h [s]; c 8[m,
  * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F 2[N]; M 1x2[N m]; lost 1[J] */
 void planar_crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
@@ -1820,7 +1820,7 @@ typedef struct {
     void (*motion)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot);
     void (*stretch)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *now, fu_real *old, fu_real *along);
     void (*sticking)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
-    void (*sliding)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
+    void (*sliding)(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real slid, fu_real r_0, fu_real turns, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
     void (*step)(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
 } fu_crossing_kernels;
 

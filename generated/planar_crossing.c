@@ -7,7 +7,7 @@
  *   planar_crossing_motion: 10 add, 13 mul, 1 div
  *   planar_crossing_stretch: 35 add, 57 mul, 3 div, 2 sqrt
  *   planar_crossing_sticking: 170 add, 347 mul, 4 div, 2 sqrt
- *   planar_crossing_sliding: 90 add, 225 mul, 14 div, 6 sqrt
+ *   planar_crossing_sliding: 90 add, 214 mul, 14 div, 6 sqrt
  *   planar_crossing_step: 29 add, 50 mul, 6 div, 5 sqrt
  */
 #include "kernels.h"
@@ -288,66 +288,70 @@ void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real 
         s0_2 = -(d[0]*inv_J_2),
         s0_3 = -(d[1]*inv_J_2);
     /* derivatives of the force where the points stay */
-    fu_real F_0[2], F_1[2], F_2[2], F_3[2], F_4[2], F_5[2], F_6[2], F_7[2], F_8[2], F_9[2], F_11[2], d_t_J_00[2],
-        d_t_inv_J[2], d_t_s_rate_0[2], F_0_2[2], F_1_2[2], F_2_2[2], F_3_2[2], F_4_2[2], F_5_2[2], F_6_2[2], F_7_2[2],
-        F_8_2[2], F_9_2[2];
+    fu_real F_2[2], F_3[2], F_4[2], F_5[2], F_11[2], F_12[2], F_13[2], F_14[2], F_0[2], F_1[2], F_2_2[2], F_3_2[2],
+        F_4_2[2], F_5_2[2], F_6[2], F_7[2], F_8[2], F_9[2], F_10[2], F_11_2[2], d_t_J_00[2], d_t_inv_J[2],
+        d_t_s_rate_0[2], F_0_2[2], F_1_2[2], F_2_3[2], F_3_3[2], F_4_3[2], F_5_3[2], F_6_2[2], F_7_2[2], F_8_2[2],
+        F_9_2[2];
     const fu_real
+        d_x_now_x_F_x = -k_t,
+        d_x_now_y_F_y = -k_t,
         d_t0_len_t = inv_t*t[0],
         d_t0_inv_t = -(d_t0_len_t*inv_t*inv_t),
         d_t0_tau_x = d_t0_inv_t*t[0] + inv_t,
         d_t0_tau_y = d_t0_inv_t*t[1],
         d_t0_x_0 = (1.0/6.0)*d_t0_tau_x*h*u[0] + (1.0/6.0)*d_t0_tau_y*h*u[1],
         d_t0_x_now_x = d_t0_tau_x*x_0 + d_t0_x_0*tau_x,
-        d_t0_F_x = -(d_t0_x_now_x*k_t),
         d_t0_x_now_y = d_t0_tau_y*x_0 + d_t0_x_0*tau_y,
-        d_t0_F_y = -(d_t0_x_now_y*k_t),
         d_t1_len_t = inv_t*t[1],
         d_t1_inv_t = -(d_t1_len_t*inv_t*inv_t),
         d_t1_tau_x = d_t1_inv_t*t[0],
         d_t1_tau_y = d_t1_inv_t*t[1] + inv_t,
         d_t1_x_0 = (1.0/6.0)*d_t1_tau_x*h*u[0] + (1.0/6.0)*d_t1_tau_y*h*u[1],
         d_t1_x_now_x = d_t1_tau_x*x_0 + d_t1_x_0*tau_x,
-        d_t1_F_x = -(d_t1_x_now_x*k_t),
         d_t1_x_now_y = d_t1_tau_y*x_0 + d_t1_x_0*tau_y,
-        d_t1_F_y = -(d_t1_x_now_y*k_t),
         d_u0_x_0 = (1.0/6.0)*h*tau_x,
         d_u0_x_now_x = d_u0_x_0*tau_x,
-        d_u0_F_x = -(d_u0_x_now_x*k_t),
         d_u0_x_now_y = d_u0_x_0*tau_y,
-        d_u0_F_y = -(d_u0_x_now_y*k_t),
         d_u1_x_0 = (1.0/6.0)*h*tau_y,
         d_u1_x_now_x = d_u1_x_0*tau_x,
-        d_u1_F_x = -(d_u1_x_now_x*k_t),
         d_u1_x_now_y = d_u1_x_0*tau_y,
-        d_u1_F_y = -(d_u1_x_now_y*k_t),
         d_t_half0_x_len_t_half = inv_t_half*t_half0_x,
         d_t_half0_x_inv_t_half = -(d_t_half0_x_len_t_half*inv_t_half*inv_t_half),
         d_t_half0_x_tau_half_x = d_t_half0_x_inv_t_half*t_half0_x + inv_t_half,
         d_t_half0_x_tau_half_y = d_t_half0_x_inv_t_half*t_half0_y,
         d_t_half0_x_x_0 = (2.0/3.0)*d_t_half0_x_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half0_x_tau_half_y*slip_half_y,
         d_t_half0_x_x_now_x = d_t_half0_x_x_0*tau_x,
-        d_t_half0_x_F_x = -(d_t_half0_x_x_now_x*k_t),
         d_t_half0_x_x_now_y = d_t_half0_x_x_0*tau_y,
-        d_t_half0_x_F_y = -(d_t_half0_x_x_now_y*k_t),
         d_t_half0_y_len_t_half = inv_t_half*t_half0_y,
         d_t_half0_y_inv_t_half = -(d_t_half0_y_len_t_half*inv_t_half*inv_t_half),
         d_t_half0_y_tau_half_x = d_t_half0_y_inv_t_half*t_half0_x,
         d_t_half0_y_tau_half_y = d_t_half0_y_inv_t_half*t_half0_y + inv_t_half,
         d_t_half0_y_x_0 = (2.0/3.0)*d_t_half0_y_tau_half_x*slip_half_x + (2.0/3.0)*d_t_half0_y_tau_half_y*slip_half_y,
         d_t_half0_y_x_now_x = d_t_half0_y_x_0*tau_x,
-        d_t_half0_y_F_x = -(d_t_half0_y_x_now_x*k_t),
         d_t_half0_y_x_now_y = d_t_half0_y_x_0*tau_y,
-        d_t_half0_y_F_y = -(d_t_half0_y_x_now_y*k_t),
         d_slip_half_x_x_0 = (2.0/3.0)*tau_half_x,
         d_slip_half_x_x_now_x = d_slip_half_x_x_0*tau_x,
-        d_slip_half_x_F_x = -(d_slip_half_x_x_now_x*k_t),
         d_slip_half_x_x_now_y = d_slip_half_x_x_0*tau_y,
-        d_slip_half_x_F_y = -(d_slip_half_x_x_now_y*k_t),
         d_slip_half_y_x_0 = (2.0/3.0)*tau_half_y,
         d_slip_half_y_x_now_x = d_slip_half_y_x_0*tau_x,
-        d_slip_half_y_F_x = -(d_slip_half_y_x_now_x*k_t),
-        d_slip_half_y_x_now_y = d_slip_half_y_x_0*tau_y,
-        d_slip_half_y_F_y = -(d_slip_half_y_x_now_y*k_t),
+        d_slip_half_y_x_now_y = d_slip_half_y_x_0*tau_y;
+    F_2[0] = d_t0_x_now_x*d_x_now_x_F_x;
+    F_3[0] = d_t1_x_now_x*d_x_now_x_F_x;
+    F_4[0] = d_u0_x_now_x*d_x_now_x_F_x;
+    F_5[0] = d_u1_x_now_x*d_x_now_x_F_x;
+    F_11[0] = d_t_half0_x_x_now_x*d_x_now_x_F_x;
+    F_12[0] = d_t_half0_y_x_now_x*d_x_now_x_F_x;
+    F_13[0] = d_slip_half_x_x_now_x*d_x_now_x_F_x;
+    F_14[0] = d_slip_half_y_x_now_x*d_x_now_x_F_x;
+    F_2[1] = d_t0_x_now_y*d_x_now_y_F_y;
+    F_3[1] = d_t1_x_now_y*d_x_now_y_F_y;
+    F_4[1] = d_u0_x_now_y*d_x_now_y_F_y;
+    F_5[1] = d_u1_x_now_y*d_x_now_y_F_y;
+    F_11[1] = d_t_half0_x_x_now_y*d_x_now_y_F_y;
+    F_12[1] = d_t_half0_y_x_now_y*d_x_now_y_F_y;
+    F_13[1] = d_slip_half_x_x_now_y*d_x_now_y_F_y;
+    F_14[1] = d_slip_half_y_x_now_y*d_x_now_y_F_y;
+    const fu_real
         d_t0_slip_half_x = -0.75*e[0] - 0.25*h*s_rate_0 + 0.125*h*(s_rate[0] + s_rate_0),
         d_t1_slip_half_y = -0.75*e[0] - 0.25*h*s_rate_0 + 0.125*h*(s_rate[0] + s_rate_0),
         d_u0_slip_half_x = -(0.25*h),
@@ -366,30 +370,19 @@ void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real 
         d_s_rate_0_t_half0_y = -(0.125*h*k[1]),
         d_s_rate_0_slip_half_x = d_s_rate_0_t_half0_x*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_0)) - 0.25*h*t[0] + 0.25*h*t_half0_x,
         d_s_rate_0_slip_half_y = d_s_rate_0_t_half0_y*(-1.5*e[0] + 0.25*h*(s_rate[0] + s_rate_0)) - 0.25*h*t[1] + 0.25*h*t_half0_y;
-    F_0[0] = 1.5*d_slip_half_x_F_x;
-    F_1[0] = 1.5*d_slip_half_y_F_x;
-    F_2[0] = d_slip_half_x_F_x*d_t0_slip_half_x + d_t0_F_x + 0.5*d_t_half0_x_F_x;
-    F_3[0] = d_slip_half_y_F_x*d_t1_slip_half_y + d_t1_F_x + 0.5*d_t_half0_y_F_x;
-    F_4[0] = d_slip_half_x_F_x*d_u0_slip_half_x + d_u0_F_x;
-    F_5[0] = d_slip_half_y_F_x*d_u1_slip_half_y + d_u1_F_x;
-    F_6[0] = d_slip_half_x_F_x*d_w0_slip_half_x + d_t_half0_x_F_x*d_w0_t_half0_x;
-    F_7[0] = d_slip_half_y_F_x*d_w1_slip_half_y + d_t_half0_y_F_x*d_w1_t_half0_y;
-    F_8[0] = d_k0_slip_half_x*d_slip_half_x_F_x + d_k0_t_half0_x*d_t_half0_x_F_x;
-    F_9[0] = d_k1_slip_half_y*d_slip_half_y_F_x + d_k1_t_half0_y*d_t_half0_y_F_x;
-    const fu_real F0_10 = d_e0_slip_half_x*d_slip_half_x_F_x + d_e0_slip_half_y*d_slip_half_y_F_x;
-    F_11[0] = d_s_rate_0_slip_half_x*d_slip_half_x_F_x + d_s_rate_0_slip_half_y*d_slip_half_y_F_x + d_s_rate_0_t_half0_x*d_t_half0_x_F_x + d_s_rate_0_t_half0_y*d_t_half0_y_F_x;
-    F_0[1] = 1.5*d_slip_half_x_F_y;
-    F_1[1] = 1.5*d_slip_half_y_F_y;
-    F_2[1] = d_slip_half_x_F_y*d_t0_slip_half_x + d_t0_F_y + 0.5*d_t_half0_x_F_y;
-    F_3[1] = d_slip_half_y_F_y*d_t1_slip_half_y + d_t1_F_y + 0.5*d_t_half0_y_F_y;
-    F_4[1] = d_slip_half_x_F_y*d_u0_slip_half_x + d_u0_F_y;
-    F_5[1] = d_slip_half_y_F_y*d_u1_slip_half_y + d_u1_F_y;
-    F_6[1] = d_slip_half_x_F_y*d_w0_slip_half_x + d_t_half0_x_F_y*d_w0_t_half0_x;
-    F_7[1] = d_slip_half_y_F_y*d_w1_slip_half_y + d_t_half0_y_F_y*d_w1_t_half0_y;
-    F_8[1] = d_k0_slip_half_x*d_slip_half_x_F_y + d_k0_t_half0_x*d_t_half0_x_F_y;
-    F_9[1] = d_k1_slip_half_y*d_slip_half_y_F_y + d_k1_t_half0_y*d_t_half0_y_F_y;
-    const fu_real F1_10 = d_e0_slip_half_x*d_slip_half_x_F_y + d_e0_slip_half_y*d_slip_half_y_F_y;
-    F_11[1] = d_s_rate_0_slip_half_x*d_slip_half_x_F_y + d_s_rate_0_slip_half_y*d_slip_half_y_F_y + d_s_rate_0_t_half0_x*d_t_half0_x_F_y + d_s_rate_0_t_half0_y*d_t_half0_y_F_y;
+    FU_EACH(g, 2,
+        F_0[g] = 1.5*F_13[g];
+        F_1[g] = 1.5*F_14[g];
+        F_2_2[g] = 0.5*F_11[g] + F_13[g]*d_t0_slip_half_x + F_2[g];
+        F_3_2[g] = 0.5*F_12[g] + F_14[g]*d_t1_slip_half_y + F_3[g];
+        F_4_2[g] = F_13[g]*d_u0_slip_half_x + F_4[g];
+        F_5_2[g] = F_14[g]*d_u1_slip_half_y + F_5[g];
+        F_6[g] = F_11[g]*d_w0_t_half0_x + F_13[g]*d_w0_slip_half_x;
+        F_7[g] = F_12[g]*d_w1_t_half0_y + F_14[g]*d_w1_slip_half_y;
+        F_8[g] = F_11[g]*d_k0_t_half0_x + F_13[g]*d_k0_slip_half_x;
+        F_9[g] = F_12[g]*d_k1_t_half0_y + F_14[g]*d_k1_slip_half_y;
+        F_10[g] = F_13[g]*d_e0_slip_half_x + F_14[g]*d_e0_slip_half_y;
+        F_11_2[g] = F_11[g]*d_s_rate_0_t_half0_x + F_12[g]*d_s_rate_0_t_half0_y + F_13[g]*d_s_rate_0_slip_half_x + F_14[g]*d_s_rate_0_slip_half_y;)
     const fu_real
         d_d0_inv_J = -(inv_J*inv_J*k[0]),
         d_d0_s_rate_0 = d_d0_inv_J*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]) - inv_J*w[0],
@@ -409,20 +402,20 @@ void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real 
         d_k1_inv_J = -(d[1]*inv_J*inv_J),
         d_k1_s_rate_0 = d_k1_inv_J*(-d[0]*w[0] - d[1]*w[1] - t[0]*u[0] - t[1]*u[1]);
     FU_EACH(g, 2,
-        F_0_2[g] = F_0[g] + F_11[g]*d_d0_s_rate_0;
-        F_1_2[g] = F_1[g] + F_11[g]*d_d1_s_rate_0;
-        F_2_2[g] = F_11[g]*d_t_s_rate_0[0] + F_2[g];
-        F_3_2[g] = F_11[g]*d_t_s_rate_0[1] + F_3[g];
-        F_4_2[g] = F_11[g]*d_u0_s_rate_0 + F_4[g];
-        F_5_2[g] = F_11[g]*d_u1_s_rate_0 + F_5[g];
-        F_6_2[g] = F_11[g]*d_w0_s_rate_0 + F_6[g];
-        F_7_2[g] = F_11[g]*d_w1_s_rate_0 + F_7[g];
-        F_8_2[g] = F_11[g]*d_k0_s_rate_0 + F_8[g];
-        F_9_2[g] = F_11[g]*d_k1_s_rate_0 + F_9[g];)
+        F_0_2[g] = F_0[g] + F_11_2[g]*d_d0_s_rate_0;
+        F_1_2[g] = F_1[g] + F_11_2[g]*d_d1_s_rate_0;
+        F_2_3[g] = F_11_2[g]*d_t_s_rate_0[0] + F_2_2[g];
+        F_3_3[g] = F_11_2[g]*d_t_s_rate_0[1] + F_3_2[g];
+        F_4_3[g] = F_11_2[g]*d_u0_s_rate_0 + F_4_2[g];
+        F_5_3[g] = F_11_2[g]*d_u1_s_rate_0 + F_5_2[g];
+        F_6_2[g] = F_11_2[g]*d_w0_s_rate_0 + F_6[g];
+        F_7_2[g] = F_11_2[g]*d_w1_s_rate_0 + F_7[g];
+        F_8_2[g] = F_11_2[g]*d_k0_s_rate_0 + F_8[g];
+        F_9_2[g] = F_11_2[g]*d_k1_s_rate_0 + F_9[g];)
     /* derivatives of the force along the lines */
     const fu_real
-        F_s0_x = F_0_2[0]*t[0] + F0_10 + F_1_2[0]*t[1] + F_2_2[0]*k[0] + F_3_2[0]*k[1] + F_4_2[0]*w[0] + F_5_2[0]*w[1] + F_6_2[0]*k_rate[0] + F_7_2[0]*k_rate[1] + F_8_2[0]*third[0] + F_9_2[0]*third[1],
-        F_s0_y = F_0_2[1]*t[0] + F1_10 + F_1_2[1]*t[1] + F_2_2[1]*k[0] + F_3_2[1]*k[1] + F_4_2[1]*w[0] + F_5_2[1]*w[1] + F_6_2[1]*k_rate[0] + F_7_2[1]*k_rate[1] + F_8_2[1]*third[0] + F_9_2[1]*third[1];
+        F_s0_x = F_0_2[0]*t[0] + F_10[0] + F_1_2[0]*t[1] + F_2_3[0]*k[0] + F_3_3[0]*k[1] + F_4_3[0]*w[0] + F_5_3[0]*w[1] + F_6_2[0]*k_rate[0] + F_7_2[0]*k_rate[1] + F_8_2[0]*third[0] + F_9_2[0]*third[1],
+        F_s0_y = F_0_2[1]*t[0] + F_10[1] + F_1_2[1]*t[1] + F_2_3[1]*k[0] + F_3_3[1]*k[1] + F_4_3[1]*w[0] + F_5_3[1]*w[1] + F_6_2[1]*k_rate[0] + F_7_2[1]*k_rate[1] + F_8_2[1]*third[0] + F_9_2[1]*third[1];
     /* outputs */
     F[0] = F_x;
     F[1] = F_y;
@@ -430,14 +423,14 @@ void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real 
     F_d[1] = F_1_2[0] + F_s0_x*s0_1;
     F_d[2] = F_0_2[1] + F_s0_y*s0_0;
     F_d[3] = F_1_2[1] + F_s0_y*s0_1;
-    F_t[0] = F_2_2[0] + F_s0_x*s0_2;
-    F_t[1] = F_3_2[0] + F_s0_x*s0_3;
-    F_t[2] = F_2_2[1] + F_s0_y*s0_2;
-    F_t[3] = F_3_2[1] + F_s0_y*s0_3;
-    F_u[0] = F_4_2[0];
-    F_u[1] = F_5_2[0];
-    F_u[2] = F_4_2[1];
-    F_u[3] = F_5_2[1];
+    F_t[0] = F_2_3[0] + F_s0_x*s0_2;
+    F_t[1] = F_3_3[0] + F_s0_x*s0_3;
+    F_t[2] = F_2_3[1] + F_s0_y*s0_2;
+    F_t[3] = F_3_3[1] + F_s0_y*s0_3;
+    F_u[0] = F_4_3[0];
+    F_u[1] = F_5_3[0];
+    F_u[2] = F_4_3[1];
+    F_u[3] = F_5_3[1];
     F_w[0] = F_6_2[0];
     F_w[1] = F_7_2[0];
     F_w[2] = F_6_2[1];
@@ -449,10 +442,14 @@ void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real 
 }
 
 /* friction that slides, its derivatives with the points moving (Hunt & Crossley 1975; closest points by the implicit function theorem) */
-void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
+void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real slid, fu_real r_0, fu_real turns, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
 {
     (void)third;
     (void)k_rate;
+    (void)k_t;
+    (void)slid;
+    (void)r_0;
+    (void)turns;
     /* normal */
     const fu_real
         len_m = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
@@ -482,11 +479,12 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
         x_0 = (1.0/6.0)*h*(tau_x*u[0] + tau_y*u[1] + v[0]) + (2.0/3.0)*slip_half_x*tau_half_x + (2.0/3.0)*slip_half_y*tau_half_y + x[0],
         x_now_x = tau_x*x_0,
         x_now_y = tau_y*x_0,
+        most = N_law*mu,
         x_along = tau_x*x_now_x + tau_y*x_now_y,
         size = FU_SQRT(x_along*x_along),
         side_x = x_along/size,
-        F_x_2 = -(N_law*mu*side_x*tau_x),
-        F_y_2 = -(N_law*mu*side_x*tau_y);
+        F_x_2 = -(most*side_x*tau_x),
+        F_y_2 = -(most*side_x*tau_y);
     /* closest points: derivatives of the arc-lengths by d and by the slopes */
     const fu_real
         J_00_2 = d[0]*k[0] + d[1]*k[1] + t[0]*t[0] + t[1]*t[1],
@@ -502,39 +500,45 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
         d_d0_root_p = 0.5*d_d0_size_p/root_p,
         d_d0_elastic = c[3]*d_d0_root_p*depth + d_d0_depth*(c[2] + c[3]*root_p),
         d_d0_N_law = d_d0_elastic*(c[4]*rate + 1.0),
-        d_d0_F_x_2 = -(d_d0_N_law*mu*side_x*tau_x),
-        d_d0_F_y_2 = -(d_d0_N_law*mu*side_x*tau_y),
+        d_d0_most = d_d0_N_law*mu,
+        d_d0_F_x_2 = -(d_d0_most*side_x*tau_x),
+        d_d0_F_y_2 = -(d_d0_most*side_x*tau_y),
         d_d1_depth = -n_y,
         d_d1_size_p = d_d1_depth*depth/size_p,
         d_d1_root_p = 0.5*d_d1_size_p/root_p,
         d_d1_elastic = c[3]*d_d1_root_p*depth + d_d1_depth*(c[2] + c[3]*root_p),
         d_d1_N_law = d_d1_elastic*(c[4]*rate + 1.0),
-        d_d1_F_x_2 = -(d_d1_N_law*mu*side_x*tau_x),
-        d_d1_F_y_2 = -(d_d1_N_law*mu*side_x*tau_y);
+        d_d1_most = d_d1_N_law*mu,
+        d_d1_F_x_2 = -(d_d1_most*side_x*tau_x),
+        d_d1_F_y_2 = -(d_d1_most*side_x*tau_y);
     PLANAR_CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY
     const fu_real
+        d_t0_most = d_t0_N_law*mu,
         d_t0_len_t = inv_t*t[0],
         d_t0_inv_t = -(d_t0_len_t*inv_t*inv_t),
         d_t0_tau_x = d_t0_inv_t*t[0] + inv_t,
-        d_t0_F_x_2 = -N_law*d_t0_tau_x*mu*side_x - d_t0_N_law*mu*side_x*tau_x,
+        d_t0_F_x_2 = -d_t0_most*side_x*tau_x - d_t0_tau_x*most*side_x,
         d_t0_tau_y = d_t0_inv_t*t[1],
-        d_t0_F_y_2 = -N_law*d_t0_tau_y*mu*side_x - d_t0_N_law*mu*side_x*tau_y;
+        d_t0_F_y_2 = -d_t0_most*side_x*tau_y - d_t0_tau_y*most*side_x;
     PLANAR_CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_2
     const fu_real
+        d_t1_most = d_t1_N_law*mu,
         d_t1_len_t = inv_t*t[1],
         d_t1_inv_t = -(d_t1_len_t*inv_t*inv_t),
         d_t1_tau_x = d_t1_inv_t*t[0],
-        d_t1_F_x_2 = -N_law*d_t1_tau_x*mu*side_x - d_t1_N_law*mu*side_x*tau_x,
+        d_t1_F_x_2 = -d_t1_most*side_x*tau_x - d_t1_tau_x*most*side_x,
         d_t1_tau_y = d_t1_inv_t*t[1] + inv_t,
-        d_t1_F_y_2 = -N_law*d_t1_tau_y*mu*side_x - d_t1_N_law*mu*side_x*tau_y,
+        d_t1_F_y_2 = -d_t1_most*side_x*tau_y - d_t1_tau_y*most*side_x,
         d_u0_rate = -n_x,
         d_u0_N_law = c[4]*d_u0_rate*elastic,
-        d_u0_F_x_2 = -(d_u0_N_law*mu*side_x*tau_x),
-        d_u0_F_y_2 = -(d_u0_N_law*mu*side_x*tau_y),
+        d_u0_most = d_u0_N_law*mu,
+        d_u0_F_x_2 = -(d_u0_most*side_x*tau_x),
+        d_u0_F_y_2 = -(d_u0_most*side_x*tau_y),
         d_u1_rate = -n_y,
         d_u1_N_law = c[4]*d_u1_rate*elastic,
-        d_u1_F_x_2 = -(d_u1_N_law*mu*side_x*tau_x),
-        d_u1_F_y_2 = -(d_u1_N_law*mu*side_x*tau_y);
+        d_u1_most = d_u1_N_law*mu,
+        d_u1_F_x_2 = -(d_u1_most*side_x*tau_x),
+        d_u1_F_y_2 = -(d_u1_most*side_x*tau_y);
     /* derivatives of the force along the lines */
     const fu_real
         F_s0_x = d_d0_F_x_2*t[0] + d_d1_F_x_2*t[1] + d_t0_F_x_2*k[0] + d_t1_F_x_2*k[1] + d_u0_F_x_2*w[0] + d_u1_F_x_2*w[1],

@@ -756,7 +756,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(crossing_motion, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
     X(crossing_stretch, a[0], a[1], a[2], a[3], a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], out[0], out[1], out[2]) \
     X(crossing_sticking, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], *a[10], a[11], a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(crossing_sliding, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], *a[10], a[11], a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(crossing_sliding, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], *a[9], a[10], *a[11], a[12], a[13], a[14], a[15], a[16], a[17], a[18], *a[19], *a[20], *a[21], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(crossing_step, a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], a[7], out[0], out[1], out[2]) \
     X(planar_crossing_closest, a[0], a[1], a[2], out[0]) \
     X(planar_crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
@@ -764,7 +764,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_crossing_motion, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
     X(planar_crossing_stretch, a[0], a[1], a[2], a[3], a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], out[0], out[1], out[2]) \
     X(planar_crossing_sticking, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], *a[10], a[11], a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(planar_crossing_sliding, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], *a[10], a[11], a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2], out[3], out[4], out[5]) \
+    X(planar_crossing_sliding, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], *a[9], a[10], *a[11], a[12], a[13], a[14], a[15], a[16], a[17], a[18], *a[19], *a[20], *a[21], out[0], out[1], out[2], out[3], out[4], out[5]) \
     X(planar_crossing_step, a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], a[7], out[0], out[1], out[2]) \
     X(surface_flat, a[0], a[1], out[0], out[1]) \
     X(surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \

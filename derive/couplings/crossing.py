@@ -28,7 +28,7 @@ import numpy as np
 import sympy as sp
 
 from ..codegen.program import Program
-from .crossing_stretch import Motion, Stretch, jacobian_along, stretch_after
+from .crossing_stretch import Motion, Stretch, jacobian_along, stretch_after, turned_stretch
 from .stretch import sliding_force, sticking_force
 
 CROSSINGS = {3: "crossing", 2: "planar_crossing"}
@@ -294,19 +294,22 @@ def sliding(dim: int) -> Program:
     third, k_rate = _along_lines(p, lines.t.shape)
     c = _penalty(p)
     mu = p.input("mu", (), "1", "coefficient of friction")
+    stiffness = p.input("k_t", (), "N/m", "stiffness of the spring")
     p.stage("normal")
     n = _normal(p, lines, c[1])
     p.stage("law")
     normal = _law(p, n, lines.d, u, c)["normal"]
     found = _stretch(p, lines, c[1], n, w, u)
-    F, sides = _sliding_force(p, found, mu * normal)
+    most = p.define("most", mu * normal)
+    turned = turned_stretch(p, found, u - n.dot(u) * n, (p.define("r_1", most / stiffness), c[5]))
+    F, sides = _sliding_force(p, found, turned, most)
     return _with_points_moving(p, lines, F, _Moving(w, u, lines.k, found.e, third, k_rate, found.chain), sides)
 
 
-def _sliding_force(p: Program, found: Stretch, most: sp.Expr) -> tuple[np.ndarray, list[sp.Symbol]]:
+def _sliding_force(p: Program, found: Stretch, turned: np.ndarray, most: sp.Expr) -> tuple[np.ndarray, list[sp.Symbol]]:
     """Return the force and what is constant in it: in the plane the spring is stretched to one of two sides."""
     if len(found.along) == 3:
-        return sliding_force(p, found.now, most), []
+        return sliding_force(p, turned, most), []
     size = p.define("x_along", found.now.dot(found.along))
     side = p.define("side_x", size / p.define("size", sp.sqrt(size * size)))
     return p.vector("F", -most * side * found.along), [side]

@@ -17,13 +17,16 @@ from ..codegen.program import Program, jacobian
 
 class Stretch(NamedTuple):
     """Stretch of friction's spring without sliding; what it was before, along what; how far the points have moved; the
-    definitions that it depends on the motion of the points through, in the order of the chain rule.
+    slip of the last step, turned alike; the time since then; the definitions that the stretch depends on the motion of
+    the points through, in the order of the chain rule.
     """
 
     now: np.ndarray
     old: np.ndarray
     along: np.ndarray
     e: np.ndarray
+    slip: np.ndarray
+    h: sp.Expr
     chain: tuple[np.ndarray, ...]
 
 
@@ -95,7 +98,34 @@ def stretch_after(p: Program, d: np.ndarray, t: np.ndarray, signs: Sequence[int]
     parts = [p.define(f"x_{i}", last.x[i] + (last.h * (last.v[i] + axis.dot(u)) + 4 * middle[i].dot(slip)) / 6)
              for i, axis in enumerate(frame)]
     now = p.vector("x_now", sum(x * axis for x, axis in zip(parts, frame, strict=True)))
-    return Stretch(now, old, frame[0], e, (np.concatenate([t_half.ravel(), slip]), rates.s))
+    slip_0 = p.vector("slip_old", sum(v * axis for v, axis in zip(last.v, frame, strict=True)))
+    return Stretch(now, old, frame[0], e, slip_0, last.h, (now, np.concatenate([t_half.ravel(), slip]), rates.s))
+
+
+def turned_stretch(p: Program, found: Stretch, slip: np.ndarray, end: tuple[sp.Expr, sp.Expr]) -> np.ndarray:
+    """Return the direction, of no particular size, of a stretch that slides as the step ends.
+
+    end: the size r of the stretch then, and a negligible length. With the unit vector m of the direction, r m' is the
+    part of the slip that is square to m. Let A be the slip over the step by r, and the direction of the slip a parabola
+    with the values at both ends and the mean. For small angles m is then a sum of the first direction and these three,
+    with the weights 1, -A^2/12 - A^3/12, A + A^2/2 + A^3/4 and A^2/12 + A^4/24 over their sum. The sum has the series
+    of exp(A) up to A^4. Where A is large m is the direction at the end less its lag. The slip of the last step counts
+    by its speed over the mean: it has none where it stuck.
+    """
+    slid = p.input("slid", (), "1", "1 where it slid at the last step, too, else 0")
+    r_0 = p.input("r_0", (), "m", "size of the stretch of the last step; any other than 0 where it did not slide")
+    turns = p.input("turns", (), "1", "1 where it slides forwards as the step ends, else 0: along the whole slip")
+    r, least = end
+    size = p.define("r", r + slid * (r_0 - r) / 2 + least)
+    change = p.vector("change", found.now - found.old)
+    path = p.define("path", turns * p.define("size_path", sp.sqrt(change.dot(change) + least * least)))
+    A = p.define("A", path / size)
+    speed = p.define("speed_1", sp.sqrt(slip.dot(slip) + least * least))
+    old = p.define("old_more", slid * (r - r_0) / (2 * r_0))
+    weights = [p.define(f"weight_{k}", each) for k, each in enumerate(
+        (-found.h * (A + A**2) / 12, A / 2 + A**2 / 4, path * (A / 12 + A**3 / 24) / speed))]
+    lead = weights[0] * found.slip + weights[1] * change + weights[2] * slip
+    return p.vector("turned", found.now + old * found.old + lead)
 
 
 def jacobian_along(p: Program, values: np.ndarray, wrt: Sequence[sp.Symbol], chain: Sequence[np.ndarray],

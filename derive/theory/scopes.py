@@ -386,7 +386,8 @@ def crossing_scope(name: str) -> Scope:
         ("s_rate", ("c_{a}", "c_{b}"))) for k, latex in enumerate(names[:family.dim - 1])]
     return Scope(family, (Symbol(r"\mathbf{d}", "d", column), *rows, Symbol(r"\mathbf{u}", "u", column), *law,
                           *of_spring, Symbol("h", "h", number), Symbol(r"\mathbf{d}_{0}", "d_0", column),
-                          Symbol(r"\mathbf{d}_{1}", "d_rate", column), Symbol("k_{t}", "k_t", number),
+                          Symbol(r"\mathbf{d}_{1}", "d_rate", column), Symbol("r_{0}", "r_0", number),
+                          Symbol("k_{t}", "k_t", number),
                           Symbol(r"\mu_{t}", "mu", number)))
 
 

@@ -38,6 +38,7 @@ def crossing(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invarianc
                                                               s["x"] @ s["x"]), 64 * EPS
     yield "what slides is as large as friction", relative(sliding @ sliding - (s["mu"] * told["N"]) ** 2,
                                                           sliding @ sliding), 256 * EPS
+    sliding = k("sliding", {**s, "slid": 0.0, "turns": 0.0})["F"]
     yield "what slides is against the stretch", relative(sliding @ now + np.sqrt((sliding @ sliding) * (now @ now)),
                                                          sliding @ now), 64 * EPS
     step = k("step", s)

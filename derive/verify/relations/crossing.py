@@ -183,8 +183,20 @@ def _friction(lines: Lines) -> list[Relation]:
         x = s["x"] + s["h"] / 6 * (s["v"] + 4 * slip(half(s)) + slip(s))
         return old({**s, "x": x})
 
+    def turned(s: State) -> Any:
+        """Return the direction of what slides as a sum of unit vectors, those of the slip at both ends among them."""
+        def unit(x: Any) -> Any:
+            return x / x.dot(x) ** 0.5
+
+        r, change = (s["mu"] * _size(s) / s["k_t"] + s["r_0"]) / 2, now(s) - old(s)
+        A = change.dot(change) ** 0.5 / r
+        first = old({**s, "x": s["v"]})
+        last = s["u"] - across(s) * across(s).dot(s["u"])
+        return old(s) / s["r_0"] - (A + A**2) / 12 * s["h"] / r * first + (
+            A + A**2 / 2 + A**3 / 4) * unit(change) + (A**2 / 12 + A**4 / 24) * unit(last)
+
     def sliding(s: State) -> Any:
-        x = now(s)
+        x = turned(s) if lines.lines == 2 else now(s)
         return -s["mu"] * _size(s) / x.dot(x) ** 0.5 * x
 
     return [Relation(kernel, name, text, 0, root(function)) for kernel, name, text, function in (

@@ -22,7 +22,7 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
             "d_0": d + 0.1 * random.normal(size=dim), "d_rate": random.normal(size=dim),
             "t_0": t + 0.1 * random.normal(size=shape), "t_rate": random.normal(size=shape),
             "s_rate": random.normal(size=dim - 1), "v": random.normal(size=dim - 1),
-            "x": 0.6 + 0.2 * random.random(dim - 1),
+            "slid": 1.0, "r_0": 0.35, "turns": 1.0, "x": 0.6 + 0.2 * random.random(dim - 1),
             "n": square / np.linalg.norm(square), "way": 0.1 * random.normal(size=dim),
             "turn": 0.1 * random.normal(size=shape), "size": 0.5 + random.random(dim - 1), "p": 0.3 * random.random(),
             "p_next": 0.3 * random.random(), "h": 0.1}

@@ -7,7 +7,7 @@
 #include "couplings/common/coupling.h"
 #include "couplings/common/stick_friction.h"
 
-enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4, FU_LAW_FRICTION = 6 };
+enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4, FU_LAW_LEAST, FU_LAW_FRICTION };
 #define FU_INSTANT 1e-3 /* s: makes lengths of velocities, to compare them */
 
 /* The first line is a cable, the second another one, or a bar through the attachment's point; in the plane the bar is square to
@@ -69,7 +69,7 @@ typedef struct {
 typedef struct {
     double stretch[3], without_sliding[3], old[3], along[3], force[3], energy;
     fu_friction_end end;
-    int slides, sticks;
+    int slides, sticks, turns; /* the last: its direction follows the slip */
 } fu_crossing_grip;
 
 /* The force of friction on the first line and its derivatives, as kernels give them. */

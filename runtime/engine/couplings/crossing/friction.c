@@ -80,6 +80,51 @@ static void travel_since(const fu_crossing *crossing, const before *last, const 
     way->depth = (fu_step_ends){{last->depth, contact->depth[0]}, {last->sinking, contact->depth[1]}};
 }
 
+/* Size of the stretch at the last step where it slid then, m, else 1. */
+static double slid_stretch(const before *last)
+{
+    const double size = sqrt(fu_dot(2, last->stretch, last->stretch));
+    return last->slid != 0.0 && size > 0.0 ? size : 1.0;
+}
+
+static int slid_before(const before *last)
+{
+    return last->slid != 0.0 && fu_dot(2, last->stretch, last->stretch) > 0.0;
+}
+
+/* Whether a stretch takes the direction of turn_to_slip: in the plane there is one direction; against the slip it is unloaded. */
+static int turns(int dim, const fu_crossing_grip *grip, const fu_friction_travel *travel)
+{
+    const double *now = grip->without_sliding;
+    return dim == 3 && grip->slides && grip->end.slid > 0 && fu_dot(3, now, travel->change) > 0.0 && fu_dot(3, now, travel->rates[1]) > 0.0
+           && fu_dot(3, now, grip->old) >= 0.0;
+}
+
+/* Direction of a stretch that slides as the step ends, as turned_stretch in derive/couplings/crossing_stretch.py. */
+static void turn_to_slip(const fu_crossing *crossing, const before *last, double time, const fu_closest_points *points,
+                         const fu_crossing_contact *contact, const fu_crossing_grip *grip, double along[3])
+{
+    const double least = crossing->law[FU_LAW_LEAST], r = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
+    const double slid = slid_before(last), r_0 = slid_stretch(last);
+    double squares[3] = {0.0}, slip[2][3], change[3];
+    in_space(3, grip->along, contact->normal, last->rate, slip[0]);
+    slip_of(3, points, contact, slip[1]);
+    for (int d = 0; d < 3; ++d) {
+        change[d] = grip->without_sliding[d] - grip->old[d];
+        squares[0] += change[d] * change[d];
+        squares[1] += slip[1][d] * slip[1][d];
+    }
+    const double path = sqrt(squares[0] + least * least), speed = sqrt(squares[1] + least * least);
+    const double A = path / (r + slid * (r_0 - r) / 2.0 + least);
+    for (int d = 0; d < 3; ++d) {
+        along[d] = grip->without_sliding[d] + slid * (r - r_0) / (2.0 * r_0) * grip->old[d] + A * (0.5 + 0.25 * A) * change[d]
+                   + path * A / 12.0 * (1.0 + 0.5 * A * A) * slip[1][d] / speed
+                   - time_since(last, time) * A * (1.0 + A) / 12.0 * slip[0][d];
+        squares[2] += along[d] * along[d];
+    }
+    for (int d = 0; d < 3 && squares[2] > 0.0; ++d) along[d] /= sqrt(squares[2]);
+}
+
 static void grip_since(const fu_crossing *crossing, const before *last, const fu_closest_points *points, const fu_crossing_contact *contact,
                        double time, fu_crossing_grip *out)
 {
@@ -98,6 +143,8 @@ static void grip_since(const fu_crossing *crossing, const before *last, const fu
     if (way.h > 0.0) out->end = fu_end_of_friction(&way);
     else out->end = (fu_friction_end){fmin(size, most), 1.0, size > most};
     out->slides = out->end.slid && out->end.part == 1.0;
+    out->turns = turns(dim, out, &travel);
+    if (out->turns) turn_to_slip(crossing, last, time, points, contact, out, along);
     for (int d = 0; d < dim; ++d) {
         out->stretch[d] = out->end.stretch * along[d];
         out->force[d] = -crossing->tangential * out->stretch[d];
@@ -147,9 +194,10 @@ void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *s
     memset(by, 0, sizeof *by);
     memset(&stuck, 0, sizeof stuck);
     if (grip.end.slid)
-        kernel->sliding(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate, crossing->law, friction, e, h,
-                        last->way, last->way_rate, last->slopes, last->slope_rates, last->s_rate, last->stretch, last->rate, by->F,
-                        by->F_d, by->F_t, by->F_u, by->F_w, by->F_k);
+        kernel->sliding(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate, crossing->law, friction,
+                        crossing->tangential, e, h, last->way, last->way_rate, last->slopes, last->slope_rates, last->s_rate,
+                        last->stretch, last->rate, grip.turns ? slid_before(last) : 0.0, slid_stretch(last), grip.turns, by->F, by->F_d,
+                        by->F_t, by->F_u, by->F_w, by->F_k);
     if (!grip.slides)
         kernel->sticking(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate, crossing->law,
                          crossing->tangential, e, h, last->way, last->way_rate, last->slopes, last->slope_rates, last->s_rate,
@@ -233,6 +281,7 @@ double fu_crossing_carried_error(const fu_model *model, const fu_coupling *coupl
     way.depth.rate[0] = 2.0 * (way.depth.value[1] - way.depth.value[0]) / way.h - way.depth.rate[1];
     fu_way_along(dim, &travel, along, &way);
     const fu_friction_end other = fu_end_of_friction(&way);
+    if (grip.turns && other.slid > 0 && other.part == 1.0) return fabs(other.stretch - grip.end.stretch);
     for (int d = 0; d < dim; ++d) {
         const double off = other.stretch * along[d] - grip.stretch[d];
         square += off * off;
