@@ -53,41 +53,49 @@ def _points(value: Any) -> tuple[tuple[float, ...], ...]:
 class Cable(DrawnCable, Part):
     """A cable of elements, drawn straight, through points or along a curve.
 
-    It has ``elements`` of equal lengths, or ``nodes`` at given arc-lengths in m, from 0 to its length: close where it
-    bends much, or where something is attached. The longest element is at most 1e6 times as long as the shortest. Both
-    may be left out: `Scene.choose`, or a run with ``model="auto"``, then chooses equal elements for a tolerance, and
-    element and law where no ``element`` is given.
+    All arc-lengths s are of the undeformed cable. Drawn is how a run starts. The tangent of a curve must be continuous,
+    the curvature need not: straight, arc, straight is possible.
 
-    Drawn, which is how a run starts: from ``start`` to ``end``; or smoothly through ``points`` (x, y, z); or along
-    ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m. The tangent
-    must be continuous, the curvature need not: straight, arc, straight will do. ``shape`` "hanging": from ``start`` to
-    ``end`` along the catenary of a cable with this ``rest_length``, longer than the span, that cannot stretch, under
-    the gravity of the scene; its stress-free shape is straight.
-    Undeformed: ``rest`` "drawn", the drawn shape, or "straight"; ``rest_length`` in m, the length as drawn if not
-    given: a shorter one makes the drawn cable taut, a longer one slack (or compressed, where it is straight).
-    All arc-lengths s are of the undeformed cable.
+    Without ``elements`` and ``nodes``, `Scene.choose`, or a run with ``model="auto"``, chooses equal elements for a
+    tolerance, and element and law where no ``element`` is given.
 
-    At the start it moves as a rigid body would: its first point with ``velocity`` (m/s), and turning about that with
-    ``angular_velocity`` (rad/s, along the ground's axes), but for what supports hold.
+    Planar elements lie in the plane through their line and ``up``, with the height on the side of ``up``; a line in z =
+    0 with ``up`` in it stays in that plane, with the height at z x tangent.
 
-    ``up`` is the direction of the section's height at the start; only its part across the axis counts, and from there
-    on the section turns with the curve, about its tangent nowhere. It may lie along the axis where the section is round
-    or the element has no axes across: then the height lies along the ground's axis most nearly across. Planar elements
-    lie in the plane through their line and ``up``, with the height on the side of that; a line in z = 0 with ``up`` in
-    it, too, stays in that plane, with the height at z x tangent, wherever ``up`` points there. ``law``: for beams
-    "continuum" (the default), "poisson_split" or "structural"; for cables ``strain`` ("green" or "engineering") and
-    ``curvature`` ("exact" or "linear"), the measures that their axial and bending stiffness act on, by default green
-    and exact; and ``membrane``, how an element represents its axial strain: "full" (the default) at every point;
-    "tension_only" the same, engineering strain, with 1e-4 of the axial stiffness in compression, where the force is at
-    most that and 2.5e-7 EA; "assumed" by its Legendre modes of degree 0 to 2; "reduced" by those of degree 0 and 1,
-    with 1 % of the axial stiffness on degree 2, which keeps the lengths of the slopes stable ("cable18": 0 to 4, 0 to
-    2, and 3 and 4). Beside a point force on a taut rope the tension of full and assumed strain swings, that of reduced
-    strain hardly. Reduced strain is for small strain: stable up to a compression of 1 %, with about four times as many
-    elements for axial waves.
+    A cable that is stress-free where it is curved has the exact curvature, whose size alone it measures: it resists
+    bending in the plane of its curve, and across that plane by tension alone. The law "structural" is the one for thin
+    arcs of beams: the continuum locks there, unless its elements are about as short as two heights.
 
-    A cable that is stress-free where it is curved has the exact curvature, whose size alone it measures: it resists in
-    the plane of its curve, and across that plane by tension alone. Of the beams' laws, "structural" is the one for thin
-    arcs: the continuum locks there, unless its elements are about as short as two heights.
+    start, end: ends of a straight or hanging cable, m
+    points: points (x, y, z) of a smooth curve, m
+    curve: a function of u from 0 to 1 that returns x, y, z in m; kept as points
+    shape: "straight"; or "hanging": from ``start`` to ``end`` along the catenary of an inextensible cable of this
+        ``rest_length``, longer than the span, under the gravity of the scene, straight where it is stress-free
+    elements: number of elements of equal length
+    nodes: arc-lengths of the nodes, from 0 to the length, m; close where the cable bends much or where something is
+        attached. The longest element is at most 1e6 times as long as the shortest
+    library: directory of a library of elements
+    element: name of the element
+    law: of beams, "continuum" (the default), "poisson_split" or "structural"
+    strain: of cable elements, the axial measure, "green" (the default) or "engineering"
+    curvature: of cable elements, the measure of bending, "exact" (the default) or "linear"
+    membrane: of cable elements, the representation of axial strain. "full" (the default): at every point.
+        "tension_only": the same, engineering strain, with 1e-4 of the axial stiffness in compression, where the force
+        is at most that and 2.5e-7 EA. "assumed": by Legendre modes of degree 0 to 2 ("cable18": 0 to 4). "reduced": by
+        those of degree 0 and 1 ("cable18": 0 to 2), with 1 % of the axial stiffness on the modes above. Beside a point
+        force on a taut rope, the tension of full and assumed strain oscillates along the cable, that of reduced strain
+        hardly. Reduced strain is for small strain: stable up to a compression of 1 %, with about four times as many
+        elements for axial waves
+    section: cross-section
+    material: material
+    up: direction of the section's height at the start, of which the part across the axis counts; from there on the
+        section follows the curve without turning about its tangent. It may lie along the axis where the section is
+        round or the element has no axes across: the height then lies along the ground's axis most nearly across
+    rest: undeformed shape, "drawn" or "straight"
+    rest_length: undeformed length, m, by default the length as drawn. A shorter one makes the drawn cable taut, a
+        longer one slack (a straight one is compressed)
+    velocity: of the first point at the start, m/s; the cable moves as a rigid body, except where supports hold it
+    angular_velocity: about the first point at the start, rad/s, along the ground's axes
     """
 
     _hanging: tuple[tuple[float, ...], ...] | None = PrivateAttr(None)

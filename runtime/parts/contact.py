@@ -33,21 +33,25 @@ def _points(value: Any) -> tuple[Vector, ...]:
 class Contact(Part):
     """Contact of a cable along its length, or of points of a body, with a `Surface`: it presses and never pulls.
 
-    By penalty, with ``stiffness``, or hard, with ``restitution``.
-    a: the cable or the body; b: the surface; or lists of them, or "all" of those in the scene: a contact is added for
-    each pair, and a name given gets a number. The depth d by which it is below the surface gives the force
-    ``stiffness d^exponent (1 + damping d')`` a length of a cable, or on each point of a body, with the exponent 1 or
-    1.5 (Hertz) and the damping c in s/m (Hunt and Crossley). A ball that strikes with the speed v comes back with e v,
-    where v - ln(1 + c v)/c is the same for v and for -e v. stiffness in N/m a length in m, or in N/m; if not given,
-    that which the weight sinks by 1 % of the radius. radius in m: of the cable, that of its section if not given, 0 for
-    its centreline; of spheres about a body's points. points: of a body, in its axes, in m; its origin if not given.
-    restitution: of hard contact of a body's points, which do not sink in: what part of the normal velocity they come
-    back with, 0 to 1 (Newton). What would come back by less than rest_velocity, in m/s, stays. friction: Coulomb's
-    coefficient, or a `Friction` with model "stick". What sticks is kept by a spring of tangential_stiffness, that of
-    the normal force if not given, and slides where that exceeds friction. In statics friction is against the way from
-    the places drawn. Along a cable that sticks, tension falls over the length √(EA/tangential_stiffness). On spheres
-    about a body's points friction acts where they touch, with its moment, and is stretched as they roll; along cables
-    it acts on the axis.
+    It acts by penalty, with ``stiffness``, or is hard, with ``restitution``: points of a body then do not penetrate.
+    The force of a penalty is ``stiffness d^exponent (1 + damping d')`` at the depth d, a length of a cable or on each
+    point of a body. With the damping c, a ball that strikes with the speed v comes back with e v, where v - ln(1 + c
+    v)/c is the same for v and for -e v. In statics friction acts against the displacement from the drawn position. On
+    spheres about a body's points it acts where they touch, with its moment; along cables it acts on the axis.
+
+    a: the cable or the body; a list, or "all" of the scene: a contact is added for each pair, and a name given gets a
+        number
+    b: the surface; or a list, or "all"
+    stiffness: N/m a length in m, or N/m; by default the weight penetrates by 1 % of the radius
+    exponent: 1, or 1.5 (Hertz)
+    damping: s/m (Hunt and Crossley)
+    friction: Coulomb's coefficient, or a `Friction` with the model "stick"
+    tangential_stiffness: of the spring that holds what sticks, N/m; by default that of the normal force. Along a cable
+        that sticks, tension falls over the length √(EA/tangential_stiffness)
+    radius: of the cable, m, by default that of its section, 0 for its centreline; of spheres about a body's points
+    restitution: part of the normal velocity with which points come back, 0 to 1 (Newton)
+    rest_velocity: what would come back by less stays, m/s
+    points: of a body, in its axes, m; by default its origin
     """
 
     kind: ClassVar[str] = "contact"

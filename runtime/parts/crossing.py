@@ -19,21 +19,26 @@ from .validation import Name, Vector, direction, not_negative, positive, xyz
 
 
 class Crossing(Part):
-    """Contact of the cable a with a line b that crosses it, at the points where both are closest.
+    """Contact of a cable with a line that crosses it, at the points where both are closest.
 
-    a: the cable; b: another cable, or the body or (None) the ground that carries a bar; or lists of them, or "all" for
-    the cables in the scene: a crossing is added for each pair, and a name given gets a number. at: of a bar its middle,
-    in m, in the body's axes; axis: its direction in these axes, length: how far it reaches to each side, in m. In a
-    planar scene the bar is square to the plane and has neither. Bar and cables are round: radius: in m, the distance of
-    both axes at which they touch, the sum of the radii of the cables' sections if not given, where a bar has none.
-    stiffness k (N/m, or N/m^1.5) and exponent e of the contact force ``k p^e`` at the penetration p: 1, or 1.5 after
-    Hertz; damping in s/m: the force is ``k p^e (1 + damping p')``. friction: a coefficient, or a `Friction`; it acts
-    along both lines, and is smooth in the speed of slip. With model "stick" what sticks is kept by a spring of
-    tangential_stiffness, ``stiffness`` if not given, and slides where that exceeds friction; in statics it is against
-    the way from the places drawn. side: the direction in which a is of b, along the ground's axes, as at the start if
-    not given: the lines cannot pass through each other. Beyond the ends of cables and bars there is no contact; a bar
-    that comes in over its end and overlaps brings the energy of that from outside. A crossing has one point of contact;
-    of several possible ones the one that is closest at the start.
+    The line is another cable or a straight bar; both are round. The lines cannot pass through each other. Beyond the
+    ends of cables and bars there is no contact; a bar that comes in over its end and overlaps brings the energy of that
+    from outside. A crossing has one point of contact; of several possible ones the one that is closest at the start.
+
+    a: the cable; a list, or "all" of the scene: a crossing is added for each pair, and a name given gets a number
+    b: the other cable, or the body or (None) the ground that carries a bar; or a list, or "all"
+    at: middle of a bar in the body's axes, m
+    axis: direction of a bar in the body's axes; a bar in a planar scene is square to the plane
+    length: reach of a bar to each side, m
+    radius: distance of both axes at which they touch, m; by default the sum of the radii of the cables' sections, 0 of
+        a bar
+    stiffness: k of the force ``k p^e (1 + damping p')`` at the penetration p, N/m or N/m^1.5
+    exponent: e, 1, or 1.5 (Hertz)
+    damping: s/m (Hunt and Crossley)
+    friction: a coefficient, or a `Friction`, along both lines: smooth in the speed of slip, or with the model "stick"
+    tangential_stiffness: of the spring that holds what sticks, N/m; by default ``stiffness``. In statics friction acts
+        against the displacement from the drawn position
+    side: direction from b to a, along the ground's axes; by default as at the start
     """
 
     kind: ClassVar[str] = "crossing"

@@ -52,33 +52,42 @@ def _check_added_mass(matrix: np.ndarray) -> None:
 
 
 class Drag(Part):
-    """Drag, buoyancy and added mass of a cable or a body in a `Fluid`.
+    """Drag, lift, buoyancy and added mass of a cable or a body in a `Fluid`.
 
-    on: the cable, all of it, or the body; fluid: its name. If not given, the only one of the scene, or all of them, of
-    which each acts where it is, if no two of them are at the same place.
-    Of a cable: ``normal`` and ``tangential``, the coefficients of Morison's equation, whose forces a length are
-    ``ρ/2 d normal |w_n| w_n`` across and ``ρ/2 π d tangential |w_t| w_t`` along, with the fluid's velocity w past it;
-    ``diameter`` d in m and ``displaced_area``, the volume a length that the cable displaces, in m², are those of the
-    section (of a tube with its inside) if not given; 0 for no buoyancy.
-    Of a body: ``area`` (m²) and ``coefficient`` of the force ``ρ/2 area coefficient |w| w`` at its centre of pressure
-    ``at`` (m, body axes), and the displaced ``volume`` (m³), whose buoyancy acts there, too.
-    ``lift`` C_L adds a force across the flow: of a cable ``ρ/2 d C_L |w_n| i × w_n``, i along it from its start; of a
-    body ``ρ/2 area C_L |w_p| s × w_p`` with its ``span`` s (a direction in body axes; in the plane z), w_p across s.
-    Of a body ``polar``, a `Polar` of coefficients by the angle from its ``chord`` (body axes, square to the span) to
-    the flow, about the span, stands in place of coefficient and lift; drag is then along w_p. Of a spatial beam it
-    stands in place of normal and lift, with the angle from the ``chord`` of its section (a direction across, in local
-    axes: y the height, z the width) about i, and with the moment ``ρ/2 d² C_M |w_n|²`` a length.
-    ``added_mass`` C adds the inertia of the fluid: mass of C times that of the fluid displaced, of a cable with the
-    motion across it, and with that along it times ``added_mass_tangential``; of a body at ``at``, the same in all
-    directions, or three along its axes, or 3x3 in these. With it the fluid also acts by its own acceleration, as a
-    current or wave that changes does: (1 + C) times the mass displaced. None: neither; 0: without added mass.
+    The velocity w is that of the fluid past the cable or body, w_n and w_t its parts across and along a cable, i the
+    direction along the cable from its start, s the span of a body, w_p the part of w across the span.
 
-    Where a fluid has a surface, all of these count by the wet part. Of a cable that is the part of its section, a
-    circle of the diameter d (without one, of the displaced area), below the surface, at each place along it. A body is
-    taken as a sphere of its ``volume`` about ``at`` (without a volume, of its ``area``), or with ``height``, in m, as a
-    column that is upright in all attitudes and has the same section over this height, half of it below ``at``; both its
-    ends are rounded by a fortieth of the height. Buoyancy acts at ``at``, and not at the middle of the wet part: what
-    heels takes several drags, and is too stiff by its weight times the distance of the two.
+    Where a fluid has a surface, all of these count by the wet part: of a cable the part of a circular section of the
+    diameter d (without one, of the displaced area) below the surface, at each place along it; of a body the part of a
+    sphere of its ``volume`` about ``at`` (without a volume, of its ``area``), or of a column with ``height``. Buoyancy
+    acts at ``at``, not at the middle of the wet part: a body that heels takes several drags, and is too stiff by its
+    weight times that distance.
+
+    on: the cable, all of it, or the body
+    fluid: by default the only one of the scene, or all of them, each where it is, if no two of them are at the same
+        place
+    normal: of a cable, coefficient of the force ``ρ/2 d normal |w_n| w_n`` a length
+    tangential: of a cable, coefficient of the force ``ρ/2 π d tangential |w_t| w_t`` a length
+    diameter: of a cable, d, m; by default that of the section
+    displaced_area: displaced volume a length of a cable, m²; by default that of the section, of a tube with its inside;
+        0 for no buoyancy
+    lift: C_L, of either sign: of a cable ``ρ/2 d C_L |w_n| i × w_n`` a length, of a body ``ρ/2 area C_L |w_p| s × w_p``
+    area: of a body, m²
+    coefficient: of a body, of the force ``ρ/2 area coefficient |w| w`` at ``at``
+    polar: coefficients by the angle of the flow from the ``chord``. Of a body, about the span, in the place of
+        coefficient and lift; drag is then along w_p. Of a spatial beam, about i, in the place of normal and lift, with
+        the moment ``ρ/2 d² C_M |w_n|²`` a length
+    span: of a body, a direction in body axes; z in the plane
+    chord: of a body a direction in body axes square to the span; of a beam a direction across, in local axes (y the
+        height, z the width)
+    at: of a body, the centre of pressure and of buoyancy in body axes, m
+    volume: displaced by a body, m³
+    height: of a body that a surface cuts, m: a column, upright in all attitudes, with half of its height below ``at``;
+        both ends are rounded by a fortieth of the height. By default a sphere
+    added_mass: C, coefficient of the fluid's inertia: C times the displaced mass moves with a cable across it, or with
+        a body at ``at``; three numbers along the axes of a body, or 3x3. The acceleration of the fluid then acts with
+        (1 + C) times the displaced mass. None: neither; 0: the acceleration of the fluid alone
+    added_mass_tangential: of a cable, the same for the motion along it
     """
 
     kind: ClassVar[str] = "drag"

@@ -22,16 +22,23 @@ class Stop(Part):
 
 
 class HardStop(Stop):
-    """A stop at the end itself: a rider comes back with ``restitution`` (0 to 1) of the speed that it came with."""
+    """A stop at the end of a cable.
+
+    restitution: part of the speed with which a rider comes back, 0 to 1
+    """
 
     stop: ClassVar[str] = "hard"
     restitution: Annotated[float, within(0, 1, ends=True)]
 
 
 class Buffer(Stop):
-    """A spring with a damper along the last ``length`` (m) before the end: it pushes back and never pulls.
+    """A spring with a damper before the end of a cable: it pushes back and never pulls.
 
-    stiffness in N/m, damping in N s/m. A rider that crosses it whole reaches the end, with an `EndOfCableError`.
+    A rider that crosses it whole reaches the end, with an `EndOfCableError`.
+
+    length: of the buffer, before the end, m
+    stiffness: N/m
+    damping: N s/m
     """
 
     stop: ClassVar[str] = "buffer"

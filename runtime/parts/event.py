@@ -25,13 +25,17 @@ def _text(value: Any) -> str | None:
 
 
 class Event(Part):
-    """An instant that is found and stepped to: what is watched passes a value.
+    """An instant at which a quantity passes a value; steps end on it.
 
     quantity: "A.position.y" or "A.velocity.x" of a body, "wire.position.z" or "wire.velocity.z" of the node of a cable
-    at ``s`` (m), "wire.least_strain", the least axial strain in the middles of a cable's elements, "trolley.s",
-    "trolley.s_rate" or "trolley.traction" of a slide; value: in m, m/s, N, or a strain; or function, in Python only:
-    f(time, state) that passes zero, state["A.position"] and the like as in `State`. direction: "rising", "falling" or
-    "both"; action: "record", or "stop", which ends the run there.
+        at ``s``, "wire.least_strain", the least axial strain in the middles of a cable's elements, "trolley.s",
+        "trolley.s_rate" or "trolley.traction" of a slide
+    s: arc-length of the node of a cable, m
+    value: m, m/s, N, or a strain
+    function: f(time, state) that passes zero, in the place of a quantity, with state["A.position"] and the like as in
+        `State`
+    direction: "rising", "falling" or "both"
+    action: "record", or "stop", which ends the run
     """
 
     kind: ClassVar[str] = "event"

@@ -24,7 +24,11 @@ class Profile(Part):
 
 
 class PowerProfile(Profile):
-    """The factor (height/reference_height)^exponent, heights in m; below ``least_height`` that of least_height.
+    """The factor (height/reference_height)^exponent of a velocity.
+
+    exponent: of the heights
+    reference_height: where the factor is 1, m
+    least_height: below it the factor stays, m
 
     >>> import funicular as fu
     >>> fu.PowerProfile(exponent=0.5, reference_height=10.0, least_height=2.5).factor([1.0, 10.0, 40.0]).tolist()
@@ -42,7 +46,12 @@ class PowerProfile(Profile):
 
 
 class TableProfile(Profile):
-    """Factors at given heights in m: straight lines, or a cubic spline through them; beyond the ends they stay."""
+    """Factors of a velocity at given heights; beyond the ends they stay.
+
+    height: m
+    factors: one for each height
+    interpolation: "linear", or "cubic", a spline
+    """
 
     form: ClassVar[str] = "table"
     height: Annotated[tuple[float, ...], list_of("m", least=2)]

@@ -22,12 +22,16 @@ NO_SURFACE = 1e300
 class Fluid(Part):
     """Air or water, at rest or in motion; it acts on what a `Drag` names.
 
-    It fills the scene, or all below its ``surface``, a level in m as heights are counted. Fluids with surfaces lie on
-    each other: that with the lowest surface above a place is there, and one without a surface is above all others.
+    It fills the scene, or the space below its ``surface``. Of several fluids, the one with the lowest surface above a
+    place is there; one without a surface is above all others. Heights are counted from the origin, against gravity,
+    along y without gravity.
 
-    density in kg/m³; velocity in m/s, times the signal ``scale`` of time and the ``profile``, a `PowerProfile` or a
-    `TableProfile` of the height above the origin. Heights are counted against gravity, along y without gravity. Or
-    ``table``, a `VelocityTable` of the velocity in time and space, times ``scale``.
+    density: kg/m³
+    surface: level of the surface, m
+    velocity: m/s
+    scale: factor of the velocity over time, a signal
+    profile: factor of the velocity by height, a `PowerProfile` or a `TableProfile`
+    table: velocity in time and space, a `VelocityTable`, in the place of velocity and profile
     """
 
     kind: ClassVar[str] = "fluid"

@@ -17,7 +17,10 @@ PUSHES_ALONE, PULLS_AND_PUSHES, PULLS_ALONE, HAS_NO_FORCE = -1, 0, 1, 2
 
 
 class ForceTable(Part):
-    """Tension (N) of a spring at given extensions (m), with straight lines between them, and beyond them on both sides.
+    """Tension of a spring by its extension, with straight lines between the values and beyond them.
+
+    extension: m
+    tension: N, one for each extension
 
     >>> import funicular as fu
     >>> fu.ForceTable(extension=[0, 0.1, 0.2], tension=[0, 10, 40]).tension

@@ -15,18 +15,18 @@ from .validation import not_negative, one_of, positive, show, shown
 class Friction(Part):
     """Friction of a slide, a contact or a crossing, from the normal force N there and the speed of sliding.
 
-    A part that takes it takes a number, too: the coefficient alone.
+    A number in its place is the coefficient alone. Slides find the instants of sticking and breaking loose as events;
+    contacts and crossings hold what sticks by a spring, which slides where its force exceeds friction. On a driven
+    slide friction acts against the drive, and is part of the slide's traction; while the drive stands there is none.
 
-    coefficient: of sliding, Coulomb's; static_coefficient: of sticking, that of sliding if not given; viscous in N s/m;
-    rolling: the coefficient of rolling resistance, a force of rolling N against the motion (for wheels: the arm of the
-    resistance over the radius). model: "regularised", where the force rises smoothly with the speed to its full value
-    at about ``velocity`` (m/s), so that what is at rest creeps; or "stick", where it is held at rest. If not given,
-    contacts with surfaces stick, slides and crossings are regularised. Slides find the instants of sticking and
-    breaking loose as events; contacts and crossings hold what sticks by a spring, which slides where its force exceeds
-    friction. A static_coefficient of its own, viscous and rolling are of slides alone.
-
-    On a driven slide friction acts against the drive, which gives so much more: it is part of the slide's traction.
-    While the drive stands it takes none.
+    coefficient: of sliding, Coulomb's
+    static_coefficient: of sticking, of slides alone; by default that of sliding
+    viscous: of slides alone, N s/m
+    rolling: coefficient of rolling resistance, of slides alone, a force of rolling N against the motion (for wheels:
+        the arm of the resistance over the radius)
+    model: "regularised": the force rises smoothly with the speed, so that what is at rest creeps; "stick": at rest it
+        holds. By default contacts with surfaces stick, slides and crossings are regularised
+    velocity: of "regularised", at which the force has 0.7 of its full value, m/s
     """
 
     coefficient: Annotated[float, not_negative()] = 0.0

@@ -27,30 +27,34 @@ UNITS = {"angle": "rad", "distance": "m"}
 
 
 class Joint(Part):
-    """A joint of ``kind`` between two ends.
-
-    a, b: its ends: ("A", (x, y, z)), a point in body axes; "A", its origin; ("wire", s), the place of a cable
-    with its section, or its tangent where the elements have no sections; or a point (x, y, z) of the ground, in m.
-    Directions are the ground's, at the start.
-
-    | kind | constrains | leaves |
-    |---|---|---|
-    | spherical | the two points together | every turn |
-    | revolute | and the axis of both | the turn about ``axis`` |
-    | universal | and ``axis`` of a square to ``second_axis`` of b | the turns about both |
-    | prismatic | b's point on the line through a's along ``axis``, and the orientation | the way along it |
-    | cylindrical | b's point on that line, and the axis | the way along it and the turn about it |
-    | weld | points and orientation | nothing |
-    | distance | ``length`` (m) between the points, that at the start if not given | all else |
-
-    Driven, by a signal: ``angle`` (rad, of b about the axis as seen from a, from the start on) of revolute and
-    cylindrical ones; ``distance`` (m), of prismatic ones the way of b along the axis from the start on, of distance
-    ones the distance itself; or ``velocity``, the rate of that.
+    """A joint between two attachments.
 
     Equations that follow from those of joints before are left out, and the report names them (a door on two hinges).
 
-    up: where an element has no section axes (its tangent is all that a cable knows), a direction fixed in the ground
-    that completes its frame, and against which it holds the turn about the tangent.
+    | kind | constrains | leaves free |
+    |---|---|---|
+    | spherical | the two points together | every rotation |
+    | revolute | also the axis of both | the rotation about ``axis`` |
+    | universal | the points; ``axis`` of a square to ``second_axis`` of b | the rotations about both |
+    | prismatic | b's point to the line through a's along ``axis``, and the orientation | the displacement along it |
+    | cylindrical | b's point to that line, and its direction | displacement along it and rotation about it |
+    | weld | points and orientation | nothing |
+    | distance | ``length`` between the points | all else |
+
+    A joint is driven by one of the signals ``angle``, ``distance`` and ``velocity``.
+
+    kind: see the table
+    a, b: attachments: ("A", (x, y, z)), a point in body axes; "A", the origin of a body; ("wire", s), the place of a
+        cable with its section, or its tangent where the elements have no sections; or a point (x, y, z) of the ground,
+        m
+    axis, second_axis: directions of the ground, at the start
+    up: where an element has no section axes, a direction fixed in the ground that completes the frame of its tangent,
+        and against which the joint holds the rotation about the tangent
+    angle: of b about the axis as seen from a, from the start on, rad; of revolute and cylindrical joints
+    distance: of prismatic joints the displacement of b along the axis from the start on, of distance joints the
+        distance, m
+    velocity: rate of the angle or the distance, rad/s or m/s
+    length: of a distance joint, m; by default the distance at the start
     """
 
     kind: ClassVar[str] = "joint"

@@ -17,19 +17,24 @@ ONE = Constant(constant=1.0)
 
 
 class Load(Part):
-    """Base of the loads: ``value`` (3,) times the signal ``scale``."""
+    """Base of the loads: ``value`` (3,) times the signal ``scale``.
+
+    scale: factor over time, a signal
+    """
 
     name: Name | None = None
     scale: AnySignal = ONE
 
 
 class Force(Load):
-    """A force of ``value`` (N) at a point of a cable or of a body.
+    """A force at a point of a cable or of a body.
 
-    on: the cable or the body; s: of a cable or a modal beam the arc-length in m; at: of a body the point in body axes,
-    in m, its origin (a modal body's first node) if not given. follower: the components are along the local axes, of a
-    cable (tangent, height, width), of a body its own, of a modal one those of the section there; else along the
-    ground's.
+    on: the cable or the body
+    value: components of the force, N
+    s: of a cable or a modal beam, the arc-length, m
+    at: of a body, the point in body axes, m; by default its origin (a modal body's first node)
+    follower: whether the components are along local axes, of a cable (tangent, height, width), of a body its own, of a
+        modal body those of the section there; else along the ground's
     """
 
     kind: ClassVar[str] = "force"
@@ -48,9 +53,12 @@ class Force(Load):
 
 
 class DistributedForce(Load):
-    """A force of ``value`` (N/m) along a cable, by its undeformed length.
+    """A force along a cable, by its undeformed length.
 
-    From arc-length ``start`` to ``stop`` (m), the whole cable if not given. follower: as of a `Force`.
+    cable: the cable
+    value: components of the force, N/m
+    start, stop: arc-lengths between which it acts, m; by default all of the cable
+    follower: as of a `Force`
     """
 
     kind: ClassVar[str] = "distributed_force"
@@ -74,9 +82,11 @@ class DistributedForce(Load):
 
 
 class Moment(Load):
-    """A moment of ``value`` (N m), along the ground's axes, on a section of a cable or on a body.
+    """A moment on a section of a cable or on a body.
 
-    on: the cable or the body; s: of a cable or a modal beam the arc-length in m, its start if not given.
+    on: the cable or the body
+    value: components along the ground's axes, N m
+    s: of a cable or a modal beam, the arc-length, m; by default its start
     """
 
     kind: ClassVar[str] = "moment"

@@ -21,10 +21,13 @@ ROUNDED = 1e-5
 class Material(Part):
     """An isotropic St. Venant-Kirchhoff material with Kelvin-Voigt and mass-proportional damping.
 
-    youngs_modulus in Pa; density in kg/m³; one of poisson_ratio (1) and shear_modulus (Pa), or both if they
-    agree; a Poisson ratio of 0.5 suits the laws that need E and G alone, of cables, "structural" and planar ones;
-    damping_time: the retardation time τ in s, stress = elasticity (strain + τ strain rate); mass_damping: the
-    α in 1/s of the force -α density velocity on each volume, as of a surrounding fluid.
+    youngs_modulus: Pa
+    density: kg/m³
+    poisson_ratio: one of this and ``shear_modulus``, or both if they agree; 0.5 suits the laws that need E and G alone:
+        of cables, "structural" and planar ones
+    shear_modulus: Pa
+    damping_time: retardation time τ of stress = elasticity (strain + τ strain rate), s
+    mass_damping: α of the force -α density velocity on each volume, as of a surrounding fluid, 1/s
     """
 
     youngs_modulus: Annotated[float, positive("Pa")]

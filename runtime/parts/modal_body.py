@@ -35,24 +35,32 @@ def _path(value: Any) -> str | None:
 class ModalBody(Part):
     """A body that deforms little, in a few modes, while its frame moves at any speed (floating frame of reference).
 
-    A straight beam: from ``start`` to ``end`` (m), ``section`` and ``material`` as of a cable, ``up`` the direction of
-    the section's height; its ``modes`` lowest modes on a mesh of ``elements`` of kind ``element`` (and ``law``). Body
-    axes are along the beam, the height and the width. ``boundary`` "free": free-free modes, the frame at the mass
-    centre (the coupling M_rf vanishes undeformed), for a body that flies, or is held at points that its modes move.
-    "attached": the frame fixed to the section at ``start``, modes of the cantilever, for a body that is held there.
-    What modes left out cost a frequency falls with about the third power of their number where joints hold points; with
-    the first where they hold sections that the modes do not bend, as those of a free end.
-    What tension stiffens is not in the modes' stiffness: they are no model of a beam that spins about as fast as it
-    vibrates. Cables' elements have no torsion: their modes bend and stretch, and the frame alone turns them.
+    It is a straight beam from ``start`` to ``end``, whose body axes are along the beam, the height and the width, or it
+    comes from ``data``. A run starts undeformed. Tension does not stiffen the modes: they do not model a beam that
+    spins about as fast as it vibrates. Cable elements have no torsion: their modes bend and stretch, and the frame
+    alone turns them. The error of a frequency falls with about the third power of the number of modes where joints hold
+    points, and with the first where they hold sections that the modes do not bend, as those of a free end.
 
-    Or ``data``, an .npz or netCDF file of arrays in SI units, in body axes, with ``position`` and ``orientation`` of
-    the frame: ``nodes`` (N, 3) where they are undeformed, ``modes`` (n, N, 3) displacements by a unit of each mode,
-    ``masses`` (N,), ``stiffness`` (n, n), and where a joint holds a section ``rotations`` (n, N, 3), turns in rad by a
-    unit of each mode. Modes must be orthogonal in the mass, unless ``orthogonal`` is false: then their full mass matrix
-    is used as it is.
-
-    damping_ratio: part of critical damping in every vibration with the frame held; velocity of the frame's origin in
-    m/s, angular_velocity in body axes in rad/s. A run starts undeformed.
+    start, end: ends of the beam, m
+    section: cross-section, as of a `Cable`
+    material: material
+    up: direction of the section's height
+    elements: number of elements of the mesh whose modes are taken
+    element: their kind
+    law: their law
+    modes: number of lowest modes
+    boundary: "free": free-free modes, the frame at the mass centre (the coupling M_rf vanishes undeformed), for a body
+        that flies, or is held at points that its modes move. "attached": the frame fixed to the section at ``start``,
+        modes of the cantilever, for a body that is held there
+    data: an .npz or netCDF file of arrays in SI units, in body axes: ``nodes`` (N, 3) undeformed, ``modes`` (n, N, 3)
+        displacements by a unit of each mode, ``masses`` (N,), ``stiffness`` (n, n), and where a joint holds a section
+        ``rotations`` (n, N, 3), turns in rad by a unit of each mode
+    orthogonal: whether the modes of a file are orthogonal in the mass; if not, their full mass matrix is used
+    position: of the frame of ``data``, m
+    orientation: of the frame of ``data``, a unit quaternion (w, x, y, z)
+    damping_ratio: part of critical damping in every vibration with the frame held
+    velocity: of the frame's origin, m/s
+    angular_velocity: in body axes, rad/s
     """
 
     _of_mesh: Callable[[ModalBody], Any] | None = PrivateAttr(None)

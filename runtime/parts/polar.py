@@ -17,11 +17,17 @@ TURN = 1e-6
 
 
 class Polar(Part):
-    """Coefficients of ``drag`` and ``lift`` at given angles of attack, in rad, through a full turn from -π to π.
+    """Coefficients of a profile by its angle of attack, through a full turn from -π to π.
 
-    Between them straight lines, or with interpolation="cubic" a spline. The angle is that of the flow past a body from
-    its chord, about its span; of a beam from the chord of its section, about the axis. ``moment``, of a beam alone, is
-    positive where it makes the angle larger: nose up, with a chord from the nose to the tail.
+    The angle is that of the flow past a body from its chord, about its span; of a beam from the chord of its section,
+    about the axis.
+
+    angle: rad
+    drag: one for each angle
+    lift: one for each angle
+    moment: of a beam alone, one for each angle, positive where it makes the angle larger: nose up, with a chord from
+        the nose to the tail
+    interpolation: "linear", or "cubic", a spline
 
     >>> import funicular as fu
     >>> plate = fu.Polar(angle=[-3.141593, -1.570796, 0, 1.570796, 3.141593], drag=[0, 2, 0, 2, 0], lift=[0] * 5)

@@ -54,15 +54,17 @@ def largest_moment(inertia: np.ndarray | Matrix) -> float:
 
 
 class RigidBody(Part):
-    """A rigid body.
+    """A rigid body. All points of the body count from its origin.
 
-    mass in kg; inertia about its centre of mass in body axes, 3 principal moments or 3x3, in kg m²; position
-    of its origin in m; orientation: the unit quaternion (w, x, y, z) from body axes to the ground's; centre: of mass, a
-    point in body axes, in m: the origin if not given; velocity of the origin in m/s; angular_velocity in body axes, in
-    rad/s. All points of the body count from the origin.
-
-    shape: what pictures draw, a `Box`, `Sphere`, `Cylinder` or `MeshShape`; a box of the body's mass and inertia if not
-    given. The motion does not depend on it.
+    mass: kg
+    inertia: about the centre of mass, in body axes, 3 principal moments or 3x3, kg m²
+    position: of the origin, m
+    orientation: unit quaternion (w, x, y, z) from body axes to the ground's
+    centre: of mass, a point in body axes, m; the origin by default
+    velocity: of the origin, m/s
+    angular_velocity: in body axes, rad/s
+    shape: for pictures alone, a `Box`, `Sphere`, `Cylinder` or `MeshShape`; by default a box of the body's mass and
+        inertia
     """
 
     kind: ClassVar[str] = "rigid_body"

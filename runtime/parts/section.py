@@ -36,7 +36,8 @@ ShearFactors = Annotated[tuple[float, float], checked(_factors, list_schema("", 
 class Section(Part):
     """Base of doubly symmetric sections: their odd moments are zero, their axis is the centroid.
 
-    ``torsion_constant`` (m⁴) and ``shear_factors`` (ky, kz), given to a section, replace those of its shape.
+    torsion_constant: m⁴, in the place of that of the shape
+    shear_factors: (ky, kz), in the place of those of the shape
     """
 
     shape: ClassVar[str]
@@ -87,7 +88,11 @@ class Section(Part):
 
 
 class Rectangle(Section):
-    """A solid rectangle, ``height`` along ``up``, in m."""
+    """A solid rectangle.
+
+    height: along ``up``, m
+    width: m
+    """
 
     shape: ClassVar[str] = "rectangle"
     height: Length
@@ -117,7 +122,10 @@ class Rectangle(Section):
 
 
 class Circle(Section):
-    """A solid circle, ``radius`` in m."""
+    """A solid circle.
+
+    radius: m
+    """
 
     shape: ClassVar[str] = "circle"
     radius: Length
@@ -134,7 +142,11 @@ class Circle(Section):
 
 
 class Tube(Section):
-    """A ring between ``inner_radius`` and ``outer_radius``, in m."""
+    """A ring.
+
+    outer_radius: m
+    inner_radius: m
+    """
 
     shape: ClassVar[str] = "tube"
     outer_radius: Length
@@ -172,10 +184,14 @@ def outer_radius_of(section: Section) -> float | None:
 class GeneralSection(Section):
     """A section known by its constants alone, for cables and for structural beams.
 
-    area in m²; second_moment_about_z (∫y²dA) and second_moment_about_y in m⁴, equal if only one is given; for beams
-    torsion_constant in m⁴ and shear_factors (ky, kz). rotary_moment_about_z and rotary_moment_about_y in m⁴, for
-    beams: what times the density is the rotary inertia per length in kg m about that axis, of a section whose mass is
-    elsewhere than its stiffness; equal if only one is given, the second moments if none is.
+    torsion_constant: m⁴, for beams
+    shear_factors: (ky, kz), for beams
+    area: m²
+    second_moment_about_z: ∫y²dA, m⁴
+    second_moment_about_y: ∫z²dA, m⁴; equal to the other one if only one is given
+    rotary_moment_about_z, rotary_moment_about_y: m⁴, for beams whose mass is elsewhere than their stiffness: the
+        density times it is the rotary inertia a length about that axis, kg m; equal if only one is given, the second
+        moments if none is
     """
 
     shape: ClassVar[str] = "general"

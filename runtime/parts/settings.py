@@ -51,23 +51,28 @@ def overridden(settings: Mapping[str, Any], given: Mapping[str, Any]) -> dict[st
 class RunSettings(Part):
     """How a scene is run.
 
-    duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
-    the step is chosen; absolute_tol in m is allowed beside it, tol times 1e-6 of the scene's size if not given;
-    quantities: results such as "A.position", "wire.position.y" or "trolley.s" that alone count, in the error and in
-    the motion that tol is relative to; step: a fixed step in s instead, divided where need be so that steps end on
-    output times and where a signal is not smooth; output_step in s, a hundredth of the duration if not given;
+    duration: s
+    tol: error aimed at in positions, relative to the largest motion in the scene; steps follow from it
+    absolute_tol: error allowed beside ``tol``, m; by default tol times 1e-6 of the scene's size
+    quantities: results such as "A.position", "wire.position.y" or "trolley.s" that alone count, in the error and in the
+        motion that tol is relative to
+    step: a fixed step, s, in the place of ``tol``; divided so that steps end on output times and where a signal is not
+        smooth
+    output_step: s; by default a hundredth of the duration
     integrator: "explicit" (Runge-Kutta of order 8), "radau" (implicit, order 5, for stiff scenes), "genalpha"
-    (implicit, order 2, with control of the dissipation), "energy" (order 2, keeps energy and momenta to rounding),
-    or "auto": the cheapest of the first three for this scene and tol, genalpha where step or spectral_radius is given;
-    spectral_radius of genalpha (0.9 if not given) and energy (1) at infinity: 1 keeps and 0 removes the fastest
-    vibrations, energy's of the cables, counted as dissipated with what their algorithmic stresses hold at the time;
-    model: "given", the cables' elements as they are, or "auto": those that were not given, and the integrator, are
-    chosen so that the error of model, mesh and time stays below tol, as `Scene.choose` does;
-    initial: "drawn", "equilibrium" (static, under the loads at t = 0), "relaxed" (at rest after a damped motion, see
-    `Scene.relax`), or "state", one that `Scene.run` is given; save: the file to write, or None; threads that
-    share the work on cables of some hundred elements or more, at most as many as there are processors; estimate:
-    whether two more runs tell the error of the run, of its steps and of its mesh apart, in ``report["errors"]``, see
-    `ErrorEstimate`.
+        (implicit, order 2, with control of the dissipation), "energy" (order 2, keeps energy and momenta to rounding),
+        or "auto": the cheapest of the first three for this scene and tol, genalpha where step or spectral_radius is
+        given
+    spectral_radius: of genalpha (default 0.9) and energy (1) at infinite frequency: 1 keeps and 0 removes the fastest
+        vibrations, energy's of the cables, counted as dissipated
+    model: "given", the cables' elements as they are, or "auto": elements that were not given, and the integrator, are
+        chosen so that the error of model, mesh and time stays below tol, as `Scene.choose` does
+    initial: "drawn", "equilibrium" (static, under the loads at t = 0), "relaxed" (see `Scene.relax`), or a state that
+        `Scene.run` is given
+    save: the file to write, or None
+    threads: that share the work on cables of some hundred elements or more, at most one for each processor
+    estimate: whether two more runs measure the error of the steps and of the mesh, in ``report["errors"]``, see
+        `ErrorEstimate`
     """
 
     kind: ClassVar[str] = "run"
@@ -158,17 +163,20 @@ _TO = {"type": "object", "additionalProperties": {"type": "number"}, "minPropert
 class EquilibriumSettings(Part):
     """How a static equilibrium is sought.
 
-    load_steps: in how many steps the loads are raised from 0, more where one does not converge; tolerance: of the
-    last correction of positions, relative to the size of the scene; max_iterations of a load step; method: "newton",
-    which ends in a stable state, or "arc_length", which follows the path of equilibria, also where the load falls again
-    and where they are unstable; largest_step of such a path: what two states that follow each other differ by at most,
-    of the load fraction, and of positions relative to the size of the scene; seek_stable: whether "newton" goes on
-    where it has come to an unstable state, and ends in an error if it finds no stable one; else that state is returned
-    with its label; scale_gravity: whether a load
-    fraction p is p times gravity, too, or whether gravity is whole from the start; adjust: parameters of the scene, by
-    the paths that sweeps have, such as "dropper.length", with their limits (low, high) or "free", that are changed
-    until the state has the values ``to``, by name, such as "A.position.y" or "wire@12.5.tension"; tolerance is that of
-    these values, too, relative to their scale.
+    load_steps: number of steps in which the loads are raised from 0, more where one does not converge
+    tolerance: of the last correction of positions, relative to the size of the scene; and of the values in ``to``,
+        relative to their scale
+    max_iterations: of a load step
+    method: "newton", which ends in a stable state, or "arc_length", which follows the path of equilibria, also where
+        the load falls again and where they are unstable
+    largest_step: of a path, the largest difference of two neighbouring states, of the load fraction, and of positions
+        relative to the size of the scene
+    seek_stable: whether "newton" goes on from an unstable state, and ends in an error if it finds no stable one; else
+        that state is returned with its label
+    scale_gravity: whether a load fraction p is p times gravity, too; else gravity is whole from the start
+    adjust: parameters of the scene, by the paths that sweeps have, such as "dropper.length", with their limits (low,
+        high) or "free", which are changed until the state has the values ``to``
+    to: values of the state by name, such as "A.position.y" or "wire@12.5.tension"
     """
 
     kind: ClassVar[str] = "equilibrium"
@@ -196,8 +204,9 @@ class EquilibriumSettings(Part):
 class RelaxationSettings(Part):
     """How a scene is brought to rest by a damped motion.
 
-    tol: the largest force that may be left over, relative to the largest load, where Newton's method does not find the
-    state to rounding, and where friction has part in it; max_steps of the motion.
+    tol: largest force that may be left over, relative to the largest load, where Newton's method does not find the
+        state to rounding, and where friction has part in it
+    max_steps: of the motion
     """
 
     kind: ClassVar[str] = "relax"

@@ -136,10 +136,12 @@ class Constant(Signal):
 
 
 class TableSignal(Signal):
-    """Values at given times, in s: a cubic spline through them, or straight lines.
+    """Values at given times; before the first time and after the last one the value stays.
 
-    Before the first time and after the last one the value stays; interpolation: "cubic" (twice continuously
-    differentiable, not-a-knot) or "linear". What prescribes a motion should be cubic: the rate of straight lines jumps.
+    time: s
+    value: one for each time
+    interpolation: "cubic" (a spline, twice continuously differentiable, not-a-knot) or "linear". A prescribed motion
+        should be cubic: the rate of straight lines jumps
     """
 
     form: ClassVar[str] = "table"
@@ -170,7 +172,11 @@ class TableSignal(Signal):
 
 
 class Ramp(Signal):
-    """From ``before`` to ``after`` between ``start`` and ``end`` (s), without a jump of the second derivative.
+    """A rise between two times, without a jump of the second derivative.
+
+    start, end: times, s
+    before: value before
+    after: value after
 
     >>> import funicular as fu
     >>> fu.Ramp(start=1.0, end=3.0, after=10.0).value([0.0, 2.0, 4.0]).tolist()
@@ -196,10 +202,11 @@ class Ramp(Signal):
 
 
 class Pulse(Signal):
-    """0, then ``height`` between ``start`` and ``end`` (s), then 0.
+    """A rise from 0 and a fall to 0.
 
-    rise: how long it takes to rise from start on and to fall before end, in s, smoothly as a `Ramp`; half of the
-    pulse if not given.
+    start, end: times, s
+    rise: time in which it rises from start on and falls before end, as a `Ramp`, s; by default half of the pulse
+    height: value between
     """
 
     form: ClassVar[str] = "pulse"
@@ -232,7 +239,13 @@ class Pulse(Signal):
 
 
 class Harmonic(Signal):
-    """``offset`` + ``sine`` sin(2π frequency t + phase); frequency in Hz, phase in rad, the sine is ``amplitude``."""
+    """A sine: ``offset`` + ``amplitude`` sin(2π frequency t + phase).
+
+    amplitude: of the sine
+    frequency: Hz
+    phase: rad
+    offset: mean value
+    """
 
     form: ClassVar[str] = "harmonic"
     sine: Value = Field(alias="amplitude")

@@ -22,20 +22,22 @@ from .validation import Name, Reference, Vector, direction, finite, one_of, xyz
 class Slide(Part):
     """A point of a body, of another cable or of the ground that rides the centreline of a cable.
 
-    body, along: what rides, and the cable; s: the arc-length where it starts, in m, if not given where ``drive``
-    starts, else the place of the drawn cable nearest to the rider's point; at: the rider's point in body
-    axes, in m; of a cable that rides, ``body_s`` (m) instead, its point's arc-length: body=("link", 0.5) gives both.
-    A point (x, y, z) of the ground as the body is an eyelet, through which the cable slides.
-
-    frame: "point", the rider turns freely; "tangent", it keeps the angle to the cable's tangent that it starts with,
-    so that a trolley's floor stays along the cable; "section", the whole orientation to the cable's section that it
-    starts with, which transmits torsion and needs an element with section axes. roll, with frame "tangent": "free", or
-    "fixed": the turn about the tangent is kept against the direction ``up``, fixed in the ground, by default the one
-    against gravity, else the cable's own.
-
-    drive: s over time as a signal, in m, or ``velocity``, its rate, in m/s: the slide follows it, whatever the force.
-    friction: a coefficient, or a `Friction`. at_start, at_end: what waits at the cable's ends: "error", "leave" (the
-    rider flies on), a `HardStop` or a `Buffer`.
+    body: the rider: a body; ("link", s), the point of another cable; or a point (x, y, z) of the ground, an eyelet
+        through which the cable slides
+    body_s: of a cable that rides, the arc-length of its point, m, which body=("link", 0.5) gives, too
+    along: the cable
+    s: arc-length at the start, m; by default where ``drive`` starts, else the place of the drawn cable nearest to the
+        rider
+    at: the rider's point in body axes, m
+    frame: "point": the rider turns freely. "tangent": it keeps its angle to the tangent at the start, so that a
+        trolley's floor stays along the cable. "section": it keeps its orientation to the cable's section at the start,
+        which transmits torsion and needs an element with section axes
+    roll: with the frame "tangent", the rotation about the tangent: "free", or "fixed" against the direction ``up``
+    up: a direction fixed in the ground, by default the one against gravity, else the cable's own
+    drive: s over time as a signal, m; the slide follows it, whatever the force
+    velocity: rate of s as a signal, m/s, in the place of ``drive``
+    friction: a coefficient, or a `Friction`
+    at_start, at_end: at the ends of the cable: "error", "leave" (the rider flies on), a `HardStop` or a `Buffer`
     """
 
     kind: ClassVar[str] = "slide"

@@ -39,15 +39,19 @@ def _mesh_file(value: Any) -> str:
 
 
 class Solid(Part):
-    """Base of the shapes of bodies in pictures; ``at`` (m, body axes) is where the middle of the shape is."""
+    """Base of the shapes of bodies in pictures.
+
+    at: middle of the shape, in body axes, m
+    """
 
     at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
 
 
 class Box(Solid):
-    """A box, ``size`` its three lengths in m: along ``along``, along ``up``, and across both.
+    """A box.
 
-    Those are the body's axes if not given; its middle ``at`` is a point in body axes.
+    size: its three lengths along ``along``, along ``up``, and across both, m
+    along, up: directions; by default the body's axes
     """
 
     kind: ClassVar[str] = "box"
@@ -69,7 +73,10 @@ class Box(Solid):
 
 
 class Sphere(Solid):
-    """A sphere, ``radius`` in m, its middle ``at`` a point in body axes."""
+    """A sphere.
+
+    radius: m
+    """
 
     kind: ClassVar[str] = "sphere"
     positional: ClassVar[tuple[str, ...]] = ("radius",)
@@ -77,7 +84,12 @@ class Sphere(Solid):
 
 
 class Cylinder(Solid):
-    """A cylinder, ``radius`` and ``length`` in m, its axis along ``axis`` in body axes, its middle ``at`` a point."""
+    """A cylinder.
+
+    radius: m
+    length: m
+    axis: direction in body axes
+    """
 
     kind: ClassVar[str] = "cylinder"
     positional: ClassVar[tuple[str, ...]] = ("radius", "length", "axis")
@@ -87,10 +99,13 @@ class Cylinder(Solid):
 
 
 class MeshShape(Solid):
-    """The surface in a ``file``, STL (binary or text) or glTF (.gltf, .glb), its coordinates along the body's axes.
+    """The surface in a file, its coordinates along the body's axes.
 
-    scale: metres a unit of the file, 0.001 for one in millimetres; ``at``: where the origin of the file is, in body
-    axes, in m. The file is read when a picture is made, which needs trimesh: pip install 'funicular[meshes]'.
+    The file is read when a picture is made, which needs trimesh: pip install 'funicular[meshes]'.
+
+    file: STL (binary or text) or glTF (.gltf, .glb)
+    scale: metres a unit of the file, 0.001 for one in millimetres
+    at: origin of the file, in body axes, m
     """
 
     kind: ClassVar[str] = "mesh"

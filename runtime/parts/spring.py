@@ -14,11 +14,14 @@ from .validation import Flag, not_negative
 class Spring(PointForce):
     """A spring with a damper between two points of cables, bodies or the ground.
 
-    a, b: its ends: ("wire", s), ("A", (x, y, z) in body axes), "A" for its origin, or a point (x, y, z) of the
-    ground, in m; stiffness in N/m; damping in N s/m; length: where it is free of force, in m, that at the start if
-    not given. tension_only: it has no force while it is shorter than its length, and its damper never pushes.
-    free_play: in m, the range of distances about its length in which neither spring nor damper acts. table: tension
-    by extension beyond the length, in place of a stiffness.
+    a, b: ends: ("wire", s), ("A", (x, y, z)) in body axes, "A" for the origin of a body, or a point (x, y, z) of the
+        ground, m
+    stiffness: N/m
+    damping: N s/m
+    length: free of force, m; by default the distance at the start
+    tension_only: whether it has no force while it is shorter than its length; its damper then never pushes
+    free_play: range of distances about its length in which neither spring nor damper acts, m
+    table: tension by extension beyond the length, in the place of a stiffness
     """
 
     kind: ClassVar[str] = "spring"

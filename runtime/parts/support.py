@@ -27,7 +27,11 @@ ON_CABLE = {"force": vector_of_time("N", "force on the cable"), "moment": vector
 
 
 class Support(Part):
-    """Base of the supports of a cable's node at ``s`` (m)."""
+    """Base of the supports of a cable's node.
+
+    cable: the cable
+    s: arc-length of the node, m
+    """
 
     results: ClassVar[dict[str, Quantity]] = ON_CABLE
     cable: Reference
@@ -57,7 +61,8 @@ class Clamp(Support):
     """Holds the position of a cable's node at ``s`` (m) and its section, or all of its nodal vectors.
 
     fix: "section": of cables the direction of the tangent, while its length stays free; of beams the axes of the
-    section, r_y and r_z, while r_x stays free, so that shear and stretch are not hindered. "all": every nodal vector.
+        section, r_y and r_z, while r_x stays free, so that shear and stretch are not hindered. "all": every nodal
+        vector
     """
 
     kind: ClassVar[str] = "clamp"
@@ -141,9 +146,9 @@ class Motion(Support):
     """Moves a cable's node at ``s`` (m) as prescribed.
 
     displacement: three signals in m, from where the node is drawn, or numbers, 0 for a direction that is held; None, or
-    "free", leaves a direction free. Without it the position stays free. rotation: an axis and a signal in rad, by which
-    the section turns from where it is drawn, by any number of turns (of cables r_x, whose length is held, too; of beams
-    r_y and r_z); without it the section stays free.
+        "free", leaves a direction free. Without it the position stays free
+    rotation: an axis and a signal in rad, by which the section turns from where it is drawn, by any number of turns (of
+        cables r_x, whose length is held, too; of beams r_y and r_z). Without it the section stays free
     """
 
     kind: ClassVar[str] = "motion"
@@ -174,12 +179,15 @@ class Motion(Support):
 
 
 class Tie(Part):
-    """Joins the node at ``s`` (m) of one cable to the node at arc-length ``at`` of another one, ``to``.
+    """Joins the nodes of two cables, which share their position.
 
-    They share their position. With rotation "rigid" (a frame's corner) their sections turn together, at the angle at
-    which they are drawn; in line, and in space, they share the gradient of the deformation, all slopes. In space that
-    makes a corner of beams, and a beam joined to a cable, too soft, which a `FunicularWarning` says: take a `Joint` of
-    the kind "weld". With "free" they turn freely (a hinge).
+    cable: the first cable
+    s: arc-length of its node, m
+    to: the other cable
+    at: arc-length of the node of the other cable, m
+    rotation: "rigid" (a frame's corner): the sections turn together, at the angle at which they are drawn; in line, and
+        in space, they share all slopes. In space that makes a corner of beams, and a beam joined to a cable, too soft,
+        which a `FunicularWarning` says: take a `Joint` of the kind "weld". "free" (a hinge): they turn freely
     """
 
     kind: ClassVar[str] = "tie"

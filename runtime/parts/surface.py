@@ -18,12 +18,14 @@ from .validation import Flag, Name, Reference, Vector, show, xyz
 
 
 class Surface(Part):
-    """A surface of the ground or of a rigid body; what touches it, a `Contact` says.
+    """A surface of the ground or of a rigid body; a `Contact` says what touches it.
 
-    shape: a `Plane`, `HeightField`, `Sphere`, `Cylinder`, `Capsule` or `Box`; on: the body, whose axes those of the
-    shape are then, the ground if not given; at: from where the shape's own places count, in m, the origin if not given.
-    A cylinder has no ends: beyond its length, which pictures draw, it is touched, too, and a message tells of it.
-    inside: the shape is a hollow, a duct, a tube or a container, and what touches it is within; of what has an inside.
+    A cylinder has no ends: it is touched beyond its length, which pictures draw, and a message reports it.
+
+    shape: a `Plane`, `HeightField`, `Sphere`, `Cylinder`, `Capsule` or `Box`
+    on: the body, in whose axes the shape is given; by default the ground
+    at: origin of the shape's own places, m
+    inside: whether the shape is a hollow, a duct, a tube or a container, which is touched from within
     """
 
     kind: ClassVar[str] = "surface"

@@ -30,7 +30,11 @@ class SurfaceShape(Part):
 
 
 class Plane(SurfaceShape):
-    """A plane through ``point`` (m) across ``normal``, which points to the side where things may be."""
+    """A plane.
+
+    point: a point of it, m
+    normal: direction to the side where things may be
+    """
 
     kind: ClassVar[str] = "plane"
     positional: ClassVar[tuple[str, ...]] = ("point", "normal")
@@ -43,9 +47,12 @@ class Plane(SurfaceShape):
 
 
 class Capsule(SurfaceShape):
-    """A cylinder with half spheres at its ends: ``radius``, ``length`` between their centres in m, along ``axis``.
+    """A cylinder with half spheres at its ends.
 
-    ``at``: its middle, in m.
+    radius: m
+    length: between the centres of the half spheres, m
+    axis: direction
+    at: its middle, m
     """
 
     kind: ClassVar[str] = "capsule"
@@ -70,11 +77,15 @@ def _heights(value: Any) -> tuple[Any, ...]:
 
 
 class HeightField(SurfaceShape):
-    """The ground by a table of heights in m, with a cubic spline between them; beyond its edges they stay.
+    """The ground by a table of heights, with a cubic spline between them; beyond its edges they stay.
 
-    x: places in m along the direction ``along``; heights: one for each of them, or, with ``across``, places across in
-    m, a list for each of them. Across is square to ``along`` and ``up``, on the side of the axis that it is nearest to.
-    Without ``across`` heights do not change that way. `HeightField.of` makes the table of a function.
+    `HeightField.of` makes the table of a function.
+
+    x: places along the direction ``along``, m
+    heights: one for each place, or, with ``across``, a list for each of them, m
+    across: places across, m, square to ``along`` and ``up``, on the side of the axis that it is nearest to. Without it
+        heights do not change that way
+    along, up: directions
     """
 
     kind: ClassVar[str] = "height_field"

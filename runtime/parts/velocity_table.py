@@ -67,12 +67,16 @@ class Grid:
 class VelocityTable(Part):
     """The velocity of a fluid on a grid of time and place, between which it is interpolated.
 
-    ``time`` (s) and ``x``, ``y``, ``z`` (m, of the ground): the places of the grid along each axis, increasing, two or
-    more; what is left out the velocity does not depend on. ``velocity`` in m/s: an array over those axes, in this
-    order, and the three components. Or ``file``: a netCDF file with these names (components along an axis ``xyz``, or
-    in three variables ``u``, ``v``, ``w``), or an .npz of them. interpolation: "cubic", splines whose second
-    derivatives are continuous (four values or more along each axis), or "linear". At the edges of the grid the velocity
-    stays as it is there; what begins beyond them is refused, and a run notes when something leaves it.
+    At the edges of the grid the velocity stays as it is there; what begins beyond them is refused, and a run notes when
+    something leaves it.
+
+    file: a netCDF file with these names (components along an axis ``xyz``, or in three variables ``u``, ``v``, ``w``),
+        or an .npz of them
+    time: places of the grid, increasing, two or more, s
+    x, y, z: places of the grid along the ground's axes, m. The velocity does not depend on axes that are left out
+    velocity: an array over those axes, in this order, and the three components, m/s
+    interpolation: "cubic", splines whose second derivatives are continuous (four values or more along each axis), or
+        "linear"
     """
 
     file: Annotated[str | None, checked(lambda value: str(value), {"type": "string"})] = None

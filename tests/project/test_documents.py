@@ -4,8 +4,10 @@ import re
 
 import funicular
 import pytest
+from funicular.guides.site.parts_page import meanings_of
 from funicular.guides.site.printed import PRINTED
 from funicular.parts.kinds import PARTS
+from funicular.parts.scene_text import SETTINGS
 from pages import ROOT, SUBJECTS, page
 
 FOLDER = ROOT / "runtime" / "guides" / "pages"
@@ -67,6 +69,11 @@ def test_every_argument_and_result_of_every_part_is_printed():
         section = printed.split(f"\n### {part.__name__}\n")[1].split("\n### ")[0]
         rows = set(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE))
         assert rows == {*part.keywords(), *part.results}, part
+
+
+@pytest.mark.parametrize("part", [*PARTS.values(), *SETTINGS.values()], ids=lambda part: part.__name__)
+def test_docstrings_say_what_each_argument_is(part):
+    assert [name for name in part.keywords() if not meanings_of(part).get(name)] == []
 
 
 def words(path: str) -> int:

@@ -25,6 +25,25 @@ def markdown(docstring: str, linked: Iterable[str] = ()) -> str:
     return re.sub(r"^>>> .*(?:\n.+)*", r"```pycon\n\g<0>\n```", text, flags=re.MULTILINE)
 
 
+ARGUMENT = re.compile(r"^(\w+(?:, \w+)*): (.*(?:\n    .*)*)\n?", re.MULTILINE)
+"""A line of a docstring that says what an argument is, or several, and those that go on with it."""
+
+
+def split(docstring: str, names: Iterable[str]) -> tuple[str, dict[str, str]]:
+    """Return a docstring without the lines on arguments, and what they say of each of them; names: of all."""
+    known, meanings = set(names), dict[str, str]()
+
+    def taken(found: re.Match[str]) -> str:
+        of = found[1].split(", ")
+        if not known.issuperset(of):
+            return found[0]
+        meanings.update(dict.fromkeys(of, re.sub(r"\s+", " ", found[2]).strip()))
+        return ""
+
+    rest = ARGUMENT.sub(taken, docstring)
+    return re.sub(r"\n{3,}", "\n\n", rest).strip(), meanings
+
+
 def anchor(heading: str) -> str:
     """Return the anchor of a heading, as hosts make them."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import json
+import re
 from collections.abc import Iterator
 from itertools import takewhile
 from typing import Any
@@ -18,7 +20,7 @@ from funicular.results.quantities import ENERGIES
 from funicular.scene.file import bundled_scenes
 from funicular.scene.schema import GROUPS, scene_schema
 
-from .markdown import anchor, prose, table
+from .markdown import anchor, markdown, split, table
 
 HEAD = """# Parts of a scene
 
@@ -79,14 +81,32 @@ def _classes(base: type[Part]) -> Iterator[type[Part]]:
 def _section(part: type[Part], schema: dict[str, Any], linked: list[str]) -> list[str]:
     """Return heading, way to write it, docstring, arguments and results of a part."""
     entries, tag = _entries(part, schema)
-    lines = [f"### {part.__name__}", "", _written(part, tag), "", prose(part, linked), ""]
-    required = set(entries.get("required", []))
-    rows = [(f"`{parameter.name}`", _taken(part, parameter.name, entries["properties"]),
-             "required" if parameter.name in required else _default(entries["properties"].get(parameter.name, {})))
-            for parameter in parameters_of(part)]
-    lines += table(("argument", "takes", "default"), rows)
+    text, _ = split(inspect.getdoc(part) or "", part.keywords())
+    lines = [f"### {part.__name__}", "", _written(part, tag), "", markdown(text, linked), ""]
+    required, meanings, rows = set(entries.get("required", [])), meanings_of(part), []
+    for parameter in parameters_of(part):
+        name = parameter.name
+        field = entries["properties"].get(name, {})
+        meaning = _without_unit(meanings.get(name, ""), field.get("description", "").removeprefix("in "))
+        rows.append((f"`{name}`", markdown(meaning, linked), _taken(part, name, entries["properties"]),
+                     "required" if name in required else _default(parameter.default)))
+    lines += table(("argument", "is", "takes", "default"), rows)
     return lines + table(("result", "unit", "is"), [
         (f"`{name}`", quantity.units, quantity.long_name) for name, quantity in part.results.items()])
+
+
+def meanings_of(part: type[Part]) -> dict[str, str]:
+    """Return what the docstrings of a part and of its bases say of its arguments."""
+    found = {"name": "by which the scene and its results know it"}
+    for base in reversed(part.__mro__):
+        if issubclass(base, Part):
+            found |= split(inspect.cleandoc(base.__doc__ or ""), part.keywords())[1]
+    return found
+
+
+def _without_unit(meaning: str, unit: str) -> str:
+    """Return the meaning of an argument without its unit, which stands in what it takes."""
+    return re.sub(rf"(?:^|, ){re.escape(unit)}(?=$|[;.:,])", "", meaning, count=1).lstrip("; ,") if unit else meaning
 
 
 def _taken(part: type[Part], keyword: str, properties: dict[str, Any]) -> str:
@@ -96,15 +116,15 @@ def _taken(part: type[Part], keyword: str, properties: dict[str, Any]) -> str:
     return "a part or its name" if named else _words(field)
 
 
-def _default(field: dict[str, Any]) -> str:
-    """Return the default of a field as code; nothing where there is none."""
-    return f"`{_number(field['default'])}`" if "default" in field else ""
+def _default(value: Any) -> str:
+    """Return a default as code; nothing where there is none."""
+    return "" if value in (None, inspect.Parameter.empty) else f"`{_code(value)}`"
 
 
-def _number(value: Any) -> str:
+def _code(value: Any) -> str:
     """Return a value as users write it."""
-    if isinstance(value, list):
-        return f"({', '.join(map(_number, value))})"
+    if isinstance(value, tuple | list):
+        return f"({', '.join(map(_code, value))})"
     return f"{value:g}" if isinstance(value, float) else json.dumps(value)
 
 
@@ -134,7 +154,7 @@ def _entries(part: type[Part], schema: dict[str, Any]) -> tuple[dict[str, Any], 
 
 def _words(field: dict[str, Any]) -> str:
     """Return in words what a field takes."""
-    note = f" {field['description']}" if "description" in field else ""
+    note = f" {field['description']}" if field.get("description", "in 1") != "in 1" else ""
     if "$ref" in field:
         name = field["$ref"].rsplit("/", 1)[1]
         title = TITLES.get(name, name)
@@ -148,11 +168,12 @@ def _words(field: dict[str, Any]) -> str:
         return " or ".join(dict.fromkeys(each)) + note
     if field.get("type") == "array":
         least, most = field.get("minItems"), field.get("maxItems")
-        count = f"{least}" if least == most else f"{least} to {most}" if most else f"{least} or more"
+        count = f" of {least}" if least == most else f" of {least} to {most}" if most else f" of {least} or more"
+        count = " of" if least is None else count
         of = field.get("items", {})
         unit = of.get("description", "") if not note else ""
         of_what = "lists" if of.get("type") == "array" else "numbers" if of else "entries"
-        return f"list of {count} {of_what}{note}{' ' * bool(unit)}{unit}"
+        return f"list{count} {of_what}{note}{' ' * bool(unit)}{unit}"
     bounds = [f"{sign} {field[key]:,}" for key, sign in BOUNDS.items() if key in field]
     bounds += [f"at most {field['maxLength']} characters"] if "maxLength" in field else []
     return WORDS.get(field.get("type", "anything"), field.get("type", "anything")) + note + "".join(
