@@ -14,7 +14,9 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
+from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
+from .frame import TURNS
 from .stretch import sliding_force, sticking_force
 
 SURFACES = {3: "surface", 2: "planar_surface"}
@@ -28,7 +30,7 @@ HEIGHTS = {2: ("h", "h_1", "h_11", "h_111"),
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
     return [*(make(dim) for make in (flat, rounded, terrain)), push(dim, hertz=False), push(dim, hertz=True),
-            *(make(dim) for make in (pressing, sticking, sliding))]
+            *(make(dim) for make in (pressing, sticking, sliding, motion))]
 
 
 def _program(dim: int, name: str, doc: str) -> Program:
@@ -219,3 +221,43 @@ def sliding(dim: int) -> Program:
     _outputs(p, f, _moving(p, dim, press, n, H, w, by_d, by_rate, x))
     # in the plane friction that slides has one direction, whatever the stretch is
     return _by_stretch(p, np.zeros((dim, dim), dtype=int) if dim == 2 else _along_each(p, dim, f, x))
+
+
+class _Passing:
+    """Inputs of a point that moves past a surface, and derivatives in time at zero accelerations of coordinates."""
+
+    def __init__(self, p: Program, dim: int):
+        self.program = p
+        self.n = p.input("n", dim, "1", "gradient of the distance")
+        self.H = p.input("H", (dim, dim), "1/m", "its second derivative")
+        self.r, self.v, self.a = self._moving("", dim, "the point")
+        self.r_o, self.v_o, self.a_o = self._moving("_o", dim, "the surface's origin")
+        self.omega = p.input("omega", TURNS[dim], "rad/s", "angular velocity of the surface, global axes")
+        self.alpha = p.input("alpha", TURNS[dim], "rad/s^2", "its rate at zero accelerations")
+        p.stage("velocity past the surface")
+        self.x = p.vector("x", self.r - self.r_o)
+        self.past = p.vector("past", self.v - self.v_o - cross(self.omega, self.x))
+        self.n_t = p.vector("n_t", cross(self.omega, self.n) + self.H @ self.past)
+
+    def _moving(self, tag: str, dim: int, what: str) -> list[np.ndarray]:
+        p = self.program
+        return [p.input(f"r{tag}", dim, "m", f"position of {what}"), p.input(f"v{tag}", dim, "m/s", "its velocity"),
+                p.input(f"a{tag}", dim, "m/s^2", "its acceleration at zero accelerations of the coordinates")]
+
+    def in_time(self, more: dict | None = None) -> DirectionalDerivative:
+        """Return the derivative in time."""
+        pairs = ((self.r, self.v), (self.v, self.a), (self.r_o, self.v_o), (self.v_o, self.a_o),
+                 (self.omega, self.alpha), (self.n, self.n_t))
+        on = {symbol: rate for of, by in pairs for symbol, rate in zip(of, by, strict=True)}
+        return DirectionalDerivative(self.program, "dt", on | (more or {}))
+
+
+def motion(dim: int) -> Program:
+    """Return the kernel of both rates of a distance; the second at zero accelerations: -gamma (eq 10)."""
+    p = _program(dim, "motion", "rates of the distance of a moving point from a moving surface")
+    of = _Passing(p, dim)
+    g_t = p.define("rate", of.n.dot(of.past))
+    p.stage("derivatives in time")
+    p.output("g_t", g_t, "m/s", "rate of the distance")
+    p.output("g_tt", of.in_time()(g_t), "m/s^2", "its second rate at zero accelerations of the coordinates")
+    return p

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from ...codegen.family import CouplingFamily
 from ...couplings.surface import HEIGHTS
 from ..methods import Relation
+from ..motion import turned_axes
 from .paths import entry, from_kernel, unit
 
 
 def surface(family: CouplingFamily) -> list[Relation]:
     """Return the relations of distances, laws and forces."""
-    return [*_distances(family.dim), *_laws(), *_forces(family.dim)]
+    return [*_distances(family.dim), *_laws(), *_forces(family.dim), *_motions(family.dim)]
 
 
 def _distances(dim: int) -> list[Relation]:
@@ -112,3 +115,19 @@ def _forces(dim: int) -> list[Relation]:
             Relation("sliding", "f_y", "df by the place", 1, by_place("sliding", True, True), dim),
             Relation("sliding", "f_x", "df by the stretch", 1, by_stretch("sliding"), dim),
             Relation("sliding", "f_w", "df by the velocity", 1, by_rate("sliding"), dim)]
+
+
+def _motions(dim: int) -> list[Relation]:
+    """Return those of rates: the distance is that of its series of second order, along axes turned by quaternions."""
+    def place(k: Any, s: Any, t: Any) -> tuple[Any, Any]:
+        """Return the surface's axes and how far the point has moved along them."""
+        axes = turned_axes(k, t * s["omega"] + t * t / 2 * s["alpha"], np.eye(dim, dtype=int))
+        x = s["r"] - s["r_o"]
+        return axes, axes.T.dot(x + t * (s["v"] - s["v_o"]) + t * t / 2 * (s["a"] - s["a_o"])) - x
+
+    def distance(k: Any, s: Any, t: Any, j: int) -> Any:
+        _, move = place(k, s, t)
+        return s["n"].dot(move) + move.dot(s["H"].dot(move)) / 2
+
+    return [Relation("motion", "g_t", "dg/dt of the series", 1, distance),
+            Relation("motion", "g_tt", "d²g/dt² of the series at zero accelerations", 2, distance)]

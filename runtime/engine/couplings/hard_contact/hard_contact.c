@@ -24,33 +24,12 @@ static int has_friction(const fu_coupling *coupling)
     return contact_of(coupling)->friction > 0.0;
 }
 
-/* Returns what of g'' is of the velocities: of the curvature, and of the surface's turning, as the point goes past it. */
-static double bias_of(int dim, const fu_distance *distance, const double *r, const fu_attachment_state *point,
-                      const fu_attachment_state *on)
-{
-    double omega[3], alpha[3], x[3] = {0.0}, past[3] = {0.0}, turning[3], half[3], twice[3], coriolis[3], sum = 0.0;
-    fu_turn_in_space(dim, on->omega, omega);
-    fu_turn_in_space(dim, on->alpha, alpha);
-    for (int d = 0; d < dim; ++d) x[d] = r[d] - on->p[d];
-    fu_surface_past(dim, on, r, point->v, past);
-    fu_cross(alpha, x, turning);
-    fu_cross(omega, x, half);
-    fu_cross(omega, half, twice);
-    fu_cross(omega, past, coriolis);
-    for (int d = 0; d < dim; ++d) {
-        const double own = on->bias[d] + turning[d] + twice[d] + 2.0 * coriolis[d];
-        sum += distance->n[d] * (point->bias[d] - own);
-        sum += past[d] * fu_dot(dim, distance->H + d * dim, past);
-    }
-    return sum;
-}
-
 void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, fu_hard_row *out)
 {
     const int dim = model->dim;
     fu_attachment_state point, on;
     fu_distance distance;
-    double P[3 * FU_ATTACHMENT_COORDINATES], past[3];
+    double P[3 * FU_ATTACHMENT_COORDINATES];
     fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT, &point);
     fu_surface_at(model, &contact->contact.surface, state, &on);
     fu_surface_distance(dim, &contact->contact.surface, &on, point.p, &distance);
@@ -69,9 +48,8 @@ void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const
         out->H[point.n + i] = 0.0;
         for (int d = 0; d < dim; ++d) out->H[point.n + i] -= distance.n[d] * P[d * on.n + i];
     }
-    fu_surface_past(dim, &on, point.p, point.v, past);
-    out->rate = fu_dot(dim, distance.n, past);
-    out->bias = bias_of(dim, &distance, point.p, &point, &on);
+    contact->contact.surface.kernel->motion(distance.n, distance.H, point.p, point.v, point.bias, on.p, on.v, on.bias, on.omega,
+                                            on.alpha, &out->rate, &out->bias);
 }
 
 /* Adds rows of what friction holds, or what it is against where the point slides. */
