@@ -39,6 +39,13 @@ def test_runs(guide, tmp_path, monkeypatch):
     matplotlib.pyplot.close("all")
 
 
+def test_links_to_guides_are_told_from_links_to_scripts_of_their_names():
+    from funicular.guides.site.build import _moved
+
+    text = "[a](../../runtime/guides/contact.py) [b](contact.py) [c](validation.md#fluid) [d](measured)"
+    assert _moved(text, "tests/benchmarks/README.md") == "[a](guides/contact) b [c](validation.md#fluid) d"
+
+
 def test_a_site_without_its_pages_is_refused(tmp_path, monkeypatch, capsys):
     """An installed package lacks the pages beside the code: their part of the site was left out, with warnings."""
     from funicular.guides.site import __main__ as command

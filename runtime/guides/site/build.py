@@ -115,7 +115,7 @@ def _moved(text: str, page: str) -> str:
         name = PAGES.get(whole) or PAGES.get(f"{whole}/README.md")
         if name is not None:
             return f"[{words}]({name}{'#' + anchor if anchor else ''})"
-        if whole.endswith(".py") and Path(whole).stem in ORDER:
+        if REPOSITORY / whole in (GUIDES / f"{guide}.py" for guide in ORDER):
             return f"[{words}](guides/{Path(whole).stem})"
         return found[0] if path.endswith(".png") and len(parts) == len(here.parts) + 1 else words
 
