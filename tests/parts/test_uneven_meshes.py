@@ -45,7 +45,7 @@ def test_equal_elements_given_as_nodes_are_the_same_bits(element, integrator, mo
             np.testing.assert_array_equal(one, other)
 
 
-def test_a_cantilever_graded_to_its_clamp():
+def test_a_cantilever_graded_to_its_clamp(validated):
     """A strong force bends it at the clamp alone: 16 elements that are close there are 40 times as exact.
 
     The tip is that of 400 equal elements, from which that of 200 differs by 2.6e-9 m.
@@ -58,6 +58,9 @@ def test_a_cantilever_graded_to_its_clamp():
 
     exact = 0.1398593796547636, -0.9447721876221966, 0.0
     equal = np.linalg.norm(tip(elements=16) - exact)
+    validated("Statics", "cantilever bent at its clamp alone, graded mesh", "place of the end", exact[:2],
+              tip(nodes=graded(16))[:2], unit="m", scale=1.0, bound=1e-5, source="400 equal elements",
+              mesh="16 elements")
     errors = [np.linalg.norm(tip(nodes=graded(n)) - exact) for n in (8, 16, 32)]
     assert errors[1] < equal / 40
     assert np.log2(errors[0] / errors[1]) > 4  # the order of cubic elements; 5.3 and 5.0

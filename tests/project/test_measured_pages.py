@@ -51,9 +51,8 @@ def test_each_row_of_validation_names_a_test_and_each_test_has_a_row():
 def test_each_row_of_validation_is_a_test_that_pytest_collects():
     """With its parameters, which a change may have renamed."""
     files = sorted({row["test"].partition("::")[0] for row in ROWS})
-    found = subprocess.run([sys.executable, "-m", "pytest", "-n", "0", "-m", "", "--collect-only", "-q", *files],
-    cwd=ROOT,
-                           capture_output=True, text=True, check=True).stdout
+    command = [sys.executable, "-m", "pytest", "-o", "addopts=", "--collect-only", "-q", *files]
+    found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     assert {row["test"] for row in ROWS} <= set(found.splitlines())
 
 
@@ -102,6 +101,25 @@ def test_readme_lists_every_script_and_is_short():
     assert set(re.findall(r"^\| \[(\w+)\]\(\1\.py\) \| \S", text, re.MULTILINE)) == set(scripts())
     by_hand = text.partition(BEGIN)[0] + text.partition(END)[2]
     assert len(by_hand.split()) < 900
+
+
+def test_front_page_has_the_figures_of_the_records():
+    text = re.sub(r"\s+", " ", (ROOT / "README.md").read_text(encoding="utf-8"))
+    rows = records.load(records.FOLDER / "choice.json")["measured"]["rows"]
+    within, worst = sum(row["error/tol"] <= 1 for row in rows), max(row["error/tol"] for row in rows)
+    assert f"{within} of {len(rows)} errors are within `tol`, the largest is {worst:.2g} `tol`" in text
+    first = {row["setting"]: row for row in records.load(records.FOLDER / "first_scene.json")["measured"]["rows"]}
+    row = first["tol 0.0001"]
+    assert f"error of the motion {cell(row['motion'])}, in {row['cpu_s']:.2g} s of CPU time" in text
+    faster = [row["times faster"] for row in records.load(records.FOLDER / "exudyn_side_by_side.json")["times"]["rows"]]
+    many = f"{sum(ratio >= 5 for ratio in faster)} of {len(faster)} cells"
+    assert f"at least 5 times less CPU time in {many}, {min(faster):.2g} times in the least favourable one" in text
+    seconds: dict[tuple, dict[str, float]] = {}
+    for row in records.load(records.FOLDER / "cosserat.json")["peers"]["rows"]:
+        if row["cpu_s"]:
+            seconds.setdefault((row["experiment"], row["elements"]), {})[row["solver"]] = row["cpu_s"]
+    ratios = [each / of["funicular"] for of in seconds.values() for name, each in of.items() if "funicular" not in name]
+    assert f"{min(ratios):.2g} to {max(ratios):.3g} times less CPU time" in text
 
 
 def test_pages_tell_of_today():

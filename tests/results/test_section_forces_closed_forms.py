@@ -59,8 +59,10 @@ class TestTautBending:
 
     @pytest.mark.parametrize(("elements", "element"),
                              [(9, "cable8p"), (24, "cable8p"), (18, "cable12"), (9, "cable18")])
-    def test_moments_of_a_coarse_mesh(self, elements, element):
-        assert_allclose(self.moments(elements, element), self.CONVERGED, atol=0.08)
+    def test_moments_of_a_coarse_mesh(self, elements, element, validated):
+        validated("Section forces", "taut rope that bends over 27 mm", "moments at 11 places", self.CONVERGED,
+                  self.moments(elements, element), unit="N m", scale=1.0, bound=0.08,
+                  source="990 elements, both methods", variant=element, mesh=f"{elements} elements")
         assert np.abs(self.moments(elements, element, "constitutive") - self.CONVERGED).max() > 1.5
 
     def test_moments_of_a_fine_mesh(self):
@@ -127,7 +129,7 @@ def test_a_beam_on_two_supports(element, law):
                     atol=1e-5 * LOAD)
 
 
-def test_a_beam_that_spins():
+def test_a_beam_that_spins(validated):
     """N = rho A W^2 (L^2 - s^2)/2 while it is stretched by little, once damping has stopped its ringing."""
     speed, L = 10.0, LENGTH
     scene = Scene(gravity=(0, 0, 0))
@@ -138,10 +140,11 @@ def test_a_beam_that_spins():
     run = scene.run(duration=0.2, output_step=0.05, tol=1e-6)
     s = np.array([0, 0.4, 1.1, 1.9, L])
     tension = run.section_forces("beam", s)["tension"].values[-1]
-    assert_allclose(tension, 1000 * DEPTH**2 * speed**2 * (L**2 - s**2) / 2, atol=2e-3 * 2000)
+    validated("Section forces", "beam that spins", "tension", 1000 * DEPTH**2 * speed**2 * (L**2 - s**2) / 2, tension,
+              unit="N", scale=2000.0, bound=2e-3, source="closed form", variant="beam24, structural", mesh="4 elements")
 
 
-def test_a_force_that_crosses_a_beam():
+def test_a_force_that_crosses_a_beam(validated):
     """Case M1 at half the critical speed: moments at three sections and under the force, against Fourier's series."""
     F, EI, line = 1.0, 1e9 * DEPTH**4 / 12, 1000 * DEPTH**2
     v = 0.5 * np.pi / LENGTH * np.sqrt(EI / line)
@@ -159,13 +162,15 @@ def test_a_force_that_crosses_a_beam():
     wave = 2 * F / (line * LENGTH) / (w**2 - W**2) * (np.sin(W * t[:, None]) - W / w * np.sin(w * t[:, None]))
     exact = (EI * n**2 * wave * np.sin(n * x)).sum(axis=0)
 
-    def error(method):
+    def moments(method):
         there, under = (run.section_forces("beam", place, method=method)["moment"].values[1:, ..., 2]
                         for place in (s, "slide"))
-        return np.abs(np.column_stack([there, under]) - exact).max() / (F * LENGTH / 4)
+        return np.column_stack([there, under])
 
-    assert error("balance") < 0.012
-    assert error("constitutive") > 0.05
+    validated("Section forces", "force that crosses a beam at half the critical speed", "moments", exact,
+              moments("balance"), unit="N m", scale=F * LENGTH / 4, bound=0.012, source="closed form, Fourier series",
+              variant="cable8p, radau", mesh="8 elements")
+    assert np.abs(moments("constitutive") - exact).max() > 0.05 * F * LENGTH / 4
 
 
 @pytest.mark.parametrize("fraction", [0.25, 0.5, 1.0])

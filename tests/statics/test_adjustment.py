@@ -49,13 +49,14 @@ def test_a_body_on_a_spring_in_closed_form():
     assert heavy.adjusted["A.mass"] == pytest.approx(30 / 9.81, rel=1e-9)
 
 
-def test_tension_by_rest_length_is_that_of_the_elastic_catenary():
+def test_tension_by_rest_length_is_that_of_the_elastic_catenary(validated):
     scene = wire(length=49.9)
     rest = scene.equilibrium(adjust=["wire.rest_length"], to={"wire@0.force.x": -20e3})
     length = rest.adjusted["wire.rest_length"]
     horizontal, _ = catenary.end_forces(50, 0, length, WEIGHT, AXIAL)
     assert rest["wire@0.force"][0] == pytest.approx(-20e3, rel=1e-9)
-    assert horizontal == pytest.approx(20e3, rel=2e-5)  # the wire resists bending: 49 N m²
+    validated("Statics", "wire whose length is adjusted to its tension", "horizontal tension", horizontal, 20e3,
+              unit="N", bound=2e-5, source="elastic catenary", note="the wire resists bending: 49 N m²")
     assert rest.adjustment.iterations <= 5
     assert rest.residual < 1e-6
     assert rest.scene.pins[1].s == pytest.approx(length)  # places on the wire went with it
