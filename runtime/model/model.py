@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar, cast
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -228,7 +228,7 @@ class Model:
 
     def of(self, *kinds: type[K]) -> list[K]:
         """Return the couplings of these classes, in their order."""
-        return [coupling for coupling in self.couplings if type(coupling) in kinds]
+        return [cast(K, coupling) for coupling in self.couplings if type(coupling) in kinds]
 
     @cached_property
     def loads(self) -> list[DeadLoadModel | LoadModel]:

@@ -20,7 +20,7 @@ class Attachment(Part):
 
     on: Annotated[str, NAMES_A_PART] | None = None
     s: Annotated[float, finite("m")] | None = None
-    at: Annotated[Vector, xyz("m")] | None = None
+    at: Annotated[Vector, xyz("m", of="on")] | None = None
 
     @property
     def arc_length(self) -> float:

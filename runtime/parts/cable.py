@@ -18,7 +18,7 @@ from .drawn_cable import DrawnCable
 from .hanging import catenary
 from .material import Material
 from .part import Part
-from .schemas import ONLY_PYTHON, GivenAs, checked, list_of_lists
+from .schemas import ONLY_PYTHON, POINT, GivenAs, Turning, checked, list_of_lists
 from .section import AnySection, outer_radius_of
 from .validation import Count, Name, Vector, one_of, positive, show, shown, xyz
 
@@ -105,7 +105,7 @@ class Cable(DrawnCable, Part):
     name: Name
     start: Annotated[Vector | None, xyz("m")] = None
     end: Annotated[Vector | None, xyz("m")] = None
-    points: Annotated[tuple[tuple[float, ...], ...] | None, checked(_points, list_of_lists("m"))] = None
+    points: Annotated[tuple[tuple[float, ...], ...] | None, checked(_points, list_of_lists("m"), Turning(POINT))] = None
     curve: Annotated[Callable | None, GivenAs(ONLY_PYTHON)] = None  # kept as points, see `_settled`
     shape: Annotated[str | None, one_of(("straight", "hanging"), optional=True)] = None
     given_elements: Annotated[Count | None, Field(alias="elements")] = None

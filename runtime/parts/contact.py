@@ -13,7 +13,7 @@ from .part import Part
 from .penalty_law import Exponent
 from .plane import across
 from .quantity import Quantity, all_of_engine
-from .schemas import checked, list_schema
+from .schemas import POINT, Turning, checked, list_schema
 from .validation import Name, Vector, not_negative, positive, shown, vector3, within
 
 MOST_POINTS = 16
@@ -79,7 +79,8 @@ class Contact(Part):
     restitution: Annotated[float, within(0, 1, ends=True)] | None = None
     rest_velocity: Annotated[float, positive("m/s")] = 1e-3
     points: Annotated[tuple[Vector, ...], checked(_points, {
-        "type": "array", "items": list_schema("m"), "minItems": 1, "maxItems": MOST_POINTS})] | None = None
+        "type": "array", "items": list_schema("m"), "minItems": 1, "maxItems": MOST_POINTS},
+        Turning(POINT, "a"))] | None = None
 
     @property
     def is_hard(self) -> bool:

@@ -59,8 +59,8 @@ class Crossing(Part):
     name: Name | None = None
     a: Listed
     b: Listed | None = None
-    at: Annotated[Vector | None, xyz("m")] = None
-    axis: Annotated[Vector | None, direction()] = None
+    at: Annotated[Vector | None, xyz("m", of="b")] = None
+    axis: Annotated[Vector | None, direction(of="b")] = None
     length: Annotated[float, positive("m")] | None = None
     radius: Annotated[float, not_negative("m")] | None = None
     stiffness: Annotated[float, positive("N/m")]

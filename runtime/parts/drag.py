@@ -14,7 +14,7 @@ from .part import Part
 from .plane import across
 from .polar import Polar
 from .quantity import Quantity, all_of_engine
-from .schemas import checked, list_of_lists, list_schema, number_schema
+from .schemas import TENSOR, Turning, checked, list_of_lists, list_schema, number_schema
 from .section import Tube, outer_radius_of
 from .validation import (
     Matrix,
@@ -105,13 +105,14 @@ class Drag(Part):
     area: Annotated[float, not_negative("m²")] = 0.0
     coefficient: Annotated[float, not_negative()] = 1.0
     polar: Polar | None = None
-    span: Annotated[Vector, direction()] | None = None
-    chord: Annotated[Vector, direction()] | None = None
-    at: Annotated[Vector, xyz("m")] | None = None
+    span: Annotated[Vector, direction(of="on")] | None = None
+    chord: Annotated[Vector, direction(of="on")] | None = None
+    at: Annotated[Vector, xyz("m", of="on")] | None = None
     volume: Annotated[float, not_negative("m³")] = 0.0
     height: Annotated[float, positive("m")] | None = None
     added_mass: Annotated[float | Matrix | None, checked(
-        _added_mass, {"anyOf": [number_schema(minimum=0), list_schema(), list_of_lists("1")]})] = None
+        _added_mass, {"anyOf": [number_schema(minimum=0), list_schema(), list_of_lists("1")]},
+        Turning(TENSOR, "on"))] = None
     added_mass_tangential: Annotated[float, not_negative()] = 0.0
 
     def off_plane(self) -> Iterator[str]:

@@ -10,16 +10,10 @@ import numpy as np
 
 from ..base.rotations import conjugate, product, quaternion, rotate
 from ..errors import SceneError
-from .attachment import Attachment
 from .cable import Cable
 from .combined_signal import combined
-from .contact import Contact
-from .crossing import Crossing
 from .curves import shape_through
-from .drag import Drag
 from .event import Event
-from .fluid import Fluid
-from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
 from .part import Part
 from .paths import COMPONENTS
@@ -27,10 +21,11 @@ from .plane import FLAT, Plane, aligned, called, flattened
 from .plane_axes import UNTURNED, PlaneAxes
 from .rigid_body import RigidBody
 from .scene_data import SceneData
+from .schemas import HOLDER, LENGTHS, POINT, TENSOR, Turning
 from .signal import Constant, Signal
-from .slide import Slide
 from .support import Motion, Rotation
-from .surface import Surface
+from .vector_fields import turnings_of
+from .velocity_table import VelocityTable
 
 S = TypeVar("S", bound=SceneData)
 
@@ -148,23 +143,47 @@ def _tensor(axes: PlaneAxes, body: str, tensor: Any) -> tuple[tuple[float, ...],
     return tuple(map(tuple, ((found + found.T) / 2).tolist()))
 
 
+def _vectors(axes: PlaneAxes, turning: Turning, on: str | None, value: Any) -> Any:
+    """Return the vectors of a field along axes of the ground or of a body, `on`, in those of the plane."""
+    if turning.turns == LENGTHS or not isinstance(value, tuple | list):
+        return value
+    if turning.turns == TENSOR:
+        assert on is not None, "a tensor is along the axes of a body"
+        return _tensor(axes, on, value)
+    turn = _place if turning.turns == POINT else _along
+    if len(value) and isinstance(value[0], tuple | list):
+        return tuple(turn(axes, on, each) for each in value)
+    return turn(axes, on, value)
+
+
+def turned_fields(part: Part, axes: PlaneAxes, holder: str | None = None) -> dict[str, Any]:
+    """Return the fields of a part that other axes change, in the axes of a plane, those of parts that it holds among
+    them; holder: the body whose axes what holds it is in.
+    """
+    turnings, changes = turnings_of(type(part)), {}
+    for name, value in part:
+        if value is None:
+            continue
+        if (turning := turnings.get(name)) is not None:
+            on = holder if turning.of == HOLDER else None if turning.of is None else getattr(part, turning.of)
+            changes[name] = _vectors(axes, turning, on, value)
+        elif isinstance(value, VelocityTable):
+            changes[name] = value.turned(axes.plane.axes)
+        elif isinstance(value, Part) and (held := turned_fields(value, axes, getattr(part, "on", None))):
+            changes[name] = value.model_copy(update=held)
+    return changes
+
+
 @singledispatch
 def turned(part: Part, axes: PlaneAxes, scene: SceneData) -> Part:
-    """Return a part of a scene in the axes of a plane; by default with its attachments there. Raises SceneError."""
-    changes: dict[str, Any] = {name: value.model_copy(update={"at": _place(axes, value.on, value.at)})
-                               for name, value in part if isinstance(value, Attachment)}
-    changes |= {name: _direction(axes, value) for name in ("axis", "second_axis", "up")
-                if (value := getattr(part, name, None) if name in type(part).model_fields else None) is not None}
+    """Return a part of a scene in the axes of a plane, by default with its vectors there. Raises SceneError."""
+    changes = turned_fields(part, axes)
     return part.model_copy(update=changes) if changes else part
 
 
 @turned.register
 def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
-    changes: dict[str, Any] = {name: _point(axes, value) for name in ("start", "end")
-                               if (value := getattr(part, name)) is not None}
-    if part.points is not None:
-        changes["points"] = [_point(axes, point) for point in part.points]
-    changes |= {name: _direction(axes, getattr(part, name)) for name in ("up", "velocity", "angular_velocity")}
+    changes = turned_fields(part, axes)
     if part.dim == 2 and abs(axes.plane.into(part.normal)[2]) > 1 - FLAT:  # its height is normal x tangent in z = 0
         changes["up"] = (0.0, 1.0, 0.0)
     made = Cable(**part.entries() | changes)
@@ -182,86 +201,18 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
 
 @turned.register
 def _rigid_body(part: RigidBody, axes: PlaneAxes, scene: SceneData) -> RigidBody:
-    return part.model_copy(update={
-        "position": _point(axes, part.position), "orientation": (1.0, 0.0, 0.0, 0.0),
-        "inertia": _tensor(axes, part.name, part.inertia),
-        "centre": _place(axes, part.name, part.centre), "velocity": _direction(axes, part.velocity),
-        "angular_velocity": _of_body(axes, part.name, part.angular_velocity)})
+    return part.model_copy(update=turned_fields(part, axes) | {"orientation": tuple(UNTURNED.tolist())})
 
 
 @turned.register
 def _modal_body(part: ModalBody, axes: PlaneAxes, scene: SceneData) -> ModalBody:
-    changes: dict[str, Any] = {"velocity": _direction(axes, part.velocity)}
-    if part.data is None:
-        changes |= {"start": _point(axes, part.start), "end": _point(axes, part.end), "up": _direction(axes, part.up)}
-    else:
-        changes |= {"position": _point(axes, part.position),
-                    "orientation": tuple(axes.into(part.name, "orientation", np.array(part.orientation)).tolist())}
+    changes = turned_fields(part, axes)
+    if part.data is not None:
+        del changes["up"]  # of a drawn one
+        changes["orientation"] = tuple(axes.into(part.name, "orientation", np.array(part.orientation)).tolist())
     made = ModalBody(**part.entries() | changes)
     made.__dict__["shape"] = part.shape  # in body axes, which stay: the same modes, with the same signs
     return made
-
-
-@turned.register
-def _slide(part: Slide, axes: PlaneAxes, scene: SceneData) -> Slide:
-    changes = {"at": _place(axes, part.body, part.at)} if part.body_s is None else {}
-    return part.model_copy(update=changes | ({} if part.up is None else {"up": _direction(axes, part.up)}))
-
-
-@turned.register
-def _force(part: Force, axes: PlaneAxes, scene: SceneData) -> Force:
-    value = _of_body(axes, part.on, part.value) if part.follower else _direction(axes, part.value)
-    return part.model_copy(update={"value": value, "at": _place(axes, part.on, part.at)})
-
-
-@turned.register
-def _distributed(part: DistributedForce, axes: PlaneAxes, scene: SceneData) -> DistributedForce:
-    return part if part.follower else part.model_copy(update={"value": _direction(axes, part.value)})
-
-
-@turned.register
-def _fluid(part: Fluid, axes: PlaneAxes, scene: SceneData) -> Fluid:
-    table = None if part.table is None else part.table.turned(axes.plane.axes)
-    return part.model_copy(update={"velocity": _direction(axes, part.velocity), "table": table})
-
-
-@turned.register
-def _drag(part: Drag, axes: PlaneAxes, scene: SceneData) -> Drag:
-    changes = {} if part.at is None else {"at": _place(axes, part.on, part.at)}
-    changes |= {name: _of_body(axes, part.on, value) for name in ("span", "chord")
-                if (value := getattr(part, name)) is not None}
-    if isinstance(part.added_mass, tuple):
-        changes["added_mass"] = _tensor(axes, part.on, part.added_mass)
-    return part.model_copy(update=changes) if changes else part
-
-
-@turned.register
-def _crossing(part: Crossing, axes: PlaneAxes, scene: SceneData) -> Crossing:
-    changes: dict[str, Any] = {} if part.at is None else {"at": _place(axes, part.b, part.at)}
-    changes |= {} if part.side is None else {"side": _direction(axes, part.side)}
-    if part.axis is not None:
-        changes["axis"] = _along(axes, part.b, part.axis)
-    return part.model_copy(update=changes)
-
-
-@turned.register
-def _surface(part: Surface, axes: PlaneAxes, scene: SceneData) -> Surface:
-    shape = part.shape
-    names = [name for name in ("normal", "axis", "along", "up", "point", "at") if name in type(shape).model_fields]
-    changes: dict[str, Any] = {name: _along(axes, part.on, getattr(shape, name)) for name in names}
-    return part.model_copy(update={"shape": shape.model_copy(update=changes), "at": _place(axes, part.on, part.at)})
-
-
-@turned.register
-def _contact(part: Contact, axes: PlaneAxes, scene: SceneData) -> Contact:
-    if part.points is None:
-        return part
-    return part.model_copy(update={"points": tuple(_place(axes, part.a, point) for point in part.points)})
-
-
-@turned.register
-def _moment(part: Moment, axes: PlaneAxes, scene: SceneData) -> Moment:
-    return part.model_copy(update={"value": _direction(axes, part.value)})
 
 
 @turned.register

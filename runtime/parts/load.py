@@ -42,9 +42,14 @@ class Force(Load):
     positional: ClassVar[tuple[str, ...]] = ("on",)
     on: Reference
     s: Place | None = None
-    at: Annotated[Vector, xyz("m")] | None = None
-    value: Annotated[Vector, xyz("N")]
+    at: Annotated[Vector, xyz("m", of="on")] | None = None
+    value: Annotated[Vector, xyz("N", of="along")]
     follower: Flag = False
+
+    @property
+    def along(self) -> str | None:
+        """Return what carries the axes that its components are along, None for the ground."""
+        return self.on if self.follower else None
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
@@ -65,10 +70,15 @@ class DistributedForce(Load):
     group: ClassVar[str] = "loads"
     positional: ClassVar[tuple[str, ...]] = ("cable",)
     cable: Reference
-    value: Annotated[Vector, xyz("N/m")]
+    value: Annotated[Vector, xyz("N/m", of="along")]
     start: Place | None = None
     stop: Place | None = None
     follower: Flag = False
+
+    @property
+    def along(self) -> str | None:
+        """Return what carries the axes that its components are along, None for the ground."""
+        return self.cable if self.follower else None
 
     @model_validator(mode="after")
     def _has_a_length(self) -> DistributedForce:

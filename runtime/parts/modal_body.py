@@ -85,7 +85,7 @@ class ModalBody(Part):
     orientation: Annotated[Quaternion, checked(unit_quaternion, list_schema("", 4, 4))] = (1.0, 0.0, 0.0, 0.0)
     damping_ratio: Annotated[float, not_negative()] = 0.0
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
-    angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
+    angular_velocity: Annotated[Vector, xyz("rad/s", of="name")] = (0.0, 0.0, 0.0)
 
     @model_validator(mode="after")
     def _is_described(self) -> ModalBody:

@@ -12,7 +12,7 @@ from ..base.rotations import rotate
 from .part import Part
 from .plane import across, in_plane
 from .quantity import IN_BODY_AXES, ORIENTATION, POINT, Quantity, vector_of_time
-from .schemas import checked, list_of_lists, list_schema
+from .schemas import TENSOR, Turning, checked, list_of_lists, list_schema
 from .solids import AnySolid
 from .validation import EXACT, Matrix, Name, Vector, positive, show, symmetric, vector, xyz
 
@@ -80,12 +80,13 @@ class RigidBody(Part):
     }
     name: Name
     mass: Annotated[float, positive("kg")]
-    inertia: Annotated[Matrix, checked(_inertia, {"anyOf": [list_schema("kg m²"), list_of_lists("kg m²")]})]
+    inertia: Annotated[Matrix, checked(_inertia, {"anyOf": [list_schema("kg m²"), list_of_lists("kg m²")]},
+                                        Turning(TENSOR, "name"))]
     position: Annotated[Vector, xyz("m")]
     orientation: Annotated[Quaternion, checked(unit_quaternion, list_schema("", 4, 4))] = (1.0, 0.0, 0.0, 0.0)
-    centre: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+    centre: Annotated[Vector, xyz("m", of="name")] = (0.0, 0.0, 0.0)
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
-    angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
+    angular_velocity: Annotated[Vector, xyz("rad/s", of="name")] = (0.0, 0.0, 0.0)
     shape: AnySolid | None = None
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import PlainValidator
@@ -19,9 +20,33 @@ class GivenAs:
         return dict(self.schema)
 
 
-def checked(check: Callable[..., Any], schema: Mapping[str, Any]) -> PlainValidator:
+POINT, DIRECTION, TENSOR, LENGTHS = "point", "direction", "tensor", "lengths"
+HOLDER = "holder"
+
+
+@dataclass(frozen=True)
+class Turning:
+    """How other axes change the vectors of a field, see `laid`: as a POINT, a DIRECTION, a symmetric TENSOR; LENGTHS
+    along axes of their own stay.
+
+    of: the attribute of the part that names the body whose axes they are along, None for the ground's; HOLDER: those of
+    the part that holds this one.
+    """
+
+    turns: str
+    of: str | None = None
+
+
+@dataclass(frozen=True)
+class Check(PlainValidator):
+    """A check of values with how other axes change them, None for numbers."""
+
+    turning: Turning | None = None
+
+
+def checked(check: Callable[..., Any], schema: Mapping[str, Any], turning: Turning | None = None) -> PlainValidator:
     """Return a check of values; schema: what a scene file may say there, as JSON Schema (`scene_schema`)."""
-    return PlainValidator(check, json_schema_input_type=Annotated[Any, GivenAs(schema)])
+    return Check(check, json_schema_input_type=Annotated[Any, GivenAs(schema)], turning=turning)
 
 
 ONLY_PYTHON: dict[str, Any] = {"not": {}}

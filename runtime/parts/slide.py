@@ -59,7 +59,7 @@ class Slide(Part):
     body_s: Annotated[float, finite("m")] | None = None
     along: Reference
     s: Annotated[float, finite("m")] | None = None
-    at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+    at: Annotated[Vector, xyz("m", of="body")] = (0.0, 0.0, 0.0)
     name: Name = Field(default_factory=lambda data: f"{data['body'] or 'ground'}_on_{data['along']}")
     frame: Annotated[str, one_of(("point", "tangent", "section"))] = "point"
     roll: Annotated[str, one_of(("free", "fixed"))] = "free"

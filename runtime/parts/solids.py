@@ -14,7 +14,7 @@ from pydantic import model_validator
 
 from .part import Part, part_of_table
 from .plane import aligned
-from .schemas import checked, list_schema, tagged
+from .schemas import DIRECTION, HOLDER, LENGTHS, Turning, checked, list_schema, tagged
 from .validation import Vector, check_square, direction, positive, shown, vector, xyz
 
 Length = Annotated[float, positive("m")]
@@ -44,7 +44,7 @@ class Solid(Part):
     at: middle of the shape, in body axes, m
     """
 
-    at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+    at: Annotated[Vector, xyz("m", DIRECTION, HOLDER)] = (0.0, 0.0, 0.0)
 
 
 class Box(Solid):
@@ -56,9 +56,9 @@ class Box(Solid):
 
     kind: ClassVar[str] = "box"
     positional: ClassVar[tuple[str, ...]] = ("size",)
-    size: Annotated[Vector, checked(_lengths, list_schema("m"))]
-    along: Annotated[Vector, direction()] = (1.0, 0.0, 0.0)
-    up: Annotated[Vector, direction()] = (0.0, 1.0, 0.0)
+    size: Annotated[Vector, checked(_lengths, list_schema("m"), Turning(LENGTHS))]
+    along: Annotated[Vector, direction(HOLDER)] = (1.0, 0.0, 0.0)
+    up: Annotated[Vector, direction(HOLDER)] = (0.0, 1.0, 0.0)
 
     @model_validator(mode="after")
     def _has_square_axes(self) -> Box:
@@ -95,7 +95,7 @@ class Cylinder(Solid):
     positional: ClassVar[tuple[str, ...]] = ("radius", "length", "axis")
     radius: Length
     length: Length
-    axis: Annotated[Vector, direction()] = (0.0, 0.0, 1.0)
+    axis: Annotated[Vector, direction(HOLDER)] = (0.0, 0.0, 1.0)
 
 
 class MeshShape(Solid):

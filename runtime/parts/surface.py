@@ -34,7 +34,7 @@ class Surface(Part):
     name: Name
     shape: AnySurfaceShape
     on: Reference | None = None
-    at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+    at: Annotated[Vector, xyz("m", of="on")] = (0.0, 0.0, 0.0)
     inside: Flag = False
 
     @model_validator(mode="after")

@@ -17,7 +17,7 @@ from pydantic import model_validator
 from .height_bounds import height_bounds
 from .part import Part, part_of_table
 from .plane import FLAT, across, aligned
-from .schemas import checked, list_schema, tagged
+from .schemas import DIRECTION, HOLDER, checked, list_schema, tagged
 from .solids import Box, Cylinder, Length, Sphere
 from .validation import Vector, check_function, check_square, direction, list_of, shown, vector, xyz
 
@@ -38,8 +38,8 @@ class Plane(SurfaceShape):
 
     kind: ClassVar[str] = "plane"
     positional: ClassVar[tuple[str, ...]] = ("point", "normal")
-    point: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
-    normal: Annotated[Vector, direction()] = (0.0, 1.0, 0.0)
+    point: Annotated[Vector, xyz("m", DIRECTION, HOLDER)] = (0.0, 0.0, 0.0)
+    normal: Annotated[Vector, direction(HOLDER)] = (0.0, 1.0, 0.0)
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
@@ -59,8 +59,8 @@ class Capsule(SurfaceShape):
     positional: ClassVar[tuple[str, ...]] = ("radius", "length", "axis")
     radius: Length
     length: Length
-    axis: Annotated[Vector, direction()] = (0.0, 0.0, 1.0)
-    at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+    axis: Annotated[Vector, direction(HOLDER)] = (0.0, 0.0, 1.0)
+    at: Annotated[Vector, xyz("m", DIRECTION, HOLDER)] = (0.0, 0.0, 0.0)
 
 
 def _heights(value: Any) -> tuple[Any, ...]:
@@ -94,8 +94,8 @@ class HeightField(SurfaceShape):
     heights: Annotated[tuple[Any, ...], checked(_heights, {"anyOf": [
         list_schema("m", 2, None), {"type": "array", "items": list_schema("m", 2, None), "minItems": 2}]})]
     across: Annotated[tuple[float, ...], list_of("m", least=2)] | None = None
-    along: Annotated[Vector, direction()] = (1.0, 0.0, 0.0)
-    up: Annotated[Vector, direction()] = (0.0, 1.0, 0.0)
+    along: Annotated[Vector, direction(HOLDER)] = (1.0, 0.0, 0.0)
+    up: Annotated[Vector, direction(HOLDER)] = (0.0, 1.0, 0.0)
 
     @classmethod
     def of(cls, function: Callable[..., Any], x: Any, across: Any = None, **directions: Any) -> HeightField:

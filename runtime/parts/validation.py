@@ -20,7 +20,7 @@ import numpy as np
 from pydantic import BeforeValidator, PlainValidator
 
 from ..errors import near
-from .schemas import checked, list_schema, number_schema
+from .schemas import DIRECTION, POINT, Turning, checked, list_schema, number_schema
 
 LIMITS = {"m": (1e-12, 1e9), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
 """By unit: the least size of a number that must be positive, and the largest of any number; else `OTHER_LIMITS`."""
@@ -195,13 +195,17 @@ def above(low: float, most: float) -> PlainValidator:
                     maximum=most)
 
 
-def xyz(unit: str = "") -> PlainValidator:
-    """Return the check of three finite numbers."""
-    return checked(lambda value: vector(value, unit), list_schema(unit))
+def xyz(unit: str = "", turns: str | None = None, of: str | None = None) -> PlainValidator:
+    """Return the check of three finite numbers: a point where they are lengths, else a direction, or what turns says.
+
+    of: the attribute that names the body whose axes they are along, see `Turning`.
+    """
+    turning = Turning(turns or (POINT if unit == "m" else DIRECTION), of)
+    return checked(lambda value: vector(value, unit), list_schema(unit), turning)
 
 
-def direction() -> PlainValidator:
-    """Return the check of three finite numbers that are not all zero; their length is free."""
+def direction(of: str | None = None) -> PlainValidator:
+    """Return the check of three finite numbers that are not all zero; their length is free. of: as of `xyz`."""
     def check(value: Any) -> tuple[float, ...]:
         result = vector(value)
         if not any(result):
@@ -210,7 +214,7 @@ def direction() -> PlainValidator:
             raise ValueError(f"must not be shorter than {show(OTHER_LIMITS[0])}, got {show(result)}")
         return result
 
-    return checked(check, list_schema())
+    return checked(check, list_schema(), Turning(DIRECTION, of))
 
 
 def list_of(unit: str = "", *, least: int) -> PlainValidator:

@@ -38,10 +38,13 @@ def in_loads(fraction: float) -> str:
 
 def layout(scene: SceneData) -> dict[str, list]:
     """Return what must be the same in two scenes for a state of one to be a state of the other."""
-    couplings = {kind.group: [_without_ends(part) for part in scene.group(kind.group)]
-                 for kind in COUPLINGS if kind.has_state}
-    return {"cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes) for c in scene.cables.values()],
-            "plane": [called(scene.plane)], "bodies": list(scene.bodies)} | couplings
+    found: dict[str, list] = {
+        "cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes) for c in scene.cables.values()],
+        "plane": [called(scene.plane)], "bodies": list(scene.bodies)}
+    for kind in COUPLINGS:
+        if kind.has_state:
+            found[kind.group] = [_without_ends(part) for part in scene.group(kind.group)]
+    return found
 
 
 def _without_ends(part: Part) -> str | tuple[str, str]:
