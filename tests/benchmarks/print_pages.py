@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable
 
 import records
-from printed import FOLDER, Row, cell, markdown, scripts
+from printed import FOLDER, RECORDS, Row, cell, markdown, scripts
 from speed_page import CONDITIONS, SPEED
 from validation_page import INTRODUCTION, STUDIES, SUBJECTS
 
@@ -23,7 +23,7 @@ HEAD = ["case", "source", "quantity", "reference", "ours", "error", "bound", "wi
 def validation() -> str:
     """Return the page Validation: rows of tests by subject, then studies."""
     table = records.load(records.FOLDER / "validation.json")["validation"]
-    lines = ["# Validation", "", NOTE, "", INTRODUCTION, "",
+    lines = ["# Validation", "", NOTE, "", INTRODUCTION, "", RECORDS, "",
              f"Recorded {table['measured']}: {table['conditions']}.", ""]
     for subject in SUBJECTS:
         rows = [row for row in table["rows"] if row["subject"] == subject]
@@ -36,7 +36,7 @@ def compared(rows: list[Row]) -> list[list[str]]:
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         test = row["test"].partition("[")[0]
-        several = row["test"].startswith("tests/motion/test_cases.py")  # each errs most in its own quantity
+        several = row["subject"] in SUBJECTS[:2]  # each element errs most in a quantity of its own
         key = row["case"], row["source"], "" if several else row["quantity"], row["bound"], test
         groups.setdefault(key, []).append(row)
     found = []
@@ -67,8 +67,8 @@ def variants(rows: list[Row]) -> str:
 
 def speed() -> str:
     """Return the page Speed."""
-    lines = ["# Speed", "", NOTE, "", CONDITIONS, "", *(line for section in SPEED for line in section.lines())]
-    return "\n".join(lines).rstrip() + "\n"
+    head = ["# Speed", "", NOTE, "", CONDITIONS, "", RECORDS, ""]
+    return "\n".join([*head, *(line for section in SPEED for line in section.lines())]).rstrip() + "\n"
 
 
 def readme() -> str:

@@ -14,6 +14,8 @@ import records
 
 FOLDER = Path(__file__).parent
 Row = dict[str, Any]
+RECORDS = """A command with `--json` renews its record, and [print_pages.py](print_pages.py) the page. A record that
+names no processor was transcribed from an earlier table, and its date is that of the table."""
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,7 @@ from printed import Row, Section, Table, cell
 CONDITIONS = """Time never stands alone: each row has its error, or the command shows it. Errors of a motion are the
 largest distance of a node or body from the reference, over the largest motion in the scene. CPU times are of one
 thread, where nothing else is said, and of the machine and load that the line above each table names. Codes that are
-compared take turns in one run. A command with `--json` renews its figures, and
-[print_pages.py](print_pages.py) this page. [Validation](validation.md) has the references."""
+compared take turns in one run. [Validation](validation.md) has the references."""
 
 KERNELS = [f"{law}_{what}" for law in ("cable8p_green_exact", "cable12_green_exact", "cable18_green_exact",
                                        "beam12p_continuum", "beam24_continuum", "beam24_structural")
@@ -47,7 +46,7 @@ second.""",
                {"case": "scene", "elements": "elements"},
                table="times",
                by=("error", "{best / s} / {exudyn / s} ({times faster})"),
-               options="--limit 6"),
+               options="--limit 6 --plot exudyn_side_by_side.png"),
          Table("exudyn_side_by_side",
                {"case": "scene", "elements": "elements"},
                table="times",
@@ -135,6 +134,7 @@ LAPACK factors the band of a cable; riders, slides and shared nodes are its bord
         [Table("linear_cost",
                {"scene": "scene"},
                by=("elements", "{us_per_step_and_element}"),
+               options="--plot linear_cost.png",
                text="""![Time and memory of a step against elements](linear_cost.png)""")],
         test="tests/engine/test_linear_cost.py"),
     Section(

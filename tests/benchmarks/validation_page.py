@@ -92,7 +92,8 @@ in mm from that of the rigid link. The three agree while the link bends little.
 ![The ball's acceleration with three kinds of link, as soft as in the print and 100 times as stiff](paper52.png)""",
         [Table("paper52",
                {"link": "link", "mm off rigid, 0.5 s": "0.5 s", "mm off rigid, 1.0 s": "1.0 s",
-                "mm off rigid, 1.5 s": "1.5 s", "error": "error in time", "CPU s": "CPU s"})],
+                "mm off rigid, 1.5 s": "1.5 s", "error": "error in time", "CPU s": "CPU s"},
+               options="--plots .")],
         test="tests/motion/test_paper52.py"),
     Section(
         "Planar and spatial",
@@ -101,7 +102,8 @@ in mm from that of the rigid link. The three agree while the link bends little.
 ![Height of the rider by four elements; distance between planar and spatial ones](planar.png)""",
         [Table("planar",
                {"planar": "planar", "spatial": "spatial", "law": "law", "ν": "ν", "x, y / m": "x, y, m",
-                "s / m": "s, m", "force / N": "force, N", "why": "why"})],
+                "s / m": "s, m", "force / N": "force, N", "why": "why"},
+               options="--plot planar.png")],
         test="tests/parts/test_planar_scene.py"),
     Section(
         "Crossing a node",
@@ -111,7 +113,8 @@ that of quintic ones does not.
 ![Acceleration of a rider over its position, and its change in a step](crossing.png)""",
         [Table("crossing",
                {"element": "element", "step / s": "step, s", "crossings": "crossings",
-                "median jump / (m/s²)": "median jump, m/s²", "largest": "largest"})]),
+                "median jump / (m/s²)": "median jump, m/s²", "largest": "largest"},
+               options="--plot crossing.png")]),
     Section(
         "Tension beside a point force",
         """Taut rope of 24 elements with 84 kg at rest at 0.3 of an element, by `membrane`: errors of the tension by

@@ -176,7 +176,7 @@ def test_a_tip_load_on_a_quarter_of_a_circle_of_a_beam(element, validated):
 
 
 def test_a_thin_arc_locks_in_the_continuum_and_not_in_the_structural_law():
-    """Height over radius 0.02, as in the README; structural: shear factor 5/6."""
+    """Height over radius 0.02; structural: shear factor 5/6."""
     s = 0.02**2
     assert under_tip_load("beam24", 4, slenderness=0.02) < 0.15
     assert under_tip_load("beam24", 4, slenderness=0.02, law="structural") == pytest.approx(1 + 3.4 * s / 12, abs=1e-6)
