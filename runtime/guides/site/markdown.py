@@ -7,6 +7,10 @@ import re
 from collections.abc import Iterable
 
 
+QUOTED = re.compile(r"^>>> .*(?:\n.+)*|\0[^\0]*\0|`[^`]*`|\(\".*?\)|\"([\w.@]+)\"", re.MULTILINE)
+"""Words in quotes, such as a value, but for those in examples, in code and in tuples."""
+
+
 def prose(thing: object, linked: Iterable[str] = ()) -> str:
     """Return the docstring of a class or a function as Markdown; linked: names with a heading of their own."""
     return markdown(inspect.getdoc(thing) or "", linked)
@@ -21,6 +25,7 @@ def markdown(docstring: str, linked: Iterable[str] = ()) -> str:
         return f"[`{name}`](#{anchor(name)})" if name in known else f"`{name}`"
 
     text = re.sub(r"``([^`]+)``", "\0\\1\0", docstring)
+    text = QUOTED.sub(lambda found: f"\0{found[0]}\0" if found[1] else found[0], text)
     text = re.sub(r"`([^`]+)`", code, text).replace("\0", "`")
     return re.sub(r"^>>> .*(?:\n.+)*", r"```pycon\n\g<0>\n```", text, flags=re.MULTILINE)
 
