@@ -53,1172 +53,153 @@ FU_HELPER void scatter(double *to, const fu_real *from, int n)
         for (int i = 0; i < n; ++i) to[k * n + i] = from[i][k];
 }
 
-FU_BLOCK_TARGET static void block_beam24_continuum_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[24];
-    fu_real A[61];
-    fu_real f[24];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 61, of->A_stride);
-        beam24_continuum_elastic_force(l, e, A, f);
-        scatter(out + k * 24, f, 24);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam24_continuum_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[24];
-    fu_real v[24];
-    fu_real A[61];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[24];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 61, of->A_stride);
-        beam24_continuum_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 24, f, 24);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam24_continuum_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[24];
-    fu_real v[24];
-    fu_real A[61];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 61, of->A_stride);
-        beam24_continuum_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam24_continuum_curved_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[24];
-    fu_real A[495];
-    fu_real f[24];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 495, of->A_stride);
-        beam24_continuum_curved_elastic_force(l, e, A, f);
-        scatter(out + k * 24, f, 24);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam24_structural_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[24];
-    fu_real A[31];
-    fu_real f[24];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
-        beam24_structural_elastic_force(l, e, A, f);
-        scatter(out + k * 24, f, 24);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam24_structural_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[24];
-    fu_real v[24];
-    fu_real A[31];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[24];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
-        beam24_structural_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 24, f, 24);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam24_structural_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[24];
-    fu_real v[24];
-    fu_real A[31];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 24, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 24, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
-        beam24_structural_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[2];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable12_green_exact_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_green_exact_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[2];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable12_green_exact_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_green_exact_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real v[12];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable12_green_exact_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_green_exact_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real v[12];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable12_green_exact_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_green_linear_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[2];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable12_green_linear_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[2];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable12_engineering_exact_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[2];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable12_engineering_exact_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real v[12];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable12_engineering_exact_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real v[12];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable12_engineering_exact_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_linear_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[2];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable12_engineering_linear_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[3];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable12_green_exact_assumed_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_green_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[3];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable12_green_exact_assumed_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_green_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[3];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable12_green_linear_assumed_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[3];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable12_engineering_exact_assumed_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[3];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable12_engineering_exact_assumed_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[3];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable12_engineering_linear_assumed_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[3];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable12_engineering_linear_assumed_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[32];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
-        cable12_green_exact_curved_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_green_exact_curved_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[32];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
-        cable12_green_exact_curved_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[32];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
-        cable12_engineering_exact_curved_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_curved_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[32];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 32, of->A_stride);
-        cable12_engineering_exact_curved_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[4];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
-        cable12_engineering_exact_tension_only_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[4];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
-        cable12_engineering_exact_tension_only_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real v[12];
-    fu_real A[4];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
-        cable12_engineering_exact_tension_only_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable12_engineering_exact_tension_only_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real v[12];
-    fu_real A[4];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
-        cable12_engineering_exact_tension_only_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable18_green_exact_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[18];
-    fu_real A[2];
-    fu_real f[18];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable18_green_exact_elastic_force(l, e, A, f);
-        scatter(out + k * 18, f, 18);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable18_green_exact_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[18];
-    fu_real v[18];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[18];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable18_green_exact_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 18, f, 18);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable18_green_exact_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[18];
-    fu_real v[18];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable18_green_exact_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable18_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[18];
-    fu_real A[2];
-    fu_real f[18];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable18_engineering_exact_elastic_force(l, e, A, f);
-        scatter(out + k * 18, f, 18);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable18_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[18];
-    fu_real v[18];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[18];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable18_engineering_exact_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 18, f, 18);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable18_engineering_exact_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[18];
-    fu_real v[18];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 18, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable18_engineering_exact_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable18_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[18];
-    fu_real A[3];
-    fu_real f[18];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable18_green_exact_assumed_elastic_force(l, e, A, f);
-        scatter(out + k * 18, f, 18);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable18_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[18];
-    fu_real A[3];
-    fu_real f[18];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable18_engineering_exact_assumed_elastic_force(l, e, A, f);
-        scatter(out + k * 18, f, 18);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[31];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
-        beam12p_continuum_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[31];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
-        beam12p_continuum_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam12p_continuum_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real v[12];
-    fu_real A[31];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
-        beam12p_continuum_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam12p_continuum_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real v[12];
-    fu_real A[31];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 31, of->A_stride);
-        beam12p_continuum_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[166];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 166, of->A_stride);
-        beam12p_continuum_curved_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam12p_continuum_curved_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[166];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 166, of->A_stride);
-        beam12p_continuum_curved_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam12p_structural_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[15];
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
-        beam12p_structural_elastic_force(l, e, A, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam12p_structural_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real A[15];
-    fu_real K[144];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
-        beam12p_structural_elastic_tangent(l, e, A, K);
-        scatter(out + k * 144, K, 144);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam12p_structural_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real v[12];
-    fu_real A[15];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[12];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
-        beam12p_structural_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 12, f, 12);
-    }
-}
-
-FU_BLOCK_TARGET static void block_beam12p_structural_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[12];
-    fu_real v[12];
-    fu_real A[15];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 12, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 12, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 15, of->A_stride);
-        beam12p_structural_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[2];
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_green_exact_elastic_force(l, e, A, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_green_exact_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[2];
-    fu_real K[64];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_green_exact_elastic_tangent(l, e, A, K);
-        scatter(out + k * 64, K, 64);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_green_exact_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real v[8];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_green_exact_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_green_exact_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real v[8];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_green_exact_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_green_linear_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[2];
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_green_linear_elastic_force(l, e, A, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[2];
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_engineering_exact_elastic_force(l, e, A, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_exact_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[2];
-    fu_real K[64];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_engineering_exact_elastic_tangent(l, e, A, K);
-        scatter(out + k * 64, K, 64);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_exact_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real v[8];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_engineering_exact_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_exact_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real v[8];
-    fu_real A[2];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_engineering_exact_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[2];
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_engineering_linear_elastic_force(l, e, A, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_linear_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[2];
-    fu_real K[64];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 2, of->A_stride);
-        cable8p_engineering_linear_elastic_tangent(l, e, A, K);
-        scatter(out + k * 64, K, 64);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[3];
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable8p_green_exact_assumed_elastic_force(l, e, A, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_green_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[3];
-    fu_real K[64];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable8p_green_exact_assumed_elastic_tangent(l, e, A, K);
-        scatter(out + k * 64, K, 64);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[3];
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable8p_green_linear_assumed_elastic_force(l, e, A, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_green_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[3];
-    fu_real K[64];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable8p_green_linear_assumed_elastic_tangent(l, e, A, K);
-        scatter(out + k * 64, K, 64);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[3];
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable8p_engineering_exact_assumed_elastic_force(l, e, A, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_exact_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[3];
-    fu_real K[64];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable8p_engineering_exact_assumed_elastic_tangent(l, e, A, K);
-        scatter(out + k * 64, K, 64);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[3];
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable8p_engineering_linear_assumed_elastic_force(l, e, A, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_linear_assumed_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[3];
-    fu_real K[64];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
-        cable8p_engineering_linear_assumed_elastic_tangent(l, e, A, K);
-        scatter(out + k * 64, K, 64);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[4];
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
-        cable8p_engineering_exact_tension_only_elastic_force(l, e, A, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_elastic_tangent(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real A[4];
-    fu_real K[64];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
-        cable8p_engineering_exact_tension_only_elastic_tangent(l, e, A, K);
-        scatter(out + k * 64, K, 64);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_damping_force(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real v[8];
-    fu_real A[4];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real f[8];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
-        cable8p_engineering_exact_tension_only_damping_force(l, e, v, A, tau, f);
-        scatter(out + k * 8, f, 8);
-    }
-}
-
-FU_BLOCK_TARGET static void block_cable8p_engineering_exact_tension_only_dissipation(int n, const fu_elements *of, double *out)
-{
-    fu_real l = FU_NUMBER(*of->l);
-    fu_real e[8];
-    fu_real v[8];
-    fu_real A[4];
-    fu_real tau = FU_NUMBER(of->tau);
-    fu_real P[1];
-    for (int k = 0; k < n; k += FU_BLOCK) {
-        if (of->l_stride) gather(&l, of->l + k, 1, 1);
-        gather(e, of->e + (long)k * of->per_node, 8, of->per_node);
-        gather(v, of->v + (long)k * of->per_node, 8, of->per_node);
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 4, of->A_stride);
-        cable8p_engineering_exact_tension_only_dissipation(l, e, v, A, tau, P);
-        scatter(out + k * 1, P, 1);
-    }
-}
+/* elastic_force of a law: the name of its kernel, sizes of its arrays */
+#define FU_BLOCK_OF_ELASTIC_FORCE(name, size_e, size_A, size_f) \
+FU_BLOCK_TARGET static void block_##name(int n, const fu_elements *of, double *out) \
+{ \
+    fu_real l = FU_NUMBER(*of->l); \
+    fu_real e[size_e]; \
+    fu_real A[size_A]; \
+    fu_real f[size_f]; \
+    for (int k = 0; k < n; k += FU_BLOCK) { \
+        if (of->l_stride) gather(&l, of->l + k, 1, 1); \
+        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node); \
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride); \
+        name(l, e, A, f); \
+        scatter(out + k * size_f, f, size_f); \
+    } \
+}
+
+/* elastic_tangent of a law: the name of its kernel, sizes of its arrays */
+#define FU_BLOCK_OF_ELASTIC_TANGENT(name, size_e, size_A, size_K) \
+FU_BLOCK_TARGET static void block_##name(int n, const fu_elements *of, double *out) \
+{ \
+    fu_real l = FU_NUMBER(*of->l); \
+    fu_real e[size_e]; \
+    fu_real A[size_A]; \
+    fu_real K[size_K]; \
+    for (int k = 0; k < n; k += FU_BLOCK) { \
+        if (of->l_stride) gather(&l, of->l + k, 1, 1); \
+        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node); \
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride); \
+        name(l, e, A, K); \
+        scatter(out + k * size_K, K, size_K); \
+    } \
+}
+
+/* damping_force of a law: the name of its kernel, sizes of its arrays */
+#define FU_BLOCK_OF_DAMPING_FORCE(name, size_e, size_v, size_A, size_f) \
+FU_BLOCK_TARGET static void block_##name(int n, const fu_elements *of, double *out) \
+{ \
+    fu_real l = FU_NUMBER(*of->l); \
+    fu_real e[size_e]; \
+    fu_real v[size_v]; \
+    fu_real A[size_A]; \
+    fu_real tau = FU_NUMBER(of->tau); \
+    fu_real f[size_f]; \
+    for (int k = 0; k < n; k += FU_BLOCK) { \
+        if (of->l_stride) gather(&l, of->l + k, 1, 1); \
+        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node); \
+        gather(v, of->v + (long)k * of->per_node, size_v, of->per_node); \
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride); \
+        name(l, e, v, A, tau, f); \
+        scatter(out + k * size_f, f, size_f); \
+    } \
+}
+
+/* dissipation of a law: the name of its kernel, sizes of its arrays */
+#define FU_BLOCK_OF_DISSIPATION(name, size_e, size_v, size_A, size_P) \
+FU_BLOCK_TARGET static void block_##name(int n, const fu_elements *of, double *out) \
+{ \
+    fu_real l = FU_NUMBER(*of->l); \
+    fu_real e[size_e]; \
+    fu_real v[size_v]; \
+    fu_real A[size_A]; \
+    fu_real tau = FU_NUMBER(of->tau); \
+    fu_real P[size_P]; \
+    for (int k = 0; k < n; k += FU_BLOCK) { \
+        if (of->l_stride) gather(&l, of->l + k, 1, 1); \
+        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node); \
+        gather(v, of->v + (long)k * of->per_node, size_v, of->per_node); \
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride); \
+        name(l, e, v, A, tau, P); \
+        scatter(out + k * size_P, P, size_P); \
+    } \
+}
+
+FU_BLOCK_OF_ELASTIC_FORCE(beam24_continuum_elastic_force, 24, 61, 24)
+FU_BLOCK_OF_DAMPING_FORCE(beam24_continuum_damping_force, 24, 24, 61, 24)
+FU_BLOCK_OF_DISSIPATION(beam24_continuum_dissipation, 24, 24, 61, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(beam24_continuum_curved_elastic_force, 24, 495, 24)
+FU_BLOCK_OF_ELASTIC_FORCE(beam24_structural_elastic_force, 24, 31, 24)
+FU_BLOCK_OF_DAMPING_FORCE(beam24_structural_damping_force, 24, 24, 31, 24)
+FU_BLOCK_OF_DISSIPATION(beam24_structural_dissipation, 24, 24, 31, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_green_exact_elastic_force, 12, 2, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable12_green_exact_elastic_tangent, 12, 2, 144)
+FU_BLOCK_OF_DAMPING_FORCE(cable12_green_exact_damping_force, 12, 12, 2, 12)
+FU_BLOCK_OF_DISSIPATION(cable12_green_exact_dissipation, 12, 12, 2, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_green_linear_elastic_force, 12, 2, 12)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_engineering_exact_elastic_force, 12, 2, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable12_engineering_exact_elastic_tangent, 12, 2, 144)
+FU_BLOCK_OF_DAMPING_FORCE(cable12_engineering_exact_damping_force, 12, 12, 2, 12)
+FU_BLOCK_OF_DISSIPATION(cable12_engineering_exact_dissipation, 12, 12, 2, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_engineering_linear_elastic_force, 12, 2, 12)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_green_exact_assumed_elastic_force, 12, 3, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable12_green_exact_assumed_elastic_tangent, 12, 3, 144)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_green_linear_assumed_elastic_force, 12, 3, 12)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_engineering_exact_assumed_elastic_force, 12, 3, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable12_engineering_exact_assumed_elastic_tangent, 12, 3, 144)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_engineering_linear_assumed_elastic_force, 12, 3, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable12_engineering_linear_assumed_elastic_tangent, 12, 3, 144)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_green_exact_curved_elastic_force, 12, 32, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable12_green_exact_curved_elastic_tangent, 12, 32, 144)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_engineering_exact_curved_elastic_force, 12, 32, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable12_engineering_exact_curved_elastic_tangent, 12, 32, 144)
+FU_BLOCK_OF_ELASTIC_FORCE(cable12_engineering_exact_tension_only_elastic_force, 12, 4, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable12_engineering_exact_tension_only_elastic_tangent, 12, 4, 144)
+FU_BLOCK_OF_DAMPING_FORCE(cable12_engineering_exact_tension_only_damping_force, 12, 12, 4, 12)
+FU_BLOCK_OF_DISSIPATION(cable12_engineering_exact_tension_only_dissipation, 12, 12, 4, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(cable18_green_exact_elastic_force, 18, 2, 18)
+FU_BLOCK_OF_DAMPING_FORCE(cable18_green_exact_damping_force, 18, 18, 2, 18)
+FU_BLOCK_OF_DISSIPATION(cable18_green_exact_dissipation, 18, 18, 2, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(cable18_engineering_exact_elastic_force, 18, 2, 18)
+FU_BLOCK_OF_DAMPING_FORCE(cable18_engineering_exact_damping_force, 18, 18, 2, 18)
+FU_BLOCK_OF_DISSIPATION(cable18_engineering_exact_dissipation, 18, 18, 2, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(cable18_green_exact_assumed_elastic_force, 18, 3, 18)
+FU_BLOCK_OF_ELASTIC_FORCE(cable18_engineering_exact_assumed_elastic_force, 18, 3, 18)
+FU_BLOCK_OF_ELASTIC_FORCE(beam12p_continuum_elastic_force, 12, 31, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(beam12p_continuum_elastic_tangent, 12, 31, 144)
+FU_BLOCK_OF_DAMPING_FORCE(beam12p_continuum_damping_force, 12, 12, 31, 12)
+FU_BLOCK_OF_DISSIPATION(beam12p_continuum_dissipation, 12, 12, 31, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(beam12p_continuum_curved_elastic_force, 12, 166, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(beam12p_continuum_curved_elastic_tangent, 12, 166, 144)
+FU_BLOCK_OF_ELASTIC_FORCE(beam12p_structural_elastic_force, 12, 15, 12)
+FU_BLOCK_OF_ELASTIC_TANGENT(beam12p_structural_elastic_tangent, 12, 15, 144)
+FU_BLOCK_OF_DAMPING_FORCE(beam12p_structural_damping_force, 12, 12, 15, 12)
+FU_BLOCK_OF_DISSIPATION(beam12p_structural_dissipation, 12, 12, 15, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(cable8p_green_exact_elastic_force, 8, 2, 8)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable8p_green_exact_elastic_tangent, 8, 2, 64)
+FU_BLOCK_OF_DAMPING_FORCE(cable8p_green_exact_damping_force, 8, 8, 2, 8)
+FU_BLOCK_OF_DISSIPATION(cable8p_green_exact_dissipation, 8, 8, 2, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(cable8p_green_linear_elastic_force, 8, 2, 8)
+FU_BLOCK_OF_ELASTIC_FORCE(cable8p_engineering_exact_elastic_force, 8, 2, 8)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable8p_engineering_exact_elastic_tangent, 8, 2, 64)
+FU_BLOCK_OF_DAMPING_FORCE(cable8p_engineering_exact_damping_force, 8, 8, 2, 8)
+FU_BLOCK_OF_DISSIPATION(cable8p_engineering_exact_dissipation, 8, 8, 2, 1)
+FU_BLOCK_OF_ELASTIC_FORCE(cable8p_engineering_linear_elastic_force, 8, 2, 8)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable8p_engineering_linear_elastic_tangent, 8, 2, 64)
+FU_BLOCK_OF_ELASTIC_FORCE(cable8p_green_exact_assumed_elastic_force, 8, 3, 8)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable8p_green_exact_assumed_elastic_tangent, 8, 3, 64)
+FU_BLOCK_OF_ELASTIC_FORCE(cable8p_green_linear_assumed_elastic_force, 8, 3, 8)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable8p_green_linear_assumed_elastic_tangent, 8, 3, 64)
+FU_BLOCK_OF_ELASTIC_FORCE(cable8p_engineering_exact_assumed_elastic_force, 8, 3, 8)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable8p_engineering_exact_assumed_elastic_tangent, 8, 3, 64)
+FU_BLOCK_OF_ELASTIC_FORCE(cable8p_engineering_linear_assumed_elastic_force, 8, 3, 8)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable8p_engineering_linear_assumed_elastic_tangent, 8, 3, 64)
+FU_BLOCK_OF_ELASTIC_FORCE(cable8p_engineering_exact_tension_only_elastic_force, 8, 4, 8)
+FU_BLOCK_OF_ELASTIC_TANGENT(cable8p_engineering_exact_tension_only_elastic_tangent, 8, 4, 64)
+FU_BLOCK_OF_DAMPING_FORCE(cable8p_engineering_exact_tension_only_damping_force, 8, 8, 4, 8)
+FU_BLOCK_OF_DISSIPATION(cable8p_engineering_exact_tension_only_dissipation, 8, 8, 4, 1)
 
 static const fu_law_blocks all[] = {
     {"beam24_continuum", block_beam24_continuum_elastic_force, 0, block_beam24_continuum_damping_force, block_beam24_continuum_dissipation},

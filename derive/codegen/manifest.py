@@ -51,7 +51,7 @@ def text(every: list[Derived], made_from: Origin, files: dict[str, str], layout_
     arguments = _keys(a for d in every for p in d.programs for a in (*p.inputs, *p.outputs))
     kernels = {p.name: {"doc": p.doc, "source": p.source, "family": d.family.name,
                         "inputs": [arguments[a] for a in p.inputs], "outputs": [arguments[a] for a in p.outputs],
-                        "operations": p.operations()}
+                        "operations": {kind: n for kind, n in p.operations().items() if n}}
                for d in every for p in d.programs}
     laid_out = layout(tables(every, layout_of))
     content = {"tools": made_from.tools,

@@ -40,18 +40,18 @@ def hashes(families: Collection[Family]) -> dict[str, str]:
     return dict(sorted(({file: _hash(file) for file in files} | own).items()))
 
 
+def short_hash(content: bytes) -> str:
+    """Return the SHA-256 of a content, shortened, as the manifest keeps it."""
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
 def _hash(file: str) -> str:
-    return _hash_of_python(_read(file)) if file.endswith(".py") else _shortened(_read(file))
+    return _hash_of_python(_read(file)) if file.endswith(".py") else short_hash(_read(file))
 
 
 @cache
 def _hash_of_python(source: bytes) -> str:
-    return _shortened(_spelled(ast.parse(source)).encode())
-
-
-def _shortened(content: bytes) -> str:
-    """Return the SHA-256 of a content, shortened."""
-    return hashlib.sha256(content).hexdigest()[:16]
+    return short_hash(_spelled(ast.parse(source)).encode())
 
 
 def _spelled(node: object) -> str:

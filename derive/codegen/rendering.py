@@ -5,7 +5,6 @@ Everything a template prints is decided here or earlier; the templates only lay 
 
 from __future__ import annotations
 
-import hashlib
 import json
 import textwrap
 from collections.abc import Callable, Iterable
@@ -19,6 +18,7 @@ from .c_printer import c_expression
 from .family import Family, FamilyError
 from .loops import sections
 from .program import Argument, Program
+from .provenance import short_hash
 from .sharing import Sections, header, share
 
 TOOLS = ("sympy", "mpmath", "jinja2")
@@ -105,7 +105,7 @@ def layout(of: dict[str, Table]) -> dict[str, dict]:
 
 def interface(of: dict[str, dict]) -> str:
     """Return the hash of a layout: engine and library fit each other where it is the same."""
-    return hashlib.sha256(json.dumps(of).encode()).hexdigest()[:16]
+    return digest(json.dumps(of))
 
 
 def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], None],
@@ -133,9 +133,12 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
         files[header(group)] = environment.get_template("stages.h.jinja").render(group=group,
                                                                                  stages=shared[header(group)])
     blocks = {name for derived in every for name in block_kernels(derived)}
+    laws = [derived for derived in every if block_kernels(derived)]
+    forms = {kernel: program for kernel in BLOCKS for derived in reversed(laws) for program in derived.programs
+             if program.name in blocks and program.name == f"{derived.family.name}_{kernel}"}
     common = {"every": every, "tables": tables(every, layout_of), "signature": signature, "call": _call,
               "blocks": blocks, "about": _about, "entry": _entry,
-              "laws": [derived for derived in every if block_kernels(derived)], "kernels": BLOCKS}
+              "laws": laws, "kernels": BLOCKS, "block_forms": forms}
     for name in COMMON if layout_of is None else (HEADER, REGISTRY):
         files[name] = environment.get_template(f"{name}.jinja").render(**common)
     return files
@@ -150,7 +153,7 @@ def _sections(derived: Derived) -> Sections:
 
 def digest(text: str) -> str:
     """Return the hash of a file's text as the manifest keeps it."""
-    return hashlib.sha256(text.encode()).hexdigest()
+    return short_hash(text.encode())
 
 
 def tools() -> dict[str, str]:
