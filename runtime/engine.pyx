@@ -17,16 +17,23 @@ from libc.math cimport M_PI_2
 from libc.stdlib cimport calloc, free, realloc
 from libc.string cimport memcpy
 
-from funicular.generated import kernels
 from funicular.base.interruptions import check_interrupted
 from funicular.base.operating_system import machine_memory
 from scipy.linalg import cython_lapack
 
 include "engine/cython/engine.pxi"
 
-cdef const fu_tables *TABLES = <const fu_tables *>PyCapsule_GetPointer(kernels.tables,
-                                                                      "funicular.generated.kernels.tables")
 cdef fu_lapack LAPACK
+
+
+cdef size_t _own_tables() except 0:
+    """Return the address of the tables of this package's kernels.
+
+    It is asked for by a run, not by `import funicular`: `funicular derive` starts where generated/ is broken.
+    """
+    from funicular.generated import kernels
+
+    return <size_t>PyCapsule_GetPointer(kernels.tables, "funicular.generated.kernels.tables")
 
 
 cdef _take_lapack():

@@ -5,7 +5,8 @@ import subprocess
 import sys
 
 import pytest
-from import_contracts import TOP, installed_tree
+from import_contracts import TOP
+from installed import runnable_tree
 
 DERIVE = "import sys; from funicular.derive.pipeline import main; sys.exit(main(['joint_spherical']))"
 
@@ -13,10 +14,7 @@ DERIVE = "import sys; from funicular.derive.pipeline import main; sys.exit(main(
 @pytest.fixture
 def installed(tmp_path):
     """The package's Python files and templates as they stand once it is installed, with generated/ beside derive/."""
-    installed_tree(tmp_path)
-    templates = "derive/codegen/templates"
-    shutil.copytree(TOP / templates, tmp_path / "funicular" / templates, dirs_exist_ok=True)
-    return tmp_path / "funicular" / "generated"
+    return runnable_tree(tmp_path) / "generated"
 
 
 def missing(generated):

@@ -20,7 +20,8 @@ from funicular.derive.codegen.family import Family, FamilyError
 from funicular.derive.codegen.program import Program
 from funicular.derive.verify.compiled import compiler
 from funicular.kernels.elements import of_manifest
-from import_contracts import TOP, installed_tree
+from import_contracts import TOP
+from installed import runnable_tree
 from operation_ceilings import CEILINGS, POINT_LAW
 
 FRESH = ["rigid", "beam12p"]
@@ -62,7 +63,8 @@ def test_another_process_and_hash_seed_give_the_bytes_that_are_checked_in(derive
     script = ("from funicular.derive import pipeline; from test_derive import FRESH, hashes; "
               "print(hashes(pipeline.generate(FRESH)))")
     other = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True,
-                           cwd=Path(__file__).parents[1], env={**os.environ, "PYTHONHASHSEED": "4242"})
+                           cwd=Path(__file__).parent,
+                           env={**os.environ, "PYTHONHASHSEED": "4242", "PYTHONPATH": str(TOP / "tests")})
     made, checked_in = literal_eval(other.stdout), hashes(derived)
     assert {f"{name}.c" for name in (*FRESH, "beam12p_structural")} < set(made)
     assert made == {name: checked_in[name] for name in made}
@@ -302,9 +304,7 @@ def test_another_version_of_a_tool_has_all_families_derived_whatever_one_of_them
 @pytest.mark.slow
 def test_a_word_in_the_doc_of_an_element_changes_its_file_and_the_manifest(tmp_path):
     """A copy of the package, whose spec and then whose printer are edited: what `funicular derive` writes."""
-    installed_tree(tmp_path)
-    package, templates = tmp_path / "funicular", "derive/codegen/templates"
-    shutil.copytree(TOP / templates, package / templates, dirs_exist_ok=True)
+    package = runnable_tree(tmp_path)
     shutil.copytree(TOP / "generated", package / "generated", dirs_exist_ok=True)
 
     def written(file: str, old: str, new: str) -> tuple[set[str], int]:

@@ -50,7 +50,7 @@ cdef class Translation(Arrays):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model, blocks=True):
-        tables = [<size_t>TABLES, *model.tables]
+        tables = [_own_tables(), *model.tables]
         self._bodies_and_cables(model, tables, blocks)
         m = &self.model
         m.dim, m.n_q, m.n_dof = model.dim, model.n_q, model.n_dof
