@@ -5,29 +5,40 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Iterable
-
+from functools import partial
 
 QUOTED = re.compile(r"^>>> .*(?:\n.+)*|\0[^\0]*\0|`[^`]*`|\(\".*?\)|\"([\w.@]+)\"", re.MULTILINE)
 """Words in quotes, such as a value, but for those in examples, in code and in tuples."""
 
 
-def prose(thing: object, linked: Iterable[str] = ()) -> str:
-    """Return the docstring of a class or a function as Markdown; linked: names with a heading of their own."""
-    return markdown(inspect.getdoc(thing) or "", linked)
+def prose(thing: object) -> str:
+    """Return the docstring of a class or a function as Markdown."""
+    return markdown(inspect.getdoc(thing) or "")
 
 
-def markdown(docstring: str, linked: Iterable[str] = ()) -> str:
-    """Return the text of a docstring as Markdown: code and examples marked, names with headings linked."""
-    known = set(linked)
-
-    def code(found: re.Match[str]) -> str:
-        name = found[1]
-        return f"[`{name}`](#{anchor(name)})" if name in known else f"`{name}`"
-
+def markdown(docstring: str) -> str:
+    """Return the text of a docstring as Markdown, with code and examples marked."""
     text = re.sub(r"``([^`]+)``", "\0\\1\0", docstring)
     text = QUOTED.sub(lambda found: f"\0{found[0]}\0" if found[1] else found[0], text)
-    text = re.sub(r"`([^`]+)`", code, text).replace("\0", "`")
-    return re.sub(r"^>>> .*(?:\n.+)*", r"```pycon\n\g<0>\n```", text, flags=re.MULTILINE)
+    return re.sub(r"^>>> .*(?:\n.+)*", r"```pycon\n\g<0>\n```", text.replace("\0", "`"), flags=re.MULTILINE)
+
+
+HEADING = re.compile(r"^##+ (\S+)$", re.MULTILINE)
+OF_PACKAGE = re.compile(r"fu\.|catenary\.(?=[A-Z])")
+"""What stands before names of headings that docstrings leave out."""
+
+
+def link(pages: dict[str, str]) -> dict[str, str]:
+    """Return pages by file name with links from names in code to the headings that these have on any of them."""
+    targets = {OF_PACKAGE.sub("", heading[:1].upper() + heading[1:] if heading.startswith("scene.") else heading):
+               (file, anchor(heading)) for file, text in pages.items() for heading in HEADING.findall(text)}
+
+    def linked(file: str, found: re.Match[str]) -> str:
+        if (target := targets.get(found[1])) is None:
+            return found[0]
+        return f"[{found[0]}]({target[0] if target[0] != file else ''}#{target[1]})"
+
+    return {file: re.sub(r"(?<!\[)`([\w.]+)`", partial(linked, file), text) for file, text in pages.items()}
 
 
 ARGUMENT = re.compile(r"^(\w+(?:, \w+)*): (.*(?:\n    .*)*)\n?", re.MULTILINE)

@@ -8,11 +8,17 @@ from collections.abc import Iterable, Iterator
 
 import funicular
 from funicular import catenary
-from funicular.scene.described import DescribedScene
+from funicular.model.initial_state import InitialState
 from funicular.results.equilibrium import Equilibrium
-from funicular.results.run import Run
-from funicular.solve.statics.rest_state import RestState
+from funicular.results.error_estimate import ErrorEstimate
+from funicular.results.run import EnergyBalance, Run
 from funicular.results.viewable import Viewable
+from funicular.scene.described import DescribedScene
+from funicular.solve.motion.event_watcher import State
+from funicular.solve.statics.rest_state import Adjustment, Relaxation, RestState
+from funicular.solve.statics.stability import Stability
+from funicular.sweeps.cost import SweepCost
+from funicular.sweeps.distributions import LogUniform, Uniform
 
 from .markdown import anchor, prose, table
 
@@ -28,13 +34,17 @@ CLASSES: dict[str, tuple[type, ...]] = {
     "Modes": (funicular.Modes,), "Choice": (funicular.Choice,), "Pictures": (Viewable,)}
 """Titles of sections, and the classes whose methods they list; all but the last three have those of `Viewable`."""
 
+OTHERS = (InitialState, State, Stability, Relaxation, Adjustment, EnergyBalance, ErrorEstimate, SweepCost, Uniform,
+          LogUniform)
+"""Classes without methods that users call."""
+
 INTERNAL = re.compile(r"_|check_|of$|start$|put$|(from_recording|heading|overview|sketch|summary_rows|facts)$")
 """Names that users have no need of."""
 
 
 def methods_page() -> str:
     """Return the page as Markdown."""
-    titles = ["Functions", *CLASSES, "Catenaries", "Errors"]
+    titles = ["Functions", *CLASSES, "Catenaries", "Other classes", "Errors"]
     lines = [HEAD, *(f"- [{title}](#{anchor(title)})" for title in titles), "", "## Functions", ""]
     for name in FUNCTIONS:
         lines += _described(f"fu.{name}", getattr(funicular, name))
@@ -46,6 +56,9 @@ def methods_page() -> str:
     lines += ["## Catenaries", ""]
     for name in catenary.__all__:
         lines += _described(f"catenary.{name}", getattr(catenary, name))
+    lines += ["## Other classes", ""]
+    for each in OTHERS:
+        lines += [f"### {each.__name__}", "", prose(each), ""]
     return "\n".join([*lines, "## Errors", "", *_errors()]).rstrip() + "\n"
 
 
@@ -61,8 +74,8 @@ def _members(title: str, owner: type, also: type) -> Iterator[str]:
 
 def _described(name: str, thing: object) -> Iterable[str]:
     """Return heading, arguments and docstring of a function, a class or a property."""
-    arguments = _arguments(thing) if callable(thing) else ""
-    return [f"### {name}", "", f"`{name}{arguments}`", "", prose(thing), ""]
+    written = [f"`{name}{_arguments(thing)}`", ""] if callable(thing) else []
+    return [f"### {name}", "", *written, prose(thing), ""]
 
 
 def _arguments(thing: object) -> str:

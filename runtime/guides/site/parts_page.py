@@ -40,7 +40,6 @@ def parts_page() -> str:
     schema = scene_schema()
     kinds: list[tuple[str, list[type[Part]]]] = [
         ("Parts", list(KINDS)), ("Settings", list(SETTINGS.values())), *_groups(schema)]
-    linked = [part.__name__ for _, parts in kinds for part in parts]
     lines = [HEAD]
     for title, parts in kinds:
         links = ", ".join(f"[{part.__name__}](#{anchor(part.__name__)})" for part in parts)
@@ -49,7 +48,7 @@ def parts_page() -> str:
     for title, parts in kinds:
         lines += [f"## {title}", ""]
         for part in parts:
-            lines += _section(part, schema, linked)
+            lines += _section(part, schema)
     for title, printed in LISTS.items():
         lines += [f"## {title}", "", *printed()]
     return "\n".join(lines).rstrip() + "\n"
@@ -78,17 +77,17 @@ def _classes(base: type[Part]) -> Iterator[type[Part]]:
         yield from _classes(part)
 
 
-def _section(part: type[Part], schema: dict[str, Any], linked: list[str]) -> list[str]:
+def _section(part: type[Part], schema: dict[str, Any]) -> list[str]:
     """Return heading, way to write it, docstring, arguments and results of a part."""
     entries, tag = _entries(part, schema)
     text, _ = split(inspect.getdoc(part) or "", part.keywords())
-    lines = [f"### {part.__name__}", "", _written(part, tag), "", markdown(text, linked), ""]
+    lines = [f"### {part.__name__}", "", _written(part, tag), "", markdown(text), ""]
     required, meanings, rows = set(entries.get("required", [])), meanings_of(part), []
     for parameter in parameters_of(part):
         name = parameter.name
         field = entries["properties"].get(name, {})
         meaning = _without_unit(meanings.get(name, ""), field.get("description", "").removeprefix("in "))
-        rows.append((f"`{name}`", markdown(meaning, linked), _taken(part, name, entries["properties"]),
+        rows.append((f"`{name}`", markdown(meaning), _taken(part, name, entries["properties"]),
                      "required" if name in required else _default(parameter.default)))
     lines += table(("argument", "is", "takes", "default"), rows)
     return lines + table(("result", "unit", "is"), [

@@ -6,18 +6,24 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from .markdown import link
 from .methods_page import methods_page
 from .parts_page import parts_page
 
 FOLDER = Path(__file__).parents[1] / "pages"
 PRINTED: dict[str, Callable[[], str]] = {"parts.md": parts_page, "methods.md": methods_page}
-"""What writes each of them."""
+"""What writes each of them, without links between them."""
+
+
+def printed() -> dict[str, str]:
+    """Return the texts of the pages by their file names."""
+    return link({name: page() for name, page in PRINTED.items()})
 
 
 def main() -> int:
     """Write the pages into the folder `guides/pages` of the repository; returns 0."""
-    for name, page in PRINTED.items():
-        (FOLDER / name).write_text(page(), encoding="utf-8")
+    for name, text in printed().items():
+        (FOLDER / name).write_text(text, encoding="utf-8")
         print(FOLDER / name)
     return 0
 
