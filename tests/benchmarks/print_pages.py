@@ -40,13 +40,20 @@ def compared(rows: list[Row]) -> list[list[str]]:
         key = row["case"], row["source"], "" if several else row["quantity"], row["bound"], test
         groups.setdefault(key, []).append(row)
     found = []
-    for (case, source, _, bound, test), of in groups.items():
+    for (case, source, _, _, test), of in groups.items():
         worst = max(of, key=lambda row: row["error"])
         unit = f" {worst['unit']}" if worst["unit"] else ""
-        found.append([case, source, worst["quantity"], f"{shown(worst['reference'])}{unit}",
-                      f"{shown(worst['ours'])}{unit}", cell(worst["error"]), bound + f" ({worst['note']})" *
-                      bool(worst["note"]), "; ".join(filter(None, (variants(of), worst["mesh"]))), f"`{test}`"])
+        numbers = [f"{shown(worst[key])}{unit}" for key in ("reference", "ours")]
+        by = "; ".join(filter(None, (variants(of), worst["mesh"])))
+        found.append([case, source, worst["quantity"], *numbers, cell(worst["error"]), allowed(worst), by, f"`{test}`"])
     return found
+
+
+def allowed(row: Row) -> str:
+    """Return the bound of a row with its note."""
+    expected, _, part = row["bound"].partition(" ± ")
+    note = f" ({row['note']})" if row["note"] else ""
+    return f"{cell(float(expected))}{' ± ' + part if part else ''}{note}"
 
 
 def shown(number: str) -> str:
