@@ -247,17 +247,18 @@ class CableLoads:
         return self.at.value(f"{body.name}.position") + rotate(self.at.value(f"{body.name}.orientation"), arm)
 
     def _between_ends(self, kind: str) -> None:
-        """Add the force of each coupling of a kind on its first end, with the opposite on the second. Raises SceneError
-        for one that acts on cables in another way.
+        """Add the force of each coupling of a kind on its first end, and the opposite on a second one.
+
+        Raises SceneError for one that acts on cables in another way.
         """
         for coupling in self.model.couplings:
             if coupling.type != kind or not (coupling.along or any(end.cable >= 0 for end in coupling.ends)):
                 continue
-            if coupling.along or len(coupling.ends) != 2:
+            if coupling.along or len(coupling.ends) > 2:
                 raise SceneError(f'{kind} "{coupling.name}"', "acts on a cable, and no balance of forces knows how",
                                  'take method="constitutive", which follows from the strains')
             force = self.at.value(f"{coupling.name}.force")
-            for end, sign in zip(coupling.ends, (1.0, -1.0), strict=True):
+            for end, sign in zip(coupling.ends, (1.0, -1.0), strict=False):
                 self._on_end(end, sign * force, None)
 
     def _crossings(self) -> None:
@@ -325,7 +326,7 @@ class CableLoads:
 COLLECTED: dict[str, Callable[[CableLoads], None]] = {
     "dead load": CableLoads._loads, "slide": CableLoads._slides, "joint": CableLoads._joints,
     "drag": CableLoads._drags, "crossing": CableLoads._crossings, "contact": CableLoads._contacts}
-"""What collects the couplings of a kind, "dead load" all loads; others act on their two ends, by opposite forces."""
+"""What collects the couplings of a kind, "dead load" all loads; others act on one end, or on two by opposite forces."""
 
 
 def across(tangent: np.ndarray) -> np.ndarray:

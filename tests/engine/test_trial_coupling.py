@@ -1,0 +1,135 @@
+"""What a new coupling costs: a trial of a copy of the package, with files of its own and lines in lists.
+
+The trial has a force, state, an event, energy, work from outside and outputs, and no constraint. Its law is linear, so
+that it needs no kernels. A law by kernels is one file more in derive/couplings/point_laws, which no list names.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import funicular
+import numpy as np
+import pytest
+
+TRIAL = Path(__file__).parent / "trial_coupling"
+TESTS = Path(__file__).parents[1]
+RUNTIME = Path(funicular.__file__).parent
+FILES = {"tow.c": "engine/events/tow.c", "tow.h": "engine/events/tow.h", "tow.py": "parts/tow.py",
+         "tows.py": "model/tows.py"}
+LINES = {"engine/events/list.c": [
+             ('#include "events/list.h"\n', '#include "events/tow.h"\n'),
+             ("} types[] = {", "{&fu_tow_type, &fu_tow_events}, ")],
+         "parts/kinds.py": [("from .surface import Surface\n", "from .tow import Tow\n"),
+                            ("Surface, Contact, ", "Tow, ")],
+         "model/kinds.py": [("from ..parts.slide import Slide\n", "from ..parts.tow import Tow\n"),
+                            ("from .slides import slide_model\n", "from .tows import tow_models\n"),
+                            ("COUPLINGS = (\n", '    CouplingKind("tow", Tow.group, tow_models, has_state=False),\n')]}
+"""Lists that name each kind of coupling, and what they get: after which text, and which."""
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reason="calls a compiler of Unix")]
+
+
+def copied(folder):
+    """Return a copy of the package with the trial in it, its engine not compiled yet."""
+    package = folder / "funicular"
+    ignored = shutil.ignore_patterns("__pycache__", "engine.*.so", "page_source")
+    shutil.copytree(RUNTIME, package, ignore=ignored)
+    for part in ("derive", "generated"):
+        shutil.copytree(Path(__import__(f"funicular.{part}").__dict__[part].__path__[0]), package / part,
+                        ignore=ignored)
+    for name, place in FILES.items():
+        shutil.copy(TRIAL / name, package / place)
+    laws = package / "derive/couplings/point_laws"
+    shutil.copy(laws / "zero_length_spring.py", laws / "trial_law.py")
+    for name, edits in LINES.items():
+        text = (package / name).read_text()
+        for after, line in edits:
+            assert text.count(after) == 1, f"{name}: {after!r}"
+            text = text.replace(after, after + line)
+        (package / name).write_text(text)
+    return package
+
+
+def compiled(package):
+    """Compile the engine of the copy without optimisation."""
+    sources = [*(package / "engine").rglob("*.c"), package / "generated/blocks.c"]
+    made = package / "engine.c"
+    if not made.exists():
+        subprocess.run([sys.executable, "-m", "cython", "-3", package / "engine.pyx", "-o", made], check=True)
+    objects = package / "objects"
+    objects.mkdir()
+    compiler = [*sysconfig.get_config_var("CC").split(), "-O0", "-fPIC", "-pthread", "-fvisibility=hidden", "-w"]
+    include = [f"-I{path}" for path in (package / "generated", package / "engine", sysconfig.get_path("include"))]
+
+    def compile_one(number, source):
+        made = objects / f"{number}.o"
+        subprocess.run([*compiler, *include, "-c", source, "-o", made], check=True)
+        return made
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = list(pool.map(compile_one, range(len(sources) + 1), [made, *sources]))
+    library = package / f"engine{sysconfig.get_config_var('EXT_SUFFIX')}"
+    shared = ["-bundle", "-undefined", "dynamic_lookup"] if sys.platform == "darwin" else ["-shared"]
+    subprocess.run([*compiler, *shared, *found, "-lm", "-o", library], check=True)
+
+
+@pytest.fixture(scope="module")
+def uses(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("trial")
+    compiled(copied(folder))
+    path = os.pathsep.join(map(str, (folder, TESTS)))
+    done = subprocess.run([sys.executable, TRIAL / "uses.py", folder], capture_output=True, text=True,
+                          env=os.environ | {"PYTHONPATH": path})
+    assert done.returncode == 0, done.stderr[-3000:]
+    return json.loads(done.stdout)
+
+
+def test_what_it_costs(capsys):
+    """Three lists name the kinds: those of the engine's types, of parts and of models. A fourth one is a step back."""
+    entries = {name: len([line for _, line in edits if "import" not in line and "#include" not in line])
+               for name, edits in LINES.items()}
+    with capsys.disabled():
+        print(f"\na trial coupling: {len(FILES)} files of its own, {len(LINES)} lists with an entry each: "
+              f"{', '.join(LINES)}")
+    assert entries == dict.fromkeys(LINES, 1) and len(LINES) <= 3
+
+
+def test_all_integrators_run_it(uses):
+    """The energy that the moving point gives is found again; all find the instant at which the tow breaks."""
+    reference = np.array(uses["integrators"]["radau"]["force"])
+    assert 2.5 < np.abs(reference).max() < 3.0 and np.abs(reference[-1]).max() == 0.0
+    times = []
+    for name, found in uses["integrators"].items():
+        assert found["status"] == "completed" and found["balance"] < 1e-6, (name, found["balance"])
+        (part, what, time), = found["events"]
+        assert (part, what) == ("T", "broke")
+        times.append(time)
+    assert np.ptp(times) < 1e-6 and 0.1 < times[0] < 0.19, times
+
+
+def test_statics_and_section_forces_know_it(uses):
+    rest = uses["rest"]
+    assert np.linalg.norm(rest["force"]) == pytest.approx(50 * rest["stretch"]) and rest["force"][1] > 0.1
+    assert np.array(rest["jump"]) == pytest.approx(np.array(rest["force"]), abs=1e-6)
+
+
+def test_a_resumed_run_is_the_same_bit_for_bit(uses):
+    status, *same = uses["resumed"]
+    assert status == "interrupted" and all(same) and len(same) > 10
+
+
+def test_its_vectors_turn_with_the_plane(uses):
+    assert max(uses["plane"].values()) < 1e-9, uses["plane"]
+
+
+def test_files_pages_schema_and_stub_have_it(uses):
+    assert uses["file"][-1] == pytest.approx([0.5, 0.2, 0])
+    assert uses["scene_file"] == [50.0, True] and uses["schema"] and uses["stub"]
+    assert "T" in uses["page"]
+    assert uses["vectors"] == ["T.force", "T.position", "T.stretch"]
+    assert uses["spec"], "a law is a law by its file"
