@@ -16,7 +16,7 @@ from ..parts.settings import RunSettings
 from ..results.equilibrium import Equilibrium
 from ..results.run import Run
 from ..results.trajectories import distance, largest_change
-from ..solve.notes.sensitivity import GROWS
+from ..solve.notes.sensitivity import GROWTH_TEXT
 from .motion import MOTION, samples
 from .remeshing import CableModel, remade
 
@@ -71,7 +71,7 @@ class Probe(Generic[S]):
     @property
     def grows(self) -> bool:
         """Return whether its run says that small differences grow in the motion."""
-        return self.run is not None and any(GROWS in message for message in self.run.report["messages"])
+        return self.run is not None and any(GROWTH_TEXT in message for message in self.run.report["messages"])
 
     @property
     def scales(self) -> dict[str, float]:

@@ -8,7 +8,7 @@ import pytest
 from choice import farthest, motion, references
 from choice import simulate as simulated
 from funicular.model.build import build
-from funicular.solve.notes.sensitivity import OF_BODIES, OF_CABLES, Sensitivity
+from funicular.solve.notes.sensitivity import BODY_EXPONENT_FACTOR, CABLE_EXPONENT_FACTOR, Sensitivity
 from hard_cases.case import positions
 from random_motions import motion as random_motion
 
@@ -114,9 +114,9 @@ def test_the_exponent_of_a_strut_is_that_of_its_fastest_wave():
     k = max(np.sqrt(strain * 2) / radius, np.pi)
     rate = k * np.sqrt(1e8 * (strain - radius**2 / 4 * k**2) / 1500)
     exponent, where, since = found.worst
-    assert exponent == pytest.approx(OF_CABLES * rate, rel=1e-6)
+    assert exponent == pytest.approx(CABLE_EXPONENT_FACTOR * rate, rel=1e-6)
     assert where == 'cable "c"'
-    assert since == pytest.approx(0.7 / OF_CABLES / rate, abs=0.05)
+    assert since == pytest.approx(0.7 / CABLE_EXPONENT_FACTOR / rate, abs=0.05)
 
 
 @pytest.mark.parametrize(("spin", "falls"), [(0.0, True), (2.0, True), (40.0, False)])
@@ -133,7 +133,7 @@ def test_a_body_on_a_joint_falls_over_unless_it_spins(spin, falls):
     I = 0.05 + 0.25
     square = 9.81 * 0.5 / I - (0.1 * spin / (2 * I)) ** 2
     assert (square > 0) == falls
-    assert found.worst[0] == pytest.approx(OF_BODIES * 2 * np.sqrt(max(square, 0.0)))
+    assert found.worst[0] == pytest.approx(BODY_EXPONENT_FACTOR * 2 * np.sqrt(max(square, 0.0)))
     assert (9.81 * 0.5 * 4 * I < (0.1 * spin) ** 2) != falls
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from funicular.model.build import build
 from funicular.parts.laid import laid
-from funicular.solve.notes.coarse_meshes import EVERY, CoarseMeshes
+from funicular.solve.notes.coarse_meshes import ROW_INTERVAL, CoarseMeshes
 from funicular.solve.notes.coarse_slides import CoarseSlides
 from scipy.optimize import brentq
 
@@ -139,7 +139,7 @@ def test_rows_may_come_in_any_parts():
         (one,), (other,) = whole.found.values(), parts.found.values()
         for a, b in zip(one, other, strict=True):
             np.testing.assert_allclose(a, b, rtol=1e-12)
-        assert one[0] == 40 and 40 > 2 * EVERY
+        assert one[0] == 40 and 40 > 2 * ROW_INTERVAL
 
 
 def over_an_eyelet(n, radius=0.3, load=1000.0, EI=10.0, angle=np.pi / 2):

@@ -26,25 +26,25 @@ from ...model.model import CableModel, Model
 from ...parts.locations import attached
 from ...parts.scene_data import SceneData
 
-PLACES, WEIGHTS = np.polynomial.legendre.leggauss(5)
-AT, SHARE = 0.5 * (1 + PLACES), 0.5 * WEIGHTS
-"""Of the length of an element: where its strain is taken, and with which weights."""
-OF_WORK, OF_ENERGY = 15.0, 2.0
-"""Error of forces over E/W, with the work W of the tension, and with energies of bending and of motion."""
-LIMIT = 0.01
-"""Error of forces above which a mesh is noted."""
-AIM = 0.005
-"""Error of forces that the advice is for."""
-SMOOTH, CORNER = 0.25, 1.0
-"""Power of the error by which elements must become shorter: of a smooth shape, and at a corner."""
-MIDDLE, NODE = 3.0, 0.6
-"""Error at a corner over 15 E/W: of a corner in the middle of an element, and at or near a node."""
-ROUND = 25.0
-"""Times sqrt(EI/N) over the length: by how much smaller the error is at a corner that bending makes round."""
-ROUNDED = 1e-22
-"""Of EA a length: energy that may be rounding."""
-EVERY = 8
-"""Rows of a run from one that is looked at to the next one."""
+GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
+STRAIN_POSITIONS, STRAIN_WEIGHTS = 0.5 * (1 + GAUSS_POINTS), 0.5 * GAUSS_WEIGHTS
+"""Gauss points and weights of the strain, as fractions of the length of an element."""
+WORK_ERROR_FACTOR, ENERGY_ERROR_FACTOR = 15.0, 2.0
+"""Error of forces over E/W, with W the work of the tension, and with W the energies of bending and of motion."""
+FORCE_ERROR_LIMIT = 0.01
+"""Relative error of forces above which a note reports the mesh."""
+FORCE_ERROR_TARGET = 0.005
+"""Relative error of forces with the mesh that a note recommends."""
+SMOOTH_SHAPE_POWER, CORNER_POWER = 0.25, 1.0
+"""Element length scales with the error to this power: along a smooth shape, and at a corner."""
+MID_ELEMENT_FACTOR, NODE_FACTOR = 3.0, 0.6
+"""Error at a corner over 15 E/W: for a corner in the middle of an element, and for one at or near a node."""
+BENDING_LENGTH_FACTOR = 25.0
+"""The bending length sqrt(EI/N) over the element length, times this factor, reduces the error at a corner."""
+ENERGY_ROUNDING = 1e-22
+"""Rounding error of the energy, as a fraction of EA times the length."""
+ROW_INTERVAL = 8
+"""The mesh is assessed in one of this number of output rows."""
 
 
 class _Strains:
@@ -61,7 +61,7 @@ class _Strains:
 
     def _strain(self, vectors: np.ndarray) -> np.ndarray:
         """Return (places, T, elements); vectors: (T, nodes, vectors, dim)."""
-        return np.stack([strain_at(self.cable, vectors, at) for at in AT])
+        return np.stack([strain_at(self.cable, vectors, at) for at in STRAIN_POSITIONS])
 
     def vectors(self, q: np.ndarray) -> np.ndarray:
         """Return (T, nodes, vectors, dim) at coordinates q (T, n)."""
@@ -77,10 +77,10 @@ class _Strains:
         strain = self._strain(self.vectors(q)) - self.drawn
         if self.part.traits.membrane == "tension_only":
             strain = np.maximum(strain, 0.0)
-        mean = np.einsum("p,pte->te", SHARE, strain)
-        tilt = np.einsum("p,pte->te", 3 * SHARE * PLACES, strain)
-        waves = strain - mean - tilt * PLACES[:, None, None]
-        return strain, mean, 0.5 * self.EA * self.h * np.einsum("p,pte->te", SHARE, waves**2)
+        mean = np.einsum("p,pte->te", STRAIN_WEIGHTS, strain)
+        tilt = np.einsum("p,pte->te", 3 * STRAIN_WEIGHTS * GAUSS_POINTS, strain)
+        waves = strain - mean - tilt * GAUSS_POINTS[:, None, None]
+        return strain, mean, 0.5 * self.EA * self.h * np.einsum("p,pte->te", STRAIN_WEIGHTS, waves**2)
 
     def bending(self, q: np.ndarray, strain: np.ndarray) -> float:
         """Return the elastic energy at q (n,) without that of the axial strain (places, elements), in J."""
@@ -88,7 +88,7 @@ class _Strains:
         A = np.ascontiguousarray(np.broadcast_to(cable.A, (cable.n_elements, cable.A.shape[1])))
         whole = cable.law_kernel("energy").rows(cable.n_elements, np.ascontiguousarray(self.h),
                                                 np.ascontiguousarray(e), A)
-        axial = 0.5 * self.EA * np.einsum("p,pe,e->", SHARE, strain**2, self.h)
+        axial = 0.5 * self.EA * np.einsum("p,pe,e->", STRAIN_WEIGHTS, strain**2, self.h)
         return max(float(np.sum(whole) - axial), 0.0)
 
     def motion(self, v: np.ndarray) -> float:
@@ -109,10 +109,10 @@ class _Line:
         """
         strain, mean, each_lost = zip(*(each.of(q) for each in self.strains), strict=True)
         lost, tension = np.concatenate(each_lost, axis=1), [s.EA * e for s, e in zip(self.strains, mean, strict=True)]
-        by = self._work(q, mean, tension) / OF_WORK
-        for k in np.flatnonzero(lost.sum(axis=1) > LIMIT / MIDDLE * by):
+        by = self._work(q, mean, tension) / WORK_ERROR_FACTOR
+        for k in np.flatnonzero(lost.sum(axis=1) > FORCE_ERROR_LIMIT / MID_ELEMENT_FACTOR * by):
             by[k] += sum(each.bending(q[k], e[:, k]) + each.motion(v[k])
-                         for each, e in zip(self.strains, strain, strict=True)) / OF_ENERGY
+                         for each, e in zip(self.strains, strain, strict=True)) / ENERGY_ERROR_FACTOR
         return lost, by, np.concatenate(tension, axis=1)
 
     def _work(self, q: np.ndarray, mean: Sequence[np.ndarray], tension: Sequence[np.ndarray]) -> np.ndarray:
@@ -138,7 +138,7 @@ class _Line:
     def note(self, lost: np.ndarray, by: float, tension: np.ndarray) -> str | None:
         """Return a note where E (elements,) is large beside what it is measured by; tension: (elements,) in N."""
         stiffness = sum(each.EA * each.part.length for each in self.strains)
-        if lost.sum() <= max(LIMIT / MIDDLE * by, ROUNDED * stiffness):
+        if lost.sum() <= max(FORCE_ERROR_LIMIT / MID_ELEMENT_FACTOR * by, ENERGY_ROUNDING * stiffness):
             return None
         first = np.cumsum([0, *(each.cable.n_elements for each in self.strains)])
         worst = int(np.searchsorted(first, int(np.argmax(lost)), side="right")) - 1
@@ -153,15 +153,15 @@ def _advice(of: _Strains, lost: np.ndarray, error: float, tension: np.ndarray) -
     mesh, k = of.cable.mesh, int(np.argmax(lost))
     where = np.flatnonzero(lost > 0.1 * lost[k])
     start, stop = mesh.start(int(where[0])), mesh.start(int(where[-1])) + mesh.length(int(where[-1]))
-    here, h, power, least, corner = mesh.start(k), float(of.h[k]), SMOOTH, 0.0, ""
+    here, h, power, least, corner = mesh.start(k), float(of.h[k]), SMOOTH_SHAPE_POWER, 0.0, ""
     near = [s for s in of.places if here - h < s < here + 2 * h and 0 < s < mesh.total]
     if near and tension[k] > 0:
-        power, least = CORNER, float(np.sqrt(of.EI / tension[k]))
-        error *= _of_corner(mesh, near[0]) / (1 + ROUND * least / h)
+        power, least = CORNER_POWER, float(np.sqrt(of.EI / tension[k]))
+        error *= _of_corner(mesh, near[0]) / (1 + BENDING_LENGTH_FACTOR * least / h)
         corner = f"; what acts at s = {near[0]:.6g} m bends the cable over sqrt(EI/N) = {least:.2g} m"
-    if error <= LIMIT:
+    if error <= FORCE_ERROR_LIMIT:
         return None
-    length = max(h * (AIM / error) ** power, least)
+    length = max(h * (FORCE_ERROR_TARGET / error) ** power, least)
     return (f'cable "{of.part.name}": elements of {h:.3g} m are too long between s = {start:.4g} and {stop:.4g} m: '
             f"the strain within them swings, by which forces may be {100 * error:.2g} % off{corner}. Take elements "
             f"of at most {length:.2g} m there, such as elements={np.ceil(of.part.length / length):.0f}")
@@ -171,7 +171,7 @@ def _of_corner(mesh: Mesh, s: float) -> float:
     """Return by how much more the strain of an element errs at a corner, at arc-length s in m, than along a line."""
     element = int(mesh.element_at(s))
     part = (s - mesh.start(element)) / mesh.length(element)
-    return MIDDLE if 0.3 < part < 0.7 else NODE
+    return MID_ELEMENT_FACTOR if 0.3 < part < 0.7 else NODE_FACTOR
 
 
 def _lines(scene: SceneData, model: Model) -> list[_Line]:
@@ -206,7 +206,7 @@ class CoarseMeshes:
         for each in self._lines:
             n = each.n_elements
             seen, lost, by, tension = self.found.get(each.name, (0, [0.0] * n, 0.0, [0.0] * n))
-            at = np.flatnonzero((seen + np.arange(len(rows["time"]))) % EVERY == 1)
+            at = np.flatnonzero((seen + np.arange(len(rows["time"]))) % ROW_INTERVAL == 1)
             if len(at):
                 more = each.of(rows["q"][at], rows["v"][at])
                 lost, tension = ((np.array(old) + new.sum(axis=0)).tolist()
@@ -219,7 +219,7 @@ class CoarseMeshes:
         notes = []
         for each in self._lines:
             seen, lost, by, tension = self.found.get(each.name, (0, [], 0.0, []))
-            looked = (seen - 2) // EVERY + 1  # of rows 1, 9, ...
+            looked = (seen - 2) // ROW_INTERVAL + 1  # of rows 1, 9, ...
             if looked > 0 and (note := each.note(np.array(lost), by, np.array(tension) / looked)):
                 notes.append(note)
         return notes

@@ -18,10 +18,10 @@ from ...model.middle_strain import middle_strain
 from ...model.model import Model, SlideModel
 from ...parts.cable import Cable
 from ...parts.scene_data import SceneData
-from .coarse_meshes import EVERY, LIMIT
+from .coarse_meshes import FORCE_ERROR_LIMIT, ROW_INTERVAL
 
-OF_LENGTH, OF_ANGLE = 0.02, 0.08
-"""Difference of the tensions over the squared angle and h/sqrt(EI/N), and the largest over the squared angle alone."""
+LENGTH_FACTOR, ANGLE_FACTOR = 0.02, 0.08
+"""Difference of the tensions over the squared angle times h/sqrt(EI/N), and its upper bound over the squared angle."""
 
 
 class CoarseSlides:
@@ -40,7 +40,7 @@ class CoarseSlides:
         if self._model.slides:
             self.take(rows["q"], rows["s"], outputs_by_name("slide", rows["slide"])["force"])
 
-    def take(self, q: np.ndarray, s: np.ndarray, force: np.ndarray, every: int = EVERY) -> None:
+    def take(self, q: np.ndarray, s: np.ndarray, force: np.ndarray, every: int = ROW_INTERVAL) -> None:
         """Take further states: coordinates (T, n), arc-lengths (T, slides) and forces on riders (T, slides, 3)."""
         for k, slide in enumerate(self._model.slides):
             seen, sums, longest = self.found.get(slide.name, (0, [0.0, 0.0, 0.0], 0.0))
@@ -71,7 +71,7 @@ class CoarseSlides:
         angle = 2 * np.arcsin(np.minimum(force / (2 * tension), 1.0))
         h = np.broadcast_to(cable.mesh.lengths, n)[element]
         longer = h * np.sqrt(tension / EI)
-        error = np.where(longer > 1, np.minimum(OF_LENGTH * longer, OF_ANGLE) * angle**2, 0.0)
+        error = np.where(longer > 1, np.minimum(LENGTH_FACTOR * longer, ANGLE_FACTOR) * angle**2, 0.0)
         return np.stack([error, angle, tension], axis=1), h
 
     def _stiffness(self, part: Cable) -> tuple[float, float]:
@@ -81,7 +81,7 @@ class CoarseSlides:
 
     def notes(self) -> list[str]:
         """Return a note for each slide at which errors are large, on the mean over what was looked at."""
-        return self.told(EVERY)
+        return self.told(ROW_INTERVAL)
 
     def told(self, every: int) -> list[str]:
         """Return the same of states of which each or each `every`-th was looked at."""
@@ -89,7 +89,7 @@ class CoarseSlides:
         for slide in self._model.slides:
             seen, sums, h = self.found.get(slide.name, (0, [0.0, 0.0, 0.0], 0.0))
             looked = (seen - 1 - 1 % every) // every + 1
-            if looked <= 0 or sums[0] <= LIMIT * looked:
+            if looked <= 0 or sums[0] <= FORCE_ERROR_LIMIT * looked:
                 continue
             part = self._scene.cables[self._model.cables[slide.cable].name]
             error, angle, tension = (each / looked for each in sums)

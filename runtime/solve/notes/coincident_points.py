@@ -12,10 +12,10 @@ from ...model.states import attachment_points
 from ...parts.scene_data import SceneData
 from ...parts.validation import show
 
-MET = 1e-9
-"""Of the distance at the start: points that are nearer than this part of it are at one place."""
-DECIMALS = 9
-"""Of a place in m, in messages."""
+COINCIDENCE_TOLERANCE = 1e-9
+"""Distance of two coincident points, as a fraction of their distance at the start."""
+POSITION_DECIMALS = 9
+"""Decimals of a position in m in messages."""
 
 
 class _Directed(NamedTuple):
@@ -41,10 +41,10 @@ class MeetingPoints:
         """Take further output rows: their time (n,) in s and coordinates q (n, coordinates)."""
         for part in self._parts:
             a, b = (attachment_points(self._model, end, rows["q"]) for end in part.ends)
-            met = np.flatnonzero(np.linalg.norm(b - a, axis=1) <= MET * part.start)
+            met = np.flatnonzero(np.linalg.norm(b - a, axis=1) <= COINCIDENCE_TOLERANCE * part.start)
             if len(met):
                 place = self._model.results(part.where, {"position": a[met[0]]})["position"]
-                place = place.round(DECIMALS) + 0.0  # no -0
+                place = place.round(POSITION_DECIMALS) + 0.0  # no -0
                 self.found.setdefault(part.where, [float(rows["time"][met[0]]), place.tolist()])
 
     def notes(self) -> list[str]:

@@ -11,29 +11,29 @@ from ...model.model import CableModel, Model, SlideModel
 from ...model.redundant_constraints import redundant
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
-from .folds import FOLDED
+from .folds import FOLDED_CHORD
 
-KEPT = "what was computed up to there is kept"
+RESULTS_KEPT = "what was computed up to there is kept"
 
-STRETCHED = 3.0
-"""Times their undeformed length: elements that are longer are named."""
+MAX_PLAUSIBLE_STRETCH = 3.0
+"""Messages name elements that are longer than this multiple of their undeformed length."""
 
-ROUNDED = 4e-16
-"""Of the farthest coordinate: below this the error control does not go (engine/equations/step_control.c)."""
+COORDINATE_ROUNDING = 4e-16
+"""Lower bound of the error control, as a fraction of the largest coordinate (engine/equations/step_control.c)."""
 
-LEAST_MOTION = 1e-9
-"""Of the farthest coordinate: what moves less may be at rest (engine/run/start.c)."""
-STEADY = 0.01
-"""Of the kinetic energy: where less is exchanged, as where bodies turn freely, errors go by this part of it."""
+MIN_MOTION = 1e-9
+"""Motion below this fraction of the largest coordinate may be rest (engine/run/start.c)."""
+MIN_ENERGY_EXCHANGE = 0.01
+"""Lower bound of the exchanged energy, as a fraction of the kinetic energy: bodies that turn freely exchange less."""
 
-CONTINUOUS = "cable18"
+CONTINUOUS_CURVATURE_ELEMENT = "cable18"
 """The element whose curvature is continuous at nodes."""
-MANY_CROSSINGS, OFTEN = 100, 0.02
-"""Crossings of nodes in a run, and for each step, from which on slides do not simply pass."""
+MANY_NODE_PASSAGES, NODE_PASSAGES_PER_STEP = 100, 0.02
+"""Node passages of slides in a run, and per step, above which a message reports them."""
 
-QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
-"""Of the largest motion, and of the energy exchanged: errors of a fixed step, and energy that nothing explains, beyond
-these are reported; the last is for loose tolerances, where energy may be off by so much more."""
+FIXED_STEP_ERROR_LIMIT, ENERGY_ERROR_LIMIT, LOOSE_ENERGY_ERROR_LIMIT = 5e-3, 0.01, 0.05
+"""Limits above which a note reports errors of a fixed step, as a fraction of the largest motion, and unexplained
+energy, as a fraction of the energy exchanged; the last limit holds for loose tolerances."""
 
 
 def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) -> str:
@@ -47,19 +47,19 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
         grown, _, exchanged, in_motion, _ = engine.balance
         exchanged = max(exchanged, in_motion)
         return (f"energy grew without a source at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; "
-                f"fastest is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
+                f"fastest is {where} ({state}); {RESULTS_KEPT}. {_too_large(engine, settings)}")
     if cause is None and status == "no_convergence":
         return (f"no step could be made at {when}: to pass an event there it would have to be shorter than 1e-12 of "
-                f"the duration; {KEPT}. Look at slides, stops and events that act at the same instant")
+                f"the duration; {RESULTS_KEPT}. Look at slides, stops and events that act at the same instant")
     if doubled := redundant(model, engine):
-        return (f"no step converged at {when}: {doubled} constrain nearly the same motion; {KEPT}. "
+        return (f"no step converged at {when}: {doubled} constrain nearly the same motion; {RESULTS_KEPT}. "
                 "Leave one of them out, or attach the body at points farther apart")
     if status == "singular" or cause == "matrix":
         why, remedy = ("", "Look at its mass and inertia, and at its joints") if of_a_body else (
             ", as where a cable's tangent vanishes or its director lies along it",
             "Look at the masses and at up, or take more elements there")
         return (f"the equations are singular at {when}, first at {where} ({state}): a joint or the mass matrix is "
-                f"degenerate{why}; {KEPT}. {remedy}")
+                f"degenerate{why}; {RESULTS_KEPT}. {remedy}")
     assert cause is not None, "a step that failed has a cause"
     what = {"iteration": f"the iteration does not converge, least of all at {where}",
             "error": f"the error stays above what tol allows, most of all at {where}",
@@ -70,9 +70,9 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if cause == "not_known":
-        return (f"no force is known at {when}: {what}; {KEPT}. A crossing has no closest points where its lines are "
-                "parallel near each other, or wind around each other: keep them at an angle. Lines that come round an "
-                "end of the other are on its other side: let them touch beforehand, or make them longer")
+        return (f"no force is known at {when}: {what}; {RESULTS_KEPT}. A crossing has no closest points where its "
+                "lines are parallel near each other, or wind around each other: keep them at an angle. A line that "
+                "moves round an end of the other changes sides: let them touch beforehand, or make them longer")
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif cause == "self_locking" and _is_force(model, coupling):
@@ -84,7 +84,7 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
     else:
         remedy = ("Look at loads, masses and stiffnesses there; else try a smaller "
                   f"{'tol' if settings.step is None else 'step'}{damping(model, dof, coupling)}")
-    return f"no step converged at {when}{gone}: {what} ({state}); {KEPT}. {remedy}"
+    return f"no step converged at {when}{gone}: {what} ({state}); {RESULTS_KEPT}. {remedy}"
 
 
 def _too_large(engine: Engine, settings: RunSettings) -> str:
@@ -149,9 +149,9 @@ def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str
     r = q[cable.coordinates].reshape(cable.shape)[:, 0]
     stretch = (np.linalg.norm(np.diff(r, axis=0), axis=1) / cable.mesh.lengths)[max(node - 1, 0) : node + 1]
     worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
-    fair = FOLDED < worst < STRETCHED
+    fair = FOLDED_CHORD < worst < MAX_PLAUSIBLE_STRETCH
     notes = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "
-    return notes + speed, bool(worst <= FOLDED)
+    return notes + speed, bool(worst <= FOLDED_CHORD)
 
 
 def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
@@ -168,15 +168,15 @@ def notes(engine: Engine, settings: RunSettings) -> list[str]:
     if settings.step is not None and counts["rejected_steps"]:
         notes.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, "
                     f"down to {counts['smallest_step_s']:.3g} s")
-    rounded, motion = ROUNDED * engine.extent, counts["largest_motion_m"]
-    if settings.step is None and LEAST_MOTION * engine.extent < motion < rounded / settings.tol:
+    rounded, motion = COORDINATE_ROUNDING * engine.extent, counts["largest_motion_m"]
+    if settings.step is None and MIN_MOTION * engine.extent < motion < rounded / settings.tol:
         notes.append(f"positions are rounded to {rounded:.2g} m so far from the origin, which is more than tol = "
                     f"{settings.tol:g} allows: draw the scene nearer to it")
     if not engine.moves:
         return notes
     notes += _coarse_for_little_motion(engine, settings)
     error = counts["sum_of_local_error_estimates_m"] / counts["largest_motion_m"]
-    if settings.step is not None and error > QUIET_ERROR:
+    if settings.step is not None and error > FIXED_STEP_ERROR_LIMIT:
         notes.append(f"the estimated errors of the steps sum up to {error:.2g} of the largest motion: take a smaller "
                     "step, or none, so that tol chooses it")
     return notes + unexplained(engine, settings)
@@ -195,12 +195,12 @@ def trapped(scene: SceneData, engine: Engine) -> list[str]:
     """Return a note where slides that tie a frame went to and fro over nodes at which the curvature jumps."""
     counts = engine.statistics
     names = [f'"{slide.name}"' for slide in scene.slides.values()
-             if slide.frame != "point" and scene.cables[slide.along].element != CONTINUOUS]
-    if not names or counts["element_crossings"] < max(MANY_CROSSINGS, OFTEN * counts["steps"]):
+             if slide.frame != "point" and scene.cables[slide.along].element != CONTINUOUS_CURVATURE_ELEMENT]
+    if not names or counts["element_crossings"] < max(MANY_NODE_PASSAGES, NODE_PASSAGES_PER_STEP * counts["steps"]):
         return []
     return [f"slides went over nodes {counts['element_crossings']} times in {counts['steps']} steps: the curvature of "
             f"their cables jumps there, and pushes the frame that {' or '.join(names)} ties back to the node. Take "
-            f'element="{CONTINUOUS}", whose curvature is continuous, or more elements']
+            f'element="{CONTINUOUS_CURVATURE_ELEMENT}", whose curvature is continuous, or more elements']
 
 
 def unexplained(engine: Engine, settings: RunSettings) -> list[str]:
@@ -208,8 +208,8 @@ def unexplained(engine: Engine, settings: RunSettings) -> list[str]:
     """
     grown, lost, exchanged, in_motion, rounding = engine.balance
     off, fixed = max(grown, lost), settings.step is not None
-    quiet = QUIET_LOSS if fixed else min(max(QUIET_LOSS, 100 * settings.tol), LOOSE_LOSS)
-    if not off > quiet * max(exchanged, STEADY * in_motion) + rounding:
+    quiet = ENERGY_ERROR_LIMIT if fixed else min(max(ENERGY_ERROR_LIMIT, 100 * settings.tol), LOOSE_ENERGY_ERROR_LIMIT)
+    if not off > quiet * max(exchanged, MIN_ENERGY_EXCHANGE * in_motion) + rounding:
         return []
     what = ("went that neither damping nor friction nor impacts took", "came that nothing did work for")[grown > lost]
     damps = INTEGRATORS[engine.integrator].loses_energy_by_spectral_radius and settings.spectral_radius < 1

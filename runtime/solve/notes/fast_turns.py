@@ -8,11 +8,11 @@ import numpy as np
 
 from ...model.model import Model
 
-MOST = 1.0
-"""rad within a step: beyond it the method does not follow how the axes move."""
-UNSEEN = 30.0
-"""Times tol: errors of phase in rad by which a method of second order, which sees positions alone, errs by more than
-tol (of the tops of tests/benchmarks/choice_scenes.py 15 to 20)."""
+MAX_TURN_PER_STEP = 1.0
+"""Turn in rad per step beyond which the method does not resolve the motion of the axes."""
+PHASE_ERROR_FACTOR = 30.0
+"""Multiple of tol: a method of second order that controls positions alone errs by more than tol where its phase error
+in rad is larger (tops of tests/benchmarks/choice_scenes.py: 15 to 20)."""
 
 
 class FastTurns:
@@ -42,8 +42,8 @@ class FastTurns:
     def notes(self) -> list[str]:
         """Return a note for each body that turned too fast for a fixed step."""
         return [f'body "{name}" turns by {angle:.3g} rad within a step at t = {time:.4g} s: take a step of '
-                f"{self._step * MOST / 10 / angle:.2g} s or less, or none, so that tol chooses it"
-                for name, (angle, time, _, _) in self.found.items() if angle > MOST]
+                f"{self._step * MAX_TURN_PER_STEP / 10 / angle:.2g} s or less, or none, so that tol chooses it"
+                for name, (angle, time, _, _) in self.found.items() if angle > MAX_TURN_PER_STEP]
 
     def unseen(self, steps: int, tol: float) -> list[str]:
         """Return the bodies that turned too fast for steps that tol has chosen by the error of positions alone.
@@ -51,4 +51,4 @@ class FastTurns:
         In a step of a method of second order what turns by an angle a lags behind by a³/12.
         """
         return [name for name, (_, _, cubes, duration) in self.found.items()
-                if cubes * (duration / steps) ** 2 / 12 > UNSEEN * tol]
+                if cubes * (duration / steps) ** 2 / 12 > PHASE_ERROR_FACTOR * tol]

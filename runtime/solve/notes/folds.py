@@ -18,17 +18,17 @@ from ...model.middle_strain import slopes, stretches
 from ...model.model import CableModel, Model
 from ...parts.scene_data import SceneData
 
-FOLDED = 0.8
-"""Of the length of the centreline: elements whose nodes are nearer to each other are folded: an arc of 130 degrees."""
-TURNED = np.radians(75.0)
-"""By which the tangent turns within an element: elements that turn further are too long for the shape at rest."""
-WELL = np.radians(45.0)
-"""By which the tangent may turn within an element for the shape to be told to about a tenth of a percent."""
-PARTS = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Of the length of an element: where its tangents are compared."""
-PLACES, WEIGHTS = np.polynomial.legendre.leggauss(8)
-GAUSS = (0.5 * (1 + PLACES)).tolist(), (0.5 * WEIGHTS).tolist()
-"""Of the length of a centreline, whose slope turns round in a folded element."""
+FOLDED_CHORD = 0.8
+"""An element is folded where its chord is shorter than this fraction of its centreline: an arc of 130 degrees."""
+MAX_ELEMENT_TURN = np.radians(75.0)
+"""Turn of the tangent within an element, in rad, above which the element is too long for the shape at rest."""
+ACCURATE_ELEMENT_TURN = np.radians(45.0)
+"""Turn of the tangent within an element, in rad, up to which the shape is accurate to about 0.1 %."""
+TANGENT_POSITIONS = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Positions of the compared tangents, as fractions of the length of an element."""
+GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
+GAUSS_RULE = (0.5 * (1 + GAUSS_POINTS)).tolist(), (0.5 * GAUSS_WEIGHTS).tolist()
+"""Gauss rule for the length of a centreline whose slope reverses in a folded element."""
 
 
 class Folds:
@@ -55,13 +55,13 @@ class Folds:
         for cable, apart in self._cables:
             vectors = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)
             chords = _distances(vectors[:, :, cable.vectors.index("r")])
-            at, element = np.nonzero(chords <= FOLDED * apart)
+            at, element = np.nonzero(chords <= FOLDED_CHORD * apart)
             if not len(at):
                 continue
             length = _arc_lengths(cable, vectors[at, element], vectors[at, element + 1], element)
             ratio = chords[at, element] / length * (cable.mesh.each_length(element) / apart[element])
             k = int(np.argmin(ratio))
-            if ratio[k] <= self.found.get(cable.name, [FOLDED])[0]:
+            if ratio[k] <= self.found.get(cable.name, [FOLDED_CHORD])[0]:
                 self.found[cable.name] = [float(ratio[k]), int(element[k]), float(rows["time"][at[k]])]
 
     def notes(self) -> list[str]:
@@ -103,18 +103,18 @@ def _turned(scene: SceneData, model: Model, q: np.ndarray, folded: set[str]) -> 
         if part.is_curved:
             turns = turns - _turns(cable, part.rest_nodal_vectors)
         k = int(np.argmax(turns))
-        if turns[k] > TURNED:
+        if turns[k] > MAX_ELEMENT_TURN:
             start, length = cable.mesh.start(k), cable.mesh.length(k)
             yield (f'cable "{cable.name}" turns by {np.degrees(turns[k]):.0f} degrees within element {k}, from s = '
                    f"{start:.6g} m to {start + length:.6g} m: the state is that of few elements, not of the cable. "
-                   f"Take elements of at most {length * WELL / turns[k]:.2g} m there")
+                   f"Take elements of at most {length * ACCURATE_ELEMENT_TURN / turns[k]:.2g} m there")
 
 
 def _turns(cable: CableModel, vectors: np.ndarray) -> np.ndarray:
     """Return (elements,): the largest angle in rad between tangents of each element; vectors: (nodes, vectors, dim)."""
     e = np.concatenate([vectors[:-1], vectors[1:]], axis=1)
     tangents = np.stack([np.einsum("ek,ekd->ed", np.broadcast_to(slopes(cable, part), e.shape[:2]), e)
-                         for part in PARTS])
+                         for part in TANGENT_POSITIONS])
     tangents /= np.maximum(np.linalg.norm(tangents, axis=-1, keepdims=True), np.finfo(float).tiny)
     cosines = np.einsum("aed,bed->eab", tangents, tangents).min(axis=(1, 2))
     return np.arccos(np.clip(cosines, -1, 1))
@@ -127,5 +127,5 @@ def _distances(r: np.ndarray) -> np.ndarray:
 
 def _arc_lengths(cable: CableModel, first: np.ndarray, last: np.ndarray, element: np.ndarray) -> np.ndarray:
     """Return (n,): lengths in m of the centrelines of elements (n,) with these vectors of nodes, (n, vectors, dim)."""
-    stretch = stretches(cable, first, last, element, GAUSS)
+    stretch = stretches(cable, first, last, element, GAUSS_RULE)
     return np.maximum(stretch, np.finfo(float).tiny) * cable.mesh.each_length(element)

@@ -10,9 +10,10 @@ from ...engine import outputs_by_name
 from ...model.model import Model
 from ...parts.scene_data import SceneData
 
-REVERSALS, OFTEN = 5, 0.1
-"""Of a normal force between output times, and of all of these: from both on it vibrates. A zip line whose rider
-rebounds from its buffer has 11 in 500 and errs by 0.02 tol, wires that are let go have 7 and 13 in 40."""
+MIN_REVERSALS, MIN_REVERSAL_RATE = 5, 0.1
+"""A normal force vibrates if it changes its sign this number of times, and in this fraction of the output intervals. A
+zip line whose rider rebounds from its buffer has 11 reversals in 500 intervals and errs by 0.02 tol; released wires
+have 7 and 13 in 40."""
 
 
 class NormalForces:
@@ -41,7 +42,8 @@ class NormalForces:
     @property
     def vibrating(self) -> list[str]:
         """Return the slides whose normal force vibrates about zero."""
-        return [name for name, (count, times, _) in self.found.items() if count >= max(REVERSALS, OFTEN * times)]
+        return [name for name, (count, times, _) in self.found.items()
+                if count >= max(MIN_REVERSALS, MIN_REVERSAL_RATE * times)]
 
 
 def has_friction(scene: SceneData, name: str) -> bool:

@@ -12,8 +12,8 @@ from ...engine import Engine, outputs_by_name
 from ...model.model import Model
 from ...parts.scene_data import SceneData
 
-DEEP = 0.1
-"""Of the radius of the cable or of what is round: what is deeper than that below a surface is noted."""
+PENETRATION_LIMIT = 0.1
+"""Penetration that a note reports, as a fraction of the radius of the cable or of the round body."""
 
 
 @dataclass
@@ -38,7 +38,7 @@ def _of_surfaces(scene: SceneData, model: Model) -> list[_Limit]:
     for contact in model.contacts:
         own = radius_of(scene, scene.contacts[contact.name])
         radius = min((r for r in (own, contact.round_radius) if r > 0), default=np.inf)
-        limits.append(_Limit(contact.name, contact.stiffness, DEEP * radius, radius, "below its surface"))
+        limits.append(_Limit(contact.name, contact.stiffness, PENETRATION_LIMIT * radius, radius, "below its surface"))
     return limits
 
 

@@ -11,9 +11,9 @@ from ...model.model import CableModel, Model
 from ...parts.scene_data import SceneData
 from ...parts.section_stiffness import STABILISATION, is_reduced
 
-PLACES, WEIGHTS = np.polynomial.legendre.leggauss(4)
-GAUSS = (0.5 * (1 + PLACES)).tolist(), (0.5 * WEIGHTS).tolist()
-"""Of the length of an element."""
+GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
+GAUSS_RULE = (0.5 * (1 + GAUSS_POINTS)).tolist(), (0.5 * GAUSS_WEIGHTS).tolist()
+"""Gauss rule on an element, as fractions of its length."""
 
 
 class ReducedStrain:
@@ -47,7 +47,7 @@ class ReducedStrain:
 def _strain(cable: CableModel, q: np.ndarray) -> np.ndarray:
     """Return (elements,): by how much centrelines are longer than at rest, over that."""
     vectors = q[cable.coordinates].reshape(cable.shape)
-    return stretches(cable, vectors[:-1], vectors[1:], np.arange(cable.n_elements), GAUSS) - 1
+    return stretches(cable, vectors[:-1], vectors[1:], np.arange(cable.n_elements), GAUSS_RULE) - 1
 
 
 def compressed(scene: SceneData, model: Model, q: np.ndarray) -> list[str]:

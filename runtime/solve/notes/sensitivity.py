@@ -27,26 +27,27 @@ from ...parts.scene_data import SceneData
 from ...parts.section_stiffness import compressive_stiffness
 from ...parts.settings import RunSettings
 
-SIMPSON = (0.0, 0.5, 1.0), (1 / 6, 4 / 6, 1 / 6)
-"""Of the lengths of elements: the exponents that count, below, are measured with it."""
-OF_CABLES, OF_BODIES = 0.115, 1.0
-"""Of the exponents: what counts, see above."""
-BEGUN = 0.7
-"""Exponent that counts, from which on errors are said to grow."""
-LEAST_ROWS = 10
-"""Output times, below which nothing is said of a motion between them."""
-SAID = 1.15
-"""Of what is allowed: expected errors that are noted."""
-FIXED_ERROR = 5e-3
-"""Of the largest motion: errors of a fixed step that are noted."""
-MOST = 5.0
-"""Exponent, at most, by which a note says how much errors may grow: by then they are as large as the motion."""
-CERTAIN = 500.0
-"""Exponent by which any error is larger than any motion."""
-GROWS = "small differences grow"
-"""What a note says where they do."""
-TURNING = "spherical", "revolute", "universal"
-"""Joints about which a body can fall over."""
+SIMPSON_RULE = (0.0, 0.5, 1.0), (1 / 6, 4 / 6, 1 / 6)
+"""Simpson's rule on an element, as fractions of its length; the factors of the exponents below were measured with
+it."""
+CABLE_EXPONENT_FACTOR, BODY_EXPONENT_FACTOR = 0.115, 1.0
+"""Effective fraction of the exponents of cables and of bodies, see above."""
+MIN_GROWTH_EXPONENT = 0.7
+"""Effective exponent above which errors grow."""
+MIN_ROWS = 10
+"""Output times below which motion between them is not assessed."""
+ERROR_REPORT_RATIO = 1.15
+"""Ratio of the expected error to the allowed one above which a note reports it."""
+FIXED_STEP_ERROR_LIMIT = 5e-3
+"""Error of a fixed step that a note reports, as a fraction of the largest motion."""
+MAX_REPORTED_EXPONENT = 5.0
+"""Largest exponent that a note reports: errors are then as large as the motion."""
+SATURATED_EXPONENT = 500.0
+"""Exponent at which any error exceeds any motion."""
+GROWTH_TEXT = "small differences grow"
+"""Text of notes on sensitive motion."""
+TOPPLING_JOINTS = "spherical", "revolute", "universal"
+"""Kinds of joints about which a body can fall over."""
 
 
 class Sensitivity:
@@ -67,15 +68,15 @@ class Sensitivity:
         """Take further output rows."""
         for cable in self._model.cables:
             self._add(self._scene.cables[cable.name].where, rows["time"],
-                      OF_CABLES * self._of_cable(cable, rows["q"]))
+                      CABLE_EXPONENT_FACTOR * self._of_cable(cable, rows["q"]))
         for k, joint, part in self._joints:
-            self._add(part.where, rows["time"], OF_BODIES * self._of_joint(k, joint, rows))
+            self._add(part.where, rows["time"], BODY_EXPONENT_FACTOR * self._of_joint(k, joint, rows))
 
     @property
     def worst(self) -> tuple[float, str, float]:
         """Return the largest exponent that counts, the part that it is of, and from when on errors grow there, s."""
         return max(((max(exponents), name, since) for name, (exponents, _, since, rows) in self.found.items()
-                    if rows >= LEAST_ROWS), default=(0.0, "", -1.0))
+                    if rows >= MIN_ROWS), default=(0.0, "", -1.0))
 
     @property
     def cables(self) -> list[Cable]:
@@ -90,7 +91,7 @@ class Sensitivity:
         """Add rates (times, exponents) to the exponents of a part, 1/s."""
         exponents, until, since, rows = self.found.get(name, ([0.0] * rates.shape[1], 0.0, -1.0, 0))
         grown = np.array(exponents) + np.cumsum(rates * np.diff(time, prepend=until)[:, None], axis=0)
-        begun = np.flatnonzero(grown.max(axis=1) > BEGUN)
+        begun = np.flatnonzero(grown.max(axis=1) > MIN_GROWTH_EXPONENT)
         if since < 0 and len(begun):
             since = float(time[begun[0]])
         self.found[name] = [grown[-1].tolist(), float(time[-1]), since, rows + len(time)]
@@ -99,7 +100,7 @@ class Sensitivity:
         """Return (times, elements): the rates at which elements of a cable buckle, 1/s."""
         part = self._scene.cables[cable.name]
         vectors = q[:, cable.coordinates].reshape(-1, *cable.shape)
-        strain = stretches(cable, vectors[:, :-1], vectors[:, 1:], np.arange(cable.n_elements), SIMPSON) - 1
+        strain = stretches(cable, vectors[:, :-1], vectors[:, 1:], np.arange(cable.n_elements), SIMPSON_RULE) - 1
         E, moments = part.material.youngs_modulus, part.section.moments()
         EA = compressive_stiffness(part.traits.membrane, part.section, part.material)
         EI = E * (moments[1] if self._model.dim == 2 else min(moments[1:3]))
@@ -127,14 +128,15 @@ def sensitive(engine: Engine, settings: RunSettings, found: Sensitivity) -> list
     exponent, where, since = found.worst
     total = engine.statistics["sum_of_local_error_estimates_m"]
     fixed, motion = settings.step is not None, engine.controlled_motion
-    allowed = FIXED_ERROR * motion if fixed else settings.tol * motion + max(engine.absolute_tol, 0.0)
-    if not (engine.moves and exponent >= BEGUN and total * np.exp(min(exponent, CERTAIN)) > SAID * allowed):
+    allowed = FIXED_STEP_ERROR_LIMIT * motion if fixed else settings.tol * motion + max(engine.absolute_tol, 0.0)
+    if not (engine.moves and exponent >= MIN_GROWTH_EXPONENT
+            and total * np.exp(min(exponent, SATURATED_EXPONENT)) > ERROR_REPORT_RATIO * allowed):
         return []
-    grown = total * np.exp(min(exponent, MOST))
+    grown = total * np.exp(min(exponent, MAX_REPORTED_EXPONENT))
     may = f"{min(grown / motion, 1.0):.1g} of the largest motion, or more" if fixed else _times(grown / allowed)
     what = "is compressed while it moves, and buckles" if where in [part.where for part in found.cables] else (
         "pushes a body that falls over")
-    return [f"{where} {what}: from t = {since:.3g} s on {GROWS}, and errors may become {may}. "
+    return [f"{where} {what}: from t = {since:.3g} s on {GROWTH_TEXT}, and errors may become {may}. "
             f"Give estimate=True, which measures them, or a smaller {'step' if fixed else 'tol'}, or more damping"]
 
 
@@ -144,7 +146,7 @@ def _times(ratio: float) -> str:
 
 
 def _lets_fall(joint: Joint) -> bool:
-    return joint.joint_kind in TURNING and not joint.is_driven
+    return joint.joint_kind in TOPPLING_JOINTS and not joint.is_driven
 
 
 def _falling(model: Model, body: BodyModel, point: np.ndarray, force: np.ndarray,

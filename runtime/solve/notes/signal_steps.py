@@ -12,12 +12,12 @@ from ...parts.settings import RunSettings
 from ...parts.signal import Constant, Integral, Signal, signals_of
 from ...parts.validation import show
 
-STEPS_A_PERIOD = 8
-"""The least number of steps that follow a sine; the trapezoidal rule is then 5 % off its integral."""
-FINE = 20
-"""Steps over a period, or over the shortest piece of a signal, that need no look at the integral."""
-COARSE = 0.05
-"""Of the integral of what varies: a larger error of the trapezoidal rule is reported."""
+MIN_STEPS_PER_PERIOD = 8
+"""Smallest number of steps that resolve a sine; the trapezoidal rule then errs by 5 % of its integral."""
+RESOLVED_STEPS = 20
+"""Steps per period, or per shortest segment of a signal, above which the integral needs no check."""
+INTEGRAL_ERROR_LIMIT = 0.05
+"""Error of the trapezoidal rule that a note reports, as a fraction of the integral of the variation."""
 
 
 def unresolved(scene: SceneData, settings: RunSettings) -> list[str]:
@@ -28,11 +28,11 @@ def unresolved(scene: SceneData, settings: RunSettings) -> list[str]:
     found = []
     for where, signal in signals(scene):
         rate = frequency(signal)
-        if rate * step * STEPS_A_PERIOD > 1:
+        if rate * step * MIN_STEPS_PER_PERIOD > 1:
             found.append(f"{where}: its sine has a period of {show(1 / rate, 's')}, and the fixed step is "
                          f"{show(step, 's')}: the steps do not follow it. Take a step of "
-                         f"{show(1 / (FINE * rate), 's')} or less, or none, so that tol chooses it")
-        elif (error := _error_of_integral(signal, step, settings)) > COARSE:
+                         f"{show(1 / (RESOLVED_STEPS * rate), 's')} or less, or none, so that tol chooses it")
+        elif (error := _error_of_integral(signal, step, settings)) > INTEGRAL_ERROR_LIMIT:
             found.append(f"{where}: the fixed step of {show(step, 's')} is too long for its signal, whose integral "
                          f"over time it misses by {error:.2g} of its size. Take a smaller step, or none, so that tol "
                          "chooses it")
@@ -54,7 +54,7 @@ def _error_of_integral(signal: Signal, step: float, settings: RunSettings) -> fl
     """Return how far the trapezoidal rule on the steps of a run is off a signal's integral, of what varies of it."""
     breaks, coefficients = signal.pieces()
     inner = breaks[(breaks > 0) & (breaks < settings.duration)]
-    if np.diff(inner, prepend=0.0, append=settings.duration).min() > FINE * step:
+    if np.diff(inner, prepend=0.0, append=settings.duration).min() > RESOLVED_STEPS * step:
         return 0.0
     knots = [time for time, _ in of_pieces(breaks, coefficients, False, settings.tol) if 0 < time < settings.duration]
     times = np.union1d(np.arange(0.0, settings.duration, step), [*knots, settings.duration])

@@ -18,20 +18,20 @@ from ...model.middle_strain import middle_strain
 from ...model.model import Model
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
-from .sensitivity import GROWS
+from .sensitivity import GROWTH_TEXT
 
-KEPT = 32
-"""Intervals of the run, at whose ends positions are kept."""
-LOOSER, COARSER = 10.0, 2.0
-"""Tolerance and fixed step of the second run, over those of the first."""
-OF_COARSER = 1 / 3
-"""Of the distance of two runs of fixed steps: the error of the finer one, of second order."""
-LAST = 4
-"""Of the second run the last part, one of so many, tells what errors have grown to."""
-SAID = 2.0
-"""Of what is allowed: expected errors that are noted."""
-FIXED_ERROR = 5e-3
-"""Of the largest motion: errors of a fixed step that are noted."""
+STORED_INTERVALS = 32
+"""Intervals of the run at whose ends positions are stored."""
+TOLERANCE_RATIO, STEP_RATIO = 10.0, 2.0
+"""Tolerance and fixed step of the second run over those of the first."""
+FINER_ERROR_FRACTION = 1 / 3
+"""Error of the finer of two runs with fixed steps, of second order, as a fraction of their distance."""
+FINAL_PARTS = 4
+"""The last of this number of parts of the second run gives the grown errors."""
+ERROR_REPORT_RATIO = 2.0
+"""Ratio of the expected error to the allowed one above which a note reports it."""
+FIXED_STEP_ERROR_LIMIT = 5e-3
+"""Error of a fixed step that a note reports, as a fraction of the largest motion."""
 
 Rows = dict[str, np.ndarray]
 Again = Callable[[RunSettings], Rows]
@@ -46,7 +46,7 @@ class SlackMotion:
     def __init__(self, scene: SceneData, model: Model, duration: float):
         self.model, self.cables = model, [cable for cable in model.cables
                                            if scene.cables[cable.name].traits.membrane == "tension_only"]
-        self._every = duration / KEPT
+        self._every = duration / STORED_INTERVALS
         self.found: dict[str, Any] = {}
 
     def see(self, rows: Rows) -> None:
@@ -84,14 +84,15 @@ def grown(engine: Engine, settings: RunSettings, seen: SlackMotion, again: Again
     other settings, and returns its rows.
     """
     begin, times = seen.found.get("slack"), np.array(seen.found.get("times", []))
-    if begin is None or not engine.moves or len(times) < KEPT / 2 or settings.quantities:
+    if begin is None or not engine.moves or len(times) < STORED_INTERVALS / 2 or settings.quantities:
         return []
     until = times[-1]
     here = times > begin
     if np.count_nonzero(here) < 4:
         return []
     fixed = settings.step is not None
-    looser = {"step": COARSER * settings.step} if settings.step is not None else {"tol": LOOSER * settings.tol}
+    looser = ({"step": STEP_RATIO * settings.step} if settings.step is not None
+              else {"tol": TOLERANCE_RATIO * settings.tol})
     rows = again(settings.model_copy(update={**looser, "duration": float(until), "estimate": True, "save": None}))
     at = np.searchsorted(rows["time"], times[here] - 1e-9 * until)
     if len(at) == 0 or at[-1] >= len(rows["time"]):
@@ -99,14 +100,14 @@ def grown(engine: Engine, settings: RunSettings, seen: SlackMotion, again: Again
     kept = [np.array(seen.found["positions"][k]) for k in np.flatnonzero(here)]
     apart = [np.linalg.norm(positions(seen.model, rows["q"][k]) - one, axis=1).max()
              for k, one in zip(at, kept, strict=True)]
-    share = OF_COARSER if fixed else 1 / LOOSER
+    share = FINER_ERROR_FRACTION if fixed else 1 / TOLERANCE_RATIO
     motion = engine.controlled_motion
-    allowed = FIXED_ERROR * motion if fixed else settings.tol * motion + max(engine.absolute_tol, 0.0)
-    expected = max(apart[-(len(apart) // LAST) - 1:]) * share  # what has died out again has not grown
-    if not expected > SAID * allowed:
+    allowed = FIXED_STEP_ERROR_LIMIT * motion if fixed else settings.tol * motion + max(engine.absolute_tol, 0.0)
+    expected = max(apart[-(len(apart) // FINAL_PARTS) - 1:]) * share  # what has died out again has not grown
+    if not expected > ERROR_REPORT_RATIO * allowed:
         return []
     since = float(times[here][np.argmax(np.array(apart) * share > 0.1 * expected)])
-    return [f'cable "{seen.cables[0].name}" becomes slack: from t = {since:.3g} s on {GROWS}, '
+    return [f'cable "{seen.cables[0].name}" becomes slack: from t = {since:.3g} s on {GROWTH_TEXT}, '
             f"and errors may become {float(f'{expected / allowed:.1g}'):.0f} times what is allowed: a run with "
             f"{'larger steps' if fixed else '10 tol'} is {apart[-1]:.2g} m away at t = {until:.3g} s. Give "
             f"estimate=True, which measures them, or a smaller {'step' if fixed else 'tol'}, or more damping"]

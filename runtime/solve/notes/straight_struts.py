@@ -17,11 +17,11 @@ from ...parts.section_stiffness import compressive_stiffness
 from ..linear.condensation import condensed
 from ..linear.inertia import inertia
 
-STRAIGHT = 1e-9
-"""Of the length: nodes that are nearer to the line between the ends lie on it."""
+STRAIGHTNESS_TOLERANCE = 1e-9
+"""Nodes lie on the line between the ends if their distance from it is below this fraction of the length."""
 
-BENT = 1e-12
-"""Of the squared length: what the middle node's squared distance from that line is above where it does not, by far."""
+MIN_SQUARED_DEFLECTION = 1e-12
+"""Lower bound of the squared deflection of the middle node of a bent strut, as a fraction of the squared length."""
 
 
 class StraightStruts:
@@ -86,7 +86,7 @@ def _straight(r: np.ndarray, before: bool) -> np.ndarray:
     chord, middle = r[:, -1] - r[:, 0], r[:, r.shape[1] // 2] - r[:, 0]
     square = (chord * chord).sum(axis=1)
     off = (middle * middle).sum(axis=1) * square - (middle * chord).sum(axis=1) ** 2  # squared, times the square
-    straight = ~(off > BENT * square**2)
+    straight = ~(off > MIN_SQUARED_DEFLECTION * square**2)
     beside = np.ones(len(r), dtype=bool)  # and of the last time, for the row to come
     beside[:-1] = straight[1:]
     beside[1:] |= straight[:-1]
@@ -104,7 +104,7 @@ def _on_line(r: np.ndarray) -> np.ndarray:
     offset = r - r[:, :1]
     along = np.einsum("tnd,td->tn", offset, chord) / np.where(length > 0, length, 1.0)[:, None] ** 2
     off = np.linalg.norm(offset - along[:, :, None] * chord[:, None], axis=2).max(axis=1)
-    return (off <= STRAIGHT * length) & np.all(np.diff(along, axis=1) > 0, axis=1)
+    return (off <= STRAIGHTNESS_TOLERANCE * length) & np.all(np.diff(along, axis=1) > 0, axis=1)
 
 
 def _unstable(model: Model, cable: CableModel, t: float, q: np.ndarray, s: np.ndarray) -> int:

@@ -18,18 +18,18 @@ from ...model.middle_strain import middle_strain, slopes
 from ...model.model import CableModel, Model
 from ...parts.cable import Cable
 from ...parts.scene_data import SceneData
-from .sensitivity import GROWS
+from .sensitivity import GROWTH_TEXT
 
-PARTS = (0.1, 0.5, 0.9)
-"""Of the length of an element: where its curvature is looked at."""
-STEP = 1e-3
-"""Of the length: to either side, for the derivative of a slope; that of cubic elements is exact."""
-BENT = 0.1
-"""Of the largest curvature of the drawn shape: less is none that could be lost."""
-LEFT = 0.95
-"""Of the drawn curvature: what is left where errors grow; closer to it they grow slowly."""
-GROWN = 10.0
-"""Exponent of the growth from which on it is noted."""
+CURVATURE_POSITIONS = (0.1, 0.5, 0.9)
+"""Positions of the assessed curvatures, as fractions of the length of an element."""
+SLOPE_DIFFERENCE = 1e-3
+"""Half interval of the central difference of a slope, as a fraction of the length; exact for cubic elements."""
+MIN_DRAWN_CURVATURE = 0.1
+"""Curvatures below this fraction of the largest drawn curvature are neglected."""
+MAX_CURVATURE_RATIO = 0.95
+"""Ratio of the curvature to the drawn one below which errors grow; above it they grow slowly."""
+GROWTH_EXPONENT_LIMIT = 10.0
+"""Exponent of the growth above which a note reports it."""
 
 
 class Straightened:
@@ -52,7 +52,7 @@ class Straightened:
         for cable, part, drawn in self._cables:
             exponents, until, least = self.found.get(cable.name, ([0.0] * cable.n_elements, 0.0, 1.0))
             vectors = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)
-            bends = drawn > BENT * drawn.max()
+            bends = drawn > MIN_DRAWN_CURVATURE * drawn.max()
             left = np.where(bends, _curvature(cable, vectors) / np.where(bends, drawn, 1.0), 1.0).min(axis=0)
             grown = _rates(cable, part, vectors, left) * np.diff(rows["time"], prepend=until)[:, None]
             self.found[cable.name] = [(np.array(exponents) + grown.sum(axis=0)).tolist(), float(rows["time"][-1]),
@@ -62,9 +62,9 @@ class Straightened:
         """Return a note for each cable in which differences grew far."""
         return [f'cable "{name}" is drawn curved and free of stress, and bends to less than that, to '
                 f"{100 * left:.2g} % of its drawn curvature: a cable has no section axes, and its stiffness across "
-                f"such a bend is negative: {GROWS} by exp({max(exponents):.2g}) in the run, and results "
+                f"such a bend is negative: {GROWTH_TEXT} by exp({max(exponents):.2g}) in the run, and results "
                 'depend on steps and mesh. Take element="beam24", which keeps its shape in space, or rest="straight"'
-                for name, (exponents, _, left) in self.found.items() if max(exponents) > GROWN]
+                for name, (exponents, _, left) in self.found.items() if max(exponents) > GROWTH_EXPONENT_LIMIT]
 
 
 def _curvature(cable: CableModel, vectors: np.ndarray) -> np.ndarray:
@@ -75,10 +75,10 @@ def _curvature(cable: CableModel, vectors: np.ndarray) -> np.ndarray:
         return np.einsum("ek,tekd->ted", np.broadcast_to(N, e.shape[1:3]), e)
 
     found = []
-    for part in PARTS:
+    for part in CURVATURE_POSITIONS:
         r_x = at(slopes(cable, part))
-        r_xx = (at(slopes(cable, part + STEP)) - at(slopes(cable, part - STEP))) / (
-            2 * STEP * np.broadcast_to(cable.mesh.lengths, cable.n_elements)[:, None])
+        r_xx = (at(slopes(cable, part + SLOPE_DIFFERENCE)) - at(slopes(cable, part - SLOPE_DIFFERENCE))) / (
+            2 * SLOPE_DIFFERENCE * np.broadcast_to(cable.mesh.lengths, cable.n_elements)[:, None])
         size = np.linalg.norm(r_x, axis=-1)
         found.append(np.linalg.norm(cross(r_x, r_xx), axis=-1) / np.where(size > 0, size, 1.0) ** 3)
     return np.stack(found)
@@ -91,6 +91,6 @@ def _rates(cable: CableModel, part: Cable, vectors: np.ndarray, left: np.ndarray
     k2 = (np.pi / lengths) ** 2
     stiffness = E * float(min(moments[1:3])) * k2**2 / mass
     tension = E * float(moments[0]) * middle_strain(cable, vectors) * k2 / mass
-    square = np.where(left < LEFT, stiffness * (1 / np.maximum(left, 1e-3) - 1) - tension, 0.0)
+    square = np.where(left < MAX_CURVATURE_RATIO, stiffness * (1 / np.maximum(left, 1e-3) - 1) - tension, 0.0)
     damping = cable.tau * stiffness / 2
     return np.sqrt(np.maximum(square, 0.0) + damping**2) - damping

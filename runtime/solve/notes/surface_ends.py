@@ -12,8 +12,8 @@ from ...parts.contact import Contact
 from ...parts.scene_data import SceneData
 from ...parts.solids import Cylinder
 
-ROUNDING = 1e-9
-"""Of the extent of a surface: what touches less far beyond it touches its end."""
+END_TOLERANCE = 1e-9
+"""Contact less far beyond the end of a surface, as a fraction of its extent, is contact with its end."""
 
 
 class SurfaceEnds:
@@ -59,7 +59,7 @@ def _note(scene: SceneData, contact: Contact, distance: float) -> str:
         knots = [each for each in (surface.geometry.first, surface.geometry.second) if each is not None]
         extent, end = float(max(np.ptp(each) for each in knots)), "table"
         what = "where its height stays that of the edge: give a table that reaches farther"
-    if distance <= ROUNDING * extent:
+    if distance <= END_TOLERANCE * extent:
         return ""
     return f'{contact.where} touches up to {distance:.3g} m beyond the {end} of "{contact.b}", {what}'
 

@@ -13,8 +13,8 @@ from ...model.model import Model
 from ...parts.scene_data import SceneData
 from ...parts.validation import show
 
-WAY = 17
-"""Places on the straight way from the drawing to a state of rest, at which elements may be near a surface."""
+PATH_POSITIONS = 17
+"""Positions on the straight path from the drawing to a state of rest at which contact is assessed."""
 
 
 class _Coarse(NamedTuple):
@@ -68,5 +68,5 @@ class UnseenContact:
 def unseen_contact(scene: SceneData, model: Model, q: np.ndarray) -> list[str]:
     """Return the notes on a state of rest at a configuration (n,), to which a scene came from where it is drawn."""
     found = UnseenContact(scene, model)
-    found.see({"q": model.q + np.linspace(0, 1, WAY)[:, None] * (q - model.q)})
+    found.see({"q": model.q + np.linspace(0, 1, PATH_POSITIONS)[:, None] * (q - model.q)})
     return found.notes()
