@@ -17,8 +17,7 @@ from ..model.part_states import part_states
 from ..model.states import spatial
 from ..parts.paths import COMPONENTS
 from ..parts.validation import EXACT
-from ..solve.adjustment.adjustment import Reader
-from ..solve.adjustment.snapshots import Snapshots
+from ..solve.adjustment.snapshots import Reader, Snapshots
 from ..solve.statics.static_problem import StaticState
 from .equilibrium import Equilibrium
 from .quantities import QUANTITIES

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..checks.placement import node_of
 from ..errors import SceneError, near
 from ..kernels.libraries import kernels_of
+from ..parts.locations import node_of
 from ..parts.scene_data import SceneData
 from .quantities import QUANTITIES
 from .run import Run

@@ -52,6 +52,56 @@ def test_python_versions_are_those_of_the_metadata(project):
     assert (named[0], run) == (oldest, [named[0], named[-1]])
 
 
+def test_actions_are_pinned_by_hash():
+    used = [line for file in (ROOT / ".github/workflows").glob("*.yml")
+            for line in re.findall(r"uses: (.*)", file.read_text(encoding="utf-8"))]
+    assert len(used) > 5
+    assert [line for line in used if not re.fullmatch(r"[\w/-]+@[0-9a-f]{40}  # v\d+\.\d+\.\d+", line)] == []
+    assert len({line.split("@")[0] for line in used}) == len(set(used)), "two versions of one action"
+
+
+def test_files_for_the_community():
+    """Those that hosting services look for, and forms that have what these need."""
+    names = ["SECURITY.md", "CODE_OF_CONDUCT.md", "CONTRIBUTING.md", ".github/pull_request_template.md",
+             ".github/ISSUE_TEMPLATE/config.yml"]
+    assert [name for name in names if not (ROOT / name).is_file()] == []
+    for form in set((ROOT / ".github/ISSUE_TEMPLATE").glob("*.yml")) - {ROOT / names[-1]}:
+        found = form.read_text(encoding="utf-8")
+        assert re.findall(r"^(\w+):", found, re.MULTILINE) == ["name", "description", "title", "labels", "body"], form
+        names_of_fields = re.findall(r"^    id: (\w+)$", found, re.MULTILINE)
+        assert len(re.findall(r"^  - type:", found, re.MULTILINE)) == len(set(names_of_fields))
+
+
+def test_dependency_groups_name_extras(project):
+    groups = tomllib.loads(text("pyproject.toml"))["dependency-groups"]
+    named = [re.fullmatch(r"funicular\[(\w+)\]", each)[1] for name in ("test", "docs") for each in groups[name]]
+    assert set(named) <= set(project["optional-dependencies"])
+    assert {each["include-group"] for each in groups["dev"] if isinstance(each, dict)} == set(groups) - {"dev"}
+
+
+def test_the_source_distribution_has_the_files_of_the_top_folder():
+    listed = " ".join(re.findall(r"^include (.*)", text("MANIFEST.in"), re.MULTILINE)).split()
+    assert {path.name for path in ROOT.glob("*.md")} | {path.name for path in ROOT.glob("*.bib")} <= {*listed}
+
+
+def test_the_changelog_is_short():
+    assert len(text("CHANGELOG.md").splitlines()) <= 60
+
+
+def test_the_paper_has_what_its_journal_asks_for():
+    """Sections and length by the Journal of Open Source Software, 2026; citations and entries agree."""
+    paper = text("paper.md")
+    head, body = paper.removeprefix("---\n").split("\n---\n")
+    keys = re.findall(r"^(\w+):", head, re.MULTILINE)
+    assert {"title", "tags", "authors", "affiliations", "date", "bibliography"} <= {*keys}
+    assert re.findall(r"^# (.*)", body, re.MULTILINE) == [
+        "Summary", "Statement of need", "State of the field", "Software design", "Research impact statement",
+        "AI usage disclosure", "Acknowledgements", "References"]
+    assert 750 <= len(body.split()) <= 1750
+    entries = re.findall(r"^@\w+\{(\w+),", text("paper.bib"), re.MULTILINE)
+    assert sorted(entries) == sorted(set(re.findall(r"@(\w+)", body)))
+
+
 def functions():
     """Every function of the package, with where it stands."""
     for folder in ("runtime", "derive"):

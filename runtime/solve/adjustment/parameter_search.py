@@ -32,7 +32,8 @@ from ..statics.rest_state import RestState
 from ..statics.stability import Stability
 from ..statics.static_problem import StaticProblem, StaticState, fitted
 from ..statics.turned_rest import turned_rest
-from .parameter_changes import Change, Changes
+from .change import Change
+from .parameter_changes import Changes
 from .parameters import Parameters
 from .snapshots import Reader, Snapshots
 

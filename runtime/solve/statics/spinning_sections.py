@@ -15,11 +15,10 @@ from ...model.unknowns import by_unknowns
 from .stability import lowest_direction
 from .static_problem import StaticProblem
 
-MAX_AXIS_TURN_RATIO = 0.1
-"""Upper bound of the turn of the axis over the turn of the sections that spin about it."""
-MAX_STABLE_TWIST_RATIO = 20.0
-"""Upper bound of N (a L)²/GJ with sections at rest: ropes of 0.1 to 10 mm over 100 m rest at 19 to 49, and spin at
-120."""
+AT_REST = 0.1
+"""Of how sections turn: how the axis turns at most where sections spin about it."""
+MOST = 20.0
+"""Of N (a L)²/GJ, up to which sections rest: ropes of 0.1 to 10 mm over 100 m do so at 19 to 49, and spin at 120."""
 
 
 def spinning(problem: StaticProblem) -> str:
@@ -33,7 +32,7 @@ def spinning(problem: StaticProblem) -> str:
         dofs = by_unknowns(model.unknown_of_dof[cable.coordinates], model.combinations, len(direction))
         axis, turned = _turns(cable, (dofs @ direction).reshape(cable.shape))
         longest = _longest(problem, cable, q[cable.coordinates].reshape(cable.shape))
-        if turned > 0.0 and axis <= MAX_AXIS_TURN_RATIO * turned and longest < cable.mesh.lengths.max():
+        if turned > 0.0 and axis <= AT_REST * turned and longest < cable.mesh.lengths.max():
             return (f'; sections of cable "{cable.name}" spin in it while its axis rests: elements of '
                     f"{cable.mesh.lengths.max():.3g} m are too long for the torsion of so thin a beam, take elements "
                     f'of at most {longest:.2g} m, or element="cable12", which has no torsion')
@@ -60,4 +59,4 @@ def _longest(problem: StaticProblem, cable: CableModel, nodal: np.ndarray) -> fl
     torsion = material.lame()[1] * section.torsion_constant
     lengths = cable.mesh.lengths
     ratio = float((tension * (angle * lengths) ** 2).max()) / torsion  # grows as the fourth power of the length
-    return float(lengths.max()) * (MAX_STABLE_TWIST_RATIO / ratio) ** 0.25 if ratio > 0.0 else np.inf
+    return float(lengths.max()) * (MOST / ratio) ** 0.25 if ratio > 0.0 else np.inf
