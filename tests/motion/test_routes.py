@@ -31,7 +31,6 @@ LONGEST = 1.0
 
 
 SILENT = {
-    (49, "energy"): "its steps do not see the angular velocity that short contact gives a body",
     (41, "moved"): "the motion in the plane is unstable: what leaves it grows from rounding by 1e12",
 }
 """Disagreements that no note tells, which are known and stay to be mended: seed and route, and their cause."""
