@@ -1560,8 +1560,12 @@ void surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_r
  * 3[m]; mu [1] -> f 3[N (a length)]; f_y 3x3[N/m (a length)]; f_w 3x3[N s/m (a length)]; f_x 3x3[N/m (a length)] */
 void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
 /* rates of the distance of a moving point from a moving surface: n 3[1]; H 3x3[1/m]; r 3[m]; v 3[m/s]; a 3[m/s^2];
- * r_o 3[m]; v_o 3[m/s]; a_o 3[m/s^2]; omega 3[rad/s]; alpha 3[rad/s^2] -> g_t 1[m/s]; g_tt 1[m/s^2] */
-void surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega, const fu_real *alpha, fu_real *g_t, fu_real *g_tt);
+ * r_o 3[m]; v_o 3[m/s]; a_o 3[m/s^2]; omega_o 3[rad/s]; alpha_o 3[rad/s^2] -> g_t 1[m/s]; g_tt 1[m/s^2] */
+void surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real *g_t, fu_real *g_tt);
+/* velocity past a moving surface of the particle of a sphere that touches it: n 3[1]; H 3x3[1/m]; r 3[m]; v 3[m/s];
+ * a 3[m/s^2]; r_o 3[m]; v_o 3[m/s]; a_o 3[m/s^2]; omega_o 3[rad/s]; alpha_o 3[rad/s^2]; radius [m]; omega 3[rad/s];
+ * alpha 3[rad/s^2] -> w 3[m/s]; w_t 3[m/s^2] */
+void surface_slip(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real radius, const fu_real *omega, const fu_real *alpha, fu_real *w, fu_real *w_t);
 
 /* planar_surface.c */
 /* distance from a plane, and its gradient: y 2[m]; normal 2[1] -> g 1[m]; g_y 2[1] */
@@ -1589,8 +1593,12 @@ void planar_surface_sticking(const fu_real *n, const fu_real *H, const fu_real *
  * 2[m]; mu [1] -> f 2[N (a length)]; f_y 2x2[N/m (a length)]; f_w 2x2[N s/m (a length)]; f_x 2x2[N/m (a length)] */
 void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
 /* rates of the distance of a moving point from a moving surface: n 2[1]; H 2x2[1/m]; r 2[m]; v 2[m/s]; a 2[m/s^2];
- * r_o 2[m]; v_o 2[m/s]; a_o 2[m/s^2]; omega 1[rad/s]; alpha 1[rad/s^2] -> g_t 1[m/s]; g_tt 1[m/s^2] */
-void planar_surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega, const fu_real *alpha, fu_real *g_t, fu_real *g_tt);
+ * r_o 2[m]; v_o 2[m/s]; a_o 2[m/s^2]; omega_o 1[rad/s]; alpha_o 1[rad/s^2] -> g_t 1[m/s]; g_tt 1[m/s^2] */
+void planar_surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real *g_t, fu_real *g_tt);
+/* velocity past a moving surface of the particle of a sphere that touches it: n 2[1]; H 2x2[1/m]; r 2[m]; v 2[m/s];
+ * a 2[m/s^2]; r_o 2[m]; v_o 2[m/s]; a_o 2[m/s^2]; omega_o 1[rad/s]; alpha_o 1[rad/s^2]; radius [m]; omega 1[rad/s];
+ * alpha 1[rad/s^2] -> w 2[m/s]; w_t 2[m/s^2] */
+void planar_surface_slip(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real radius, const fu_real *omega, const fu_real *alpha, fu_real *w, fu_real *w_t);
 
 /* spring.c */
 /* stored energy: parameters 3[N/m, N s/m, m]; gap 3[m] -> U 1[J] */
@@ -1842,7 +1850,8 @@ typedef struct {
     void (*pressing)(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, fu_real *f, fu_real *f_y, fu_real *f_w);
     void (*sticking)(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t, fu_real *f_x);
     void (*sliding)(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
-    void (*motion)(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega, const fu_real *alpha, fu_real *g_t, fu_real *g_tt);
+    void (*motion)(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real *g_t, fu_real *g_tt);
+    void (*slip)(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real radius, const fu_real *omega, const fu_real *alpha, fu_real *w, fu_real *w_t);
 } fu_surface_kernels;
 
 /* What the engine needs of a point_law. */

@@ -10,6 +10,7 @@
  *   planar_surface_sticking: 22 add, 66 mul, 1 div
  *   planar_surface_sliding: 37 add, 130 mul, 2 div, 1 sqrt
  *   planar_surface_motion: 22 add, 18 mul
+ *   planar_surface_slip: 26 add, 22 mul
  */
 #include "kernels.h"
 
@@ -227,25 +228,61 @@ void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w
 }
 
 /* rates of the distance of a moving point from a moving surface (Hunt & Crossley 1975; Wriggers 2006) */
-void planar_surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega, const fu_real *alpha, fu_real *g_t, fu_real *g_tt)
+void planar_surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real *g_t, fu_real *g_tt)
 {
     /* velocity past the surface */
     const fu_real
         x_x = r[0] - r_o[0],
         x_y = r[1] - r_o[1],
-        past_x = omega[0]*x_y + v[0] - v_o[0],
-        past_y = -omega[0]*x_x + v[1] - v_o[1],
-        n_t_x = H[0]*past_x + H[1]*past_y - n[1]*omega[0],
-        n_t_y = H[2]*past_x + H[3]*past_y + n[0]*omega[0],
+        past_x = omega_o[0]*x_y + v[0] - v_o[0],
+        past_y = -omega_o[0]*x_x + v[1] - v_o[1],
+        n_t_x = H[0]*past_x + H[1]*past_y - n[1]*omega_o[0],
+        n_t_y = H[2]*past_x + H[3]*past_y + n[0]*omega_o[0],
         rate = n[0]*past_x + n[1]*past_y;
     /* derivatives in time */
     const fu_real
         dt_x_y = v[1] - v_o[1],
-        dt_past_x = a[0] - a_o[0] + alpha[0]*x_y + dt_x_y*omega[0],
+        dt_past_x = a[0] - a_o[0] + alpha_o[0]*x_y + dt_x_y*omega_o[0],
         dt_x_x = v[0] - v_o[0],
-        dt_past_y = a[1] - a_o[1] - alpha[0]*x_x - dt_x_x*omega[0],
+        dt_past_y = a[1] - a_o[1] - alpha_o[0]*x_x - dt_x_x*omega_o[0],
         dt_rate = dt_past_x*n[0] + dt_past_y*n[1] + n_t_x*past_x + n_t_y*past_y;
     /* outputs */
     g_t[0] = rate;
     g_tt[0] = dt_rate;
+}
+
+/* velocity past a moving surface of the particle of a sphere that touches it (Hunt & Crossley 1975; Wriggers 2006) */
+void planar_surface_slip(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real radius, const fu_real *omega, const fu_real *alpha, fu_real *w, fu_real *w_t)
+{
+    /* velocity past the surface */
+    const fu_real
+        x_x = r[0] - r_o[0],
+        x_y = r[1] - r_o[1],
+        past_x = omega_o[0]*x_y + v[0] - v_o[0],
+        past_y = -omega_o[0]*x_x + v[1] - v_o[1],
+        n_t_x = H[0]*past_x + H[1]*past_y - n[1]*omega_o[0],
+        n_t_y = H[2]*past_x + H[3]*past_y + n[0]*omega_o[0];
+    /* slip */
+    const fu_real
+        arm_x = -(n[0]*radius),
+        arm_y = -(n[1]*radius),
+        spin_x = omega[0] - omega_o[0],
+        w_x = -arm_y*spin_x + past_x,
+        w_y = arm_x*spin_x + past_y;
+    /* derivatives in time */
+    const fu_real
+        dt_arm_y = -(n_t_y*radius),
+        dt_x_y = v[1] - v_o[1],
+        dt_past_x = a[0] - a_o[0] + alpha_o[0]*x_y + dt_x_y*omega_o[0],
+        dt_spin_x = alpha[0] - alpha_o[0],
+        dt_w_x = -arm_y*dt_spin_x - dt_arm_y*spin_x + dt_past_x,
+        dt_arm_x = -(n_t_x*radius),
+        dt_x_x = v[0] - v_o[0],
+        dt_past_y = a[1] - a_o[1] - alpha_o[0]*x_x - dt_x_x*omega_o[0],
+        dt_w_y = arm_x*dt_spin_x + dt_arm_x*spin_x + dt_past_y;
+    /* outputs */
+    w[0] = w_x;
+    w[1] = w_y;
+    w_t[0] = dt_w_x;
+    w_t[1] = dt_w_y;
 }

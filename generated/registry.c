@@ -257,10 +257,10 @@ static const fu_crossing_kernels crossings[] = {
 
 static const fu_surface_kernels surfaces[] = {
     {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz, surface_pressing,
-     surface_sticking, surface_sliding, surface_motion},
+     surface_sticking, surface_sliding, surface_motion, surface_slip},
     {"planar_surface", 2, planar_surface_flat, planar_surface_rounded, planar_surface_terrain, planar_surface_push,
      planar_surface_push_hertz, planar_surface_pressing, planar_surface_sticking, planar_surface_sliding,
-     planar_surface_motion},
+     planar_surface_motion, planar_surface_slip},
 };
 
 static const fu_point_law_kernels point_laws[] = {
@@ -776,6 +776,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2], out[3]) \
     X(surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]) \
     X(surface_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]) \
+    X(surface_slip, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]) \
     X(planar_surface_flat, a[0], a[1], out[0], out[1]) \
     X(planar_surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
     X(planar_surface_terrain, a[0], a[1], out[0], out[1], out[2]) \
@@ -785,6 +786,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2], out[3]) \
     X(planar_surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]) \
     X(planar_surface_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]) \
+    X(planar_surface_slip, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]) \
     X(spring_energy, a[0], a[1], out[0]) \
     X(spring_dissipation, a[0], a[1], a[2], out[0]) \
     X(spring_force, a[0], a[1], a[2], out[0]) \

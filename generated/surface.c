@@ -10,8 +10,22 @@
  *   surface_sticking: 46 add, 138 mul, 1 div
  *   surface_sliding: 102 add, 363 mul, 2 div, 1 sqrt
  *   surface_motion: 49 add, 42 mul
+ *   surface_slip: 66 add, 57 mul
  */
 #include "kernels.h"
+
+/* part of velocity past the surface: of surface_motion and 1 more */
+#define SURFACE_PART_OF_VELOCITY_PAST_THE_SURFACE \
+    const fu_real \
+        x_x = r[0] - r_o[0], \
+        x_y = r[1] - r_o[1], \
+        x_z = r[2] - r_o[2], \
+        past_x = -omega_o[1]*x_z + omega_o[2]*x_y + v[0] - v_o[0], \
+        past_y = omega_o[0]*x_z - omega_o[2]*x_x + v[1] - v_o[1], \
+        past_z = -omega_o[0]*x_y + omega_o[1]*x_x + v[2] - v_o[2], \
+        n_t_x = H[0]*past_x + H[1]*past_y + H[2]*past_z - n[1]*omega_o[2] + n[2]*omega_o[1], \
+        n_t_y = H[3]*past_x + H[4]*past_y + H[5]*past_z + n[0]*omega_o[2] - n[2]*omega_o[0], \
+        n_t_z = H[6]*past_x + H[7]*past_y + H[8]*past_z - n[0]*omega_o[1] + n[1]*omega_o[0];
 
 /* distance from a plane, and its gradient (Hunt & Crossley 1975; Wriggers 2006) */
 void surface_flat(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y)
@@ -353,30 +367,63 @@ void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const
 }
 
 /* rates of the distance of a moving point from a moving surface (Hunt & Crossley 1975; Wriggers 2006) */
-void surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega, const fu_real *alpha, fu_real *g_t, fu_real *g_tt)
+void surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real *g_t, fu_real *g_tt)
 {
     /* velocity past the surface */
-    const fu_real
-        x_x = r[0] - r_o[0],
-        x_y = r[1] - r_o[1],
-        x_z = r[2] - r_o[2],
-        past_x = -omega[1]*x_z + omega[2]*x_y + v[0] - v_o[0],
-        past_y = omega[0]*x_z - omega[2]*x_x + v[1] - v_o[1],
-        past_z = -omega[0]*x_y + omega[1]*x_x + v[2] - v_o[2],
-        n_t_x = H[0]*past_x + H[1]*past_y + H[2]*past_z - n[1]*omega[2] + n[2]*omega[1],
-        n_t_y = H[3]*past_x + H[4]*past_y + H[5]*past_z + n[0]*omega[2] - n[2]*omega[0],
-        n_t_z = H[6]*past_x + H[7]*past_y + H[8]*past_z - n[0]*omega[1] + n[1]*omega[0],
-        rate = n[0]*past_x + n[1]*past_y + n[2]*past_z;
+    SURFACE_PART_OF_VELOCITY_PAST_THE_SURFACE
+    const fu_real rate = n[0]*past_x + n[1]*past_y + n[2]*past_z;
     /* derivatives in time */
     const fu_real
         dt_x_y = v[1] - v_o[1],
         dt_x_z = v[2] - v_o[2],
-        dt_past_x = a[0] - a_o[0] - alpha[1]*x_z + alpha[2]*x_y + dt_x_y*omega[2] - dt_x_z*omega[1],
+        dt_past_x = a[0] - a_o[0] - alpha_o[1]*x_z + alpha_o[2]*x_y + dt_x_y*omega_o[2] - dt_x_z*omega_o[1],
         dt_x_x = v[0] - v_o[0],
-        dt_past_y = a[1] - a_o[1] + alpha[0]*x_z - alpha[2]*x_x - dt_x_x*omega[2] + dt_x_z*omega[0],
-        dt_past_z = a[2] - a_o[2] - alpha[0]*x_y + alpha[1]*x_x + dt_x_x*omega[1] - dt_x_y*omega[0],
+        dt_past_y = a[1] - a_o[1] + alpha_o[0]*x_z - alpha_o[2]*x_x - dt_x_x*omega_o[2] + dt_x_z*omega_o[0],
+        dt_past_z = a[2] - a_o[2] - alpha_o[0]*x_y + alpha_o[1]*x_x + dt_x_x*omega_o[1] - dt_x_y*omega_o[0],
         dt_rate = dt_past_x*n[0] + dt_past_y*n[1] + dt_past_z*n[2] + n_t_x*past_x + n_t_y*past_y + n_t_z*past_z;
     /* outputs */
     g_t[0] = rate;
     g_tt[0] = dt_rate;
+}
+
+/* velocity past a moving surface of the particle of a sphere that touches it (Hunt & Crossley 1975; Wriggers 2006) */
+void surface_slip(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real radius, const fu_real *omega, const fu_real *alpha, fu_real *w, fu_real *w_t)
+{
+    /* velocity past the surface */
+    SURFACE_PART_OF_VELOCITY_PAST_THE_SURFACE
+    /* slip */
+    const fu_real
+        arm_x = -(n[0]*radius),
+        arm_y = -(n[1]*radius),
+        arm_z = -(n[2]*radius),
+        spin_x = omega[0] - omega_o[0],
+        spin_y = omega[1] - omega_o[1],
+        spin_z = omega[2] - omega_o[2],
+        w_x = -arm_y*spin_z + arm_z*spin_y + past_x,
+        w_y = arm_x*spin_z - arm_z*spin_x + past_y,
+        w_z = -arm_x*spin_y + arm_y*spin_x + past_z;
+    /* derivatives in time */
+    const fu_real
+        dt_arm_y = -(n_t_y*radius),
+        dt_arm_z = -(n_t_z*radius),
+        dt_x_y = v[1] - v_o[1],
+        dt_x_z = v[2] - v_o[2],
+        dt_past_x = a[0] - a_o[0] - alpha_o[1]*x_z + alpha_o[2]*x_y + dt_x_y*omega_o[2] - dt_x_z*omega_o[1],
+        dt_spin_y = alpha[1] - alpha_o[1],
+        dt_spin_z = alpha[2] - alpha_o[2],
+        dt_w_x = -arm_y*dt_spin_z + arm_z*dt_spin_y - dt_arm_y*spin_z + dt_arm_z*spin_y + dt_past_x,
+        dt_arm_x = -(n_t_x*radius),
+        dt_x_x = v[0] - v_o[0],
+        dt_past_y = a[1] - a_o[1] + alpha_o[0]*x_z - alpha_o[2]*x_x - dt_x_x*omega_o[2] + dt_x_z*omega_o[0],
+        dt_spin_x = alpha[0] - alpha_o[0],
+        dt_w_y = arm_x*dt_spin_z - arm_z*dt_spin_x + dt_arm_x*spin_z - dt_arm_z*spin_x + dt_past_y,
+        dt_past_z = a[2] - a_o[2] - alpha_o[0]*x_y + alpha_o[1]*x_x + dt_x_x*omega_o[1] - dt_x_y*omega_o[0],
+        dt_w_z = -arm_x*dt_spin_y + arm_y*dt_spin_x - dt_arm_x*spin_y + dt_arm_y*spin_x + dt_past_z;
+    /* outputs */
+    w[0] = w_x;
+    w[1] = w_y;
+    w[2] = w_z;
+    w_t[0] = dt_w_x;
+    w_t[1] = dt_w_y;
+    w_t[2] = dt_w_z;
 }

@@ -30,7 +30,7 @@ HEIGHTS = {2: ("h", "h_1", "h_11", "h_111"),
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
     return [*(make(dim) for make in (flat, rounded, terrain)), push(dim, hertz=False), push(dim, hertz=True),
-            *(make(dim) for make in (pressing, sticking, sliding, motion))]
+            *(make(dim) for make in (pressing, sticking, sliding, motion, slip))]
 
 
 def _program(dim: int, name: str, doc: str) -> Program:
@@ -232,24 +232,29 @@ class _Passing:
         self.H = p.input("H", (dim, dim), "1/m", "its second derivative")
         self.r, self.v, self.a = self._moving("", dim, "the point")
         self.r_o, self.v_o, self.a_o = self._moving("_o", dim, "the surface's origin")
-        self.omega = p.input("omega", TURNS[dim], "rad/s", "angular velocity of the surface, global axes")
-        self.alpha = p.input("alpha", TURNS[dim], "rad/s^2", "its rate at zero accelerations")
+        self.omega_o, self.alpha_o = self.turning("_o", dim, "the surface")
         p.stage("velocity past the surface")
         self.x = p.vector("x", self.r - self.r_o)
-        self.past = p.vector("past", self.v - self.v_o - cross(self.omega, self.x))
-        self.n_t = p.vector("n_t", cross(self.omega, self.n) + self.H @ self.past)
+        self.past = p.vector("past", self.v - self.v_o - cross(self.omega_o, self.x))
+        self.n_t = p.vector("n_t", cross(self.omega_o, self.n) + self.H @ self.past)
 
     def _moving(self, tag: str, dim: int, what: str) -> list[np.ndarray]:
         p = self.program
         return [p.input(f"r{tag}", dim, "m", f"position of {what}"), p.input(f"v{tag}", dim, "m/s", "its velocity"),
                 p.input(f"a{tag}", dim, "m/s^2", "its acceleration at zero accelerations of the coordinates")]
 
-    def in_time(self, more: dict | None = None) -> DirectionalDerivative:
-        """Return the derivative in time."""
+    def turning(self, tag: str, dim: int, what: str) -> list[np.ndarray]:
+        """Declare the angular velocity and acceleration of a body and return them."""
+        p = self.program
+        return [p.input(f"omega{tag}", TURNS[dim], "rad/s", f"angular velocity of {what}, global axes"),
+                p.input(f"alpha{tag}", TURNS[dim], "rad/s^2", "its rate at zero accelerations of the coordinates")]
+
+    def in_time(self, *more: tuple[np.ndarray, np.ndarray]) -> DirectionalDerivative:
+        """Return the derivative in time; more: further inputs with their rates."""
         pairs = ((self.r, self.v), (self.v, self.a), (self.r_o, self.v_o), (self.v_o, self.a_o),
-                 (self.omega, self.alpha), (self.n, self.n_t))
-        on = {symbol: rate for of, by in pairs for symbol, rate in zip(of, by, strict=True)}
-        return DirectionalDerivative(self.program, "dt", on | (more or {}))
+                 (self.omega_o, self.alpha_o), (self.n, self.n_t))
+        on = {symbol: rate for of, by in (*pairs, *more) for symbol, rate in zip(of, by, strict=True)}
+        return DirectionalDerivative(self.program, "dt", on)
 
 
 def motion(dim: int) -> Program:
@@ -260,4 +265,19 @@ def motion(dim: int) -> Program:
     p.stage("derivatives in time")
     p.output("g_t", g_t, "m/s", "rate of the distance")
     p.output("g_tt", of.in_time()(g_t), "m/s^2", "its second rate at zero accelerations of the coordinates")
+    return p
+
+
+def slip(dim: int) -> Program:
+    """Return the kernel of the slip of a sphere past the surface where it touches, and its rate."""
+    p = _program(dim, "slip", "velocity past a moving surface of the particle of a sphere that touches it")
+    of = _Passing(p, dim)
+    radius = p.input("radius", (), "m", "radius of the sphere about the point")
+    omega, alpha = of.turning("", dim, "the sphere")
+    p.stage("slip")
+    arm = p.vector("arm", -radius * of.n)
+    w = p.vector("w", of.past + cross(p.vector("spin", omega - of.omega_o), arm))
+    p.stage("derivatives in time")
+    p.output("w", w, "m/s", "velocity of the particle past that of the surface")
+    p.output("w_t", of.in_time((omega, alpha)).array(w), "m/s^2", "its rate at zero accelerations of the coordinates")
     return p

@@ -363,6 +363,22 @@ def test_a_box_in_the_plane_goes_as_in_space(integrator):
     assert np.abs(ends[1] - ends[0]).max() < 1e-4
 
 
+@pytest.mark.parametrize("integrator", WITH_FRICTION)
+def test_a_ball_that_spins_on_a_table_that_tilts_has_the_acceleration_of_its_velocity(integrator):
+    """Where it sticks, the normal turns with the table and takes the particle that touches along."""
+    scene = fu.Scene(gravity=(0, -G, 0))
+    scene.rigid_body("table", mass=4.0, inertia=(1, 1, 1), position=(0, 0, 0), angular_velocity=(0.3, 0.4, -0.2))
+    scene.joint("spherical", (0, 0, 0), ("table", (0, 0, 0)), name="pivot")
+    scene.surface("top", fu.Plane(), on="table")
+    scene.rigid_body("ball", mass=1.0, inertia=(0.004,) * 3, position=(0.2, 0.1, 0.1), velocity=(0.04, 0, -0.08),
+                     angular_velocity=(0.3, 9.0, -0.2))
+    scene.contact("ball", "top", name="foot", restitution=0.0, friction=5.0, radius=0.1)
+    run = scene.run(duration=0.1, output_step=0.002, integrator=integrator, step=0.001)
+    rate = (run["ball.velocity"][2:] - run["ball.velocity"][:-2]) / 0.004
+    assert run["foot.touching"][-1] == 1
+    assert np.abs(rate - run["ball.acceleration"][1:-1])[10:].max() < 1e-4
+
+
 def test_a_scene_file_has_it_and_a_run_goes_on_from_its_state(tmp_path):
     scene = ball(friction=0.1, velocity=(1, 0, 0))
     path = tmp_path / "ball.toml"

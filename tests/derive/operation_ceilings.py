@@ -249,7 +249,7 @@ CEILINGS = {
     "planar_crossing": {"closest": 12, "contact": 59, "force": 309, "motion": 24, "stretch": 97, "sticking": 523,
                         "sliding": 324, "step": 101},
     "surface": {"flat": 5, "rounded": 61, "terrain": 116, "push": 12, "push_hertz": 29, "pressing": 90, "sticking": 185,
-                "sliding": 468, "motion": 91},
+                "sliding": 468, "motion": 91, "slip": 123},
     "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "pressing": 40,
-                       "sticking": 89, "sliding": 170, "motion": 40},
+                       "sticking": 89, "sliding": 170, "motion": 40, "slip": 48},
 }

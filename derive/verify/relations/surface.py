@@ -121,7 +121,7 @@ def _motions(dim: int) -> list[Relation]:
     """Return those of rates: the distance is that of its series of second order, along axes turned by quaternions."""
     def place(k: Any, s: Any, t: Any) -> tuple[Any, Any]:
         """Return the surface's axes and how far the point has moved along them."""
-        axes = turned_axes(k, t * s["omega"] + t * t / 2 * s["alpha"], np.eye(dim, dtype=int))
+        axes = turned_axes(k, t * s["omega_o"] + t * t / 2 * s["alpha_o"], np.eye(dim, dtype=int))
         x = s["r"] - s["r_o"]
         return axes, axes.T.dot(x + t * (s["v"] - s["v_o"]) + t * t / 2 * (s["a"] - s["a_o"])) - x
 
@@ -129,5 +129,21 @@ def _motions(dim: int) -> list[Relation]:
         _, move = place(k, s, t)
         return s["n"].dot(move) + move.dot(s["H"].dot(move)) / 2
 
-    return [Relation("motion", "g_t", "dg/dt of the series", 1, distance),
+    def slips(k: Any, s: Any, t: Any, j: int) -> Any:
+        """Return the slip of the moved point. The normal is that of the series and turns with the surface."""
+        axes, move = place(k, s, t)
+        moved = {f"{x}{tag}": s[f"{x}{tag}"] + t * s[f"{rate}{tag}"] for tag in ("", "_o")
+                 for x, rate in (("r", "v"), ("v", "a"), ("omega", "alpha"))}
+        return k("slip", s, n=axes.dot(s["n"] + s["H"].dot(move)), **moved)["w"]
+
+    def slip_of_particles(k: Any, s: Any, t: Any, j: int) -> Any:
+        """Return the way of the sphere's particle less that of the surface's, both at the place of contact now."""
+        arm = -s["radius"] * s["n"]
+        place_o = s["r"] - s["r_o"] + arm
+        axes, axes_o = (turned_axes(k, t * s[name], np.eye(dim, dtype=int)) for name in ("omega", "omega_o"))
+        return t * (s["v"] - s["v_o"]) + axes.dot(arm) - axes_o.dot(place_o)
+
+    return [Relation("slip", "w", "d/dt of both particles' ways", 1, slip_of_particles),
+            Relation("slip", "w_t", "dw/dt at zero accelerations", 1, slips),
+            Relation("motion", "g_t", "dg/dt of the series", 1, distance),
             Relation("motion", "g_tt", "d²g/dt² of the series at zero accelerations", 2, distance)]

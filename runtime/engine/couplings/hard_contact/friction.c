@@ -50,28 +50,15 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
 {
     const int dim = model->dim;
     fu_attachment_state point, on;
-    double r[3], x[3] = {0.0}, x_rate[3] = {0.0}, lever_rate[3] = {0.0}, v[3], centre[3] = {0.0};
-    double P[3 * FU_ATTACHMENT_COORDINATES], Q[3 * FU_ATTACHMENT_COORDINATES], omega[3], turning[3], own[3], bias[3];
+    double r[3] = {0.0}, bias[3], P[3 * FU_ATTACHMENT_COORDINATES], Q[3 * FU_ATTACHMENT_COORDINATES];
     fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT | FU_AXES, &point);
     fu_surface_at(model, &contact->contact.surface, state, &on);
-    fu_surface_past(dim, &on, point.p, point.v, centre);
-    memset(r, 0, sizeof r);
-    for (int d = 0; d < dim; ++d) {
-        x[d] = -contact->contact.radius * row->normal[d];
-        x_rate[d] = -contact->contact.radius * fu_dot(dim, row->curvature + d * dim, centre);
-        r[d] = point.p[d] + x[d];
-        lever_rate[d] = point.v[d] + x_rate[d] - on.v[d];
-    }
+    for (int d = 0; d < dim; ++d) r[d] = point.p[d] - contact->contact.radius * row->normal[d];
     fu_surface_motion(dim, &point, r, P);
-    fu_surface_velocity(dim, &point, r, v);
     fu_surface_motion(dim, &on, r, Q);
-    fu_turn_in_space(dim, point.omega, omega);
-    fu_cross(omega, x_rate, turning);
-    fu_turn_in_space(dim, on.omega, omega);
-    fu_cross(omega, lever_rate, own);
     memset(out->past, 0, sizeof out->past);
-    fu_surface_past(dim, &on, r, v, out->past);
-    for (int d = 0; d < dim; ++d) bias[d] = point.bias[d] + turning[d] - (on.bias[d] + own[d]);
+    contact->contact.surface.kernel->slip(row->normal, row->curvature, point.p, point.v, point.bias, on.p, on.v, on.bias, on.omega,
+                                          on.alpha, contact->contact.radius, point.omega, point.alpha, out->past, bias);
     const double along = fu_dot(dim, out->past, row->normal);
     for (int d = 0; d < dim; ++d) out->past[d] -= along * row->normal[d];
     across(dim, row->normal, out->t);
