@@ -199,21 +199,21 @@ cdef class Engine(Report):
 
     def _watch(self, watches):
         """Watch for these, and after them for what couplings do by themselves."""
-        kinds = {"q": FU_WATCH_Q, "v": FU_WATCH_V, "s": FU_WATCH_S, "s_rate": FU_WATCH_RATE,
-                 "traction": FU_WATCH_OUTPUT, "function": FU_WATCH_CALL}
-        cdef int i, n = len(watches), own = fu_coupling_watches(&self.model, NULL)
+        kinds = {"q": FU_EVENT_OF_Q, "v": FU_EVENT_OF_V, "s": FU_EVENT_OF_S, "s_rate": FU_EVENT_OF_RATE,
+                 "traction": FU_EVENT_OF_OUTPUT, "function": FU_EVENT_OF_CALL}
+        cdef int i, n = len(watches), own = fu_coupling_event_functions(&self.model, NULL)
         PyMem_Free(self.watches)
-        self.watches = <fu_watch *>PyMem_Calloc(n + own + 1, sizeof(fu_watch))
+        self.watches = <fu_event_function *>PyMem_Calloc(n + own + 1, sizeof(fu_event_function))
         if not self.watches:
             raise MemoryError
         for i, watch in enumerate(watches):
             w = &self.watches[i]
             w.kind, w.index, w.direction, w.value = kinds[watch.kind], watch.index, watch.direction, watch.value
-            if w.kind == FU_WATCH_OUTPUT:
+            if w.kind == FU_EVENT_OF_OUTPUT:
                 w.which = OUTPUTS["slide"][watch.kind].first
-            elif w.kind == FU_WATCH_S:
+            elif w.kind == FU_EVENT_OF_S:
                 w.index = self.couplings[watch.index].coordinate
-        fu_coupling_watches(&self.model, self.watches + n)
+        fu_coupling_event_functions(&self.model, self.watches + n)
         run = &self.run
         run.n_watches, run.watches = n + own, self.watches
         run.watched, run.late = self._zeros(run.n_watches), self._int_zeros(run.n_watches)
@@ -225,7 +225,7 @@ cdef class Engine(Report):
     def _knots(self, times, jumps):
         """Let steps end at these instants."""
         PyMem_Free(self.knots)
-        self.knots = <fu_knot *>PyMem_Calloc(len(times) + 1, sizeof(fu_knot))
+        self.knots = <fu_breakpoint *>PyMem_Calloc(len(times) + 1, sizeof(fu_breakpoint))
         if not self.knots:
             raise MemoryError
         for i, (time, jump) in enumerate(zip(times, jumps, strict=True)):
@@ -302,12 +302,12 @@ cdef class Engine(Report):
                         stream.pause()
                 if stream is not None:
                     stream.between()
-                if status == FU_EVENT and run.event.kind in (FU_ACTED, FU_PASSED, FU_GAVE_WAY):
+                if status == FU_EVENT and run.event.kind in (FU_ACTED, FU_DEFERRED, FU_WENT_SLACK):
                     self._tell()
                     status = FU_RUNNING
                 if status == FU_EVENT:
                     if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):
-                        while fu_take_passage(run):  # of the step that ended there
+                        while fu_take_deferred(run):  # of the step that ended there
                             self._tell()
                         with nogil:
                             status = fu_stop(run)
@@ -328,12 +328,12 @@ cdef class Engine(Report):
         event = self.run.event
         if self.watcher is None:
             return
-        if event.kind == FU_GAVE_WAY:
+        if event.kind == FU_WENT_SLACK:
             self.watcher.gives_way(event.which, event.what.decode(), self.run.event_time, event.side)
             return
         c = self.couplings[event.which]
         s = self._view(&self.run.now, "s")[c.coordinate] if c.n_coordinates else None
-        self.watcher.acts(c.number, event.what.decode(), self.run.event_time, event.kind == FU_PASSED, s)
+        self.watcher.acts(c.number, event.what.decode(), self.run.event_time, event.kind == FU_DEFERRED, s)
 
     def rows(self):
         """Recorded arrays by name, cut to the rows that are in them."""
@@ -416,12 +416,12 @@ cdef class Engine(Report):
 
         Returned: the force on it (points, 3), that on its slope (points, 3), and the mass added (points, dim, dim).
         """
-        found = np.zeros((points, FU_INERTIA_DENSITIES))
+        found = np.zeros((points, FU_ADDED_MASS_DENSITIES))
         cdef double[:, ::1] out = found
         cdef int dim = self.model.dim
         self.set_state(t, q=q)
         self._view(&self.run.next, "v")[:] = v
-        fu_fluid_inertia_densities(&self.model, self.couplings[<int>self._of("drag")[drag]], &self.run.next, &out[0, 0])
+        fu_added_mass_densities(&self.model, self.couplings[<int>self._of("drag")[drag]], &self.run.next, &out[0, 0])
         return found[:, :3], found[:, 3:6], found[:, 6:6 + dim * dim].reshape(points, dim, dim)
 
     def static_outputs(self, str kind):

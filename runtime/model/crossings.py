@@ -20,7 +20,7 @@ LEAST_PENETRATION = 1e-30
 """m: what the size of a penetration is not below under a root."""
 
 GRIP_NUMBERS = 30
-"""That a state keeps of friction that sticks: FU_CROSSING_GRIP of engine/couplings/crossing/crossing.h."""
+"""That a state keeps of friction that sticks: FU_CROSSING_STICK of engine/couplings/crossing/crossing.h."""
 KERNELS = {2: "planar_crossing", 3: "crossing"}
 
 

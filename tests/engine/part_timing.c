@@ -14,7 +14,7 @@ double scripted_clock(void)
     return now;
 }
 
-double *fu_own(fu_run *run)
+double *fu_internal_unknowns(fu_run *run)
 {
     (void)run;
     return 0;

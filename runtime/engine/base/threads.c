@@ -12,7 +12,7 @@
 #include "base/threads.h"
 #include "base/underflow.h"
 
-#define WORTH_WHILE 1500 /* dofs: work on fewer takes as long to share as to do */
+#define MIN_SHARED_DOFS 1500 /* dofs: work on fewer takes as long to share as to do */
 
 /* Does what fu_part_of does, for several parts. */
 fu_range fu_one_of_parts(int n, int unit, int part, int parts)
@@ -213,7 +213,7 @@ void fu_threads_end(fu_threads *all)
 /* Does what fu_share does, where there are threads. */
 int fu_share_among(fu_threads *all, int dofs, fu_work function, const void *what)
 {
-    if (all->n == 1 || dofs < WORTH_WHILE || all->forks != forks) {
+    if (all->n == 1 || dofs < MIN_SHARED_DOFS || all->forks != forks) {
         function(what, 0, 1);
         return 1;
     }

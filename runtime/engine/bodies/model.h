@@ -27,8 +27,8 @@ struct fu_model {
     const fu_slide *slides; /* those of the couplings, one behind the other; null where there are none */
     const fu_coupling *const *couplings; /* all of them: loads, slides, joints, springs */
     /* Those of them that are more than a contact (fu_acts_alone); those that carry something along with a step. */
-    const fu_coupling **others, **carrying;
-    int n_others, n_carrying, n_pairs; /* n_pairs: couplings that have a clearance */
+    const fu_coupling **always_active, **with_history;
+    int n_always_active, n_with_history, n_pairs; /* n_pairs: couplings that have a clearance */
     fu_proximity *proximity;              /* which of these are far; null: it is not known */
     const fu_motion *motions;
     const fu_signal *signals;

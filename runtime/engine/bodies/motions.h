@@ -19,7 +19,7 @@ enum { FU_HIGHER_JUMPS, FU_ACCELERATION_JUMPS, FU_RATE_JUMPS };
 typedef struct {
     double t;
     int jumps;
-} fu_knot;
+} fu_breakpoint;
 
 /* A dof that follows signals: q = base + linear f + cosine cos f + sine sin f */
 typedef struct {

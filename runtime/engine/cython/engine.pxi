@@ -78,7 +78,7 @@ cdef extern from * nogil:
     int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING, FU_NOT_KNOWN
-    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_OUTPUT, FU_WATCH_CALL, FU_ACTED, FU_PASSED, FU_GAVE_WAY
+    int FU_EVENT_OF_Q, FU_EVENT_OF_V, FU_EVENT_OF_S, FU_EVENT_OF_RATE, FU_EVENT_OF_OUTPUT, FU_EVENT_OF_CALL, FU_ACTED, FU_DEFERRED, FU_WENT_SLACK
     int FU_INTEGER, FU_REAL, FU_LENGTH, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_MODAL_POINT, FU_INTEGERS, FU_REALS
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
     int FU_BAND_MORE(int width)
@@ -168,9 +168,9 @@ cdef extern from * nogil:
         const fu_coupling_type *type
         int index, number, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
     void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
-    int FU_INERTIA_DENSITIES, FU_DRAG_DENSITIES, FU_DRAG_POINTS
+    int FU_ADDED_MASS_DENSITIES, FU_DRAG_DENSITIES, FU_DRAG_POINTS
     int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
-    void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+    void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
     const fu_coupling_type *fu_coupling_type_of(const char *name)
     const fu_coupling_type *fu_coupling_type_at(size_t k)
     int fu_n_outputs(const fu_coupling_type *type)
@@ -184,7 +184,7 @@ cdef extern from * nogil:
         const double *breaks
         const double *coefficients
         double amplitude, angular_frequency, phase
-    ctypedef struct fu_knot:
+    ctypedef struct fu_breakpoint:
         double t
         int jumps
     ctypedef struct fu_motion:
@@ -204,7 +204,7 @@ cdef extern from * nogil:
         int first, end
     ctypedef struct fu_strip:
         int k, chain, at, x
-    ctypedef struct fu_piece:
+    ctypedef struct fu_matrix_block:
         int k, strip
         fu_span rows
     ctypedef struct fu_fronts:
@@ -255,8 +255,8 @@ cdef extern from * nogil:
         double *X
         fu_span *span_B
         fu_span *span_C
-        fu_piece *columns
-        fu_piece *rows
+        fu_matrix_block *columns
+        fu_matrix_block *rows
         int *pivot_band
         int *pivot_border
         double *inverse
@@ -316,7 +316,7 @@ cdef extern from * nogil:
         long evaluated
     ctypedef struct fu_joint_output:
         double residual
-    ctypedef struct fu_watch:
+    ctypedef struct fu_event_function:
         int kind, index, which, direction
         double value
     ctypedef struct fu_slackness:
@@ -346,7 +346,7 @@ cdef extern from * nogil:
         double retry_factor, error_overestimate
         double *scratch
         int n_watches
-        const fu_watch *watches
+        const fu_event_function *watches
         double *watched
         double *watch_work
         int *late
@@ -360,7 +360,7 @@ cdef extern from * nogil:
         fu_event event
         double event_time
         int n_knots
-        const fu_knot *knots
+        const fu_breakpoint *knots
         long most_evaluations
         double duration, output_step, fixed_step, tol, absolute_tol
         const double *controlled
@@ -399,13 +399,13 @@ cdef extern from * nogil:
     void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model)
     size_t fu_proximity_size(const fu_model *model, int n_watches)
     void fu_proximity_place(fu_model *model, int n_watches, void *memory)
-    int fu_coupling_watches(const fu_model *model, fu_watch *out)
+    int fu_coupling_event_functions(const fu_model *model, fu_event_function *out)
     double fu_elastic_energy(const fu_model *model, const fu_state *state)
     void fu_reset(const fu_model *model, fu_state *state)
-    void fu_find_pieces(const fu_model *model, fu_state *state)
+    void fu_find_path_segments(const fu_model *model, fu_state *state)
     void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
     double fu_beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
-    void fu_touch(const fu_model *model, fu_state *state)
+    void fu_detect_contact(const fu_model *model, fu_state *state)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)
     int fu_prepare(fu_run *run)
@@ -427,5 +427,5 @@ cdef extern from * nogil:
     long fu_save(const fu_run *run, char *bytes)
     int fu_restore(fu_run *run, const char *bytes, int rows)
     int fu_stop(fu_run *run)
-    int fu_take_passage(fu_run *run)
+    int fu_take_deferred(fu_run *run)
     void fu_part_timing(fu_run *run, double *seconds)

@@ -88,14 +88,14 @@ cdef class Statics(Translation):
             fu_prescribe(&self.model, state)
         self._rest(state)
         self._view(state, "s")[:] = self._view(&self.run.now, "s") if s is None else s
-        fu_find_pieces(&self.model, state)
+        fu_find_path_segments(&self.model, state)
         forces = self._view(state, "forces")
         for i in range(self.model.n_couplings):
             c = self.couplings[i]
             values = given.get(self._kind(c))
             for k in range(c.n_forces):
                 forces[c.force + k] = 0.0 if values is None or k >= values.shape[1] else values[c.index][k]
-        fu_touch(&self.model, state)
+        fu_detect_contact(&self.model, state)
 
     cdef _rest(self, fu_state *state):
         self._view(state, "v")[:] = 0.0

@@ -19,10 +19,10 @@ cdef class Translation(Arrays):
     cdef fu_shape *shapes
     cdef fu_motion *motions
     cdef fu_signal *signals
-    cdef fu_knot *knots
+    cdef fu_breakpoint *knots
     cdef fu_coupling **couplings  # in the order in which the engine adds up what they give
     cdef char *coupling_memory  # their structures, one behind the other
-    cdef fu_watch *watches
+    cdef fu_event_function *watches
     cdef fu_model model
     cdef fu_run run
     cdef fu_fronts newton_fronts, mass_fronts
@@ -298,7 +298,7 @@ cdef class Translation(Arrays):
         system.B, system.C = self._zeros(system.n_strip_rows), self._zeros(system.n_strip_rows)
         system.X = self._zeros(self._counted(ends_of_x[-1] if n else 0))
         system.span_B, system.span_C = <fu_span *>self._int_zeros(2 * 2 * n), <fu_span *>self._int_zeros(2 * 2 * n)
-        system.columns, system.rows = <fu_piece *>self._int_zeros(4 * 2 * n), <fu_piece *>self._int_zeros(4 * 2 * n)
+        system.columns, system.rows = <fu_matrix_block *>self._int_zeros(4 * 2 * n), <fu_matrix_block *>self._int_zeros(4 * 2 * n)
         system.way = self._int_zeros(chains)
         system.n_columns, system.n_rows = self._int_zeros(chains), self._int_zeros(chains)
         system.constant_columns, system.constant_rows = self._int_zeros(chains), self._int_zeros(chains)

@@ -8,17 +8,17 @@
 #include <math.h>
 #include <string.h>
 
-#define MOST_SWEEPS 100 /* over the couplings whose forces depend on multipliers, before there is no solution */
-#define SETTLED 1e-15   /* change of R by a sweep, over the force: one that is rounding */
-#define NEARLY 1e-7     /* the same, where it is enough if a sweep changes R no less than the one before */
+#define MAX_SWEEPS 100 /* over the couplings whose forces depend on multipliers, before there is no solution */
+#define ROUNDING_OF_FORCE 1e-15   /* change of R by a sweep, over the force: one that is rounding */
+#define FORCE_TOLERANCE 1e-7     /* the same, where it is enough if a sweep changes R no less than the one before */
 #define DIVERGED 1e30   /* the same, of a sweep that runs away */
 
 /* Makes the constraint rows of all couplings. */
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     ++work->evaluated;
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->row < 0) continue;
         fu_rows *rows = &work->rows[c->row];
         rows->first = c->multiplier;
@@ -126,8 +126,8 @@ static double minus_H(const fu_rows *rows, int c, const double *x)
 static double react(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
     double largest = 0.0;
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (!c->type->reaction) continue;
         const double size = c->type->reaction->update(model, c, state, lambda, work);
         if (size == 0.0 || size <= largest) continue;
@@ -139,8 +139,8 @@ static double react(const fu_model *model, const fu_state *state, fu_accelerator
 
 static void reacted(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->type->reaction) c->type->reaction->accept(model, c, state, lambda, work);
     }
 }
@@ -160,8 +160,8 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
         solve(model, work, work->work, acceleration);
         if (!model->n_reacting) return 0;
         const double change = react(model, state, work, lambda);
-        if (change <= SETTLED || (change <= NEARLY && change >= last)) break;
-        if (!(change < DIVERGED) || sweep == MOST_SWEEPS) return 1;
+        if (change <= ROUNDING_OF_FORCE || (change <= FORCE_TOLERANCE && change >= last)) break;
+        if (!(change < DIVERGED) || sweep == MAX_SWEEPS) return 1;
         last = change;
     }
     work->self_locking = -1;

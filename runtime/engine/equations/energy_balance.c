@@ -10,7 +10,7 @@
 #define MOST_GROWTH 0.5    /* of the energy exchanged, or of motion: beyond it the result is none */
 #define BEGUN 1e-4         /* of the size of the scene: with less motion it has not begun */
 #define LEAST_MOTION 1e-10 /* of the largest coordinate: less is what step control and rounding leave of rest */
-#define ROUNDING 1e-14     /* of the energies: what a sum over many elements may be off by */
+#define ROUNDING_OF_ENERGY 1e-14     /* of the energies: what a sum over many elements may be off by */
 
 /* Returns the power of what drives constraints, by the multipliers that eq 38 left, W. */
 static double driving_power(const fu_run *run)
@@ -120,7 +120,7 @@ static double rounding(const fu_run *run, const double energies[FU_ENERGIES])
     double sum = 0.0, weight = 0.0;
     for (int k = 0; k < FU_ENERGIES; ++k) sum += fabs(energies[k]);
     for (int i = 0; i < run->model->n_dof; ++i) weight += fabs(run->model->gravity[i]);
-    return ROUNDING * (sum + weight * run->extent);
+    return ROUNDING_OF_ENERGY * (sum + weight * run->extent);
 }
 
 /* Compares the energies at an output with the first: kinetic, elastic, potential, dissipated, and minus external energy. Returns

@@ -27,7 +27,7 @@ void fu_residual(fu_run *run, const fu_equations *at)
         for (int i = 0; i < model->n_dof; ++i) run->force[i] = 0.0;
     fu_internal_forces(model, next->q, next->v, run->force);
     fu_external_forces(model, next->t, next->q, run->force);
-    fu_coupling_residuals(model, at, run->force, fu_own(run));
+    fu_coupling_residuals(model, at, run->force, fu_internal_unknowns(run));
     fu_scale_residual(run, at->weights.stiffness);
     run->statistics.time_residual += fu_clock() - begin;
 }
@@ -84,7 +84,7 @@ void fu_static_move(fu_run *run, const double *change)
     fu_spread(model, run->rhs, run->work);
     fu_move(model, run->next.q, run->work);
     fu_add_solution(run, 0.0, 1.0);
-    fu_touch(model, &run->next);
+    fu_detect_contact(model, &run->next);
 }
 
 /* Makes run->rhs of statics: minus the sum of forces, and the residuals of constraints. */

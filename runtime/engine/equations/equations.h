@@ -5,7 +5,7 @@
 #include "couplings/common/coupling.h"
 
 /* The unknowns beyond the dofs in run->rhs. */
-double *fu_own(fu_run *run);
+double *fu_internal_unknowns(fu_run *run);
 void fu_scale_residual(fu_run *run, double scale);
 void fu_residual(fu_run *run, const fu_equations *at);
 void fu_matrix(fu_run *run, const fu_equations *at);

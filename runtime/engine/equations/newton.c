@@ -10,9 +10,9 @@
 
 #define STAGNANT 0.3          /* increments that shrink less than to this, at the size of rounding, are rounding */
 #define FIRST_CONTRACTION 0.5 /* assumed before there are two increments: too large to stop after one iteration */
-#define SLOWEST 0.9           /* largest contraction by which the rest of the error is estimated */
-#define QUICK 0.03            /* least contraction by which it is: first iterations mend what is linear, the next are slower */
-#define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is not rounding */
+#define MAX_CONTRACTION 0.9           /* largest contraction by which the rest of the error is estimated */
+#define MIN_CONTRACTION 0.03            /* least contraction by which it is: first iterations mend what is linear, the next are slower */
+#define ROUNDING_FACTOR 100.0 /* times the rounding of positions: an increment that is not rounding */
 #define MATRIX_COST 2.0       /* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
 #define UNDERESTIMATE 10.0    /* how many times less an increment may shrink than its residual, which counts stiffness more */
 #define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
@@ -50,7 +50,7 @@ double fu_spread_size(fu_run *run)
 }
 
 /* Predicts what an integrator does not predict otherwise: time, and the couplings' part of `next`. */
-void fu_predict_own(fu_run *run, double h)
+void fu_predict_internal(fu_run *run, double h)
 {
     const fu_model *model = run->model;
     run->next.t = run->now.t + h;
@@ -62,11 +62,11 @@ void fu_predict_own(fu_run *run, double h)
 static int blame(fu_run *run)
 {
     const fu_model *model = run->model;
-    const double *own = fu_own(run);
+    const double *own = fu_internal_unknowns(run);
     double largest = fu_size(model, run->work);
     int coupling = -1;
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         for (int i = 0; c->n_coordinates && i < c->n_coordinates + c->n_forces; ++i) {
             const double size = fabs(own[c->unknown + i]);
             if (!(size > largest)) continue;
@@ -90,10 +90,10 @@ static void count_for_matrix(fu_run *run, int iterations, int most)
 static double largest_gap(fu_run *run)
 {
     const fu_model *model = run->model;
-    const double *own = fu_own(run);
+    const double *own = fu_internal_unknowns(run);
     double gap = 0.0;
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         for (int i = 0; i < c->n_forces; ++i)
             gap = fmax(gap, fabs(own[c->unknown + c->n_coordinates + i]) / c->scale[i]);
     }
@@ -120,7 +120,7 @@ static int leaves_nothing(const fu_run *run, const fu_newton *method, double siz
 {
     if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance) return 1;
     if (method->to_rounding) return size <= run->round_off && ratio > STAGNANT;
-    return size <= run->round_off || (ratio >= 1.0 && size <= BEYOND_ROUNDING * run->round_off);
+    return size <= run->round_off || (ratio >= 1.0 && size <= ROUNDING_FACTOR * run->round_off);
 }
 
 /* Iterates from the prediction with the matrix at hand; returns 0 where that converged. */
@@ -139,8 +139,8 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         if (!(size < FU_RUNS_AWAY)) return blame(run);
         if (i > 0) {
             ratio = size / last;
-            if (ratio >= 1.0 && size > BEYOND_ROUNDING * run->round_off) return blame(run);
-            run->contraction = ratio < QUICK ? QUICK : ratio > SLOWEST ? SLOWEST : ratio;
+            if (ratio >= 1.0 && size > ROUNDING_FACTOR * run->round_off) return blame(run);
+            run->contraction = ratio < MIN_CONTRACTION ? MIN_CONTRACTION : ratio > MAX_CONTRACTION ? MAX_CONTRACTION : ratio;
         }
         if (leaves_nothing(run, method, size, ratio)) {
             method->kinematics(run, h);
@@ -152,7 +152,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         method->kinematics(run, h);
         close_gaps(run, method, h);
     }
-    if (last > BEYOND_ROUNDING * run->round_off) return blame(run);
+    if (last > ROUNDING_FACTOR * run->round_off) return blame(run);
     run->factored = 0; /* rounding: long chains of joints make more of it than one position has */
     return 0;
 }
@@ -166,7 +166,7 @@ typedef struct {
 static residual_size size_of_residual(fu_run *run)
 {
     const fu_model *model = run->model;
-    const double *own = fu_own(run);
+    const double *own = fu_internal_unknowns(run);
     residual_size size = {0.0, 0.0, 0.0};
     for (int i = 0; i < model->n_band + model->n_border_dof; ++i) size.motion += run->rhs[i] * run->rhs[i];
     size.motion = sqrt(size.motion);
@@ -203,10 +203,10 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
         const double begin = fu_clock();
         fu_system_solve(&run->newton, run->model->lapack, run->rhs);
         run->statistics.time_solve += fu_clock() - begin;
-        const double size = method->apply(run, h), ratio = fmin(fmax(size / last, QUICK), SLOWEST);
+        const double size = method->apply(run, h), ratio = fmin(fmax(size / last, MIN_CONTRACTION), MAX_CONTRACTION);
         ++run->statistics.newton_iterations;
         if (!(size < FU_RUNS_AWAY)) return blame(run);
-        if (size >= last && size > BEYOND_ROUNDING * run->round_off) return blame(run);
+        if (size >= last && size > ROUNDING_FACTOR * run->round_off) return blame(run);
         method->kinematics(run, h);
         method->residual(run, h);
         const residual_size after = size_of_residual(run);
@@ -220,7 +220,7 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
         last = size;
         before = after;
     }
-    if (last > BEYOND_ROUNDING * run->round_off) return blame(run);
+    if (last > ROUNDING_FACTOR * run->round_off) return blame(run);
     method->note_rest(run, h); /* rounding: long chains of joints make more of it than one position has */
     run->factored = 0;
     return 0;

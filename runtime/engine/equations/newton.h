@@ -30,7 +30,7 @@ void fu_linearise(fu_run *run, double h, const double *change);
 int fu_goes_on(const fu_run *run);
 int fu_carries_rest(const fu_run *run);
 int fu_newton_step(fu_run *run, const fu_newton *method, double h);
-void fu_predict_own(fu_run *run, double h);
+void fu_predict_internal(fu_run *run, double h);
 void fu_add_solution(fu_run *run, double inertia, double scale);
 double fu_spread_size(fu_run *run);
 double fu_filtered_size(fu_run *run);

@@ -5,9 +5,9 @@
 
 #include <math.h>
 
-#define COARSE 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
+#define COARSE_ERROR 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
 
-double *fu_own(fu_run *run)
+double *fu_internal_unknowns(fu_run *run)
 {
     return run->rhs + run->model->n_band + run->model->n_border_dof;
 }
@@ -15,14 +15,14 @@ double *fu_own(fu_run *run)
 /* Adds the solution in run->rhs to the couplings' own coordinates and forces. */
 void fu_add_solution(fu_run *run, double inertia, double scale)
 {
-    fu_add_own(run->model, &run->next, fu_own(run), inertia, scale);
+    fu_add_internal(run->model, &run->next, fu_internal_unknowns(run), inertia, scale);
 }
 
 /* Returns whether steps go on as they have: those of a fixed size that had to be divided, or are too coarse, do not. */
 int fu_goes_on(const fu_run *run)
 {
     if (run->fixed_step <= 0.0) return 1;
-    return run->net_rejections <= 0 && run->last_error <= COARSE * fmax(run->motion, run->least_motion);
+    return run->net_rejections <= 0 && run->last_error <= COARSE_ERROR * fmax(run->motion, run->least_motion);
 }
 
 /* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to

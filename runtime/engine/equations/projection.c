@@ -13,7 +13,7 @@
 #define MOST_PROJECTIONS 10 /* of positions, each of second order, before a state has no way back onto its joints */
 #define SHORT_STEP 1e-3     /* of the usual step: in a shorter one rounding over h^2 would rule accelerations */
 #define CLOSED 1e-13        /* of the largest length: smaller gaps at the start are rounding */
-#define PROBED 1e-12        /* of the largest length: gaps with which a probed mechanism is back on its joints */
+#define PROBE_TOLERANCE 1e-12        /* of the largest length: gaps with which a probed mechanism is back on its joints */
 
 /* Notes that a coupling's own coordinates do not follow from the others; returns 1. */
 static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
@@ -23,12 +23,12 @@ static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
 
 /* Finds the own coordinates of `next` that follow from the others, from what the last step's slope predicts; returns 0 where they
  * were found. */
-int fu_find_own(fu_run *run)
+int fu_find_internal(fu_run *run)
 {
     fu_state *next = &run->next;
     for (int i = 0; i < run->model->n_coordinates; ++i)
         next->s[i] = run->now.s[i] + (next->t - run->now.t) * run->s_slope[i];
-    const fu_coupling *failed = fu_follow(run->model, next);
+    const fu_coupling *failed = fu_solve_coordinates(run->model, next);
     return failed ? lost(run, next->v, failed) : 0;
 }
 
@@ -54,7 +54,7 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
         const double size = fu_size(model, run->work);
         if (!(size < FU_RUNS_AWAY) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
         fu_move(model, state->q, run->work);
-        const fu_coupling *failed = fu_follow(model, state);
+        const fu_coupling *failed = fu_solve_coordinates(model, state);
         if (failed) return lost(run, state->v, failed);
         if (size <= enough) return 0;
     }
@@ -90,7 +90,7 @@ int fu_probe_mechanism(fu_run *run, const double *along, double *left)
 {
     const fu_model *model = run->model;
     fu_state *next = &run->next;
-    fu_predict_own(run, 0.0);
+    fu_predict_internal(run, 0.0);
     memcpy(next->q, run->now.q, sizeof(double) * (size_t)model->n_q);
     memcpy(next->v, along, sizeof(double) * (size_t)model->n_dof);
     if (fu_project_velocities(model, next, &run->accelerator, run->work)) return 1;
@@ -98,8 +98,8 @@ int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     const double size = fu_size(model, run->work), most = fu_size(model, along);
     for (int i = 0; i < model->n_dof && size > most; ++i) run->work[i] *= most / size;
     fu_move(model, next->q, run->work);
-    if (fu_follow(model, next)) return 1;
-    if (close_gaps(run, next, PROBED * fu_largest_length(run))) return 1;
+    if (fu_solve_coordinates(model, next)) return 1;
+    if (close_gaps(run, next, PROBE_TOLERANCE * fu_largest_length(run))) return 1;
     fu_gaps(model, next, left);
     return 0;
 }
@@ -129,7 +129,7 @@ int fu_coast(fu_run *run, double h)
     const fu_model *model = run->model;
     const fu_state *now = &run->now;
     fu_state *next = &run->next;
-    fu_predict_own(run, h);
+    fu_predict_internal(run, h);
     for (int i = 0; i < model->n_dof; ++i) {
         run->psi[i] = h * (now->v[i] + 0.5 * h * now->acceleration[i]);
         next->v[i] = now->v[i] + h * now->acceleration[i];
@@ -137,7 +137,7 @@ int fu_coast(fu_run *run, double h)
     memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
     fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
-    if (fu_find_own(run) || fu_return_to_joints(run, next)) return 1;
+    if (fu_find_internal(run) || fu_return_to_joints(run, next)) return 1;
     if (fu_complete(run, next)) return fu_fail_eq38(run);
     return 0;
 }

@@ -4,7 +4,7 @@
 
 #include "base/common.h"
 
-int fu_find_own(fu_run *run);
+int fu_find_internal(fu_run *run);
 int fu_close(fu_run *run);
 int fu_return_to_joints(fu_run *run, fu_state *state);
 int fu_probe_mechanism(fu_run *run, const double *along, double *left);

@@ -43,7 +43,7 @@ struct fu_run {
     const double *counted;    /* n_dof: the weight of each in the error, that of what acts on it included */
     double *first;            /* n_q: the configuration at the start */
     int n_knots;
-    const fu_knot *knots;  /* increasing; steps end there */
+    const fu_breakpoint *knots;  /* increasing; steps end there */
     long most_evaluations; /* after which fu_advance returns; 0: after any number */
 
     /* Step: written by the integrators and equations/. */
@@ -56,7 +56,7 @@ struct fu_run {
 
     /* Events: written by events/. */
     int n_watches;
-    const fu_watch *watches; /* the caller's, then those of couplings */
+    const fu_event_function *watches; /* the caller's, then those of couplings */
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
@@ -109,7 +109,7 @@ struct fu_run {
     double acted;        /* s: when a coupling has last changed by itself */
     int acts, stopped_slide;
     int goes_over;       /* the last deferred event that a step led to was gone over */
-    int most_passages;   /* of any stage of a step, of those of other integrators of its end */
+    int most_deferred;   /* of any stage of a step, of those of other integrators of its end */
     int keep_forces;     /* couplings pass nothing in a step, which ends where one of them would */
     int keep_pieces;     /* couplings keep their pieces in a step, which ends where one of them leaves its piece */
 
@@ -124,9 +124,9 @@ static inline double fu_largest_length(const fu_run *run)
 }
 
 /* Returns the coupling whose own a watch is; null where it is another one. */
-static inline const fu_coupling *fu_own_coupling(const fu_run *run, int watch)
+static inline const fu_coupling *fu_event_coupling(const fu_run *run, int watch)
 {
-    return run->watches[watch].kind == FU_WATCH_COUPLING ? run->model->couplings[run->watches[watch].index] : 0;
+    return run->watches[watch].kind == FU_EVENT_OF_COUPLING ? run->model->couplings[run->watches[watch].index] : 0;
 }
 
 #endif

@@ -14,9 +14,9 @@
 #define LARGEST_FACTOR 2.0 /* growth of a step over the one before */
 #define LEAST_FACTOR 0.2   /* of a step that was rejected for its error: what the next is at least */
 #define LEAST_RATIO 1e-12  /* of an error to what is allowed, lest a power of it overflow */
-#define WORTH_WHILE 1.4    /* growth below which a step keeps its size, and its factored matrix */
+#define MIN_GROWTH 1.4    /* growth below which a step keeps its size, and its factored matrix */
 #define AFTER_FAILURE 0.5  /* of a step that could not be made: what the next is */
-#define ROUNDED 1e-9       /* of a number of steps: what rounding may add to it */
+#define ROUNDING_OF_STEPS 1e-9       /* of a number of steps: what rounding may add to it */
 #define ROUND_OFF 4e-16    /* of a coordinate or a lever: two units in its last place */
 #define NEWTON_PART 0.1    /* of what is allowed, times the step over the duration: what Newton may leave */
 #define NEWTON_MOST 1e-10  /* of the extent: what Newton may leave at most */
@@ -30,7 +30,7 @@
 /* Returns the step that ends at the target, or one of equal steps to there, none larger than wanted, s. */
 double fu_fit_step(double remaining, double want)
 {
-    const double pieces = ceil(remaining / want * (1.0 - ROUNDED));
+    const double pieces = ceil(remaining / want * (1.0 - ROUNDING_OF_STEPS));
     return pieces <= 1.0 ? remaining : remaining / pieces;
 }
 
@@ -94,7 +94,7 @@ void fu_adapt_step(fu_run *run, double h, double ratio)
     const double factor = fmin(LARGEST_FACTOR, CAUTIOUS * pow(fmax(ratio, LEAST_RATIO), -1.0 / run->order));
     run->ceiling = fmin(RECOVERY * run->ceiling, run->duration);
     const double larger = fmin(h * factor, run->ceiling);
-    if (larger > WORTH_WHILE * h) run->h = fmax(run->h, larger);
+    if (larger > MIN_GROWTH * h) run->h = fmax(run->h, larger);
     else if (factor < CAUTIOUS) run->h = h * factor;
 }
 

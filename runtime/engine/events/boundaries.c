@@ -21,7 +21,7 @@ double fu_boundary(fu_path path, int k)
 }
 
 /* Returns the length of the k-th piece of a path, m. */
-double fu_piece_length(fu_path path, int k)
+double fu_path_segment_length(fu_path path, int k)
 {
     return path.boundaries ? path.boundaries[k + 1] - path.boundaries[k] : path.length;
 }
@@ -40,7 +40,7 @@ static int piece_of(const fu_coupling *coupling, const fu_state *state)
 double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side)
 {
     const fu_path path = fu_path_of(model, coupling, state);
-    const double length = fu_piece_length(path, piece_of(coupling, state));
+    const double length = fu_path_segment_length(path, piece_of(coupling, state));
     const double x = coordinate_of(coupling, state) - fu_boundary(path, piece_of(coupling, state));
     *side = x > 0.5 * length ? 1 : -1;
     return *side > 0 ? x - length : -x;
@@ -49,8 +49,8 @@ double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_s
 /* Returns whether steps must end where a coupling passes a boundary, whatever the integrator. */
 int fu_stop_at_boundaries(const fu_model *model)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         const fu_coupling_events *events = c->events;
         if (events && events->path && events->path->stops_at_boundaries(model, c)) return 1;
     }
@@ -59,12 +59,12 @@ int fu_stop_at_boundaries(const fu_model *model)
 
 /* Puts the couplings of `next` on the pieces that hold their coordinates, unless they are to keep those of `now`. The matrix
  * is of the pieces that it was made with. */
-void fu_choose_pieces(fu_run *run)
+void fu_choose_path_segments(fu_run *run)
 {
     const fu_model *model = run->model;
     if (run->keep_pieces) return;
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         const fu_path path = fu_path_of(model, c, &run->next);
         int side, *piece = &run->next.piece[c->coordinate];
         if (!path.n || !(fu_outside(model, c, &run->next, &side) > fu_boundary_tolerance(path))) continue;
@@ -77,10 +77,10 @@ void fu_choose_pieces(fu_run *run)
 
 /* Puts the couplings of a state on the pieces that hold their coordinates, but those that are on one of these, at its ends
  * too. */
-void fu_find_pieces(const fu_model *model, fu_state *state)
+void fu_find_path_segments(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         const fu_path path = fu_path_of(model, c, state);
         const double s = path.n ? coordinate_of(c, state) : 0.0;
         int *piece = &state->piece[c->coordinate];
@@ -100,7 +100,7 @@ int fu_count_changes(const fu_run *run)
 }
 
 /* Puts the couplings of `next` on the pieces of `now`, which they have left. */
-void fu_keep_pieces(fu_run *run)
+void fu_keep_path_segments(fu_run *run)
 {
     memcpy(run->next.piece, run->now.piece, sizeof(int) * (size_t)run->model->n_coordinates);
 }
@@ -109,8 +109,8 @@ void fu_keep_pieces(fu_run *run)
 double fu_time_to_boundary(const fu_run *run)
 {
     double least = INFINITY;
-    for (int k = 0; k < run->model->n_others; ++k) {
-        const fu_coupling *c = run->model->others[k];
+    for (int k = 0; k < run->model->n_always_active; ++k) {
+        const fu_coupling *c = run->model->always_active[k];
         const fu_path path = fu_path_of(run->model, c, &run->now);
         if (!path.n) continue;
         const double rate = c->events->path->rate(run->model, c, &run->now);
@@ -139,8 +139,8 @@ static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path
 /* Returns how long after `now` the first coupling that turns so does, s; 0 where none does. */
 double fu_time_of_turn(const fu_run *run, double h)
 {
-    for (int k = 0; k < run->model->n_others; ++k) {
-        const fu_coupling *c = run->model->others[k];
+    for (int k = 0; k < run->model->n_always_active; ++k) {
+        const fu_coupling *c = run->model->always_active[k];
         const fu_path path = fu_path_of(run->model, c, &run->now);
         const double part = path.n ? part_to_turn(run, c, path, h) : 0.0;
         if (part > 0.0) return part * h;
@@ -151,7 +151,7 @@ double fu_time_of_turn(const fu_run *run, double h)
 /* Returns whether a coupling stands on the boundary already: then its piece changes and not the time. */
 int fu_stands_on_boundary(const fu_run *run, fu_event event)
 {
-    if (event.kind != FU_CROSSING) return 0;
+    if (event.kind != FU_PATH_BOUNDARY) return 0;
     const fu_coupling *c = run->model->couplings[event.which];
     const double tolerance = fu_boundary_tolerance(fu_path_of(run->model, c, &run->now));
     int side;
@@ -159,14 +159,14 @@ int fu_stands_on_boundary(const fu_run *run, fu_event event)
 }
 
 /* Returns whether no coupling is farther from its piece than this part of a piece. */
-int fu_are_on_pieces(const fu_model *model, const fu_state *state, double aside)
+int fu_are_on_path_segments(const fu_model *model, const fu_state *state, double aside)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         const fu_path path = fu_path_of(model, c, state);
         if (!path.n) continue;
         const double x = coordinate_of(c, state) - fu_boundary(path, piece_of(c, state));
-        const double length = fu_piece_length(path, piece_of(c, state));
+        const double length = fu_path_segment_length(path, piece_of(c, state));
         if (!(x >= -aside * length && x <= (1.0 + aside) * length)) return 0;
     }
     return 1;

@@ -19,9 +19,9 @@ static double deepest(const fu_model *model, const fu_contact *contact, const fu
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_touch(model, contact, &on, state, e, -depth)) continue;
+        if (!fu_contact_may_be_active(model, contact, &on, state, e, -depth)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
-            fu_touch_point point;
+            fu_contact_point point;
             fu_distance at;
             fu_contact_place(model, contact, &on, state, e, k, &point);
             fu_surface_distance(model->dim, &contact->surface, &on, point.r, &at);
@@ -31,10 +31,10 @@ static double deepest(const fu_model *model, const fu_contact *contact, const fu
     return depth;
 }
 
-static int watches(const fu_coupling *coupling, fu_watch *out)
+static int watches(const fu_coupling *coupling, fu_event_function *out)
 {
     (void)coupling;
-    if (out) *out = (fu_watch){.which = 0, .direction = 0};
+    if (out) *out = (fu_event_function){.which = 0, .direction = 0};
     return 1;
 }
 
@@ -59,12 +59,12 @@ static double beyond(const fu_model *model, const fu_coupling *coupling, const f
     if (!fu_surface_has_ends(&contact->surface)) return farthest;
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
+        if (!fu_contact_may_be_active(model, contact, &on, state, e, 0.0)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
-            fu_touch_point point;
+            fu_contact_point point;
             fu_contact_place(model, contact, &on, state, e, k, &point);
             const double far = fu_surface_beyond(model->dim, &contact->surface, &on, point.r);
-            if (far > fmax(farthest, 0.0) && fu_contact_touches(model, contact, &on, &point)) farthest = far;
+            if (far > fmax(farthest, 0.0) && fu_contact_is_active(model, contact, &on, &point)) farthest = far;
         }
     }
     return farthest;
@@ -93,7 +93,7 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
                       int number, double *rate, fu_surface_end *end)
 {
-    fu_touch_point point;
+    fu_contact_point point;
     double w[3] = {0.0};
     fu_contact_place(model, contact, on, state, element, number, &point);
     fu_surface_distance(model->dim, &contact->surface, on, point.r, &point.distance);
@@ -123,7 +123,7 @@ static double reach_of(const fu_model *model, const fu_contact *contact, const f
     return h * (fastest + sqrt(fu_dot(model->dim, on->v, on->v)) + 2.0 * farthest * sqrt(fu_dot(model->dim == 3 ? 3 : 1, on->omega, on->omega)));
 }
 
-double fu_contact_pass(const fu_run *run, const fu_contact *contact, double h)
+double fu_contact_detect_within(const fu_run *run, const fu_contact *contact, double h)
 {
     const fu_model *model = run->model;
     fu_attachment_state on, on_next;
@@ -133,7 +133,7 @@ double fu_contact_pass(const fu_run *run, const fu_contact *contact, double h)
     fu_surface_at(model, &contact->surface, &run->next, &on_next);
     fu_contact_gap(model, contact, &on, &run->now, 0, 0, &rate, &ends[0]);
     fu_contact_gap(model, contact, &on_next, &run->next, 0, 0, &rate, &ends[1]);
-    return fu_surface_pass(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
+    return fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
 }
 
 #define RESOLVED 0.25 /* of an impact's time over pi: what steps in it stay below */
@@ -175,14 +175,14 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     fu_surface_at(model, &contact->surface, &run->next, &on_next);
     const double reach = fmax(reach_of(model, contact, &on, &run->now, h), reach_of(model, contact, &on_next, &run->next, h));
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_touch(model, contact, &on_next, &run->next, e, reach)) continue;
+        if (!fu_contact_may_be_active(model, contact, &on_next, &run->next, e, reach)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             double rate, rate_next;
             fu_surface_end ends[2];
             const double gap = fu_contact_gap(model, contact, &on, &run->now, e, k, &rate, &ends[0]);
             const double gap_next = fu_contact_gap(model, contact, &on_next, &run->next, e, k, &rate_next, &ends[1]);
-            double found = fu_dip((fu_course){gap, rate}, (fu_course){gap_next, rate_next}, 1, h, run->round_off);
-            if (found == 0.0) found = fu_surface_pass(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
+            double found = fu_grazing_time((fu_course){gap, rate}, (fu_course){gap_next, rate_next}, 1, h, run->round_off);
+            if (found == 0.0) found = fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
             if (found > 0.0 && (first == 0.0 || found < first)) first = found;
         }
     }
@@ -190,4 +190,4 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
 }
 
 const fu_coupling_events fu_contact_events = {
-    .watches = watches, .watched = watched, .depth = depth, .beyond = beyond, .sign = sign, .act = act, .begin = begin, .dip = dip};
+    .watches = watches, .watched = watched, .depth = depth, .beyond = beyond, .sign = sign, .act = act, .begin = begin, .grazing = dip};

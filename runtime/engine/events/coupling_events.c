@@ -4,7 +4,7 @@
 #include "events/events.h"
 
 /* Writes the watches of all couplings to `out`, unless it is null; returns how many they are. */
-int fu_coupling_watches(const fu_model *model, fu_watch *out)
+int fu_coupling_event_functions(const fu_model *model, fu_event_function *out)
 {
     int n = 0;
     for (int k = 0; k < model->n_couplings; ++k) {
@@ -13,7 +13,7 @@ int fu_coupling_watches(const fu_model *model, fu_watch *out)
         const int first = n;
         n += c->events->watches(c, out ? out + first : 0);
         for (int i = first; i < n && out; ++i) {
-            out[i].kind = FU_WATCH_COUPLING;
+            out[i].kind = FU_EVENT_OF_COUPLING;
             out[i].index = k;
         }
     }

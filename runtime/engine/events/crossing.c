@@ -21,7 +21,7 @@ static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_s
     fu_find_closest(model, crossing, state, &points);
     fu_crossing_contact_at(crossing, &points, &contact);
     *gap = (fu_course){-contact.depth[0], -contact.depth[1]};
-    return points.found && fu_crossing_way_to_ends(crossing, &points) >= 0.0;
+    return points.found && fu_crossing_distance_to_ends(crossing, &points) >= 0.0;
 }
 
 /* Lines that touch may part within a step and be together again, lines that do not may touch. */
@@ -30,15 +30,15 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     const fu_crossing *crossing = crossing_of(coupling);
     fu_course from, to;
     (void)which;
-    if (!run->now.flags[coupling->flags]) return fu_crossing_pass(run->model, crossing, &run->now, &run->next, h, run->round_off);
+    if (!run->now.flags[coupling->flags]) return fu_crossing_detect_within(run->model, crossing, &run->now, &run->next, h, run->round_off);
     const int within = gap_of(run->model, crossing, &run->now, &from) && gap_of(run->model, crossing, &run->next, &to);
-    return within ? fu_dip(from, to, -1, h, run->round_off) : 0.0;
+    return within ? fu_grazing_time(from, to, -1, h, run->round_off) : 0.0;
 }
 
-static int watches(const fu_coupling *coupling, fu_watch *out)
+static int watches(const fu_coupling *coupling, fu_event_function *out)
 {
     (void)coupling;
-    if (out) *out = (fu_watch){.which = 0, .direction = 1};
+    if (out) *out = (fu_event_function){.which = 0, .direction = 1};
     return 1;
 }
 
@@ -72,7 +72,7 @@ static int has_come_round(const fu_run *run, const fu_crossing *crossing)
     fu_crossing_contact contact;
     fu_find_closest(run->model, crossing, &run->now, &points);
     fu_crossing_contact_at(crossing, &points, &contact);
-    const int at_end = fu_crossing_margin_of(crossing, &points, &contact) == fu_crossing_way_to_ends(crossing, &points);
+    const int at_end = fu_crossing_margin_of(crossing, &points, &contact) == fu_crossing_distance_to_ends(crossing, &points);
     return at_end && contact.depth[0] > crossing->law[0] && left_behind < PARTED * contact.energy;
 }
 
@@ -90,7 +90,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     if (*touches && crossing_of(coupling)->friction > 0.0) {
         fu_closest_points points;
         fu_find_closest(run->model, crossing_of(coupling), &run->now, &points);
-        fu_crossing_begin_grip(crossing_of(coupling), &points, &run->now);
+        fu_crossing_begin_stick(crossing_of(coupling), &points, &run->now);
     }
     /* a bar that comes in from beyond an end may overlap already: what that stores comes from outside */
     if (*touches) run->external += coupling->type->energy(run->model, coupling, &run->now);
@@ -100,7 +100,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
 
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
-    coupling->type->touch(run->model, coupling, &run->now);
+    coupling->type->detect(run->model, coupling, &run->now);
     coupling->type->history->update(run->model, coupling, &run->now);
     return FU_RUNNING;
 }
@@ -110,6 +110,6 @@ const fu_coupling_events fu_crossing_events = {
     .watched = watched,
     .depth = depth,
     .act = act,
-    .dip = dip,
+    .grazing = dip,
     .begin = begin,
 };

@@ -22,50 +22,50 @@
 
 #define DOUBLE 2.0 /* the error that is counted over the bound, lest energy come of many */
 #define AROUND 0.1 /* of a step: how far from where it seems to be a passage may be, for the bound of its error */
-#define PARTS 8    /* so many instants are looked at on either side */
+#define SCANNED_INSTANTS 8    /* so many instants are looked at on either side */
 
 static int has_passed(const fu_run *run, const fu_coupling *c)
 {
     const size_t size = sizeof(int) * (size_t)c->type->n_flags;
-    return fu_can_pass(c) && memcmp(run->now.flags + c->flags, run->next.flags + c->flags, size) != 0;
+    return fu_can_defer(c) && memcmp(run->now.flags + c->flags, run->next.flags + c->flags, size) != 0;
 }
 
 /* Gives the couplings of `next` the flags that follow from where it is, unless they are to keep those of `now`; returns
  * whether that changes them. First: it is the first stage of the step, or the only one. */
-int fu_choose_passages(fu_run *run, int first)
+int fu_choose_deferred(fu_run *run, int first)
 {
     const fu_model *model = run->model;
     int changed = 0;
     if (run->keep_forces) return 0;
-    for (int k = 0; k < model->n_others && model->n_passing; ++k) {
-        const fu_coupling *c = model->others[k];
-        changed |= fu_can_pass(c) && c->events->deferred->follow(model, c, &run->now, &run->next);
+    for (int k = 0; k < model->n_always_active && model->n_passing; ++k) {
+        const fu_coupling *c = model->always_active[k];
+        changed |= fu_can_defer(c) && c->events->deferred->follow(model, c, &run->now, &run->next);
     }
-    const int count = model->n_passing ? fu_count_passages(run) : 0;
-    if (first || count > run->most_passages) run->most_passages = count;
+    const int count = model->n_passing ? fu_count_deferred(run) : 0;
+    if (first || count > run->most_deferred) run->most_deferred = count;
     return changed;
 }
 
 /* Returns whether a stage of the step just made passed what its end did not: then nothing bounds its error. */
 int fu_strayed(const fu_run *run)
 {
-    return !run->keep_forces && run->model->n_passing && run->most_passages > fu_count_passages(run);
+    return !run->keep_forces && run->model->n_passing && run->most_deferred > fu_count_deferred(run);
 }
 
 /* Returns how many couplings have passed something in the step. */
-int fu_count_passages(const fu_run *run)
+int fu_count_deferred(const fu_run *run)
 {
     int count = 0;
-    for (int k = 0; k < run->model->n_others && run->model->n_passing; ++k) count += has_passed(run, run->model->others[k]);
+    for (int k = 0; k < run->model->n_always_active && run->model->n_passing; ++k) count += has_passed(run, run->model->always_active[k]);
     return count;
 }
 
 /* Lets the couplings of `next` be as in `now`, for the rest of the step to be made so. */
-void fu_undo_passages(fu_run *run)
+void fu_undo_deferred(fu_run *run)
 {
     run->keep_forces = 1;
-    for (int k = 0; k < run->model->n_others && run->model->n_passing; ++k) {
-        const fu_coupling *c = run->model->others[k];
+    for (int k = 0; k < run->model->n_always_active && run->model->n_passing; ++k) {
+        const fu_coupling *c = run->model->always_active[k];
         if (!has_passed(run, c)) continue;
         memcpy(run->next.flags + c->flags, run->now.flags + c->flags, sizeof(int) * (size_t)c->type->n_flags);
         run->factored = 0;
@@ -73,10 +73,10 @@ void fu_undo_passages(fu_run *run)
 }
 
 /* Notes what couplings pass in the step that is about to be accepted, for the caller to learn of it. */
-void fu_note_passages(fu_run *run, double h)
+void fu_note_deferred(fu_run *run, double h)
 {
     for (int k = 0; k < run->n_watches && run->model->n_passing; ++k) {
-        const fu_coupling *c = fu_own_coupling(run, k);
+        const fu_coupling *c = fu_event_coupling(run, k);
         if (!c || !has_passed(run, c)) continue;
         const double part = c->events->deferred->part(run->model, c, &run->now, &run->next, h, !run->integrator->keeps_energy,
                                                     &run->passed[k]);
@@ -97,8 +97,8 @@ static double defect(fu_quadrature rule, double x)
 static double largest_defect(fu_quadrature rule, double x)
 {
     double worst = 0.0;
-    for (int i = -PARTS; i <= PARTS; ++i) {
-        const double at = x + AROUND * i / PARTS;
+    for (int i = -SCANNED_INSTANTS; i <= SCANNED_INSTANTS; ++i) {
+        const double at = x + AROUND * i / SCANNED_INSTANTS;
         if (at >= 0.0 && at < 1.0) worst = fmax(worst, defect(rule, at));
     }
     return worst;
@@ -123,13 +123,13 @@ static double size_of_response(fu_run *run, const double *force, double square)
 }
 
 /* Returns the local error of positions by the passages of the step just made, m. */
-double fu_passage_error(fu_run *run, double h)
+double fu_deferred_error(fu_run *run, double h)
 {
     const fu_model *model = run->model;
-    if (!run->integrator->quadrature || !fu_count_passages(run)) return 0.0;
+    if (!run->integrator->quadrature || !fu_count_deferred(run)) return 0.0;
     memset(run->before, 0, sizeof(double) * (size_t)model->n_dof);
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         const char *unused;
         if (!has_passed(run, c)) continue;
         const double x = c->events->deferred->part(model, c, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
@@ -141,7 +141,7 @@ double fu_passage_error(fu_run *run, double h)
 
 /* Returns the local error of positions by kinks of forces within the step just made that its estimate may not see, m: one of momentum, which
  * goes on for the rest of the run. */
-double fu_kink_error(fu_run *run, double h)
+double fu_friction_error(fu_run *run, double h)
 {
     const fu_model *model = run->model;
     const fu_integrator *integrator = run->integrator;
@@ -154,14 +154,14 @@ double fu_kink_error(fu_run *run, double h)
 
 /* Makes the earliest of passages and slack cables that the caller does not know of the run's event; returns 0 where there is
  * none. */
-int fu_take_passage(fu_run *run)
+int fu_take_deferred(fu_run *run)
 {
     int first = -1;
     for (int k = 0; k < run->n_watches && run->model->n_passing; ++k)
         if (run->passed[k] && (first < 0 || run->passed_at[k] < run->passed_at[first])) first = k;
     if (fu_take_slackness(run, first < 0 ? INFINITY : run->passed_at[first])) return 1;
     if (first < 0) return 0;
-    run->event = (fu_event){FU_PASSED, run->watches[first].index, 0, run->passed[first]};
+    run->event = (fu_event){FU_DEFERRED, run->watches[first].index, 0, run->passed[first]};
     run->event_time = run->passed_at[first];
     run->passed[first] = 0;
     return 1;

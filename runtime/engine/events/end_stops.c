@@ -14,8 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-#define AT_REST 1e-12 /* of the cable over the duration: speeds below are none */
-#define BOUNCE 1e-6   /* of the cable: what would come no farther back stays at the stop */
+#define REST_SPEED 1e-12 /* of the cable over the duration: speeds below are none */
+#define MIN_REBOUND 1e-6   /* of the cable: what would come no farther back stays at the stop */
 
 static int is_hard(const fu_model *model, int j, int side)
 {
@@ -29,7 +29,7 @@ static int locked_force(const fu_run *run, const fu_state *state, int j, double 
     const fu_model *model = run->model;
     memcpy(f, state->forces + model->slides[j].base.force, sizeof(double) * (size_t)model->dim);
     if (!run->integrator->newton && !fu_ties_a_frame(model, j)) return 0;
-    const double *acceleration = fu_watch_accelerations(run, state);
+    const double *acceleration = fu_event_accelerations(run, state);
     fu_slide_output out;
     if (!acceleration) return 0;
     fu_slide_outputs(model, state, j, acceleration, &run->accelerator, &out);
@@ -112,7 +112,7 @@ static int try_to_stick(fu_run *run, int j)
 /* Returns whether a slide is at rest. */
 static int is_at_rest(const fu_run *run, int j)
 {
-    return fabs(fu_slide_rate(run->model, &run->now, j)) * run->duration <= AT_REST * fu_length(run->model, j);
+    return fabs(fu_slide_rate(run->model, &run->now, j)) * run->duration <= REST_SPEED * fu_length(run->model, j);
 }
 
 /* Gives a slide whose friction needs it its direction of sliding. */
@@ -159,7 +159,7 @@ static int strike(fu_run *run, int j, int side)
     if (fu_complete(run, now)) return FU_SINGULAR;
     fu_slide_outputs(model, now, j, now->acceleration, &run->accelerator, &slide);
     const double back = -side * slide.s_rate, push = side * slide.s_acceleration;
-    if (is_at_rest(run, j) || back * back <= 2.0 * push * BOUNCE * fu_length(model, j)) {
+    if (is_at_rest(run, j) || back * back <= 2.0 * push * MIN_REBOUND * fu_length(model, j)) {
         flags->contact = side;
         if (try_to_stick(run, j)) return FU_SINGULAR;
     }

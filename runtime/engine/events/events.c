@@ -13,15 +13,15 @@
 #define FEW_TRIALS 10     /* after so many trials every second one halves the interval: rounding may rule the value */
 #define LEAST_STEP 1e-13  /* of the duration: shorter intervals are not divided */
 #define FINER 1e-2        /* of Newton's tolerance, which is used near an event, lest its noise rule where the event is */
-#define PRECISE 1e-13     /* of a piece, or of what a watched quantity changes by in the step: how close to an event it ends */
+#define EVENT_TOLERANCE 1e-13     /* of a piece, or of what a watched quantity changes by in the step: how close to an event it ends */
 #define LITTLE 1e-2       /* of the allowed error: what a passage beside a boundary may make */
-#define NEAR 1e-6         /* of what a distance changes by in the step: how close to a passage an adaptive step ends */
+#define DEFERRED_TOLERANCE 1e-6         /* of what a distance changes by in the step: how close to a passage an adaptive step ends */
 #define LARGEST_MISS 1e-6 /* of a piece: how close to a boundary a step ends at least */
-#define SMALLEST 1e-300   /* a value that has a sign and is nearly zero */
+#define SIGNED_ZERO 1e-300   /* a value that has a sign and is nearly zero */
 
 const fu_event fu_no_event = {FU_NO_EVENT, 0, 0, 0};
 
-const double *fu_watch_accelerations(const fu_run *run, const fu_state *state)
+const double *fu_event_accelerations(const fu_run *run, const fu_state *state)
 {
     fu_run *scratch = (fu_run *)run; /* a run is never a constant */
     int known = run->watch_solution;
@@ -36,7 +36,7 @@ const double *fu_watch_accelerations(const fu_run *run, const fu_state *state)
 /* Returns a number of a coupling's row of output; not a number where eq 38 has no solution. */
 static double output_of(const fu_run *run, const fu_state *state, const fu_coupling *c, int which)
 {
-    const double *acceleration = fu_watch_accelerations(run, state);
+    const double *acceleration = fu_event_accelerations(run, state);
     double *out = run->watch_work + run->model->n_dof;
     if (!acceleration) return NAN;
     c->type->outputs(run->model, c, state, acceleration, &run->accelerator, out);
@@ -56,21 +56,21 @@ static double called(const fu_run *run, const fu_state *state, int k)
 /* Returns what is watched, for an event of the user's or of a coupling's. */
 static double watched(const fu_run *run, const fu_state *state, int k)
 {
-    const fu_watch *watch = &run->watches[k];
-    if (watch->kind == FU_WATCH_Q) return state->q[watch->index] - watch->value;
-    if (watch->kind == FU_WATCH_V) return state->v[watch->index] - watch->value;
-    if (watch->kind == FU_WATCH_S) return state->s[watch->index] - watch->value;
-    if (watch->kind == FU_WATCH_CALL) return called(run, state, k);
+    const fu_event_function *watch = &run->watches[k];
+    if (watch->kind == FU_EVENT_OF_Q) return state->q[watch->index] - watch->value;
+    if (watch->kind == FU_EVENT_OF_V) return state->v[watch->index] - watch->value;
+    if (watch->kind == FU_EVENT_OF_S) return state->s[watch->index] - watch->value;
+    if (watch->kind == FU_EVENT_OF_CALL) return called(run, state, k);
     const fu_coupling *c = run->model->couplings[watch->index];
-    if (watch->kind == FU_WATCH_RATE) return c->events->path->rate(run->model, c, state) - watch->value;
-    if (watch->kind == FU_WATCH_OUTPUT) return output_of(run, state, c, watch->which) - watch->value;
+    if (watch->kind == FU_EVENT_OF_RATE) return c->events->path->rate(run->model, c, state) - watch->value;
+    if (watch->kind == FU_EVENT_OF_OUTPUT) return output_of(run, state, c, watch->which) - watch->value;
     return c->events->watched(run, c, state, watch->which);
 }
 
 /* Returns an event's value at a state: the event happens where this reaches zero from below. */
 static double value(const fu_run *run, const fu_state *state, fu_event event)
 {
-    if (event.kind == FU_WATCHED) return event.side * watched(run, state, event.which);
+    if (event.kind == FU_EVENT_FUNCTION) return event.side * watched(run, state, event.which);
     const fu_coupling *c = run->model->couplings[event.which];
     const int boundary = run->now.piece[c->coordinate] + (event.side > 0);
     return event.side * (state->s[c->coordinate] - fu_boundary(fu_path_of(run->model, c, &run->now), boundary));
@@ -81,7 +81,7 @@ static fu_event passes(const fu_run *run, int k, double after)
 {
     const double before = run->watched[k];
     const int side = before < 0.0 && after >= 0.0 ? 1 : before > 0.0 && after < 0.0 ? -1 : 0;
-    return side && run->watches[k].direction * side >= 0 ? (fu_event){FU_WATCHED, k, side, 0} : fu_no_event;
+    return side && run->watches[k].direction * side >= 0 ? (fu_event){FU_EVENT_FUNCTION, k, side, 0} : fu_no_event;
 }
 
 /* Returns the crossing of the coupling of `next` that is farthest outside its piece, else the first of the watches that pass
@@ -89,25 +89,25 @@ static fu_event passes(const fu_run *run, int k, double after)
 fu_event fu_find_event(fu_run *run, fu_event but)
 {
     fu_event found = fu_no_event;
-    const fu_watch_list near = fu_near_watches(run, &run->next);
+    const fu_event_function_list near = fu_near_event_functions(run, &run->next);
     double worst = 0.0;
-    for (int k = 0; k < run->model->n_others; ++k) {
-        const fu_coupling *c = run->model->others[k];
+    for (int k = 0; k < run->model->n_always_active; ++k) {
+        const fu_coupling *c = run->model->always_active[k];
         const fu_path path = fu_path_of(run->model, c, &run->next);
         int side;
         if (!path.n) continue;
         const double d = fu_outside(run->model, c, &run->next, &side) - fu_boundary_tolerance(path);
-        if (d > worst && (but.kind != FU_CROSSING || but.which != c->number)) {
+        if (d > worst && (but.kind != FU_PATH_BOUNDARY || but.which != c->number)) {
             worst = d;
-            found = (fu_event){FU_CROSSING, c->number, side, 0};
+            found = (fu_event){FU_PATH_BOUNDARY, c->number, side, 0};
         }
     }
     run->watch_solution = FU_SOLVE_ONCE;
     for (int i = 0; i < near.n && !found.kind; ++i) {
-        const int k = fu_watch_of(near, i);
-        if (but.kind == FU_WATCHED && but.which == k) continue;
+        const int k = fu_event_function_of(near, i);
+        if (but.kind == FU_EVENT_FUNCTION && but.which == k) continue;
         found = passes(run, k, watched(run, &run->next, k));
-        if (found.kind && fu_is_far_watch(run, k)) run->watched[k] = watched(run, &run->now, k); /* which was passed over */
+        if (found.kind && fu_is_far_event_function(run, k)) run->watched[k] = watched(run, &run->now, k); /* which was passed over */
     }
     run->watch_solution = FU_SOLVE_ANEW;
     return found;
@@ -123,7 +123,7 @@ static double root_of_parabola(double g_low, double g_high, double rate)
 /* Returns the coupling whose own an event is, and which tells when it happens; null where there is none. */
 static const fu_coupling *passing(const fu_run *run, fu_event event)
 {
-    const fu_coupling *c = event.kind == FU_WATCHED ? fu_own_coupling(run, event.which) : 0;
+    const fu_coupling *c = event.kind == FU_EVENT_FUNCTION ? fu_event_coupling(run, event.which) : 0;
     return c && c->events->deferred ? c : 0;
 }
 
@@ -132,7 +132,7 @@ static const fu_coupling *passing(const fu_run *run, fu_event event)
 static int may_miss(const fu_run *run, fu_event event)
 {
     const fu_coupling *c = passing(run, event);
-    return c && fu_can_pass(c) && run->fixed_step <= 0.0;
+    return c && fu_can_defer(c) && run->fixed_step <= 0.0;
 }
 
 /* Where a step that ends on an event ends: the event's value is `aim` there, within `close`. */
@@ -146,20 +146,20 @@ typedef struct {
  * of what is allowed. */
 static landing_place landing(const fu_run *run, fu_event event, double range)
 {
-    if (event.kind == FU_WATCHED)
-        return may_miss(run, event) ? (landing_place){0.5 * NEAR * range, 0.5 * NEAR * range} : (landing_place){0.0, PRECISE * range};
+    if (event.kind == FU_EVENT_FUNCTION)
+        return may_miss(run, event) ? (landing_place){0.5 * DEFERRED_TOLERANCE * range, 0.5 * DEFERRED_TOLERANCE * range} : (landing_place){0.0, EVENT_TOLERANCE * range};
     const fu_coupling *c = run->model->couplings[event.which];
     const fu_path path = fu_path_of(run->model, c, &run->now);
     const int next = run->now.piece[c->coordinate] + event.side;
-    if (run->fixed_step > 0.0 || next < 0 || next >= path.n) return (landing_place){0.0, PRECISE * path.length};
-    const double shorter = fmin(fu_piece_length(path, next), fu_piece_length(path, next - event.side));
-    return (landing_place){0.0, fmax(PRECISE * path.length, fmin(LARGEST_MISS, LITTLE * run->allowed / range) * shorter)};
+    if (run->fixed_step > 0.0 || next < 0 || next >= path.n) return (landing_place){0.0, EVENT_TOLERANCE * path.length};
+    const double shorter = fmin(fu_path_segment_length(path, next), fu_path_segment_length(path, next - event.side));
+    return (landing_place){0.0, fmax(EVENT_TOLERANCE * path.length, fmin(LARGEST_MISS, LITTLE * run->allowed / range) * shorter)};
 }
 
 /* Returns whether an event is of a watch of a coupling's own, whose value leaves its zero anew after each event. */
 static int is_of_a_coupling(const fu_run *run, fu_event event)
 {
-    return event.kind == FU_WATCHED && fu_own_coupling(run, event.which);
+    return event.kind == FU_EVENT_FUNCTION && fu_event_coupling(run, event.which);
 }
 
 /* An interval of steps in which g, the event's value, passes zero: g_low < 0 <= g_high. */
@@ -225,11 +225,11 @@ static double search(fu_run *run, fu_event event, bracket b, double middle, doub
 static double locate(fu_run *run, fu_event event, double h)
 {
     bracket b = {0.0, h, 0.0, value(run, &run->next, event), 0};
-    b.g_low = event.kind == FU_WATCHED ? event.side * run->watched[event.which] : value(run, &run->now, event);
+    b.g_low = event.kind == FU_EVENT_FUNCTION ? event.side * run->watched[event.which] : value(run, &run->now, event);
     const double least = LEAST_STEP * run->duration;
     const landing_place at = landing(run, event, b.g_high - b.g_low);
     double middle = h * b.g_low / (b.g_low - b.g_high);
-    if (event.kind == FU_CROSSING) {
+    if (event.kind == FU_PATH_BOUNDARY) {
         const fu_coupling *c = run->model->couplings[event.which];
         const double rate = event.side * c->events->path->rate(run->model, c, &run->now);
         middle = h * root_of_parabola(b.g_low, b.g_high, h * rate);
@@ -239,7 +239,7 @@ static double locate(fu_run *run, fu_event event, double h)
     if (passes)
         middle = h * passes->events->deferred->part(run->model, passes, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
     if (b.g_high <= at.aim + at.close) return h;
-    if (is_of_a_coupling(run, event) && fabs(b.g_low) <= (at.aim > 0.0 ? PRECISE * (b.g_high - b.g_low) : at.close)) {
+    if (is_of_a_coupling(run, event) && fabs(b.g_low) <= (at.aim > 0.0 ? EVENT_TOLERANCE * (b.g_high - b.g_low) : at.close)) {
         const int found = leave_zero(run, event, &b, least, at.close);
         if (found < 0) return 0.0;
         if (!found) return b.high < h || !run->integrator->step(run, b.high) ? b.high : 0.0;
@@ -253,7 +253,7 @@ static double locate(fu_run *run, fu_event event, double h)
 double fu_locate(fu_run *run, fu_event event, double h)
 {
     const int kept = run->keep_pieces;
-    run->keep_pieces |= event.kind == FU_CROSSING;
+    run->keep_pieces |= event.kind == FU_PATH_BOUNDARY;
     run->newton_tolerance *= FINER;
     const double found = locate(run, event, h);
     run->keep_pieces = kept;
@@ -262,14 +262,14 @@ double fu_locate(fu_run *run, fu_event event, double h)
 
 /* Takes the values of what is watched at `now`, after a step of h, but not of those that have just passed, or rounding would let
  * them pass again. `late` tells which did together with the one that the step was for. */
-void fu_watch_now(fu_run *run, fu_event event, double h)
+void fu_evaluate_event_functions(fu_run *run, fu_event event, double h)
 {
     const int moved = h > FU_AT_ONCE * run->duration;
-    const fu_watch_list near = fu_near_watches(run, &run->now);
+    const fu_event_function_list near = fu_near_event_functions(run, &run->now);
     run->watch_solution = FU_SOLVE_ONCE;
     for (int i = 0; i < near.n; ++i) {
-        const int k = fu_watch_of(near, i);
-        const int expected = event.kind == FU_WATCHED && event.which == k;
+        const int k = fu_event_function_of(near, i);
+        const int expected = event.kind == FU_EVENT_FUNCTION && event.which == k;
         const double value = expected ? 0.0 : watched(run, &run->now, k);
         const fu_event late = passes(run, k, value);
         if (expected || late.kind) run->watched[k] = 0.0;
@@ -280,19 +280,19 @@ void fu_watch_now(fu_run *run, fu_event event, double h)
 }
 
 /* Takes the values at `now` of what is far (couplings/common/proximity.c), which are not kept up. */
-void fu_watch_far(fu_run *run)
+void fu_evaluate_far_event_functions(fu_run *run)
 {
     for (int k = 0; k < run->n_watches; ++k)
-        if (fu_is_far_watch(run, k)) run->watched[k] = watched(run, &run->now, k);
+        if (fu_is_far_event_function(run, k)) run->watched[k] = watched(run, &run->now, k);
 }
 
 /* Returns whether a coupling's watch is not a number: then it can go on no more, and the cause is noted. */
-int fu_has_lost_a_watch(fu_run *run)
+int fu_has_lost_an_event(fu_run *run)
 {
-    const fu_watch_list near = fu_near_watches(run, &run->now);
+    const fu_event_function_list near = fu_near_event_functions(run, &run->now);
     for (int i = 0; i < near.n; ++i) {
-        const int k = fu_watch_of(near, i);
-        const fu_coupling *c = fu_own_coupling(run, k);
+        const int k = fu_event_function_of(near, i);
+        const fu_coupling *c = fu_event_coupling(run, k);
         if (c && isnan(run->watched[k])) return fu_fail(run, FU_NOT_KNOWN, run->now.v, c->number);
     }
     return 0;
@@ -300,19 +300,19 @@ int fu_has_lost_a_watch(fu_run *run)
 
 /* Gives couplings' watches the sign that they have now that a coupling (its number, or -1) has changed, and has just had the
  * value of one of them zero. */
-void fu_watch_anew(fu_run *run, int coupling)
+void fu_restart_event_functions(fu_run *run, int coupling)
 {
-    const fu_watch_list near = fu_near_watches(run, &run->now);
+    const fu_event_function_list near = fu_near_event_functions(run, &run->now);
     run->watch_solution = FU_SOLVE_ONCE;
     for (int i = 0; i < near.n; ++i) {
-        const int k = fu_watch_of(near, i);
-        const fu_coupling *c = fu_own_coupling(run, k);
+        const int k = fu_event_function_of(near, i);
+        const fu_coupling *c = fu_event_coupling(run, k);
         if (!c) continue;
         if (c->number == coupling) run->late[k] = 0;
         if (run->late[k]) continue;
         const fu_coupling_events *events = c->events;
         const int sign = events->sign ? events->sign(run->model, c, &run->now, run->watches[k].which) : -1;
-        run->watched[k] = sign * fmax(sign * watched(run, &run->now, k), SMALLEST);
+        run->watched[k] = sign * fmax(sign * watched(run, &run->now, k), SIGNED_ZERO);
     }
     run->watch_solution = FU_SOLVE_ANEW;
 }
@@ -322,7 +322,7 @@ fu_event fu_late_event(fu_run *run)
 {
     for (int k = 0; k < run->n_watches; ++k)
         if (run->late[k]) {
-            const fu_event event = {FU_WATCHED, k, run->late[k], 0};
+            const fu_event event = {FU_EVENT_FUNCTION, k, run->late[k], 0};
             run->late[k] = 0;
             return event;
         }

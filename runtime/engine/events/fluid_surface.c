@@ -19,12 +19,12 @@ static int is_level(double height)
     return fabs(height) < FU_NO_SURFACE;
 }
 
-int fu_surface_watches(const fu_drag *drag, int first, fu_watch *out)
+int fu_surface_event_functions(const fu_drag *drag, int first, fu_event_function *out)
 {
     int n = 0;
-    for (int which = 0; which < FU_SURFACE_WATCHES; ++which) {
+    for (int which = 0; which < FU_SURFACE_EVENT_FUNCTIONS; ++which) {
         if (drag->wet == FU_ALL_WET || !is_level(level_of(drag, which))) continue;
-        if (out) out[n] = (fu_watch){.which = first + which, .direction = 0};
+        if (out) out[n] = (fu_event_function){.which = first + which, .direction = 0};
         ++n;
     }
     return n;
@@ -48,7 +48,7 @@ static void heights_of(const fu_model *model, const fu_drag *drag, const fu_stat
     }
 }
 
-double fu_surface_watched(const fu_model *model, const fu_drag *drag, const fu_state *state, int which)
+double fu_surface_event_value(const fu_model *model, const fu_drag *drag, const fu_state *state, int which)
 {
     const double reach = fu_wet_reach(drag);
     double low, high;

@@ -6,7 +6,7 @@
 #include "couplings/fluid/drag.h"
 
 /* The watches of the surfaces of a fluid, numbered from `first`; the number that one of them is, m. */
-int fu_surface_watches(const fu_drag *drag, int first, fu_watch *out);
-double fu_surface_watched(const fu_model *model, const fu_drag *drag, const fu_state *state, int which);
+int fu_surface_event_functions(const fu_drag *drag, int first, fu_event_function *out);
+double fu_surface_event_value(const fu_model *model, const fu_drag *drag, const fu_state *state, int which);
 
 #endif

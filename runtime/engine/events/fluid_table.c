@@ -45,18 +45,18 @@ static int *is_outside(const fu_coupling *coupling, const fu_state *state)
     return state->flags + coupling->flags;
 }
 
-static int watches(const fu_coupling *coupling, fu_watch *out)
+static int watches(const fu_coupling *coupling, fu_event_function *out)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     const int n = has_edges(drag);
-    if (n && out) *out = (fu_watch){.which = 0, .direction = 0};
-    return n + fu_surface_watches(drag, OF_TABLE, out ? out + n : 0);
+    if (n && out) *out = (fu_event_function){.which = 0, .direction = 0};
+    return n + fu_surface_event_functions(drag, OF_TABLE, out ? out + n : 0);
 }
 
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
-    return which < OF_TABLE ? margin(run->model, drag, state) : fu_surface_watched(run->model, drag, state, which - OF_TABLE);
+    return which < OF_TABLE ? margin(run->model, drag, state) : fu_surface_event_value(run->model, drag, state, which - OF_TABLE);
 }
 
 static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
@@ -81,7 +81,7 @@ static int can_act(const fu_coupling *coupling)
 
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
-    fu_watch at[FU_DRAG_FLAGS];
+    fu_event_function at[FU_DRAG_FLAGS];
     const int n = watches(coupling, at);
     *is_outside(coupling, &run->now) = margin(run->model, (const fu_drag *)coupling, &run->now) < 0.0;
     for (int k = 0; k < n; ++k)

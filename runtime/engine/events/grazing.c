@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-#define NOISE 1e-14  /* of what a watch is of, and of its values: dips less deep are rounding */
+#define ROUNDING_OF_VALUES 1e-14  /* of what a watch is of, and of its values: dips less deep are rounding */
 
 /* Returns the rate of an entry of the configuration, 1/s or m/s. */
 static double rate_of_q(const fu_model *model, const fu_state *state, int index)
@@ -28,13 +28,13 @@ static double rate_of_q(const fu_model *model, const fu_state *state, int index)
 }
 
 /* Makes value and rate of a watch that is of the state itself; the rate of others is not a number. */
-static fu_course course_of(const fu_model *model, const fu_watch *watch, const fu_state *state)
+static fu_course course_of(const fu_model *model, const fu_event_function *watch, const fu_state *state)
 {
-    if (watch->kind == FU_WATCH_Q)
+    if (watch->kind == FU_EVENT_OF_Q)
         return (fu_course){state->q[watch->index] - watch->value, rate_of_q(model, state, watch->index)};
-    if (watch->kind == FU_WATCH_V) return (fu_course){state->v[watch->index] - watch->value, state->acceleration[watch->index]};
-    for (int k = 0; k < model->n_others && watch->kind == FU_WATCH_S; ++k) {
-        const fu_coupling *c = model->others[k];
+    if (watch->kind == FU_EVENT_OF_V) return (fu_course){state->v[watch->index] - watch->value, state->acceleration[watch->index]};
+    for (int k = 0; k < model->n_always_active && watch->kind == FU_EVENT_OF_S; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->n_coordinates && c->coordinate == watch->index)
             return (fu_course){state->s[watch->index] - watch->value, c->events->path->rate(model, c, state)};
     }
@@ -54,24 +54,24 @@ static double return_of(fu_course from, fu_course to, double h, double least)
 /* Returns when a watch is farthest beyond zero in the step, s after `now`. */
 static double dip_of(const fu_run *run, int k, double h)
 {
-    const fu_watch *watch = &run->watches[k];
-    const fu_coupling *c = fu_own_coupling(run, k);
-    if (c) return c->events->dip ? c->events->dip(run, c, watch->which, h) : 0.0;
+    const fu_event_function *watch = &run->watches[k];
+    const fu_coupling *c = fu_event_coupling(run, k);
+    if (c) return c->events->grazing ? c->events->grazing(run, c, watch->which, h) : 0.0;
     const fu_course from = course_of(run->model, watch, &run->now), to = course_of(run->model, watch, &run->next);
     if (isnan(from.rate)) return 0.0;
-    const double least = NOISE * fmax(fabs(watch->value), fmax(fabs(from.value + watch->value), fabs(to.value + watch->value)));
+    const double least = ROUNDING_OF_VALUES * fmax(fabs(watch->value), fmax(fabs(from.value + watch->value), fabs(to.value + watch->value)));
     if (run->watched[k] == 0.0) return return_of(from, to, h, least);
-    return fu_dip(from, to, run->watched[k] > 0.0 ? 1 : -1, h, least);
+    return fu_grazing_time(from, to, run->watched[k] > 0.0 ? 1 : -1, h, least);
 }
 
 /* Returns when the first of the watches that pass zero and are back within the step is farthest beyond, s after `now`; 0 where
  * none is predicted to. */
-double fu_time_of_dip(const fu_run *run, double h)
+double fu_time_of_grazing(const fu_run *run, double h)
 {
     double first = 0.0;
-    const fu_watch_list near = fu_near_watches_within(run, h);
+    const fu_event_function_list near = fu_near_event_functions_within(run, h);
     for (int i = 0; i < near.n; ++i) {
-        const double dip = dip_of(run, fu_watch_of(near, i), h);
+        const double dip = dip_of(run, fu_event_function_of(near, i), h);
         if (dip > 0.0 && (first == 0.0 || dip < first)) first = dip;
     }
     return first;

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#define LEAST_PULL 3e-10 /* of the weight: what is pulled by less stays closed, as three of four points that bear have none to spare */
+#define PULL_TOLERANCE 3e-10 /* of the weight: what is pulled by less stays closed, as three of four points that bear have none to spare */
 
 static const char *const words[] = {"", "struck", "came into contact", "lost contact", "stuck", "broke loose"};
 
@@ -20,10 +20,10 @@ static const fu_hard_contact *contact_of(const fu_coupling *coupling)
 /* Watches: of the distance, or where it is closed of the force that presses; of friction. */
 enum { OF_DISTANCE, OF_FRICTION };
 
-static int watches(const fu_coupling *coupling, fu_watch *out)
+static int watches(const fu_coupling *coupling, fu_event_function *out)
 {
     const int n = coupling->n_forces > 1 ? 2 : 1;
-    for (int k = 0; k < n && out; ++k) out[k] = (fu_watch){.which = k, .direction = 1};
+    for (int k = 0; k < n && out; ++k) out[k] = (fu_event_function){.which = k, .direction = 1};
     return n;
 }
 
@@ -32,7 +32,7 @@ static const double *multipliers(const fu_run *run, const fu_coupling *coupling,
 {
     static const double none[FU_SPACE] = {NAN, NAN, NAN};
     if (!run->integrator->newton) return state->forces + coupling->force;
-    return fu_watch_accelerations(run, state) ? run->accelerator.multipliers + coupling->multiplier : none;
+    return fu_event_accelerations(run, state) ? run->accelerator.multipliers + coupling->multiplier : none;
 }
 
 /* Returns by how much what holds the point exceeds what friction can take, N; or how fast it slides backwards, m/s. */
@@ -44,7 +44,7 @@ static double friction_margin(const fu_run *run, const fu_coupling *coupling, co
     fu_hard_along along;
     if (fu_hard_flags_of(coupling, state)->sticks) {
         const double *held = multipliers(run, coupling, state);
-        return sqrt(fu_dot(dim - 1, held + 1, held + 1)) - fu_hard_grip(contact, held[0]);
+        return sqrt(fu_dot(dim - 1, held + 1, held + 1)) - fu_hard_friction_limit(contact, held[0]);
     }
     fu_hard_row_at(run->model, contact, state, &row);
     fu_hard_along_at(run->model, contact, state, &row, &along);
@@ -57,7 +57,7 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
     const int mode = fu_hard_flags_of(coupling, state)->mode;
     fu_hard_row row;
     if (which == OF_FRICTION) return mode == FU_CLOSED ? friction_margin(run, coupling, state) : -1.0;
-    if (mode == FU_CLOSED) return multipliers(run, coupling, state)[0] - LEAST_PULL * contact_of(coupling)->weight;
+    if (mode == FU_CLOSED) return multipliers(run, coupling, state)[0] - PULL_TOLERANCE * contact_of(coupling)->weight;
     if (mode == FU_IMPLIED) return -1.0;
     fu_hard_row_at(run->model, contact_of(coupling), state, &row);
     return -row.g;
@@ -69,9 +69,9 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     if (which == OF_FRICTION || fu_hard_flags_of(coupling, &run->now)->mode != FU_APART) return 0.0;
     fu_hard_row_at(run->model, contact_of(coupling), &run->now, &from);
     fu_hard_row_at(run->model, contact_of(coupling), &run->next, &to);
-    const double found = fu_dip((fu_course){from.g, from.rate}, (fu_course){to.g, to.rate}, 1, h, run->round_off);
+    const double found = fu_grazing_time((fu_course){from.g, from.rate}, (fu_course){to.g, to.rate}, 1, h, run->round_off);
     if (found > 0.0 || !(from.g > run->round_off && to.g > run->round_off)) return found;
-    return fu_contact_pass(run, &contact_of(coupling)->contact, h);
+    return fu_contact_detect_within(run, &contact_of(coupling)->contact, h);
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
@@ -110,4 +110,4 @@ static double beyond(const fu_model *model, const fu_coupling *coupling, const f
 }
 
 const fu_coupling_events fu_hard_contact_events = {
-    .beyond = beyond, .watches = watches, .watched = watched, .dip = dip, .act = act, .begin = begin};
+    .beyond = beyond, .watches = watches, .watched = watched, .grazing = dip, .act = act, .begin = begin};

@@ -12,7 +12,7 @@ typedef struct {
     fu_hard_row row[FU_MOST_HARD_CONTACTS];
     double G[FU_MOST_HARD_CONTACTS * FU_MOST_HARD_CONTACTS], before[FU_MOST_HARD_CONTACTS], after[FU_MOST_HARD_CONTACTS];
     double target[FU_MOST_HARD_CONTACTS], impulse[FU_MOST_HARD_CONTACTS], taken;
-} fu_touching;
+} fu_active_contacts;
 
 /* events/impulse.c: adds an impulse along H, of a row's dofs, to run->before; makes in run->work what velocities jump by for one of
  * 1 Ns alone; returns how fast dofs that change at these rates go along H. */
@@ -22,8 +22,8 @@ double fu_hard_rate(const fu_hard_row *row, const double *H, const double *dofs)
 
 /* events/impact_friction.c: the jump of velocities by impulses with friction, in run->work; how friction and pressing go on, where one of
  * them, `loose`, may be known to break loose. They return not zero where there is no solution. */
-int fu_rub(fu_run *run, fu_touching *touching);
-int fu_settle_friction(fu_run *run, fu_touching *touching, const fu_coupling *loose);
+int fu_impact_with_friction(fu_run *run, fu_active_contacts *touching);
+int fu_settle_friction(fu_run *run, fu_active_contacts *touching, const fu_coupling *loose);
 
 /* events/impact.c: finds how hard contacts go on at `now`, where one of them, which is `first` to (null: at the start), has come
  * together, would pull, or stops sliding, or breaks loose, if it `yields`; returns a status. What has happened to each it notes in its news. */

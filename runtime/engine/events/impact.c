@@ -13,11 +13,11 @@
 #include <math.h>
 #include <string.h>
 
-#define TOUCHING 1e-12 /* of the largest length: distances at which points touch */
-#define ROUNDING 1e-11 /* of velocities, or of accelerations: less is none */
-#define SLOW 1e-3      /* of the velocity below which a point comes to rest: what parts more slowly stays, if it is pressed */
-#define STILL 1e-6     /* of the velocity below which a point comes to rest: the same */
-#define GROWTH 1e-9    /* of the kinetic energy of the jump: more than that an impact must not bring */
+#define CONTACT_TOLERANCE 1e-12 /* of the largest length: distances at which points touch */
+#define ROUNDING_OF_VELOCITY 1e-11 /* of velocities, or of accelerations: less is none */
+#define SEPARATION_SPEED 1e-3      /* of the velocity below which a point comes to rest: what parts more slowly stays, if it is pressed */
+#define REST_SPEED 1e-6     /* of the velocity below which a point comes to rest: the same */
+#define ENERGY_TOLERANCE 1e-9    /* of the kinetic energy of the jump: more than that an impact must not bring */
 
 enum { MOST = FU_MOST_HARD_CONTACTS };
 
@@ -27,7 +27,7 @@ static const fu_hard_contact *contact_of(const fu_coupling *coupling)
 }
 
 /* Finds what touches, and parts all of it, so that its rows are none of eq 38's. */
-static void collect(fu_run *run, const fu_coupling *first, fu_touching *t)
+static void collect(fu_run *run, const fu_coupling *first, fu_active_contacts *t)
 {
     const fu_model *model = run->model;
     t->n = t->friction = 0;
@@ -37,7 +37,7 @@ static void collect(fu_run *run, const fu_coupling *first, fu_touching *t)
         fu_hard_flags *flags = fu_hard_flags_of(c, &run->now);
         fu_hard_row *row = &t->row[t->n];
         fu_hard_row_at(model, contact_of(c), &run->now, row);
-        if (flags->mode == FU_APART && c != first && row->g > TOUCHING * fu_largest_length(run)) continue;
+        if (flags->mode == FU_APART && c != first && row->g > CONTACT_TOLERANCE * fu_largest_length(run)) continue;
         fu_keep_largest(&run->farthest[c->number], fu_hard_beyond(model, contact_of(c), &run->now)); /* it may part within the step */
         t->was[t->n] = flags->mode;
         t->stuck[t->n] = flags->sticks;
@@ -49,7 +49,7 @@ static void collect(fu_run *run, const fu_coupling *first, fu_touching *t)
 }
 
 /* Makes the compliance of what touches; returns not zero where other constraints have no solution. */
-static int comply(fu_run *run, fu_touching *t)
+static int comply(fu_run *run, fu_active_contacts *t)
 {
     if (fu_prepare_response(run->model, &run->now, &run->accelerator)) return 1;
     for (int k = 0; k < t->n; ++k) {
@@ -62,7 +62,7 @@ static int comply(fu_run *run, fu_touching *t)
 }
 
 /* Makes the jump of velocities by the impulses, in run->work. */
-static void jump(fu_run *run, const fu_touching *t)
+static void jump(fu_run *run, const fu_active_contacts *t)
 {
     memset(run->before, 0, sizeof(double) * (size_t)run->model->n_dof);
     for (int k = 0; k < t->n; ++k) fu_hard_push(run, &t->row[k], t->row[k].H, t->impulse[k]);
@@ -70,7 +70,7 @@ static void jump(fu_run *run, const fu_touching *t)
 }
 
 /* Finds the impulses by which nothing leaves more slowly than by its restitution; returns not zero where there are none. */
-static int solve_impulses(fu_touching *t, double least)
+static int solve_impulses(fu_active_contacts *t, double least)
 {
     double b[MOST];
     int unused[MOST];
@@ -81,7 +81,7 @@ static int solve_impulses(fu_touching *t, double least)
 }
 
 /* Returns the energy that the impulses take, J: minus their work at the mean of the velocities before and after. */
-static double lost(const fu_touching *t)
+static double lost(const fu_active_contacts *t)
 {
     double sum = 0.0;
     for (int k = 0; k < t->n; ++k) sum -= 0.5 * t->impulse[k] * (t->before[k] + t->after[k]);
@@ -89,9 +89,9 @@ static double lost(const fu_touching *t)
 }
 
 /* Makes the jump of velocities, in run->work, by the impulses that the law asks for; returns not zero where there are none. */
-static int solve(fu_run *run, fu_touching *t, double least)
+static int solve(fu_run *run, fu_active_contacts *t, double least)
 {
-    if (t->friction) return fu_rub(run, t);
+    if (t->friction) return fu_impact_with_friction(run, t);
     if (solve_impulses(t, least)) return 1;
     jump(run, t);
     t->taken = lost(t);
@@ -100,7 +100,7 @@ static int solve(fu_run *run, fu_touching *t, double least)
 
 /* Lets what comes together part by its restitution, or stay where it would part too slowly. Restitution that differs from point to
  * point may bring energy: then there is none. Returns not zero where no impulses part it. */
-static int strike(fu_run *run, fu_touching *t, double least)
+static int strike(fu_run *run, fu_active_contacts *t, double least)
 {
     for (int k = 0; k < t->n; ++k) {
         const fu_hard_contact *contact = contact_of(t->of[k]);
@@ -108,7 +108,7 @@ static int strike(fu_run *run, fu_touching *t, double least)
         t->target[k] = back > contact->rest_velocity ? back : 0.0;
     }
     if (solve(run, t, least)) return 1;
-    if (t->taken < -GROWTH * fu_kinetic_energy_of_change(run->model, run->now.q, run->work)) {
+    if (t->taken < -ENERGY_TOLERANCE * fu_kinetic_energy_of_change(run->model, run->now.q, run->work)) {
         memset(t->target, 0, sizeof t->target);
         if (solve(run, t, least)) return 1;
     }
@@ -118,13 +118,13 @@ static int strike(fu_run *run, fu_touching *t, double least)
 }
 
 /* Finds which of the points that do not part press, by the accelerations without them; returns not zero where that has no solution. */
-static int press(fu_run *run, fu_touching *t, double least)
+static int press(fu_run *run, fu_active_contacts *t, double least)
 {
     const fu_model *model = run->model;
     int n = 0, at[MOST], kind[MOST];
     double G[MOST * MOST], b[MOST], force[MOST], largest = 0.0;
     for (int k = 0; k < t->n; ++k) {
-        t->stays[k] = t->after[k] <= fmax(least, SLOW * contact_of(t->of[k])->rest_velocity);
+        t->stays[k] = t->after[k] <= fmax(least, SEPARATION_SPEED * contact_of(t->of[k])->rest_velocity);
         if (t->stays[k]) at[n++] = k;
     }
     if (!n) return 0;
@@ -136,7 +136,7 @@ static int press(fu_run *run, fu_touching *t, double least)
         largest = fmax(largest, fabs(b[i]));
         for (int j = 0; j < n; ++j) G[i * n + j] = t->G[at[i] * t->n + at[j]];
     }
-    if (fu_complement(n, G, b, ROUNDING * largest, force, kind)) return 1;
+    if (fu_complement(n, G, b, ROUNDING_OF_VELOCITY * largest, force, kind)) return 1;
     for (int i = 0; i < n; ++i)
         fu_hard_flags_of(t->of[at[i]], &run->now)->mode =
             kind[i] == FU_IS_BASIC ? FU_CLOSED : kind[i] == FU_IS_DEPENDENT ? FU_IMPLIED : FU_APART;
@@ -144,7 +144,7 @@ static int press(fu_run *run, fu_touching *t, double least)
 }
 
 /* Returns what has happened to a point that touches. */
-static int news_of(const fu_touching *t, int k, const fu_hard_flags *flags)
+static int news_of(const fu_active_contacts *t, int k, const fu_hard_flags *flags)
 {
     if (t->was[k] == FU_APART)
         return flags->mode != FU_APART ? FU_CAME_INTO_CONTACT : t->impulse[k] > 0.0 ? FU_STRUCK : FU_NO_NEWS;
@@ -156,18 +156,18 @@ static int news_of(const fu_touching *t, int k, const fu_hard_flags *flags)
 static void let_happen(fu_run *run, const fu_coupling *coupling)
 {
     for (int k = 0; k < run->n_watches; ++k)
-        if (fu_own_coupling(run, k) == coupling && !run->watches[k].which)
+        if (fu_event_coupling(run, k) == coupling && !run->watches[k].which)
             run->late[k] = 1;
 }
 
 int fu_resolve_hard_contacts(fu_run *run, const fu_coupling *first, int yields)
 {
-    fu_touching t = {.n = 0};
+    fu_active_contacts t = {.n = 0};
     double approach = 0.0;
     collect(run, first, &t);
     if (!t.n) return FU_RUNNING;
-    double least = ROUNDING * fu_size(run->model, run->now.v);
-    for (int k = 0; k < t.n; ++k) least = fmax(least, STILL * contact_of(t.of[k])->rest_velocity);
+    double least = ROUNDING_OF_VELOCITY * fu_size(run->model, run->now.v);
+    for (int k = 0; k < t.n; ++k) least = fmax(least, REST_SPEED * contact_of(t.of[k])->rest_velocity);
     if (comply(run, &t)) return FU_SINGULAR;
     for (int k = 0; k < t.n; ++k) {
         t.after[k] = t.before[k];

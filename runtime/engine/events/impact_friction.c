@@ -11,11 +11,11 @@
 #include <math.h>
 #include <string.h>
 
-#define MOST_SWEEPS 20000 /* over the points of an impact, before there is no solution */
+#define MAX_SWEEPS 20000 /* over the points of an impact, before there is no solution */
 #define CONVERGED 1e-14   /* change of an impulse in a sweep, over the largest */
-#define STOPPED 0.1       /* of the velocity below which a point comes to rest: what is slower sticks, if it can */
+#define STICKING_SPEED 0.1       /* of the velocity below which a point comes to rest: what is slower sticks, if it can */
 #define EXCESS 1e-9       /* of what friction can take: so much more breaks it loose */
-#define PULL 1e-10        /* of the largest force: more opens a point, less is rounding */
+#define PULL_TOLERANCE 1e-10        /* of the largest force: more opens a point, less is rounding */
 #define APPROACH 1e-6     /* of the accelerations: more than what sticking gives way by */
 #define MOST_CHANGES 200  /* of how points go on, before there is no motion */
 
@@ -26,20 +26,20 @@ typedef struct {
     int n;
     double A[ROWS * ROWS], before[ROWS], after[ROWS], impulse[ROWS];
     fu_hard_along along[MOST];
-} rubbing;
+} friction_impulse;
 
 static const fu_hard_contact *contact_of(const fu_coupling *coupling)
 {
     return (const fu_hard_contact *)coupling;
 }
 
-static const double *row_of(const fu_touching *t, const rubbing *r, int dim, int k)
+static const double *row_of(const fu_active_contacts *t, const friction_impulse *r, int dim, int k)
 {
     return k % dim ? r->along[k / dim].H[k % dim - 1] : t->row[k / dim].H;
 }
 
 /* Makes the rows, their compliance and the velocities before. */
-static void prepare(fu_run *run, const fu_touching *t, rubbing *r)
+static void prepare(fu_run *run, const fu_active_contacts *t, friction_impulse *r)
 {
     const fu_model *model = run->model;
     const int dim = model->dim;
@@ -54,13 +54,13 @@ static void prepare(fu_run *run, const fu_touching *t, rubbing *r)
     }
 }
 
-static double velocity(const rubbing *r, int k)
+static double velocity(const friction_impulse *r, int k)
 {
     return r->before[k] + fu_dot(r->n, r->A + k * r->n, r->impulse);
 }
 
 /* Mends the impulses of one point, the others' as they are; returns the largest change. */
-static double mend(const fu_touching *t, rubbing *r, int point, int dim)
+static double mend(const fu_active_contacts *t, friction_impulse *r, int point, int dim)
 {
     const int k = point * dim;
     const double friction = contact_of(t->of[point])->friction;
@@ -80,13 +80,13 @@ static double mend(const fu_touching *t, rubbing *r, int point, int dim)
     return change;
 }
 
-int fu_rub(fu_run *run, fu_touching *t)
+int fu_impact_with_friction(fu_run *run, fu_active_contacts *t)
 {
     const int dim = run->model->dim;
-    rubbing r;
+    friction_impulse r;
     prepare(run, t, &r);
     double change = INFINITY, largest = 0.0;
-    for (int sweep = 0; sweep < MOST_SWEEPS && change > CONVERGED * largest; ++sweep) {
+    for (int sweep = 0; sweep < MAX_SWEEPS && change > CONVERGED * largest; ++sweep) {
         change = 0.0;
         for (int k = 0; k < t->n; ++k) {
             change = fmax(change, mend(t, &r, k, dim));
@@ -110,7 +110,7 @@ int fu_rub(fu_run *run, fu_touching *t)
 }
 
 /* Lets a point stick that is slow enough, or slide on. */
-static void begin(fu_run *run, const fu_touching *t, int k)
+static void begin(fu_run *run, const fu_active_contacts *t, int k)
 {
     const fu_hard_contact *contact = contact_of(t->of[k]);
     fu_hard_flags *flags = fu_hard_flags_of(t->of[k], &run->now);
@@ -120,7 +120,7 @@ static void begin(fu_run *run, const fu_touching *t, int k)
     fu_hard_row_at(run->model, contact, &run->now, &row);
     fu_hard_along_at(run->model, contact, &run->now, &row, &along);
     const double speed = sqrt(fu_dot(run->model->dim, along.past, along.past));
-    flags->sticks = speed <= STOPPED * contact->rest_velocity;
+    flags->sticks = speed <= STICKING_SPEED * contact->rest_velocity;
     for (int d = 0; d < run->model->dim && !flags->sticks; ++d) direction[d] = along.past[d] / speed;
 }
 
@@ -128,7 +128,7 @@ static void begin(fu_run *run, const fu_touching *t, int k)
 static double excess(const fu_run *run, const fu_coupling *c)
 {
     const double *multipliers = run->now.forces + c->force;
-    const double most = fu_hard_grip(contact_of(c), multipliers[0]);
+    const double most = fu_hard_friction_limit(contact_of(c), multipliers[0]);
     double square = 0.0;
     for (int k = 1; k < c->n_forces; ++k) square += multipliers[k] * multipliers[k];
     return sqrt(square) / most - 1.0;
@@ -154,7 +154,7 @@ static void aim(fu_run *run, const fu_coupling *c)
 
 /* Aims the points that stick, but those that have been aimed: of points that break loose one after the other at one instant, the last
  * would else be twisted by what those before no longer hold. */
-static void aim_all(fu_run *run, const fu_touching *t, int *aimed)
+static void aim_all(fu_run *run, const fu_active_contacts *t, int *aimed)
 {
     for (int k = 0; k < t->n; ++k) {
         const fu_hard_flags *flags = fu_hard_flags_of(t->of[k], &run->now);
@@ -165,7 +165,7 @@ static void aim_all(fu_run *run, const fu_touching *t, int *aimed)
 }
 
 /* Changes how one point goes on that cannot go on so; returns 0 where all can. */
-static int change_one(fu_run *run, const fu_touching *t, const fu_coupling *loose, int *closed)
+static int change_one(fu_run *run, const fu_active_contacts *t, const fu_coupling *loose, int *closed)
 {
     const fu_model *model = run->model;
     double largest = 0.0, worst = EXCESS;
@@ -175,7 +175,7 @@ static int change_one(fu_run *run, const fu_touching *t, const fu_coupling *loos
     for (int k = 0; k < t->n; ++k) {
         fu_hard_flags *flags = fu_hard_flags_of(t->of[k], &run->now);
         if (!t->stays[k]) continue;
-        if (flags->mode == FU_CLOSED && run->now.forces[t->of[k]->force] > PULL * largest) {
+        if (flags->mode == FU_CLOSED && run->now.forces[t->of[k]->force] > PULL_TOLERANCE * largest) {
             flags->mode = FU_APART;
             return 1;
         }
@@ -218,7 +218,7 @@ static int stop(fu_run *run)
     return 0;
 }
 
-int fu_settle_friction(fu_run *run, fu_touching *t, const fu_coupling *loose)
+int fu_settle_friction(fu_run *run, fu_active_contacts *t, const fu_coupling *loose)
 {
     int closed = -1, changes = 0, aimed[MOST] = {0};
     for (int k = 0; k < t->n; ++k)

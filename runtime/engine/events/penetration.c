@@ -21,10 +21,10 @@ double fu_beyond(const fu_model *model, const fu_coupling *coupling, const fu_st
 /* Takes the depths at `now`, whose watched values are known. What is too far to be watched touches nothing. */
 void fu_note_depths(fu_run *run)
 {
-    const fu_watch_list near = fu_near_watches(run, &run->now);
+    const fu_event_function_list near = fu_near_event_functions(run, &run->now);
     for (int i = 0; i < near.n; ++i) {
-        const int k = fu_watch_of(near, i);
-        const fu_coupling *c = fu_own_coupling(run, k);
+        const int k = fu_event_function_of(near, i);
+        const fu_coupling *c = fu_event_coupling(run, k);
         if (!c) continue;
         const fu_coupling_events *events = c->events;
         if (events->depth) fu_keep_largest(&run->deepest[c->number], events->depth(run->model, c, &run->now, run->watched[k]));

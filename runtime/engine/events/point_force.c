@@ -26,7 +26,7 @@ static double margin_of_sense(const fu_point_force *between, int piece, const do
     const int sense = between->senses[piece];
     double force[3];
     if (sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE) return INFINITY;
-    between->law->force(fu_piece_parameters(between, piece), gap, rate, force);
+    between->law->force(fu_segment_parameters(between, piece), gap, rate, force);
     return sense * between->compliance * fu_dot(between->dim, force, gap) / distance;
 }
 
@@ -34,9 +34,9 @@ static double margin_of_sense(const fu_point_force *between, int piece, const do
 typedef struct {
     double margin;
     int piece;
-} passage;
+} transition;
 
-static passage farther(passage a, passage b)
+static transition farther(transition a, transition b)
 {
     return b.margin > a.margin ? b : a;
 }
@@ -49,40 +49,40 @@ static int free_beside(const fu_point_force *between, int piece)
     return piece;
 }
 
-/* Returns the passage of the force to a piece with a force on one side of a piece without: where the points are on it, and its
+/* Returns the transition of the force to a piece with a force on one side of a piece without: where the points are on it, and its
  * force has its sense. */
-static passage entering(const fu_point_force *between, int piece, int side, const double *gap, const double *rate,
+static transition entering(const fu_point_force *between, int piece, int side, const double *gap, const double *rate,
                         double distance)
 {
     const double beyond = side * (distance - between->bounds[piece - (side < 0)]);
-    int entered = fu_piece_at_distance(between, distance);
+    int entered = fu_segment_at_distance(between, distance);
     if (side * (entered - piece) < 1) entered = piece + side;
-    return (passage){fmin(beyond, margin_of_sense(between, entered, gap, rate, distance)), entered};
+    return (transition){fmin(beyond, margin_of_sense(between, entered, gap, rate, distance)), entered};
 }
 
-/* Returns the passage from a piece that is nearest, or has happened. */
-static passage passage_from(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece)
+/* Returns the transition from a piece that is nearest, or has happened. */
+static transition passage_from(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece)
 {
-    passage found = {-INFINITY, piece};
+    transition found = {-INFINITY, piece};
     double gap[3], rate[3];
     fu_gap(model, between, state->q, state->v, gap, rate);
     const double distance = norm(between->dim, gap);
     const double sense = margin_of_sense(between, piece, gap, rate, distance);
-    if (sense < INFINITY) found = (passage){-sense, free_beside(between, piece)};
+    if (sense < INFINITY) found = (transition){-sense, free_beside(between, piece)};
     for (int side = -1; side <= 1; side += 2) {
         const int beside = piece + side;
         if (beside < 0 || beside >= between->n_pieces) continue;
         if (between->senses[piece] == FU_HAS_NO_FORCE)
             found = farther(found, entering(between, piece, side, gap, rate, distance));
         else
-            found = farther(found, (passage){side * (distance - between->bounds[piece - (side < 0)]), beside});
+            found = farther(found, (transition){side * (distance - between->bounds[piece - (side < 0)]), beside});
     }
     return found;
 }
 
-static passage next_passage(const fu_model *model, const fu_point_force *between, const fu_state *state)
+static transition next_passage(const fu_model *model, const fu_point_force *between, const fu_state *state)
 {
-    return passage_from(model, between, state, fu_force_piece(between, state));
+    return passage_from(model, between, state, fu_force_segment(between, state));
 }
 
 /* Passages follow from where the points are; each leads from piece to piece. */
@@ -93,7 +93,7 @@ static int follow(const fu_model *model, const fu_coupling *coupling, const fu_s
     const int before = *piece;
     *piece = from->flags[coupling->flags];
     for (int i = 0; i < between->n_pieces; ++i) {
-        const passage next = next_passage(model, between, to);
+        const transition next = next_passage(model, between, to);
         if (!(next.margin > 0.0)) break;
         *piece = next.piece;
     }
@@ -110,11 +110,11 @@ static const char *words(const fu_point_force *between, int before, int after)
 /* The distance of the points at a state, and what tells of the force: the gap, its rate, its acceleration. */
 typedef struct {
     double distance, gap[3], rate[3], acceleration[3];
-} look;
+} gap_motion;
 
-static look look_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
+static gap_motion look_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
 {
-    look l = {.distance = 0.0};
+    gap_motion l = {.distance = 0.0};
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
         fu_attachment_at(model, &between->attachments[e], state, 0.0, FU_POINT, &at);
@@ -147,7 +147,7 @@ typedef struct {
 static end_course end_of(const fu_model *model, const fu_point_force *between, const fu_state *state, int bound, double h)
 {
     const int dim = between->dim;
-    const look l = look_at(model, between, state);
+    const gap_motion l = look_at(model, between, state);
     const double rate = fu_dot(dim, l.gap, l.rate) / l.distance;
     const double bend = (fu_dot(dim, l.rate, l.rate) + fu_dot(dim, l.gap, l.acceleration) - rate * rate) / l.distance;
     return (end_course){l.distance - between->bounds[bound], h * rate, h * h * bend};
@@ -169,7 +169,7 @@ static double part_of_step(const fu_model *model, const fu_coupling *coupling, c
                      int bends, const char **what)
 {
     const fu_point_force *between = force_of(coupling);
-    const int before = fu_force_piece(between, from), there = fu_force_piece(between, to);
+    const int before = fu_force_segment(between, from), there = fu_force_segment(between, to);
     const int after = there == before ? passage_from(model, between, to, before).piece : there, up = after > before;
     double low = 0.0, high = 1.0;
     *what = words(between, before, after);
@@ -190,7 +190,7 @@ static double part_of_step(const fu_model *model, const fu_coupling *coupling, c
 static double since(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_point_force *between = force_of(coupling);
-    const int before = fu_force_piece(between, state), up = next_passage(model, between, state).piece > before;
+    const int before = fu_force_segment(between, state), up = next_passage(model, between, state).piece > before;
     if (coupling->is_damped) return NAN;
     const fu_course course = from_bound(model, between, state, up ? before : before - 1);
     return course.value / course.rate;
@@ -199,13 +199,13 @@ static double since(const fu_model *model, const fu_coupling *coupling, const fu
 static void force_change(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                          double factor, double *f)
 {
-    fu_add_force_change(model, force_of(coupling), to, fu_force_piece(force_of(coupling), from), factor, f);
+    fu_add_force_change(model, force_of(coupling), to, fu_force_segment(force_of(coupling), from), factor, f);
 }
 
-static int watches(const fu_coupling *coupling, fu_watch *out)
+static int watches(const fu_coupling *coupling, fu_event_function *out)
 {
     if (force_of(coupling)->n_pieces == 1) return 0;
-    if (out) *out = (fu_watch){.which = 0, .direction = 1};
+    if (out) *out = (fu_event_function){.which = 0, .direction = 1};
     return 1;
 }
 
@@ -216,18 +216,18 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
 }
 
 /* Returns by how much the distance is beyond that of a bound to a side, m, and its rate. */
-static fu_course beyond(const fu_point_force *between, int bound, int side, const look *l)
+static fu_course beyond(const fu_point_force *between, int bound, int side, const gap_motion *l)
 {
     const double rate = fu_dot(between->dim, l->gap, l->rate) / l->distance;
     return (fu_course){side * (l->distance - between->bounds[bound]), side * rate};
 }
 
 /* Returns how far the force of a piece is on the wrong side of nil, m, and its rate. */
-static fu_course wrong_sense(const fu_point_force *between, int piece, const look *l)
+static fu_course wrong_sense(const fu_point_force *between, int piece, const gap_motion *l)
 {
     const int dim = between->dim;
     double force[3], by_gap[9], by_rate[9], change = 0.0;
-    between->law->tangent(fu_piece_parameters(between, piece), l->gap, l->rate, force, by_gap, by_rate);
+    between->law->tangent(fu_segment_parameters(between, piece), l->gap, l->rate, force, by_gap, by_rate);
     for (int i = 0; i < dim; ++i)
         for (int k = 0; k < dim; ++k)
             change += l->gap[i] * (by_gap[i * dim + k] * l->rate[k] + by_rate[i * dim + k] * l->acceleration[k]);
@@ -241,16 +241,16 @@ static fu_course wrong_sense(const fu_point_force *between, int piece, const loo
 static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_point_force *between = force_of(coupling);
-    const int piece = fu_force_piece(between, &run->now), sense = between->senses[piece];
-    const look from = look_at(run->model, between, &run->now), to = look_at(run->model, between, &run->next);
+    const int piece = fu_force_segment(between, &run->now), sense = between->senses[piece];
+    const gap_motion from = look_at(run->model, between, &run->now), to = look_at(run->model, between, &run->next);
     double first = 0.0;
     (void)which;
     for (int side = -1; side <= 1; ++side) {
         const int bound = piece - (side < 0), by_sense = side == 0;
         if (by_sense ? sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE : bound < 0 || bound >= between->n_pieces - 1) continue;
-        const double found = by_sense ? fu_dip(wrong_sense(between, piece, &from), wrong_sense(between, piece, &to), -1, h,
+        const double found = by_sense ? fu_grazing_time(wrong_sense(between, piece, &from), wrong_sense(between, piece, &to), -1, h,
                                                run->round_off)
-                                      : fu_dip(beyond(between, bound, side, &from), beyond(between, bound, side, &to), -1, h,
+                                      : fu_grazing_time(beyond(between, bound, side, &from), beyond(between, bound, side, &to), -1, h,
                                                run->round_off);
         if (found > 0.0 && (first == 0.0 || found < first)) first = found;
     }
@@ -260,7 +260,7 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     const fu_point_force *between = force_of(coupling);
-    const int before = fu_force_piece(between, &run->now), after = next_passage(run->model, between, &run->now).piece;
+    const int before = fu_force_segment(between, &run->now), after = next_passage(run->model, between, &run->now).piece;
     (void)which, (void)side;
     run->now.flags[coupling->flags] = after;
     *what = words(between, before, after);
@@ -278,8 +278,8 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     const fu_point_force *between = force_of(coupling);
     fu_state *now = &run->now;
     if (between->n_pieces == 1) return FU_RUNNING;
-    fu_touch_piece(run->model, coupling, now);
-    const passage next = next_passage(run->model, between, now);
+    fu_detect_segment(run->model, coupling, now);
+    const transition next = next_passage(run->model, between, now);
     if (next.margin > 0.0) now->flags[coupling->flags] = next.piece;
     return FU_RUNNING;
 }
@@ -289,7 +289,7 @@ static const fu_deferred_operations deferred = {.follow = follow, .part = part_o
 const fu_coupling_events fu_point_force_events = {
     .watches = watches,
     .watched = watched,
-    .dip = dip,
+    .grazing = dip,
     .act = act,
     .can_act = can_act,
     .begin = begin,

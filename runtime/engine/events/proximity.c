@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-#define STEPS 16      /* for which a look shall do */
-#define MOST_AGE 256  /* steps after which there is another look, as motions may have become slower */
-#define ROUNDING 1e-9 /* of clearances, ways and places */
+#define STEPS_A_LOOK 16      /* for which a look shall do */
+#define MAX_STEPS_A_LOOK 256  /* steps after which there is another look, as motions may have become slower */
+#define ROUNDING_OF_CLEARANCE 1e-9 /* of clearances, ways and places */
 
 /* Makes the speeds of a mover, m/s and rad/s. */
 static void speeds_of(const fu_model *model, int mover, const double *v, double *speed, double *spin)
@@ -27,23 +27,23 @@ static void speeds_of(const fu_model *model, int mover, const double *v, double 
     *spin = sqrt(*spin);
 }
 
-static fu_watch_list every_watch(const fu_run *run)
+static fu_event_function_list every_watch(const fu_run *run)
 {
-    return (fu_watch_list){0, run->n_watches};
+    return (fu_event_function_list){0, run->n_watches};
 }
 
-static fu_watch_list near_watches(const fu_run *run)
+static fu_event_function_list near_watches(const fu_run *run)
 {
-    return (fu_watch_list){run->model->proximity->near_watches, run->model->proximity->n_near_watches};
+    return (fu_event_function_list){run->model->proximity->near_watches, run->model->proximity->n_near_watches};
 }
 
-fu_watch_list fu_near_watches(const fu_run *run, const fu_state *state)
+fu_event_function_list fu_near_event_functions(const fu_run *run, const fu_state *state)
 {
     return run->model->n_pairs && fu_movers_are_near(run->model, state->q) ? near_watches(run) : every_watch(run);
 }
 
 /* A cubic goes no farther from its ends than a third of the step at their rates. */
-fu_watch_list fu_near_watches_within(const fu_run *run, double h)
+fu_event_function_list fu_near_event_functions_within(const fu_run *run, double h)
 {
     const fu_model *model = run->model;
     const fu_proximity *p = model->proximity;
@@ -61,9 +61,9 @@ fu_watch_list fu_near_watches_within(const fu_run *run, double h)
     return near_watches(run);
 }
 
-int fu_is_far_watch(const fu_run *run, int watch)
+int fu_is_far_event_function(const fu_run *run, int watch)
 {
-    const fu_coupling *c = fu_own_coupling(run, watch);
+    const fu_coupling *c = fu_event_coupling(run, watch);
     return c && run->model->n_pairs && run->model->proximity->is_known && run->model->proximity->is_far[c->number];
 }
 
@@ -87,7 +87,7 @@ static void measure(const fu_model *model, fu_pair *pair, const fu_state *state)
     fu_proximity *p = model->proximity;
     const fu_clearance found = c->type->proximity->clearance(model, c, state);
     pair->lever = found.lever + fmax(found.gap, 0.0);
-    pair->limit = found.gap * (1.0 - ROUNDING) + used_by(p, pair, 0);
+    pair->limit = found.gap * (1.0 - ROUNDING_OF_CLEARANCE) + used_by(p, pair, 0);
     if (pair->between[0] >= model->n_cables) p->movers[pair->between[0]].radius = fmax(p->movers[pair->between[0]].radius, found.radius);
 }
 
@@ -96,7 +96,7 @@ static int stays_far(const fu_run *run, const fu_pair *pair)
 {
     const fu_proximity *p = run->model->proximity;
     const double ahead = used_by(p, pair, 1);
-    return pair->limit - used_by(p, pair, 0) > ahead + ROUNDING * (ahead + run->extent);
+    return pair->limit - used_by(p, pair, 0) > ahead + ROUNDING_OF_CLEARANCE * (ahead + run->extent);
 }
 
 /* Measures pairs at a state that may be near before the next look, or all of them, and notes which are far. */
@@ -120,7 +120,7 @@ static void list_near(fu_run *run)
         if (!p->is_far[k] || !p->is_alone[k]) p->near[p->n_near++] = model->couplings[k];
     p->is_known = 1;
     for (int k = 0; k < run->n_watches; ++k)
-        if (!fu_is_far_watch(run, k)) p->near_watches[p->n_near_watches++] = k;
+        if (!fu_is_far_event_function(run, k)) p->near_watches[p->n_near_watches++] = k;
 }
 
 /* Counts what movers have gone since the last look; returns whether one of them has gone half of what it may. */
@@ -148,8 +148,8 @@ static void expect(const fu_model *model, const fu_state *state, double h, int s
         speeds_of(model, m, state->v, &speed, &spin);
         mover->gone += ways[m];
         mover->turned += turns[m];
-        mover->way = STEPS * fmax(ways[m] / steps, h * (speed + spin * mover->radius));
-        mover->turn = STEPS * fmax(turns[m] / steps, h * spin);
+        mover->way = STEPS_A_LOOK * fmax(ways[m] / steps, h * (speed + spin * mover->radius));
+        mover->turn = STEPS_A_LOOK * fmax(turns[m] / steps, h * spin);
     }
 }
 
@@ -162,7 +162,7 @@ void fu_look_around(fu_run *run, double h, int anew)
     anew |= !p->is_known;
     ++p->age;
     if (anew) memset(ways, 0, sizeof(double) * 2 * (size_t)p->n_movers);
-    else if (!count_ways(model, &run->now, ways, turns) && p->age < MOST_AGE) return;
+    else if (!count_ways(model, &run->now, ways, turns) && p->age < MAX_STEPS_A_LOOK) return;
     expect(model, &run->now, run->fixed_step > 0.0 ? run->fixed_step : fmax(h, run->h), p->age, ways, turns);
     memcpy(p->at, run->now.q, sizeof(double) * (size_t)model->n_q);
     sort_pairs(run, &run->now, anew);

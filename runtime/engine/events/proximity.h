@@ -8,15 +8,15 @@
 typedef struct {
     const int *list; /* null: all, in their order */
     int n;
-} fu_watch_list;
-fu_watch_list fu_near_watches(const fu_run *run, const fu_state *state);
-fu_watch_list fu_near_watches_within(const fu_run *run, double h);
-static inline int fu_watch_of(fu_watch_list list, int i)
+} fu_event_function_list;
+fu_event_function_list fu_near_event_functions(const fu_run *run, const fu_state *state);
+fu_event_function_list fu_near_event_functions_within(const fu_run *run, double h);
+static inline int fu_event_function_of(fu_event_function_list list, int i)
 {
     return list.list ? list.list[i] : i;
 }
 /* Whether a watch was passed over when values at `now` were taken. */
-int fu_is_far_watch(const fu_run *run, int watch);
+int fu_is_far_event_function(const fu_run *run, int watch);
 
 /* Looks anew at what may be near, after a step of h, where that may be needed, or in any case. */
 void fu_look_around(fu_run *run, double h, int anew);

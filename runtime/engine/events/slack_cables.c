@@ -73,7 +73,7 @@ int fu_take_slackness(fu_run *run, double before)
     }
     if (!first) return 0;
     const char *what = first->pending > 0 ? "became slack" : "all taut again";
-    run->event = (fu_event){FU_GAVE_WAY, (int)(first - run->slackness), first->element, what};
+    run->event = (fu_event){FU_WENT_SLACK, (int)(first - run->slackness), first->element, what};
     run->event_time = first->at;
     first->pending = 0;
     return 1;

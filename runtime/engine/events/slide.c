@@ -61,16 +61,16 @@ static int enter(fu_run *run, const fu_coupling *coupling, int piece)
     return FU_RUNNING;
 }
 
-static int watches(const fu_coupling *coupling, fu_watch *out)
+static int watches(const fu_coupling *coupling, fu_event_function *out)
 {
     const fu_slide *slide = slide_of(coupling);
-    fu_watch found[3];
+    fu_event_function found[3];
     int n = 0;
     if (slide->drive >= 0) return 0;
     if (slide->sticks || slide->stops[0].kind == FU_END_IS_HARD || slide->stops[1].kind == FU_END_IS_HARD)
-        found[n++] = (fu_watch){.which = STICKING, .direction = 1};
+        found[n++] = (fu_event_function){.which = STICKING, .direction = 1};
     for (int side = BUFFER_AT_START; side <= BUFFER_AT_END; side += 2)
-        if (slide->stops[side > 0].kind == FU_END_IS_BUFFERED) found[n++] = (fu_watch){.which = side, .direction = 0};
+        if (slide->stops[side > 0].kind == FU_END_IS_BUFFERED) found[n++] = (fu_event_function){.which = side, .direction = 0};
     for (int i = 0; i < n && out; ++i) out[i] = found[i];
     return n;
 }
@@ -90,7 +90,7 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     if (which == STICKING || flags->mode == FU_LEFT || flags->contact == which) return 0.0;
     const fu_course from = {fu_compression(model, &run->now, j, which), which * fu_slide_rate(model, &run->now, j)};
     const fu_course to = {fu_compression(model, &run->next, j, which), which * fu_slide_rate(model, &run->next, j)};
-    return fu_dip(from, to, -1, h, run->round_off);
+    return fu_grazing_time(from, to, -1, h, run->round_off);
 }
 
 static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
@@ -111,7 +111,7 @@ static const fu_path_operations path = {.at = path_at, .rate = rate, .stops_at_b
 const fu_coupling_events fu_slide_events = {
     .watches = watches,
     .watched = watched,
-    .dip = dip,
+    .grazing = dip,
     .sign = sign,
     .act = act,
     .can_act = can_act,

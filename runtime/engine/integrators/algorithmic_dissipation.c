@@ -27,7 +27,7 @@
 #include <math.h>
 #include <string.h>
 
-#define LEAST_PIVOT 1e-14 /* of the largest pivot: a smaller one is of a turn that bends nothing */
+#define MIN_PIVOT 1e-14 /* of the largest pivot: a smaller one is of a turn that bends nothing */
 
 static const double none[FU_MAX_RATES];
 
@@ -105,7 +105,7 @@ static double element_force(const moving *m, int k, const double *relaxed, doubl
 /* Solves N x = b, N symmetric and not negative; x is zero where N is. */
 static void solve(double N[9], double b[3], double x[3])
 {
-    const double least = LEAST_PIVOT * fmax(N[0], fmax(N[4], N[8]));
+    const double least = MIN_PIVOT * fmax(N[0], fmax(N[4], N[8]));
     int order[3], n = 0, left[3] = {1, 1, 1};
     for (; n < 3; ++n) {
         int i = left[0] ? 0 : left[1] ? 1 : 2;

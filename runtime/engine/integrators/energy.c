@@ -67,7 +67,7 @@ static void predict(fu_run *run, double h)
 {
     const fu_state *now = &run->now;
     for (int i = 0; i < run->model->n_dof; ++i) run->psi[i] = h * (now->v[i] + 0.5 * h * now->acceleration[i]);
-    fu_predict_own(run, h);
+    fu_predict_internal(run, h);
 }
 
 /* Makes q, v and the mean acceleration of `next` from psi, and the middle of the step. */
@@ -90,7 +90,7 @@ static void kinematics(fu_run *run, double h)
         m.v[i] = run->psi[i] / h;
     }
     fu_between(model, now->q, next->q, m.q);
-    if (fu_choose_passages(run, 1)) run->factored = 0;
+    if (fu_choose_deferred(run, 1)) run->factored = 0;
 }
 
 /* Returns the equations over a step. */
@@ -112,7 +112,7 @@ static void residual(fu_run *run, double h)
     fu_algorithmic_forces(run, m.q, run->force);
     fu_rate_forces(model, m.q, m.v, run->force);
     fu_external_forces(model, middle_state.t, m.q, run->force);
-    fu_coupling_step_residuals(model, &at, run->force, fu_own(run));
+    fu_coupling_step_residuals(model, &at, run->force, fu_internal_unknowns(run));
     fu_scale_residual(run, at.weights.stiffness);
     run->statistics.time_residual += fu_clock() - begin;
 }
@@ -220,7 +220,7 @@ static void account(fu_run *run, double h)
     const fu_state middle_state = middle_of(run, h);
     const fu_equations at = equations(run, &middle_state, h);
     run->since = 0.5 * h;
-    if (fu_count_passages(run)) run->factored = 0; /* the matrix has the mean stiffness of the step's way */
+    if (fu_count_deferred(run)) run->factored = 0; /* the matrix has the mean stiffness of the step's way */
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_rate_forces(model, m.q, m.v, m.force);
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof; /* gyroscopic moments do no work */

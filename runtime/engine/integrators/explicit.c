@@ -19,7 +19,7 @@
 #include <string.h>
 
 #define COARSE_SHARE 0.01 /* of the coarse estimate's square, as in DOP853 (Hairer, Norsett & Wanner 1993, II.10) */
-#define RESOLVED 0.01     /* of the heat of a step: what the method's quadrature may be off by; from -z = 3 on it is more */
+#define HEAT_TOLERANCE 0.01     /* of the heat of a step: what the method's quadrature may be off by; from -z = 3 on it is more */
 
 /* The powers that a state keeps: that of damping within bodies, of all else that goes to heat, and external power, W. */
 enum { INTERNAL, OTHER, EXTERNAL, POWERS };
@@ -108,8 +108,8 @@ static int move_to(fu_run *run, const double *row, int n, double t, double h)
     combine(run, row, n, h, next->q, next->v);
     next->t = t;
     if (model->n_motions) fu_prescribe(model, next);
-    if (fu_find_own(run)) return 1;
-    fu_choose_passages(run, n == 1);
+    if (fu_find_internal(run)) return 1;
+    fu_choose_deferred(run, n == 1);
     return 0;
 }
 
@@ -144,7 +144,7 @@ static int step(fu_run *run, double h)
     const tableau method = tableau_of(run);
     const int n = method.stages;
     fu_state *next = &run->next;
-    fu_predict_own(run, h);
+    fu_predict_internal(run, h);
     rates(model, &run->now, stage(run, 0));
     powers(run, 0)[INTERNAL] = fu_internal_dissipation(model, run->now.q, run->now.v);
     powers(run, 0)[OTHER] = run->dissipated_power - powers(run, 0)[INTERNAL];
@@ -236,7 +236,7 @@ static double taken_within(fu_run *run, double h)
         sum += method.b[k] * powers(run, k)[INTERNAL];
         off += method.error[k] * powers(run, k)[INTERNAL];
     }
-    return fabs(off) <= RESOLVED * fabs(sum) ? h * sum : taken_by_means(run, h);
+    return fabs(off) <= HEAT_TOLERANCE * fabs(sum) ? h * sum : taken_by_means(run, h);
 }
 
 /* Counts heat, J. In a step beyond the limit the method gives energy to the fastest modes, which is no heat: it is owed, and what the modes

@@ -85,7 +85,7 @@ void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, doub
     const fu_last_steps *last = past->last;
     const factors f = factors_of(last, (int)last->degree, rest, h);
     predict_accelerations(past, run, f, rest);
-    fu_predict_own(run, h);
+    fu_predict_internal(run, h);
     if (last->degree > 0 && run->fixed_step > 0.0) predict_forces(past, run, f);
     if (last->steps < 2) return;
     const double bend = h * (h + last->h) / (last->h + last->h_before);

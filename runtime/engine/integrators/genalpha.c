@@ -122,7 +122,7 @@ static void kinematics(fu_run *run, double h)
     fu_share(model->threads, model->n_dof, kinematics_part, &job);
     fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
-    if (fu_choose_passages(run, 1)) run->factored = 0; /* the matrix is of the flags that it was made with */
+    if (fu_choose_deferred(run, 1)) run->factored = 0; /* the matrix is of the flags that it was made with */
 }
 
 /* Returns the equations at the end of a step. */
@@ -144,7 +144,7 @@ static double apply(fu_run *run, double h)
     const double per_psi = 1.0 / (scheme_of(run)->beta * h * h), size = fu_spread_size(run);
     fu_add_times(run->model->threads, run->model->n_dof, per_psi, run->work, run->next.a);
     fu_add_solution(run, 1.0, sigma(scheme_of(run), h));
-    fu_choose_pieces(run);
+    fu_choose_path_segments(run);
     return size;
 }
 
@@ -158,7 +158,7 @@ static void predict(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_extrapolate(&w.past, run, of_velocities(run), h);
-    fu_choose_pieces(run);
+    fu_choose_path_segments(run);
     fu_carried_residual_correct(&w.carried, run->model, h);
 }
 
@@ -174,7 +174,7 @@ static void residual(fu_run *run, double h)
 static void own_residual(fu_run *run, double h)
 {
     const fu_equations at = equations(run, h);
-    fu_coupling_residuals(run->model, &at, run->force, fu_own(run));
+    fu_coupling_residuals(run->model, &at, run->force, fu_internal_unknowns(run));
     memset(run->rhs, 0, sizeof(double) * (size_t)(run->model->n_band + run->model->n_border_dof));
 }
 

@@ -16,14 +16,14 @@
 #include <math.h>
 #include <string.h>
 
-#define MOST_ITERATIONS 10    /* of Newton's in a step, before it fails */
+#define MAX_ITERATIONS 10    /* of Newton's in a step, before it fails */
 #define FIRST_CONTRACTION 0.5 /* of an increment to the one before: what is assumed before there are two */
-#define SLOW 0.3              /* contraction above which the matrix is made anew for the next step */
-#define QUICKEST 1e-3         /* least contraction by which the rest of the error is estimated: a smaller one may be chance */
-#define SLOWEST 0.9           /* largest contraction by which the rest is estimated, at 9 increments */
-#define DIVERGES 2.0          /* growth of an increment from one iteration to the next at which the iteration fails */
-#define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is not rounding */
-#define SAFE 1.5e-2           /* of the allowed error: what Newton may leave */
+#define SLOW_CONTRACTION 0.3              /* contraction above which the matrix is made anew for the next step */
+#define MIN_CONTRACTION 1e-3         /* least contraction by which the rest of the error is estimated: a smaller one may be chance */
+#define MAX_CONTRACTION 0.9           /* largest contraction by which the rest is estimated, at 9 increments */
+#define DIVERGENCE_GROWTH 2.0          /* growth of an increment from one iteration to the next at which the iteration fails */
+#define ROUNDING_FACTOR 100.0 /* times the rounding of positions: an increment that is not rounding */
+#define NEWTON_SHARE 1.5e-2           /* of the allowed error: what Newton may leave */
 
 static long n_parameters(const double *given)
 {
@@ -61,9 +61,9 @@ static long n_scratch(const fu_run *run)
 static int iterate(fu_run *run, fu_radau_workspace *w, double h)
 {
     double last = 0.0, before = 0.0;
-    const double enough = fmax(run->fixed_step > 0.0 ? run->newton_tolerance : SAFE * run->allowed, run->round_off);
+    const double enough = fmax(run->fixed_step > 0.0 ? run->newton_tolerance : NEWTON_SHARE * run->allowed, run->round_off);
     fu_radau_predict(run, w, h);
-    for (int i = 0; i < MOST_ITERATIONS; ++i) {
+    for (int i = 0; i < MAX_ITERATIONS; ++i) {
         if (fu_radau_evaluate(run, w, h)) return 1;
         const double size = fu_radau_correct(run, w, h);
         ++run->statistics.newton_iterations;
@@ -71,16 +71,16 @@ static int iterate(fu_run *run, fu_radau_workspace *w, double h)
         double ratio = 1.0;
         if (i > 0) {
             ratio = size / last;
-            if (ratio >= DIVERGES || (ratio >= 1.0 && size > BEYOND_ROUNDING * run->round_off && i > 2))
+            if (ratio >= DIVERGENCE_GROWTH || (ratio >= 1.0 && size > ROUNDING_FACTOR * run->round_off && i > 2))
                 return fu_fail(run, FU_ITERATION, run->work, -1);
             /* the mean of two, as in RADAU5: one may be small by chance, where corrections of what is stiff and of what
              * constraints hold take turns */
             const double mean = i > 1 ? sqrt(ratio * before) : ratio;
-            run->contraction = mean < QUICKEST ? QUICKEST : mean > SLOWEST ? SLOWEST : mean;
+            run->contraction = mean < MIN_CONTRACTION ? MIN_CONTRACTION : mean > MAX_CONTRACTION ? MAX_CONTRACTION : mean;
             before = ratio;
         }
         if (size * run->contraction / (1.0 - run->contraction) <= enough || size <= run->round_off) {
-            if (i > 0 && run->contraction > SLOW) run->factored = 0;
+            if (i > 0 && run->contraction > SLOW_CONTRACTION) run->factored = 0;
             return 0;
         }
         last = size;
@@ -101,7 +101,7 @@ static void begin_step(fu_run *run)
 {
     const fu_model *model = run->model;
     const size_t dofs = sizeof(double) * (size_t)model->n_dof;
-    fu_predict_own(run, 0.0);
+    fu_predict_internal(run, 0.0);
     memcpy(run->next.q, run->now.q, sizeof(double) * (size_t)model->n_q);
     memcpy(run->next.v, run->now.v, dofs);
     memcpy(run->next.acceleration, run->now.acceleration, dofs);

@@ -12,9 +12,9 @@
 #define FED_EMBEDDED 0.1
 #define TURNING_VIBRATION 2.0 /* the same where bodies turn: there what vibrations lose changes the turns for good */
 #define TURNING_EMBEDDED 0.1  /* as the matrix has nothing of turns */
-#define TURNED 0.01       /* of what is allowed: by how much a body, as a length, turns within a step where it turns */
+#define TURN_SHARE 0.01       /* of what is allowed: by how much a body, as a length, turns within a step where it turns */
 #define REPORTED 2.0      /* times the estimate for vibrations is what is told of a fixed step */
-#define ONCE 0.1          /* of all that is allowed: the error of vibrations that a step does not resolve */
+#define VIBRATION_SHARE 0.1          /* of all that is allowed: the error of vibrations that a step does not resolve */
 #define KINK 0.15         /* of tol: the error that one kink of friction may make */
 
 /* Returns the largest error that a kink of a force within the step may make, as a part of what is allowed, m. Kinks are single
@@ -29,8 +29,8 @@ static double kink(fu_run *run, fu_radau_workspace *w, double h)
     if (fu_accelerations(model, &run->now, &run->accelerator, run->work, 0)) return INFINITY;
     fu_radau_keep_multipliers(run, w, 0);
     ++run->statistics.evaluations;
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *coupling = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *coupling = model->always_active[k];
         if (!coupling->type->reaction) continue;
         worst = fmax(worst, coupling->type->reaction->friction_error(model, coupling, &run->next, STAGES + 1, weight, w->multipliers, h * left));
     }
@@ -84,7 +84,7 @@ static int turns(const fu_run *run, double h)
     for (int b = 0; b < model->n_bodies; ++b) {
         const fu_body *body = &model->bodies[b];
         for (int i = body->dof + body->kernel->dim; i < body->dof + body->kernel->velocity; ++i)
-            if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > TURNED * run->allowed) return 1;
+            if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > TURN_SHARE * run->allowed) return 1;
     }
     return 0;
 }
@@ -113,6 +113,6 @@ double fu_radau_error(fu_run *run, double h)
     for (int i = 0; i < model->n_dof; ++i) w->w[i] = run->work[i];
     const double adding_up = (fed ? FED_VIBRATION : VIBRATION) * filtered(run, w, w->w);
     const double by_embedded = fed ? FED_EMBEDDED : EMBEDDED;
-    const double once = vibration * run->allowed / (ONCE * fu_allowed_error(run));
+    const double once = vibration * run->allowed / (VIBRATION_SHARE * fu_allowed_error(run));
     return fmax(fmax(adding_up, by_embedded * slow), once);
 }

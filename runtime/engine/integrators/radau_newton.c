@@ -99,8 +99,8 @@ static void keep_rows(fu_run *run, const double *unknowns)
     double *kept = fu_radau_space(run)->kept;
     for (int row = 0; row < s->m; ++row) kept[row] = 0.0;
     for (int c = 0; c < s->n_chains; ++c) {
-        const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[c];
-        for (const fu_piece *p = rows; p < rows + s->n_rows[c]; ++p)
+        const fu_matrix_block *rows = s->rows + FU_HALVES * s->chain_start[c];
+        for (const fu_matrix_block *p = rows; p < rows + s->n_rows[c]; ++p)
             for (int i = p->rows.first; i < p->rows.end; ++i) kept[p->k] += s->C[s->strips[p->strip].at + i] * unknowns[i];
     }
     fu_fronts_add_product(s->fronts, fu_radau_space(run)->D_real, run->model->n_border_dof, unknowns + s->n, kept);
@@ -118,8 +118,8 @@ void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
     fu_gather(model, run->psi, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
     keep_rows(run, unknowns);
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         const int first = c->unknown + c->n_coordinates;
         for (int i = first; i < first + c->n_forces && c->row >= 0; ++i)
             run->rhs[beyond + i] = fu_radau_space(run)->kept[model->n_border_dof + i];

@@ -72,8 +72,8 @@ static void move_to_stage(fu_run *run, const fu_radau_workspace *w, int k, doubl
 int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h)
 {
     move_to_stage(run, w, k, h);
-    if (fu_find_own(run)) return 1;
-    fu_choose_passages(run, k == 0);
+    if (fu_find_internal(run)) return 1;
+    fu_choose_deferred(run, k == 0);
     return 0;
 }
 

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#define FADED 1e-32     /* of a column's largest entry: smaller ones add nothing to a solution */
+#define NEGLIGIBLE_ENTRY 1e-32     /* of a column's largest entry: smaller ones add nothing to a solution */
 
 void fu_system_clear(fu_system *s)
 {
@@ -118,7 +118,7 @@ int fu_strip_of(const fu_system *s, int k, int chain)
 }
 
 /* Returns a piece of a row of C times the rows `of` a column. */
-static double times(const fu_system *s, const fu_piece *p, fu_span of, const double *x)
+static double times(const fu_system *s, const fu_matrix_block *p, fu_span of, const double *x)
 {
     const double *row = s->C + s->strips[p->strip].at;
     const fu_span rows = fu_common(p->rows, of);
@@ -129,7 +129,7 @@ static double times(const fu_system *s, const fu_piece *p, fu_span of, const dou
 
 /* Finds the rows that count of a column of X in a chain, by halves; returns how many pieces they are. The column decays away from
  * what it touches, in the end to numbers so small that the processor is slow with them. */
-int fu_pieces(const fu_system *s, int strip, const double *x, fu_piece *pieces)
+int fu_matrix_blocks(const fu_system *s, int strip, const double *x, fu_matrix_block *pieces)
 {
     const int chain = s->strips[strip].chain;
     const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
@@ -139,15 +139,15 @@ int fu_pieces(const fu_system *s, int strip, const double *x, fu_piece *pieces)
     for (int i = begin; i < end; ++i) largest = fabs(x[i]) > largest ? fabs(x[i]) : largest;
     for (int half = 0; half < FU_HALVES; ++half) {
         fu_span rows = halves[half];
-        while (rows.first < rows.end && fabs(x[rows.first]) <= FADED * largest) ++rows.first;
-        while (rows.first < rows.end && fabs(x[rows.end - 1]) <= FADED * largest) --rows.end;
-        if (rows.first < rows.end) pieces[n++] = (fu_piece){s->strips[strip].k, strip, rows};
+        while (rows.first < rows.end && fabs(x[rows.first]) <= NEGLIGIBLE_ENTRY * largest) ++rows.first;
+        while (rows.first < rows.end && fabs(x[rows.end - 1]) <= NEGLIGIBLE_ENTRY * largest) --rows.end;
+        if (rows.first < rows.end) pieces[n++] = (fu_matrix_block){s->strips[strip].k, strip, rows};
     }
     return n;
 }
 
 /* Makes a column of X = K^-1 B in a chain; returns how many pieces it has. */
-static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_piece *pieces)
+static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_matrix_block *pieces)
 {
     const int chain = s->strips[strip].chain, begin = s->chains[chain], end = s->chains[chain + 1];
     const fu_span *of = s->span_B + FU_HALVES * strip;
@@ -157,7 +157,7 @@ static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_pie
     for (int half = 0; half < FU_HALVES; ++half)
         for (int i = of[half].first; i < of[half].end; ++i) x[i] = B[i];
     solve_chain(s, lapack, chain, (fu_span){of[of[0].end == 0].first, of[of[1].end != 0].end}, x);
-    return fu_pieces(s, strip, x, pieces);
+    return fu_matrix_blocks(s, strip, x, pieces);
 }
 
 /* Makes the columns of X and the pieces of C, but those that stay. */
@@ -165,7 +165,7 @@ static void couple(fu_system *s, const fu_lapack *lapack)
 {
     for (int c = 0; c < s->n_chains; ++c) {
         const int start = FU_HALVES * s->chain_start[c];
-        fu_piece *columns = s->columns + start, *rows = s->rows + start;
+        fu_matrix_block *columns = s->columns + start, *rows = s->rows + start;
         s->n_columns[c] = s->constant_columns[c];
         s->n_rows[c] = s->constant_rows[c];
         for (int i = s->chain_start[c]; i < s->chain_start[c + 1]; ++i) {
@@ -173,7 +173,7 @@ static void couple(fu_system *s, const fu_lapack *lapack)
             const fu_span *of = s->span_C + FU_HALVES * strip;
             if (k < s->constant) continue;
             for (int half = 0; half < FU_HALVES; ++half)
-                if (of[half].end) rows[s->n_rows[c]++] = (fu_piece){k, strip, of[half]};
+                if (of[half].end) rows[s->n_rows[c]++] = (fu_matrix_block){k, strip, of[half]};
             s->n_columns[c] += solve_column(s, lapack, strip, columns + s->n_columns[c]);
         }
     }
@@ -186,7 +186,7 @@ void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
     s->constant = columns;
     for (int c = 0; c < s->n_chains; ++c) {
         const int start = FU_HALVES * s->chain_start[c];
-        const fu_piece *column = s->columns + start, *row = s->rows + start;
+        const fu_matrix_block *column = s->columns + start, *row = s->rows + start;
         int *kept[2] = {&s->constant_columns[c], &s->constant_rows[c]};
         for (*kept[0] = 0; *kept[0] < s->n_columns[c] && column[*kept[0]].k < columns;) ++*kept[0];
         for (*kept[1] = 0; *kept[1] < s->n_rows[c] && row[*kept[1]].k < columns;) ++*kept[1];
@@ -209,9 +209,9 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
     couple(s, lapack);
     for (int c = 0; c < s->n_chains; ++c) {
         const int start = FU_HALVES * s->chain_start[c];
-        const fu_piece *columns = s->columns + start, *rows = s->rows + start;
-        for (const fu_piece *p = columns; p < columns + s->n_columns[c]; ++p)
-            for (const fu_piece *r = rows; r < rows + s->n_rows[c]; ++r)
+        const fu_matrix_block *columns = s->columns + start, *rows = s->rows + start;
+        for (const fu_matrix_block *p = columns; p < columns + s->n_columns[c]; ++p)
+            for (const fu_matrix_block *r = rows; r < rows + s->n_rows[c]; ++r)
                 if (r->rows.first < p->rows.end && p->rows.first < r->rows.end) /* else to find the place takes longer */
                     s->D[fu_fronts_at(s->fronts, r->k, p->k)] -= times(s, r, p->rows, s->X + s->strips[p->strip].x);
     }
@@ -234,8 +234,8 @@ static void solve_border(const fu_system *s, const fu_lapack *lapack, double *y)
 FU_INLINE void take(const fu_system *s, const double *y, double *x)
 {
     for (int c = 0; c < s->n_chains; ++c) {
-        const fu_piece *columns = s->columns + FU_HALVES * s->chain_start[c];
-        for (const fu_piece *p = columns; p < columns + s->n_columns[c]; ++p) {
+        const fu_matrix_block *columns = s->columns + FU_HALVES * s->chain_start[c];
+        for (const fu_matrix_block *p = columns; p < columns + s->n_columns[c]; ++p) {
             const double *column = s->X + s->strips[p->strip].x, scale = y[p->k];
             const int end = p->rows.end;
             int i = p->rows.first;
@@ -264,8 +264,8 @@ void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
     for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, (fu_span){s->chains[c], s->chains[c + 1]}, x);
     if (!s->m) return;
     for (int c = 0; c < s->n_chains; ++c) {
-        const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[c];
-        for (const fu_piece *r = rows; r < rows + s->n_rows[c]; ++r) y[r->k] -= times(s, r, r->rows, x);
+        const fu_matrix_block *rows = s->rows + FU_HALVES * s->chain_start[c];
+        for (const fu_matrix_block *r = rows; r < rows + s->n_rows[c]; ++r) y[r->k] -= times(s, r, r->rows, x);
     }
     solve_border(s, lapack, y);
     take_columns(s, y, x);

@@ -1,7 +1,7 @@
 /* Chains of a bordered band system: where their factors stand, and what of the matrix is packed into them. */
 #include "linear/linear.h"
 
-#define SYMMETRIC 1e-10 /* of the diagonals: more than rounding leaves between the two halves of a symmetric matrix */
+#define SYMMETRY_TOLERANCE 1e-10 /* of the diagonals: more than rounding leaves between the two halves of a symmetric matrix */
 
 /* Returns where a chain's columns of L and U begin. */
 long fu_factor_at(const fu_system *s, int chain)
@@ -29,7 +29,7 @@ int fu_pack(const fu_system *s, fu_span of, int backwards, double *L)
         for (int i = 1; i <= most; ++i) {
             const double *other = at + (long)next * i * rows; /* the diagonal of the column i further on */
             const double below = backwards ? other[i] : at[i], above = backwards ? at[-i] : other[-i], gap = below - above;
-            if (!(gap * gap <= SYMMETRIC * SYMMETRIC * diagonal * other[0])) return 0;
+            if (!(gap * gap <= SYMMETRY_TOLERANCE * SYMMETRY_TOLERANCE * diagonal * other[0])) return 0;
             column[i] = below;
         }
         for (int i = most + 1; i < stride; ++i) column[i] = 0.0;

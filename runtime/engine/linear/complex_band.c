@@ -11,7 +11,7 @@
 #include "base/simd.h"
 #include "linear/complex_system.h"
 
-#define LEAST_PIVOT 1e-8 /* of the diagonal: what elimination must leave of it where the matrix is not symmetric */
+#define MIN_PIVOT 1e-8 /* of the diagonal: what elimination must leave of it where the matrix is not symmetric */
 
 /* Returns 1 / d. */
 static fu_complex inverse_of(double re, double im)
@@ -66,7 +66,7 @@ FU_INLINE void factor_unsymmetric(int n, int width, double *const L[2], double *
         const long at = (long)j * stride;
         double *a = L[0] + at, *b = L[1] + at, *c = U[0] + at, *d = U[1] + at;
         const int below = n - 1 - j < width ? n - 1 - j : width;
-        if (!(a[0] * a[0] + b[0] * b[0] > LEAST_PIVOT * LEAST_PIVOT * (c[0] * c[0] + d[0] * d[0]))) {
+        if (!(a[0] * a[0] + b[0] * b[0] > MIN_PIVOT * MIN_PIVOT * (c[0] * c[0] + d[0] * d[0]))) {
             *failed = 1;
             return;
         }

@@ -27,7 +27,7 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->D = take(scratch, taken, s->fronts->size);
     c->X = take(scratch, taken, beside);
     c->x = take(scratch, taken, n + m);
-    c->columns = (fu_piece *)fu_take(scratch, taken, FU_DOUBLES(pieces, fu_piece));
+    c->columns = (fu_matrix_block *)fu_take(scratch, taken, FU_DOUBLES(pieces, fu_matrix_block));
     c->n_columns = (int *)fu_take(scratch, taken, FU_DOUBLES((long)s->n_chains, int));
     c->way = (int *)fu_take(scratch, taken, FU_DOUBLES((long)s->n_chains, int));
     c->pivot_band = (int *)fu_take(scratch, taken, FU_DOUBLES(n, int));
@@ -151,7 +151,7 @@ static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu
 /* Makes a column of X in a chain and finds the rows of it that count, unless B has none; returns how many pieces they
  * are. size: work space of the band's size. */
 static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int strip, double *size,
-                        fu_piece *pieces)
+                        fu_matrix_block *pieces)
 {
     const fu_span *of = s->span_B + FU_HALVES * strip;
     const int chain = s->strips[strip].chain, first = s->chains[chain], end = s->chains[chain + 1];
@@ -160,16 +160,16 @@ static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapac
     memcpy(x + first, B + first, sizeof(fu_complex) * (size_t)(end - first));
     solve_chain(c, s, lapack, chain, of[of[0].end == 0].first, x);
     for (int i = first; i < end; ++i) size[i] = fabs(x[i].re) + fabs(x[i].im);
-    return fu_pieces(s, strip, size, pieces);
+    return fu_matrix_blocks(s, strip, size, pieces);
 }
 
 /* Makes the Schur complement of a chain in D. */
 static void subtract(fu_complex_system *c, const fu_system *s, int chain)
 {
     const int start = FU_HALVES * s->chain_start[chain];
-    const fu_piece *columns = c->columns + start, *rows = s->rows + start;
-    for (const fu_piece *p = columns; p < columns + c->n_columns[chain]; ++p)
-        for (const fu_piece *r = rows; r < rows + s->n_rows[chain]; ++r) {
+    const fu_matrix_block *columns = c->columns + start, *rows = s->rows + start;
+    for (const fu_matrix_block *p = columns; p < columns + c->n_columns[chain]; ++p)
+        for (const fu_matrix_block *r = rows; r < rows + s->n_rows[chain]; ++r) {
             const fu_span of = fu_common(p->rows, r->rows);
             const fu_complex *C = c->C + s->strips[r->strip].at, *X = c->X + s->strips[p->strip].at;
             fu_complex *entry = c->D + fu_fronts_at(s->fronts, r->k, p->k);
@@ -184,7 +184,7 @@ int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_
     int m = s->m, info = factor_band(c, s, lapack);
     if (info || !m) return info;
     for (int chain = 0; chain < s->n_chains; ++chain) {
-        fu_piece *columns = c->columns + FU_HALVES * s->chain_start[chain];
+        fu_matrix_block *columns = c->columns + FU_HALVES * s->chain_start[chain];
         c->n_columns[chain] = 0;
         for (int i = s->chain_start[chain]; i < s->chain_start[chain + 1]; ++i)
             c->n_columns[chain] += solve_column(c, s, lapack, s->on_chain[i], size, columns + c->n_columns[chain]);
@@ -203,16 +203,16 @@ void fu_complex_system_solve(const fu_complex_system *c, const fu_system *s, con
     for (int chain = 0; chain < s->n_chains && s->n; ++chain) solve_chain(c, s, lapack, chain, s->chains[chain], x);
     if (!m) return;
     for (int chain = 0; chain < s->n_chains; ++chain) {
-        const fu_piece *rows = s->rows + FU_HALVES * s->chain_start[chain];
-        for (const fu_piece *r = rows; r < rows + s->n_rows[chain]; ++r)
+        const fu_matrix_block *rows = s->rows + FU_HALVES * s->chain_start[chain];
+        for (const fu_matrix_block *r = rows; r < rows + s->n_rows[chain]; ++r)
             for (int i = r->rows.first; i < r->rows.end; ++i)
                 fu_complex_subtract_product(&y[r->k], c->C[s->strips[r->strip].at + i], x[i]);
     }
     if (s->fronts->n > 1) fu_complex_fronts_solve(s->fronts, &c->factors, y);
     else lapack->zgetrs("N", &m, &one, c->D, &m, c->pivot_border, y, &m, &info);
     for (int chain = 0; chain < s->n_chains; ++chain) {
-        const fu_piece *columns = c->columns + FU_HALVES * s->chain_start[chain];
-        for (const fu_piece *p = columns; p < columns + c->n_columns[chain]; ++p)
+        const fu_matrix_block *columns = c->columns + FU_HALVES * s->chain_start[chain];
+        for (const fu_matrix_block *p = columns; p < columns + c->n_columns[chain]; ++p)
             for (int i = p->rows.first; i < p->rows.end; ++i)
                 fu_complex_subtract_product(&x[i], y[p->k], c->X[s->strips[p->strip].at + i]);
     }

@@ -20,11 +20,11 @@ typedef struct {
     fu_complex *x;     /* right side, then solution */
     fu_factors factors; /* of D, unless there is only one front */
     int *n_columns;
-    fu_piece *columns; /* of X, by chain; those of C are the real system's */
+    fu_matrix_block *columns; /* of X, by chain; those of C are the real system's */
     int *pivot_band, *pivot_border;
     int is_lower;      /* the band is made in L, its lower half, else in K, all of it */
     double *L[2], *U[2]; /* FU_COMPLEX_STRIDE x n, real and imaginary parts (complex_band.c) */
-    int *way;          /* n_chains: how each is factored, an fu_way: in L, in L and U, in K (zgbtrf) */
+    int *way;          /* n_chains: how each is factored, an fu_factorisation: in L, in L and U, in K (zgbtrf) */
     double *right[2];  /* n + FU_COMPLEX_BEYOND: a right side of the band, likewise */
 } fu_complex_system;
 

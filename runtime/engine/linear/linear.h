@@ -70,10 +70,10 @@ typedef struct {
 typedef struct {
     int k, strip;
     fu_span rows;
-} fu_piece;
+} fu_matrix_block;
 
 /* How a chain is factored: in L (band.c), in L and U (unsymmetric_band.c), in K (dgbtrf). */
-typedef enum { FU_SYMMETRIC, FU_UNPIVOTED, FU_PIVOTED } fu_way;
+typedef enum { FU_SYMMETRIC, FU_UNPIVOTED, FU_PIVOTED } fu_factorisation;
 
 /* A banded matrix with a border: [K B; C D]. Only K is large. It consists of chains, which the border alone connects. */
 typedef struct {
@@ -82,7 +82,7 @@ typedef struct {
     int n_chains;
     int constant;      /* of the border, from the first on, that stay */
     int definite;      /* all chains are factored as FU_SYMMETRIC */
-    int *way;          /* n_chains: how each is factored, an fu_way */
+    int *way;          /* n_chains: how each is factored, an fu_factorisation */
     int n_strips, n_strip_rows; /* n_strip_rows: the numbers of B, or of C */
     const fu_strip *strips; /* by unknown of the border, then by chain */
     const int *first_strip; /* m + 1: of each unknown of the border, and n_strips */
@@ -99,7 +99,7 @@ typedef struct {
     fu_factors factors; /* of D, unless there is only one front: then D has them */
     double *X;         /* K^-1 B, FU_BAND_BEYOND more a strip */
     fu_span *span_B, *span_C; /* FU_HALVES a strip: rows of each half that are not zero; end 0 where none is */
-    fu_piece *columns, *rows; /* of X and C: those of a chain from FU_HALVES chain_start on */
+    fu_matrix_block *columns, *rows; /* of X and C: those of a chain from FU_HALVES chain_start on */
     int *n_columns, *n_rows, *constant_columns, *constant_rows; /* n_chains: how many pieces there are, and stay */
     int *pivot_band, *pivot_border;
     double *inverse;   /* null, or that of the band, FU_INVERSE_ROWS a column, where `inverted` */
@@ -143,7 +143,7 @@ int fu_pack(const fu_system *system, fu_span rows, int backwards, double *L);
 void fu_system_clear_border(fu_system *system);
 fu_span fu_common(fu_span one, fu_span other);
 int fu_strip_of(const fu_system *system, int k, int chain);
-int fu_pieces(const fu_system *system, int strip, const double *x, fu_piece *pieces);
+int fu_matrix_blocks(const fu_system *system, int strip, const double *x, fu_matrix_block *pieces);
 void fu_system_release_border(fu_system *system);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
 void fu_system_invert_band(fu_system *system);

@@ -6,8 +6,8 @@
  * Storage: L and U each as band.c has L, with 1/D on both diagonals, so that its substitutions serve. */
 #include "linear/linear.h"
 
-#define NEARLY 1e-2      /* of the diagonals: the most by which both halves may differ */
-#define LEAST_PIVOT 1e-8 /* of the diagonal: what elimination must leave of it */
+#define SYMMETRY_TOLERANCE 1e-2      /* of the diagonals: the most by which both halves may differ */
+#define MIN_PIVOT 1e-8 /* of the diagonal: what elimination must leave of it */
 
 /* Makes, of K in a chain, the lower half in L, and the upper one, transposed, in U; returns zero where they differ by much, or the
  * diagonal is not positive. */
@@ -24,7 +24,7 @@ int fu_unsymmetric_pack(const fu_system *s, int chain, double *L, double *U)
         for (int i = 1; i <= most; ++i) {
             const double *other = at + (long)i * rows; /* the diagonal of the column i further on */
             const double gap = at[i] - other[-i];
-            if (!(gap * gap <= NEARLY * NEARLY * at[0] * other[0])) return 0;
+            if (!(gap * gap <= SYMMETRY_TOLERANCE * SYMMETRY_TOLERANCE * at[0] * other[0])) return 0;
             lower[i] = at[i];
             upper[i] = other[-i];
         }
@@ -41,7 +41,7 @@ int fu_unsymmetric_factor(int n, int width, double *restrict L, double *restrict
         double *lower = L + (long)j * stride, *upper = U + (long)j * stride;
         const int most = n - 1 - j < width ? n - 1 - j : width;
         const double pivot = lower[0];
-        if (!(pivot > LEAST_PIVOT * upper[0])) return 1;
+        if (!(pivot > MIN_PIVOT * upper[0])) return 1;
         const double inverse = 1.0 / pivot;
         for (int k = 1; k <= most; ++k) {
             double *L_k = L + (long)(j + k) * stride - k, *U_k = U + (long)(j + k) * stride - k;

@@ -7,7 +7,7 @@
 #include <math.h>
 
 /* Returns the first knot after `now` at which steps end, until `latest`; null where there is none. */
-const fu_knot *fu_next_knot(const fu_run *run, double latest)
+const fu_breakpoint *fu_next_breakpoint(const fu_run *run, double latest)
 {
     const double close = FU_AT_ONCE * run->duration;
     int low = 0, high = run->n_knots;
@@ -22,7 +22,7 @@ const fu_knot *fu_next_knot(const fu_run *run, double latest)
 /* Goes on from a knot that `now` has reached; returns a status. What jumps there starts the scheme anew; so does any knot
  * between steps of a fixed length, whose neighbours can be of any ratio. Where a rate jumps, all that joints tie to it jumps,
  * too, and what drives it does the work of that; a drive that turned within an instant would lose none. */
-int fu_pass_knot(fu_run *run, const fu_knot *knot, int event)
+int fu_pass_breakpoint(fu_run *run, const fu_breakpoint *knot, int event)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
@@ -37,6 +37,6 @@ int fu_pass_knot(fu_run *run, const fu_knot *knot, int event)
         run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before;
     }
     fu_prescribe(model, now);
-    if (!event) fu_watch_now(run, fu_no_event, INFINITY);
+    if (!event) fu_evaluate_event_functions(run, fu_no_event, INFINITY);
     return fu_start_scheme(run, 0);
 }

@@ -13,8 +13,8 @@
 
 /* What a state that a run has paused in keeps to, by far: other bytes are damaged or forged. */
 #define ASIDE 1e-3        /* of a piece: how far from it a coupling may stand, where events leave it within 1e-6 */
-#define SHORTEST 1e-13    /* of the duration: a step, or what steps stay below; a run gives up at 1e-12 */
-#define LONGEST 2.0       /* of the duration: a step, or what steps stay below */
+#define MIN_STEP 1e-13    /* of the duration: a step, or what steps stay below; a run gives up at 1e-12 */
+#define MAX_STEP 2.0       /* of the duration: a step, or what steps stay below */
 #define MOST_COUNT 100000 /* rejected steps, and turns on a boundary; a run gives up at 10000 */
 
 enum { MEASURE, SAVE, RESTORE };
@@ -72,7 +72,7 @@ void fu_pause(fu_run *run)
     run->factored = 0;
     run->h_factored = 0.0;
     if (run->integrator->forget) run->integrator->forget(run);
-    fu_watch_far(run);
+    fu_evaluate_far_event_functions(run);
 }
 
 /* Copies what the steps to come depend on to `bytes`, unless it is null; returns the number of bytes. */
@@ -145,7 +145,7 @@ static int possible_numbers(const fu_run *run)
                               run->statistics.h_max, run->statistics.error_sum, run->balance.exchanged,
                               run->balance.grown, run->balance.lost, run->heat_owed};
     for (size_t i = 0; i < sizeof steps / sizeof *steps; ++i)
-        if (!(steps[i] >= SHORTEST * run->duration && steps[i] <= LONGEST * run->duration)) return 0;
+        if (!(steps[i] >= MIN_STEP * run->duration && steps[i] <= MAX_STEP * run->duration)) return 0;
     for (size_t i = 0; i < sizeof positive / sizeof *positive; ++i)
         if (!(positive[i] >= 0.0 && isfinite(positive[i]))) return 0;
     return fu_all_finite(numbers, sizeof numbers / sizeof *numbers) && fu_all_finite(run->balance.first, FU_ENERGIES) &&
@@ -163,6 +163,6 @@ int fu_restore(fu_run *run, const char *bytes, int rows)
     run->record.first = run->record.n;
     if (run->model->proximity) run->model->proximity->is_known = 0;
     return !(is_paused(run, rows) && fu_is_possible(run->model, &run->now) && fu_is_possible(run->model, &run->next) &&
-             finite_state(run->model, &run->now) && fu_are_on_pieces(run->model, &run->now, ASIDE) &&
+             finite_state(run->model, &run->now) && fu_are_on_path_segments(run->model, &run->now, ASIDE) &&
              possible_counts(run) && possible_indices(run) && possible_numbers(run));
 }

@@ -19,7 +19,7 @@ static int acted(fu_run *run, const fu_coupling *coupling, const char *what, dou
         fu_fail(run, FU_SELF_LOCKING, run->now.v, coupling->number);
         return FU_NO_CONVERGENCE;
     }
-    fu_watch_anew(run, coupling->number);
+    fu_restart_event_functions(run, coupling->number);
     run->event = (fu_event){FU_ACTED, coupling->number, 0, what};
     run->event_time = run->now.t - since;
     return status ? status : FU_EVENT;
@@ -42,15 +42,15 @@ static int cross(fu_run *run, const fu_coupling *coupling, int side)
     if (status) return status;
     now->piece[coupling->coordinate] = piece;
     ++run->statistics.crossings;
-    fu_watch_now(run, fu_no_event, 0.0);
+    fu_evaluate_event_functions(run, fu_no_event, 0.0);
     return fu_start_scheme(run, !run->integrator->keeps_energy);
 }
 
 /* Lets happen what follows from an event that `now` stands on; returns a status, FU_EVENT where the caller is to learn of it. */
-int fu_let_happen(fu_run *run, fu_event event)
+int fu_handle_event(fu_run *run, fu_event event)
 {
-    if (event.kind == FU_CROSSING) return cross(run, run->model->couplings[event.which], event.side);
-    const fu_coupling *coupling = fu_own_coupling(run, event.which);
+    if (event.kind == FU_PATH_BOUNDARY) return cross(run, run->model->couplings[event.which], event.side);
+    const fu_coupling *coupling = fu_event_coupling(run, event.which);
     if (coupling) {
         const char *what = 0;
         const double since = coupling->events->deferred ? coupling->events->deferred->since(run->model, coupling, &run->now) : 0.0;

@@ -11,9 +11,9 @@
 
 #define BUDGET 1e-4 /* s, for all that is timed */
 #define BATCHES 4   /* of calls, of which the fastest counts: the machine may be busy */
-#define MOST 100    /* calls in a batch */
-#define SINGLE 3    /* calls at least, each timed alone: the machine may interrupt one */
-#define SHORTEST 1e-8 /* s: of a call, that a clock that stands still may not show */
+#define MAX_CALLS 100    /* calls in a batch */
+#define MIN_CALLS 3    /* calls at least, each timed alone: the machine may interrupt one */
+#define MIN_SECONDS 1e-8 /* s: of a call, that a clock that stands still may not show */
 
 enum { RESIDUAL, TANGENT, ROWS, OWN_COORDINATES, WORKS };
 
@@ -22,7 +22,7 @@ static void work_of(fu_run *run, const fu_coupling *c, int what)
 {
     const fu_model *model = run->model;
     const fu_equations at = {.now = &run->now, .next = &run->now, .weights = {1.0, 0.0, 1.0}};
-    if (what == RESIDUAL && c->type->residual) c->type->residual(model, c, &at, run->work, fu_own(run));
+    if (what == RESIDUAL && c->type->residual) c->type->residual(model, c, &at, run->work, fu_internal_unknowns(run));
     if (what == TANGENT && c->type->tangent) c->type->tangent(model, c, &at, 0);
     if (what == ROWS && c->row >= 0) c->type->rows(model, c, &run->now, &run->accelerator);
     if (what == OWN_COORDINATES && c->type->coordinates) {
@@ -37,13 +37,13 @@ static void work_of(fu_run *run, const fu_coupling *c, int what)
 static double timed(fu_run *run, const fu_coupling *c, int what, double budget)
 {
     double begin, fastest = INFINITY;
-    for (int i = 0; i < SINGLE; ++i) {
+    for (int i = 0; i < MIN_CALLS; ++i) {
         begin = fu_clock();
         work_of(run, c, what);
         fastest = fmin(fastest, fu_clock() - begin);
     }
-    const double fit = budget / (BATCHES * fmax(fastest, SHORTEST));
-    const int calls = fit > MOST ? MOST : (int)fit;
+    const double fit = budget / (BATCHES * fmax(fastest, MIN_SECONDS));
+    const int calls = fit > MAX_CALLS ? MAX_CALLS : (int)fit;
     for (int b = 0; b < BATCHES && calls; ++b) {
         begin = fu_clock();
         for (int i = 0; i < calls; ++i) work_of(run, c, what);

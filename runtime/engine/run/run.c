@@ -7,7 +7,7 @@
 #define BEFORE 1e-15 /* of a knot: a step ends so much before it, where the signal is still that of the step */
 
 /* Returns whether the run ends on a knot: its last row is of the instant before. */
-static int ends_on(const fu_run *run, const fu_knot *knot)
+static int ends_on(const fu_run *run, const fu_breakpoint *knot)
 {
     return knot->t >= run->duration * (1.0 - FU_AT_ONCE);
 }
@@ -15,12 +15,12 @@ static int ends_on(const fu_run *run, const fu_knot *knot)
 /* Steps once towards an output time, or towards the first knot on the way there; returns a status. */
 static int approach(fu_run *run, double target)
 {
-    const fu_knot *knot = run->n_knots ? fu_next_knot(run, target) : 0;
+    const fu_breakpoint *knot = run->n_knots ? fu_next_breakpoint(run, target) : 0;
     if (!knot) return fu_step_towards(run, target);
     const int status = fu_step_towards(run, knot->t * (1.0 - BEFORE));
     if ((status && status != FU_EVENT) || run->now.t < knot->t - FU_AT_ONCE * run->duration) return status;
     if (ends_on(run, knot)) return status;
-    const int passed = fu_pass_knot(run, knot, status == FU_EVENT);
+    const int passed = fu_pass_breakpoint(run, knot, status == FU_EVENT);
     return passed ? passed : status;
 }
 
@@ -50,7 +50,7 @@ static int advance(fu_run *run, double seconds)
 {
     const double until = fu_clock() + seconds;
     for (;;) {
-        if (fu_take_passage(run)) return FU_EVENT;
+        if (fu_take_deferred(run)) return FU_EVENT;
         double target = run->record.n * run->output_step;
         if (target > run->duration * (1.0 - FU_AT_ONCE)) target = run->duration;
         if (run->now.t >= target - FU_AT_ONCE * run->duration) {

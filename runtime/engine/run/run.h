@@ -14,11 +14,11 @@ int fu_start(fu_run *run);
 int fu_start_scheme(fu_run *run, int project);
 
 /* run/event_handling.c */
-int fu_let_happen(fu_run *run, fu_event event);
+int fu_handle_event(fu_run *run, fu_event event);
 
 /* run/breakpoints.c */
-const fu_knot *fu_next_knot(const fu_run *run, double latest);
-int fu_pass_knot(fu_run *run, const fu_knot *knot, int event);
+const fu_breakpoint *fu_next_breakpoint(const fu_run *run, double latest);
+int fu_pass_breakpoint(fu_run *run, const fu_breakpoint *knot, int event);
 
 /* run/steps.c */
 int fu_step_towards(fu_run *run, double target);

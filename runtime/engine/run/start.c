@@ -12,8 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-#define AT_REST 1e-9      /* of the extent: a scene that moves less may be at rest */
-#define STILL 1e-6        /* of the scene's size: a motion that errors may be relative to where the scene moves less */
+#define REST_MOTION 1e-9      /* of the extent: a scene that moves less may be at rest */
+#define LEAST_MOTION 1e-6        /* of the scene's size: a motion that errors may be relative to where the scene moves less */
 #define FIRST_MOTION 1e-3 /* of the duration: until then the motion is judged by the velocities at the start */
 
 /* Starts the scheme at `now` with consistent velocities, which are projected on the joints where that is asked for, and with
@@ -41,8 +41,8 @@ int fu_prepare(fu_run *run)
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     fu_prescribe(model, now);
-    fu_carry(model, now);
-    if (fu_follow(model, now)) return FU_SINGULAR;
+    fu_update_history(model, now);
+    if (fu_solve_coordinates(model, now)) return FU_SINGULAR;
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
     memset(run->first, 0, sizeof(double) * (size_t)model->n_q);
     run->extent = fu_extent(model, run->first, now->q);
@@ -63,11 +63,11 @@ static int begin_state(fu_run *run)
     if (fu_may_start_open(model, now)) {
         if (fu_close(run)) return FU_SINGULAR;
         memcpy(now->numbers, run->next.numbers, size);
-        fu_carry(model, now);
+        fu_update_history(model, now);
     }
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
     if (fu_start_scheme(run, 1)) return FU_SINGULAR;
-    fu_carry(model, now);
+    fu_update_history(model, now);
     return FU_RUNNING;
 }
 
@@ -94,15 +94,15 @@ int fu_start(fu_run *run)
     }
     /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
      * never to less than what a scene at rest cannot help */
-    if (run->absolute_tol < 0.0) run->absolute_tol = STILL * run->tol * run->size;
-    run->least_motion = AT_REST * run->extent;
+    if (run->absolute_tol < 0.0) run->absolute_tol = LEAST_MOTION * run->tol * run->size;
+    run->least_motion = REST_MOTION * run->extent;
     for (int i = 0; i < model->n_dof; ++i) {
         const double t = fmin(run->output_step, FIRST_MOTION * run->duration);
         const double d = run->controlled[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
         if (d > run->least_motion) run->least_motion = d;
     }
-    fu_watch_now(run, fu_no_event, INFINITY);
-    fu_watch_anew(run, -1);
+    fu_evaluate_event_functions(run, fu_no_event, INFINITY);
+    fu_restart_event_functions(run, -1);
     fu_look_around(run, 0.0, 1);
     fu_note_depths(run);
     return FU_RUNNING;

@@ -20,7 +20,7 @@
 #define ACCEPTED 2.0          /* of what is allowed: a step with a larger error is rejected */
 #define DIVISIONS 8           /* rejections of a fixed step that each step taken makes up for: so often it may be divided */
 #define MOST_TURNS 2          /* of a coupling on one boundary before a step is taken all the same: it rests there */
-#define MOST_CUTS 4           /* of a step before what is watched dips beyond zero in it: then it is taken all the same */
+#define MAX_CUTS 4           /* of a step before what is watched dips beyond zero in it: then it is taken all the same */
 #define CARRIED 0.15          /* of the error that is allowed over the run: what one step may err by of what friction holds */
 #define PASSED_BY 0.5         /* of the step that was wanted: what is wanted after one whose event was not found */
 
@@ -100,8 +100,8 @@ static int make(fu_run *run, double h)
 /* Returns the estimate of the step's error, m. */
 static double error_of(fu_run *run, double h)
 {
-    const double begin = uncounted(run), error = fmax(fmax(run->integrator->error(run, h), fu_passage_error(run, h)), fu_kink_error(run, h));
-    const double carried = fu_carried_error(run->model, &run->now, &run->next) / (CARRIED * fu_allowed_error(run));
+    const double begin = uncounted(run), error = fmax(fmax(run->integrator->error(run, h), fu_deferred_error(run, h)), fu_friction_error(run, h));
+    const double carried = fu_history_error(run->model, &run->now, &run->next) / (CARRIED * fu_allowed_error(run));
     run->statistics.time_error += uncounted(run) - begin;
     return fmax(error, run->allowed * pow(carried, 0.5 * run->order)); /* what is carried errs by the square of the step at least */
 }
@@ -109,7 +109,7 @@ static double error_of(fu_run *run, double h)
 /* Lets couplings be as in `now` for the rest of the step. */
 static void refuse(fu_run *run, trial *t)
 {
-    fu_undo_passages(run);
+    fu_undo_deferred(run);
     t->refused = 1;
     run->goes_over = 0;
 }
@@ -120,7 +120,7 @@ static int attempt(fu_run *run, trial *t)
     const double allowed = fu_allow(run, t->h);
     run->failure.cause = FU_NO_FAILURE;
     run->usual = t->want;
-    run->most_passages = 0;
+    run->most_deferred = 0;
     if (make(run, t->h)) {
         if (run->model->n_passing && !run->keep_forces) { /* its iteration may go to and fro over one */
             refuse(run, t);
@@ -137,7 +137,7 @@ static int attempt(fu_run *run, trial *t)
     t->error = error_of(run, t->h);
     t->ratio = t->error / allowed;
     t->changes = fu_count_changes(run);
-    t->passages = run->integrator->quadrature ? fu_count_passages(run) : 0;
+    t->passages = run->integrator->quadrature ? fu_count_deferred(run) : 0;
     if (is_adaptive(run) && !t->changes && !t->passages && !(t->ratio <= ACCEPTED)) {
         t->want = fu_shrink_step(run, t->h, t->ratio);
         return 0;
@@ -151,9 +151,9 @@ static int shall_go_over(fu_run *run, trial *t)
 {
     if (!is_adaptive(run) || !run->integrator->quadrature || !run->keep_forces || t->refused || !run->model->n_passing) return 0;
     run->keep_forces = 0;
-    fu_choose_passages(run, 1);
-    if (fu_count_passages(run) && fmax(t->error, fu_passage_error(run, t->h)) <= run->allowed) return 1;
-    fu_undo_passages(run);
+    fu_choose_deferred(run, 1);
+    if (fu_count_deferred(run) && fmax(t->error, fu_deferred_error(run, t->h)) <= run->allowed) return 1;
+    fu_undo_deferred(run);
     return 0;
 }
 
@@ -162,8 +162,8 @@ static void find_event(fu_run *run, trial *t)
 {
     if (t->passages && is_adaptive(run) && !(t->ratio <= 1.0)) refuse(run, t);
     t->event = fu_find_event(run, fu_no_event);
-    if (t->changes && (t->event.kind == FU_CROSSING || !(t->ratio <= 1.0))) {
-        fu_keep_pieces(run);
+    if (t->changes && (t->event.kind == FU_PATH_BOUNDARY || !(t->ratio <= 1.0))) {
+        fu_keep_path_segments(run);
         t->event = fu_find_event(run, fu_no_event);
     }
 }
@@ -196,7 +196,7 @@ static int is_accurate_without_jump(fu_run *run, trial *t)
 /* Returns whether something watched passes zero within the step and is back: the step is then cut there. */
 static int is_cut_at_dip(fu_run *run, trial *t)
 {
-    const double dip = t->cuts < MOST_CUTS ? fu_time_of_dip(run, t->h) : 0.0;
+    const double dip = t->cuts < MAX_CUTS ? fu_time_of_grazing(run, t->h) : 0.0;
     if (!(dip > shortest(run))) return 0;
     ++t->cuts;
     t->cut = dip;
@@ -208,22 +208,22 @@ static void accept(fu_run *run, const trial *t)
 {
     const fu_model *model = run->model;
     const double h = t->h;
-    run->is_remainder = !t->cuts && (!t->event.kind || t->event.kind == FU_CROSSING);
+    run->is_remainder = !t->cuts && (!t->event.kind || t->event.kind == FU_PATH_BOUNDARY);
     for (int i = 0; i < model->n_coordinates; ++i) run->s_slope[i] = (run->next.s[i] - run->now.s[i]) / h;
     run->integrator->account(run, h);
-    fu_note_passages(run, h);
+    fu_note_deferred(run, h);
     fu_note_slackness(run, h);
     run->dissipated += fu_lost_in_step(model, &run->now, &run->next, run->order <= 2);
     run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
     run->now = run->next;
     run->next = state;
-    fu_carry(model, &run->now);
+    fu_update_history(model, &run->now);
     fu_look_around(run, h, 0);
     const double moved = fu_largest_motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
     run->controlled_motion = run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
-    fu_watch_now(run, t->event, h);
+    fu_evaluate_event_functions(run, t->event, h);
     fu_note_depths(run);
     run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
     fu_statistics *s = &run->statistics;
@@ -237,7 +237,7 @@ static int take_step(fu_run *run, const trial *t)
 {
     if (t->passages) run->goes_over = 1;
     accept(run, t);
-    if (fu_has_lost_a_watch(run)) return FU_NO_CONVERGENCE;
+    if (fu_has_lost_an_event(run)) return FU_NO_CONVERGENCE;
     run->turned = 0;
     run->statistics.error_sum += t->error;
     run->last_error = t->error;
@@ -250,8 +250,8 @@ int fu_step_towards(fu_run *run, double target)
 {
     const fu_event late = fu_late_event(run);
     trial t = {.want = is_adaptive(run) ? run->h : run->fixed_step};
-    if (fu_has_lost_a_watch(run)) return FU_NO_CONVERGENCE;
-    if (late.kind) return fu_let_happen(run, late);
+    if (fu_has_lost_an_event(run)) return FU_NO_CONVERGENCE;
+    if (late.kind) return fu_handle_event(run, late);
     run->keep_pieces = must_keep_pieces(run);
     run->keep_forces = must_keep_forces(run);
     for (;;) {
@@ -264,10 +264,10 @@ int fu_step_towards(fu_run *run, double target)
             continue;
         }
         if (run->n_watches && is_cut_at_dip(run, &t)) continue;
-        if (t.event.kind == FU_CROSSING && run->turned >= MOST_TURNS) t.event = fu_no_event;
+        if (t.event.kind == FU_PATH_BOUNDARY && run->turned >= MOST_TURNS) t.event = fu_no_event;
         if (fu_stands_on_boundary(run, t.event)) {
             ++run->turned;
-            return fu_let_happen(run, t.event);
+            return fu_handle_event(run, t.event);
         }
         if (!t.event.kind) return take_step(run, &t);
         if (!end_on_event(run, &t)) {
@@ -277,7 +277,7 @@ int fu_step_towards(fu_run *run, double target)
         if ((t.changes || t.passages) && !is_accurate_without_jump(run, &t)) continue;
         if (run->n_watches && is_cut_at_dip(run, &t)) continue;
         accept(run, &t);
-        const int status = t.event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, t.h);
-        return status ? status : fu_let_happen(run, t.event);
+        const int status = t.event.kind == FU_PATH_BOUNDARY ? FU_RUNNING : refresh(run, t.h);
+        return status ? status : fu_handle_event(run, t.event);
     }
 }

@@ -126,10 +126,10 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     for (int d = 0; d < 3; ++d) numbers->position[d] = tow_of(coupling)->start[d] + tow_of(coupling)->velocity[d] * state->t;
 }
 
-static int watches(const fu_coupling *coupling, fu_watch *out)
+static int watches(const fu_coupling *coupling, fu_event_function *out)
 {
     (void)coupling;
-    if (out) *out = (fu_watch){.which = 0, .direction = 1};
+    if (out) *out = (fu_event_function){.which = 0, .direction = 1};
     return 1;
 }
 

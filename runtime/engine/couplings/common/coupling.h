@@ -180,7 +180,7 @@ struct fu_coupling_type {
     /* Sets own coordinates, pieces, numbers and flags of the state as it is drawn; those that it does not set are zero. */
     void (*reset)(const fu_coupling *coupling, fu_state *state);
     /* Finds contact that follows from the positions, in statics. */
-    void (*touch)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+    void (*detect)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
     /* Returns whether a state that was read from a file is possible. */
     int (*is_possible)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 };

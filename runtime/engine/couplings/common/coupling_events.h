@@ -53,11 +53,11 @@ struct fu_coupling_events {
 
     /* Watches: numbers, each an event where it passes zero. Writes their `which` and `direction` to `out`, unless it is null,
      * and returns how many they are. */
-    int (*watches)(const fu_coupling *coupling, fu_watch *out);
+    int (*watches)(const fu_coupling *coupling, fu_event_function *out);
     double (*watched)(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which);
-    /* When a watched number is farthest beyond zero in the step just made, of h, at both ends of which it is on one side, as fu_dip
+    /* When a watched number is farthest beyond zero in the step just made, of h, at both ends of which it is on one side, as fu_grazing_time
      * (events/events.h) predicts it; or where the step should end as an impact needs shorter ones; else 0. Null: it is not known. */
-    double (*dip)(const fu_run *run, const fu_coupling *coupling, int which, double h);
+    double (*grazing)(const fu_run *run, const fu_coupling *coupling, int which, double h);
     /* How deep what touches has sunk, m, at a state where the coupling's watched number has this value. Null: it cannot sink. */
     double (*depth)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double watched);
     /* How far beyond where its surface's shape is given (fu_surface_beyond) anything touches, m; not positive where nothing does. Null:
@@ -83,7 +83,7 @@ static inline int fu_can_act(const fu_coupling *coupling)
     return events && (!events->can_act || events->can_act(coupling));
 }
 
-static inline int fu_can_pass(const fu_coupling *coupling)
+static inline int fu_can_defer(const fu_coupling *coupling)
 {
     return fu_can_act(coupling) && coupling->events->deferred && !coupling->is_damped;
 }

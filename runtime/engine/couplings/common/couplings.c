@@ -25,8 +25,8 @@ static void list_coupling(fu_model *model, const fu_coupling *c)
 {
     const int alone = fu_acts_alone(c);
     model->n_pairs += c->type->proximity != 0;
-    if (!alone) model->others[model->n_others++] = c;
-    if (c->type->history && (!alone || c->n_numbers)) model->carrying[model->n_carrying++] = c;
+    if (!alone) model->always_active[model->n_always_active++] = c;
+    if (c->type->history && (!alone || c->n_numbers)) model->with_history[model->n_with_history++] = c;
 }
 
 int fu_n_outputs(const fu_coupling_type *type)
@@ -40,9 +40,9 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
 {
     model->couplings = (const fu_coupling *const *)couplings;
     model->n_couplings = n;
-    model->others = lists;
-    model->carrying = lists + n;
-    model->n_others = model->n_carrying = model->n_pairs = 0;
+    model->always_active = lists;
+    model->with_history = lists + n;
+    model->n_always_active = model->n_with_history = model->n_pairs = 0;
     model->slides = 0;
     model->n_coordinates = model->n_forces = model->n_rows = model->n_outputs = 0;
     model->n_numbers = model->n_flags = model->n_scratch = 0;
@@ -68,7 +68,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
         model->n_external += c->type->external_force != 0;
         model->n_driven += c->is_driven;
         model->n_damped += c->is_damped;
-        model->n_passing += fu_can_pass(c);
+        model->n_passing += fu_can_defer(c);
         model->n_inertial += c->has_inertia;
         list_coupling(model, c);
     }
@@ -112,16 +112,16 @@ void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu
 
 void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f)
 {
-    for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active && model->n_inertial; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->has_inertia) c->type->inertia->force(model, c, q, a, f);
     }
 }
 
 void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system)
 {
-    for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active && model->n_inertial; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->has_inertia) c->type->inertia->matrix(model, c, q, scale, system);
     }
 }
@@ -129,8 +129,8 @@ void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu
 double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_others && model->n_inertial; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active && model->n_inertial; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->has_inertia) total += c->type->inertia->kinetic_energy(model, c, t, q, v, past_fluid);
     }
     return total;
@@ -147,8 +147,8 @@ void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f)
 
 void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->type->external_force) c->type->external_force(model, c, t, q, f);
     }
 }
@@ -156,8 +156,8 @@ void fu_coupling_external_forces(const fu_model *model, double t, const double *
 double fu_coupling_external_power(const fu_model *model, const fu_state *state)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->type->supply) total += c->type->supply->power(model, c, state);
     }
     return total;
@@ -211,8 +211,8 @@ int fu_coupling_quadrature_error(const fu_model *model, const fu_state *from, co
 
 void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state *state)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->type->take_forces) c->type->take_forces(model, c, work, state);
     }
 }
@@ -234,16 +234,16 @@ void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, cons
 
 void fu_gaps(const fu_model *model, const fu_state *state, double *gaps)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->type->gaps) c->type->gaps(model, c, state, gaps + c->force);
     }
 }
 
 void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, double *rates)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->type->coordinates) c->type->coordinates->rates(model, c, work, rates + c->coordinate);
     }
 }
@@ -256,37 +256,37 @@ void fu_reset(const fu_model *model, fu_state *state)
     }
 }
 
-double fu_carried_error(const fu_model *model, const fu_state *from, const fu_state *to)
+double fu_history_error(const fu_model *model, const fu_state *from, const fu_state *to)
 {
     double largest = 0.0;
-    for (int k = 0; k < model->n_carrying; ++k) {
-        const fu_coupling *c = model->carrying[k];
+    for (int k = 0; k < model->n_with_history; ++k) {
+        const fu_coupling *c = model->with_history[k];
         if (c->type->history->error) largest = fmax(largest, c->type->history->error(model, c, from, to));
     }
     return largest;
 }
 
-void fu_carry(const fu_model *model, fu_state *state)
+void fu_update_history(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_carrying; ++k) {
-        const fu_coupling *c = model->carrying[k];
+    for (int k = 0; k < model->n_with_history; ++k) {
+        const fu_coupling *c = model->with_history[k];
         c->type->history->update(model, c, state);
     }
 }
 
-void fu_touch(const fu_model *model, fu_state *state)
+void fu_detect_contact(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
-        if (c->type->touch) c->type->touch(model, c, state);
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
+        if (c->type->detect) c->type->detect(model, c, state);
     }
 }
 
 /* Finds own coordinates that follow from the others; returns null, or the first coupling of which none were found. */
-const fu_coupling *fu_follow(const fu_model *model, fu_state *state)
+const fu_coupling *fu_solve_coordinates(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->type->coordinates && c->type->coordinates->solve(model, c, state)) return c;
     }
     return 0;
@@ -295,8 +295,8 @@ const fu_coupling *fu_follow(const fu_model *model, fu_state *state)
 int fu_may_start_open(const fu_model *model, const fu_state *state)
 {
     int open = 0;
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->type->may_start_open) open |= c->type->may_start_open(model, c, state);
     }
     return open;
@@ -304,17 +304,17 @@ int fu_may_start_open(const fu_model *model, const fu_state *state)
 
 int fu_is_possible(const fu_model *model, const fu_state *state)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->type->is_possible && !c->type->is_possible(model, c, state)) return 0;
     }
     return 1;
 }
 
-void fu_add_own(const fu_model *model, fu_state *state, const double *own, double inertia, double scale)
+void fu_add_internal(const fu_model *model, fu_state *state, const double *own, double inertia, double scale)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         const double *of = own + c->unknown;
         for (int i = 0; i < c->n_coordinates; ++i) state->s[c->coordinate + i] += of[i];
         for (int i = 0; i < c->n_forces; ++i)
@@ -324,8 +324,8 @@ void fu_add_own(const fu_model *model, fu_state *state, const double *own, doubl
 
 const fu_coupling *fu_owner(const fu_model *model, int unknown)
 {
-    for (int k = 0; k < model->n_others; ++k) {
-        const fu_coupling *c = model->others[k];
+    for (int k = 0; k < model->n_always_active; ++k) {
+        const fu_coupling *c = model->always_active[k];
         if (c->unknown <= unknown && unknown < c->unknown + c->n_coordinates + c->n_forces) return c;
     }
     return 0;

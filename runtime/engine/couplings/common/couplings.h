@@ -41,19 +41,19 @@ int fu_n_outputs(const fu_coupling_type *type); /* the length of `out` of one co
 void fu_gaps(const fu_model *model, const fu_state *state, double *gaps);
 void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, double *rates);
 int fu_may_start_open(const fu_model *model, const fu_state *state);
-const fu_coupling *fu_follow(const fu_model *model, fu_state *state);
+const fu_coupling *fu_solve_coordinates(const fu_model *model, fu_state *state);
 void fu_reset(const fu_model *model, fu_state *state);
-void fu_carry(const fu_model *model, fu_state *state);
+void fu_update_history(const fu_model *model, fu_state *state);
 /* How far off what is carried along may be after a step, m. */
-double fu_carried_error(const fu_model *model, const fu_state *from, const fu_state *to);
+double fu_history_error(const fu_model *model, const fu_state *from, const fu_state *to);
 void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
-void fu_touch(const fu_model *model, fu_state *state);
+void fu_detect_contact(const fu_model *model, fu_state *state);
 int fu_is_possible(const fu_model *model, const fu_state *state);
 
 /* Scale of constraint rows, and of own forces, by the inertia of a system: statics has none. */
 double fu_row_unit(double inertia, double mass);
 /* Own coordinates and forces += a solution `own` of a Newton system whose equilibrium is multiplied by `scale`. */
-void fu_add_own(const fu_model *model, fu_state *state, const double *own, double inertia, double scale);
+void fu_add_internal(const fu_model *model, fu_state *state, const double *own, double inertia, double scale);
 /* The coupling that has this unknown beyond the dofs. */
 const fu_coupling *fu_owner(const fu_model *model, int unknown);
 

@@ -22,7 +22,7 @@ int fu_acts_alone(const fu_coupling *coupling)
     const fu_coupling_type *type = coupling->type;
     const fu_coupling_events *events = coupling->events;
     const int asked = type->inertia || type->rows || type->external_force || type->supply || type->reaction || type->take_forces ||
-                      type->gaps || type->coordinates || type->may_start_open || type->touch || type->is_possible ||
+                      type->gaps || type->coordinates || type->may_start_open || type->detect || type->is_possible ||
                       (events && (events->path || events->deferred || events->take_velocities));
     return type->proximity && !asked;
 }
@@ -96,7 +96,7 @@ static fu_couplings near_of(const fu_model *model)
 /* Returns whether evaluations pass over couplings that are far: those that are more than a contact take part in all. */
 static int has_lone_pairs(const fu_model *model)
 {
-    return model->n_others < model->n_couplings;
+    return model->n_always_active < model->n_couplings;
 }
 
 fu_couplings fu_acting(const fu_model *model, const fu_state *state)

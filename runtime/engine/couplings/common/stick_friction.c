@@ -15,9 +15,9 @@
 #include <math.h>
 #include <string.h>
 
-#define SAMPLES 3     /* parts of a step that the room to the bound is known at the ends of: of the cubic through it */
+#define BOUND_SAMPLES 3     /* parts of a step that the room to the bound is known at the ends of: of the cubic through it */
 #define REFINEMENTS 2 /* of where that room is least */
-#define PARTS 8       /* of a step: those that friction's work is summed over */
+#define WORK_PARTS 8       /* of a step: those that friction's work is summed over */
 
 int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
 {
@@ -60,30 +60,30 @@ double fu_part_to_rise(const fu_step_ends *ends, double h)
 }
 
 /* Returns where the cubic through values at equal distances on [0, 1] is least, or 1. */
-static double least_of(const double g[SAMPLES + 1])
+static double least_of(const double g[BOUND_SAMPLES + 1])
 {
     const double a = 0.5 * (-11.0 * g[0] + 18.0 * g[1] - 9.0 * g[2] + 2.0 * g[3]);
     const double b = 0.5 * (18.0 * g[0] - 45.0 * g[1] + 36.0 * g[2] - 9.0 * g[3]);
     const double c = 0.5 * (-9.0 * g[0] + 27.0 * g[1] - 27.0 * g[2] + 9.0 * g[3]);
     const double square = b * b - 3.0 * a * c, below = b + sqrt(fmax(square, 0.0)), x = -a / below;
     if (!(square > 0.0) || !(below != 0.0) || !(x > 0.0 && x < 1.0)) return 1.0;
-    return g[0] + x * (a + x * (b + x * c)) < g[SAMPLES] ? x : 1.0;
+    return g[0] + x * (a + x * (b + x * c)) < g[BOUND_SAMPLES] ? x : 1.0;
 }
 
-double fu_bound_within(const fu_friction_way *way, double x)
+double fu_bound_within(const fu_friction_path *way, double x)
 {
     const double depth = fu_value_within(&way->depth, way->h, x);
     return depth > 0.0 ? way->bound(way->of, depth, fu_rate_within(&way->depth, way->h, x)) : 0.0;
 }
 
 /* Returns the bound at a part of the step, m, and makes the stretch as if nothing slid. */
-static double bound_at(const fu_friction_way *way, double x, double *stretch)
+static double bound_at(const fu_friction_path *way, double x, double *stretch)
 {
     *stretch = fu_value_within(&way->stretch, way->h, x);
     return fu_bound_within(way, x) / way->stiffness;
 }
 
-static double room_at(const fu_friction_way *way, double x, int side)
+static double room_at(const fu_friction_path *way, double x, int side)
 {
     double stretch;
     const double bound = bound_at(way, x, &stretch);
@@ -91,7 +91,7 @@ static double room_at(const fu_friction_way *way, double x, int side)
 }
 
 /* Returns the least room to a side near x, which is improved by parabolas. */
-static double least_room(const fu_friction_way *way, int side, double *x)
+static double least_room(const fu_friction_path *way, int side, double *x)
 {
     double width = 0.1 * (1.0 - way->from), least = room_at(way, *x, side);
     for (int i = 0; i < REFINEMENTS; ++i) {
@@ -109,20 +109,20 @@ static double least_room(const fu_friction_way *way, int side, double *x)
     return least;
 }
 
-fu_friction_end fu_end_of_friction(const fu_friction_way *way)
+fu_friction_end fu_end_of_friction(const fu_friction_path *way)
 {
     const double all = way->stretch.value[1];
-    double room[2][SAMPLES + 1], bound = 0.0;
+    double room[2][BOUND_SAMPLES + 1], bound = 0.0;
     fu_friction_end end = {all, 1.0, 0};
-    for (int i = 0; i <= SAMPLES; ++i) {
+    for (int i = 0; i <= BOUND_SAMPLES; ++i) {
         double stretch;
-        bound = bound_at(way, i == SAMPLES ? 1.0 : way->from + (1.0 - way->from) * i / SAMPLES, &stretch);
+        bound = bound_at(way, i == BOUND_SAMPLES ? 1.0 : way->from + (1.0 - way->from) * i / BOUND_SAMPLES, &stretch);
         room[0][i] = bound - stretch;
         room[1][i] = bound + stretch;
     }
     for (int k = 0; k < 2; ++k) {
         const int side = k ? -1 : 1;
-        double part = least_of(room[k]), least = room[k][SAMPLES];
+        double part = least_of(room[k]), least = room[k][BOUND_SAMPLES];
         if (part < 1.0) {
             part = way->from + (1.0 - way->from) * part;
             least = least_room(way, side, &part);
@@ -139,10 +139,10 @@ static fu_step_ends first_part(const fu_step_ends *ends, double h, double x)
     return (fu_step_ends){{ends->value[0], fu_value_within(ends, h, x)}, {ends->rate[0], fu_rate_within(ends, h, x)}};
 }
 
-double fu_friction_within(const fu_friction_way *way, double x)
+double fu_friction_within(const fu_friction_path *way, double x)
 {
     if (!(x > way->from)) return 0.0;
-    fu_friction_way part = *way;
+    fu_friction_path part = *way;
     part.stretch = first_part(&way->stretch, way->h, x);
     part.depth = first_part(&way->depth, way->h, x);
     part.h = x * way->h;
@@ -150,7 +150,7 @@ double fu_friction_within(const fu_friction_way *way, double x)
     return fu_end_of_friction(&part).stretch;
 }
 
-double fu_way_along(int dim, const fu_friction_travel *travel, double along[3], fu_friction_way *way)
+double fu_path_length(int dim, const fu_friction_travel *travel, double along[3], fu_friction_path *way)
 {
     double square = 0.0;
     for (int d = 0; d < dim; ++d) {
@@ -166,7 +166,7 @@ double fu_way_along(int dim, const fu_friction_travel *travel, double along[3], 
 }
 
 /* Returns the work over the stiffness, m^2, summed over equal parts of the step. */
-static double taken(int dim, const fu_friction_travel *travel, const fu_friction_way *way, const double *end, int parts)
+static double taken(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end, int parts)
 {
     double sum = 0.0, stretch[3], last[3] = {0.0};
     memcpy(stretch, travel->stretch, sizeof stretch);
@@ -188,8 +188,8 @@ static double taken(int dim, const fu_friction_travel *travel, const fu_friction
     return sum + 0.5 * (fu_dot(dim, stretch, stretch) - fu_dot(dim, end, end));
 }
 
-double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_way *way, const double *end, int by_ends)
+double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end, int by_ends)
 {
     if (by_ends) return taken(dim, travel, way, end, 1);
-    return (4.0 * taken(dim, travel, way, end, PARTS) - taken(dim, travel, way, end, PARTS / 2)) / 3.0;
+    return (4.0 * taken(dim, travel, way, end, WORK_PARTS) - taken(dim, travel, way, end, WORK_PARTS / 2)) / 3.0;
 }

@@ -32,20 +32,20 @@ typedef struct {
     double h, from, stiffness;
     fu_friction_bound *bound;
     const void *of;
-} fu_friction_way;
+} fu_friction_path;
 
 /* The bound at a part of the step, N. */
-double fu_bound_within(const fu_friction_way *way, double x);
+double fu_bound_within(const fu_friction_path *way, double x);
 
 /* The stretch at the end, m; after which part of the step it slid last, and whether forwards, 1, backwards, -1, or not at all, 0. */
 typedef struct {
     double stretch, part;
     int slid;
 } fu_friction_end;
-fu_friction_end fu_end_of_friction(const fu_friction_way *way);
+fu_friction_end fu_end_of_friction(const fu_friction_path *way);
 
 /* The same at a part of the step. */
-double fu_friction_within(const fu_friction_way *way, double x);
+double fu_friction_within(const fu_friction_path *way, double x);
 
 /* The same with vectors along what is touched: the stretch at the beginning, how far what it holds goes past, m, its velocities at both
  * ends, m/s. */
@@ -53,10 +53,10 @@ typedef struct {
     double stretch[3], change[3], rates[2][3];
 } fu_friction_travel;
 /* Makes the direction of the stretch at the end as if nothing slid, and the way along it; returns its size, m. */
-double fu_way_along(int dim, const fu_friction_travel *travel, double along[3], fu_friction_way *way);
+double fu_path_length(int dim, const fu_friction_travel *travel, double along[3], fu_friction_path *way);
 /* Returns the work that friction takes over the stiffness, m^2, where the stretch at the end is as given: by parts of the step, and by
  * half as many (Richardson), or by the ends alone. */
-double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_way *way, const double *end, int by_ends);
+double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end, int by_ends);
 
 #define FU_NO_TIME 1e300 /* s: of numbers as drawn, from where no step begins */
 

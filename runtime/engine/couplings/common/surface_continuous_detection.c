@@ -12,19 +12,19 @@
 #include <math.h>
 #include <string.h>
 
-#define LEAST 1e-3 /* of a step: what the point is led on by at least; what touches for less is looked at by fu_dip alone */
+#define MIN_ADVANCE 1e-3 /* of a step: what the point is led on by at least; what touches for less is looked at by fu_grazing_time alone */
 #define HALVINGS 12
 
-/* A path: Bezier's points of the cubic; the largest speed along it, m/s. */
+/* A cubic_path: Bezier's points of the cubic; the largest speed along it, m/s. */
 typedef struct {
     int dim;
     const fu_surface *surface;
     double radius, h, points[4][3], speed;
     fu_attachment_state own; /* the axes of the shape */
-} path;
+} cubic_path;
 
 /* Makes the point after part x of the step; of `out` all but the velocity. */
-static void place_at(const path *of, double x, fu_surface_end *out)
+static void place_at(const cubic_path *of, double x, fu_surface_end *out)
 {
     const double u = 1.0 - x, weights[4] = {u * u * u, 3.0 * u * u * x, 3.0 * u * x * x, x * x * x};
     fu_distance at;
@@ -55,7 +55,7 @@ static double slope_of(const double *n)
 }
 
 /* Returns what a point can go without passing a terrain, m: `most` at most. */
-static double free_over_terrain(const path *of, const fu_surface_end *at, double most)
+static double free_over_terrain(const cubic_path *of, const fu_surface_end *at, double most)
 {
     const fu_surface *surface = of->surface;
     const double height = (at->gap + of->radius) / at->n[1], here = slope_of(at->n);
@@ -76,12 +76,12 @@ static double free_over_terrain(const path *of, const fu_surface_end *at, double
 }
 
 /* Returns what a point can go at least without coming to the surface, or off it where it is below, m. */
-static double free_way(const path *of, const fu_surface_end *at, double most)
+static double free_way(const cubic_path *of, const fu_surface_end *at, double most)
 {
     return of->surface->shape == FU_TERRAIN ? free_over_terrain(of, at, most) : fabs(at->gap);
 }
 
-static void make_path(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, path *out)
+static void make_path(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, cubic_path *out)
 {
     memset(out, 0, sizeof *out);
     out->dim = dim;
@@ -102,9 +102,9 @@ static void make_path(int dim, const fu_surface *surface, double radius, const f
     }
 }
 
-double fu_surface_pass(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, double least)
+double fu_surface_detect_within(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, double least)
 {
-    path of;
+    cubic_path of;
     fu_surface_end at;
     if (!(ends[0].gap >= 0.0 && ends[1].gap >= 0.0)) return 0.0;
     make_path(dim, surface, radius, ends, h, &of);
@@ -116,7 +116,7 @@ double fu_surface_pass(int dim, const fu_surface *surface, double radius, const 
         place_at(&of, x, &at);
         if (first > 0.0 && at.gap > -least) return 0.5 * h * (first + x);
         if (first == 0.0 && at.gap < -least) first = x;
-        x += fmax(free_way(&of, &at, way) / way, LEAST);
+        x += fmax(free_way(&of, &at, way) / way, MIN_ADVANCE);
     }
     return first > 0.0 ? 0.5 * h * (first + last) : 0.0;
 }

@@ -60,7 +60,7 @@ typedef struct {
 } fu_surface_end;
 /* Returns when a point that is off the surface at the first end of a step of h is below it by more than `least` and comes off it again,
  * as its way is predicted to be, s after that end; 0 where it does not: couplings/common/surface_continuous_detection.c. */
-double fu_surface_pass(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, double least);
+double fu_surface_detect_within(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, double least);
 
 /* Fields of a structure's member `surface` (base/fields.h), which has the words of its shapes in fu_surface_shapes. */
 extern const char *const fu_surface_shapes[], *const fu_surface_role[];

@@ -21,7 +21,7 @@ typedef struct {
 } forces;
 
 static void add_force(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
-                      const fu_touch_point *point, void *context)
+                      const fu_contact_point *point, void *context)
 {
     const forces *to = context;
     fu_contact_add_force(model, contact, to->state, on, element, number, point, to->f);
@@ -48,12 +48,12 @@ static void matrix(const fu_model *model, const fu_contact *contact, const fu_st
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
         int touches = 0;
-        if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
+        if (!fu_contact_may_be_active(model, contact, &on, state, e, 0.0)) continue;
         const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;
         for (int k = 0; k < contact->n_points; ++k) {
-            fu_touch_point point;
+            fu_contact_point point;
             fu_contact_place(model, contact, &on, state, e, k, &point);
-            if (!fu_contact_touches(model, contact, &on, &point)) continue;
+            if (!fu_contact_is_active(model, contact, &on, &point)) continue;
             fu_contact_derivatives(model, contact, &on, &point);
             if (!alone) {
                 fu_contact_add_derivatives(model, contact, &on, state, e, k, &point, psi, weights, system);
@@ -98,7 +98,7 @@ static const fu_field fields[] = {
 };
 
 static const fu_proximity_operations proximity_of_surface = {.clearance = fu_contact_clearance, .between = fu_contact_between};
-static const fu_history_operations history = {.update = fu_contact_carry, .error = fu_contact_carried_error};
+static const fu_history_operations history = {.update = fu_contact_update_history, .error = fu_contact_history_error};
 
 static const fu_output output_fields[] = {
     FU_OUTPUT(fu_contact_output, force, "N", "direction"),

@@ -68,47 +68,47 @@ typedef struct {
     fu_distance distance;
     fu_friction_end friction_end;
     int slides;
-} fu_touch_point;
+} fu_contact_point;
 
 /* The normal force at a depth, with its derivatives, its elastic part, the stored energy; the mean of that part on a way to another depth. */
 typedef struct {
     double p, by_depth, by_rate, elastic, energy, mean;
-} fu_pressing;
+} fu_normal_force;
 
 /* couplings/contact/friction.c: friction where a point touches, and its derivatives, added to those of the normal force. */
-void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
+void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point);
 /* How far off the stretch may be at the end of the step by the parts that its direction is summed over, m. */
-double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point);
+double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point);
 /* Makes the way of a point through a step as fu_contact_stretch does, and the direction of its spring, along the shape's axes. */
-void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point,
-                     fu_friction_way *way, double along[3]);
+void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point,
+                     fu_friction_path *way, double along[3]);
 /* The way of a point's spring through a step but for the stretch: how deep it is. */
-fu_friction_way fu_contact_way(const fu_contact *contact, const fu_touch_point *point);
+fu_friction_path fu_contact_normal_path(const fu_contact *contact, const fu_contact_point *point);
 /* Makes what a point has moved by along the surface since its mark, m: along the shape's axes, as the normal there is. */
-void fu_contact_change(int dim, const fu_contact *contact, const fu_touch_point *point, const double *normal, double change[3]);
-void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
+void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_point *point, const double *normal, double change[3]);
+void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point);
 
 /* couplings/contact/point.c; fu_contact_slip: makes distance, depth and velocities of a point, whether it touches or not. */
-fu_pressing fu_press_at(const fu_contact *contact, double depth, double rate, double depth_next);
-void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
-int fu_contact_touches(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
-void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point);
+fu_normal_force fu_normal_force_at(const fu_contact *contact, double depth, double rate, double depth_next);
+void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point);
+int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point);
+void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point);
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
-                       const fu_touch_point *now, const fu_touch_point *next, double f[3], double friction[3], double by_next[9],
+                       const fu_contact_point *now, const fu_contact_point *next, double f[3], double friction[3], double by_next[9],
                        double by_stretch[9]);
 
 /* couplings/contact/places.c */
 int fu_contact_elements(const fu_model *model, const fu_contact *contact);
-int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
                          double below);
 double fu_contact_weight(const fu_contact *contact, int element, int point);
 fu_friction_mark *fu_contact_mark(const fu_contact *contact, const fu_state *state, int element, int point);
 void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
-                      int point, fu_touch_point *out);
+                      int point, fu_contact_point *out);
 const double *fu_contact_shapes(const fu_contact *contact, int n, int element, int point);
 int fu_contact_first(const fu_model *model, const fu_contact *contact, int element);
 void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
-                          int number, const fu_touch_point *point, double *f);
+                          int number, const fu_contact_point *point, double *f);
 void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum);
 
 /* couplings/contact/rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the shape's, and how
@@ -117,7 +117,7 @@ int fu_contact_rolls(const fu_contact *contact);
 void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double axes[9],
                      double spin[3]);
 void fu_contact_turning(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
-                        fu_touch_point *point);
+                        fu_contact_point *point);
 fu_friction_begin *fu_contact_begin_of(const fu_contact *contact, const fu_state *state);
 /* Makes what the point where a sphere touches has moved by its turning alone, along the shape's axes. */
 void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal, const fu_friction_mark *mark, double out[3]);
@@ -125,17 +125,17 @@ void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], c
 /* couplings/contact/friction_work.c */
 int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
                      const double *c, double *f);
-double fu_contact_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
+double fu_contact_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 
 /* Calls `visit` with each point that touches. */
 typedef void fu_contact_visitor(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
-                                const fu_touch_point *point, void *context);
+                                const fu_contact_point *point, void *context);
 void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state, fu_contact_visitor *visit, void *context);
 
 /* couplings/contact/derivatives.c: adds to a system the derivatives of what a point that touches, and its reaction, put on the left
  * of the equations of motion; psi as in fu_equations. */
 void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
-                                int element, int number, const fu_touch_point *point, const double *psi, fu_weights weights,
+                                int element, int number, const fu_contact_point *point, const double *psi, fu_weights weights,
                                 fu_system *system);
 
 /* couplings/contact/energy_step.c */
@@ -151,7 +151,7 @@ double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling
 double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends);
 void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state);
-void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+void fu_contact_update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
 /* couplings/contact/clearance.c */
 fu_clearance fu_contact_clearance(const fu_model *model, const fu_coupling *coupling, const fu_state *state);

@@ -26,7 +26,7 @@ static void moment_of(int dim, const double *x, const double *f, double m[3])
 }
 
 /* Makes how a point of a body moves, and where it touches. */
-static void motion_of_point(const fu_model *model, const fu_contact *contact, const fu_state *state, int number, const fu_touch_point *point,
+static void motion_of_point(const fu_model *model, const fu_contact *contact, const fu_state *state, int number, const fu_contact_point *point,
                             const double *psi, motion *out)
 {
     const fu_attachment *to = &contact->attachments[number];
@@ -87,7 +87,7 @@ static void turn_of(int dim, const double *T, int n, int i, const double *x, dou
 /* Makes, of a surface on a body, how its point at r moves, and where the force acts, and what a turn of it adds to the force on what
  * touches it there: own (dim x n). K has the derivative of P' f by the unknowns where r and the arm stay. */
 static void motion_of_surface(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
-                              const fu_touch_point *point, const double *psi, motion *out, double *own)
+                              const fu_contact_point *point, const double *psi, motion *out, double *own)
 {
     const int dim = model->dim, n = on->n;
     const double *f = point->f, *T = out->turned;
@@ -133,7 +133,7 @@ typedef struct {
 
 /* Adds what depends on where a sphere touches: the arm follows the normal, and the stretch the turn past the surface; sign: 1 of the
  * sphere, -1 of the surface, which takes the normal and the arm along as it turns. */
-static void add_rolling(int dim, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point, const motion *of,
+static void add_rolling(int dim, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point, const motion *of,
                         double sign, changes *out)
 {
     const int n = of->n;
@@ -159,7 +159,7 @@ static void add_rolling(int dim, const fu_contact *contact, const fu_attachment_
 }
 
 /* Makes the changes of the force by the coordinates of what touches, or of the surface, which adds its own. */
-static void changes_by(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point,
+static void changes_by(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point,
                        fu_weights weights, const motion *of, double sign, const double *own, changes *out)
 {
     const int dim = model->dim, n = of->n;
@@ -195,7 +195,7 @@ static void add_block(const fu_model *model, const motion *of, const motion *by,
 }
 
 void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
-                                int element, int number, const fu_touch_point *point, const double *psi, fu_weights weights,
+                                int element, int number, const fu_contact_point *point, const double *psi, fu_weights weights,
                                 fu_system *system)
 {
     const int dim = model->dim, rolls = fu_contact_rolls(contact);

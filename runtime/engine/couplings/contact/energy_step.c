@@ -26,7 +26,7 @@ typedef struct {
 /* A point over a step: at both ends in the surface's frame, and its mean place in the ground's axes. Where its sphere touches, if it
  * rolls: the same of the particle of the body that is there in the mean, and the attachment to it. */
 typedef struct {
-    fu_touch_point now, next;
+    fu_contact_point now, next;
     double middle[3], from[3], to[3], touched[3];
     fu_attachment particle;
 } point_step;
@@ -54,12 +54,12 @@ static void surface_over_step(const fu_model *model, const fu_contact *contact, 
 /* Returns whether any point of an element may touch at an end of the step. */
 static int may_touch(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int element)
 {
-    return fu_contact_may_touch(model, contact, &on->ends[0], at->now, element, 0.0) ||
-           fu_contact_may_touch(model, contact, &on->ends[1], at->next, element, 0.0);
+    return fu_contact_may_be_active(model, contact, &on->ends[0], at->now, element, 0.0) ||
+           fu_contact_may_be_active(model, contact, &on->ends[1], at->next, element, 0.0);
 }
 
 /* Places a point at an end of a step along the axes of the shape; forces of the step do not depend on its velocity there. */
-static void place_along_shape(int dim, const fu_attachment_state *end, fu_touch_point *point)
+static void place_along_shape(int dim, const fu_attachment_state *end, fu_contact_point *point)
 {
     double from[3] = {0.0};
     for (int d = 0; d < dim; ++d) from[d] = point->r[d] - end->p[d];
@@ -74,8 +74,8 @@ static void particle_over_step(const fu_model *model, const fu_contact *contact,
 {
     const int dim = model->dim;
     const fu_state *states[2] = {at->now, at->next};
-    const fu_touch_point *points[2] = {&out->now, &out->next};
-    fu_touch_point ends[2];
+    const fu_contact_point *points[2] = {&out->now, &out->next};
+    fu_contact_point ends[2];
     fu_attachment_state body;
     double u[3] = {0.0};
     out->particle = contact->attachments[number];
@@ -110,8 +110,8 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
         place_along_shape(model->dim, &on->ends[0], &out->now);
         place_along_shape(model->dim, &on->ends[1], &out->next);
     }
-    const int touched = fu_contact_touches(model, contact, &on->frame, &out->now);
-    const int touches = fu_contact_touches(model, contact, &on->frame, &out->next) || touched;
+    const int touched = fu_contact_is_active(model, contact, &on->frame, &out->now);
+    const int touches = fu_contact_is_active(model, contact, &on->frame, &out->next) || touched;
     memset(out->touched, 0, sizeof out->touched);
     if (touches && fu_contact_rolls(contact)) particle_over_step(model, contact, on, at, number, out);
     return touches;
@@ -224,7 +224,7 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
         const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;
         for (int k = 0; k < contact->n_points; ++k) {
             point_step point;
-            fu_touch_point *next = &point.next;
+            fu_contact_point *next = &point.next;
             double force[3], friction[3];
             if (!point_over_step(model, contact, &on, at, e, k, &point)) continue;
             fu_contact_step(model, contact, &on.frame, at->h, &point.now, next, force, friction, next->by_place, next->by_stretch);

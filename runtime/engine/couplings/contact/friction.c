@@ -7,31 +7,31 @@
 #include <math.h>
 #include <string.h>
 
-#define PARTS 8 /* of a step: those that the direction of what slides is summed over */
+#define DIRECTION_PARTS 8 /* of a step: those that the direction of what slides is summed over */
 
 /* The way of a point since its mark, along the shape's axes: by the end of it, by its beginning; the stretch as if nothing slid, with its
  * direction; where the way is not known in time, as in statics, h is 0. */
 typedef struct {
     double normal[3], change[3], begin[3], x[3], along[3], size, from;
-    fu_friction_way way;
-} path;
+    fu_friction_path way;
+} friction_course;
 
 static double bound(const void *of, double depth, double rate)
 {
     const fu_contact *contact = of;
-    return contact->law.friction * fu_press_at(contact, depth, rate, depth).p;
+    return contact->law.friction * fu_normal_force_at(contact, depth, rate, depth).p;
 }
 
-fu_friction_way fu_contact_way(const fu_contact *contact, const fu_touch_point *point)
+fu_friction_path fu_contact_normal_path(const fu_contact *contact, const fu_contact_point *point)
 {
     const fu_friction_mark *mark = point->mark;
-    fu_friction_way way = {.h = point->since, .stiffness = contact->law.tangential, .bound = bound, .of = contact};
+    fu_friction_path way = {.h = point->since, .stiffness = contact->law.tangential, .bound = bound, .of = contact};
     way.depth = (fu_step_ends){{-mark->gap, point->depth}, {-mark->gap_rate, point->sinking}};
     return way;
 }
 
 /* Makes the part of a step after which the point touches, and how far it has gone until then. */
-static void begin_at_touch(int dim, const fu_touch_point *point, path *of, double gone[3])
+static void begin_at_touch(int dim, const fu_contact_point *point, friction_course *of, double gone[3])
 {
     const fu_friction_mark *mark = point->mark;
     const double h = of->way.h;
@@ -44,7 +44,7 @@ static void begin_at_touch(int dim, const fu_touch_point *point, path *of, doubl
     }
 }
 
-void fu_contact_change(int dim, const fu_contact *contact, const fu_touch_point *point, const double *normal, double change[3])
+void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_point *point, const double *normal, double change[3])
 {
     const fu_friction_mark *mark = point->mark;
     const double before = fu_dot(dim, mark->normal, mark->normal), now = fu_dot(dim, normal, normal), h = fmax(point->since, 0.0);
@@ -72,7 +72,7 @@ static void turn_along(int dim, const fu_friction_mark *mark, const double *norm
     for (int d = 0; d < dim; ++d) stretch[d] -= share * (mark->normal[d] / before + normal[d] / now);
 }
 
-static void path_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point, path *out)
+static void path_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point, friction_course *out)
 {
     const int dim = model->dim;
     const fu_friction_mark *mark = point->mark;
@@ -80,7 +80,7 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     fu_surface_into(dim, on, point->distance.n, out->normal);
     turn_along(dim, mark, out->normal, stretch);
     fu_contact_change(dim, contact, point, out->normal, out->change);
-    out->way = fu_contact_way(contact, point);
+    out->way = fu_contact_normal_path(contact, point);
     begin_at_touch(dim, point, out, gone);
     for (int d = 0; d < dim; ++d) {
         out->begin[d] = out->from > 0.0 ? 0.0 : stretch[d];
@@ -99,7 +99,7 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
 
 /* Makes the stretch, m, of a spring that slides along the way, in so many equal parts of it: in each it is stretched at the velocity at
  * the part's end, and slides back to the bound. */
-static void slide(int dim, const fu_touch_point *point, const path *of, int parts, double out[3])
+static void slide(int dim, const fu_contact_point *point, const friction_course *of, int parts, double out[3])
 {
     const double whole = 1.0 - of->from, normal = fu_dot(dim, of->normal, of->normal);
     memcpy(out, of->begin, sizeof of->begin);
@@ -118,7 +118,7 @@ static void slide(int dim, const fu_touch_point *point, const path *of, int part
 /* Turns the stretch of a point that slides, in space: it lags behind the velocity, by the way along which it is stretched as much. Summed
  * over parts of the step and half as many (Richardson); the sum over the step alone would be of the first order. Returns the time that the
  * way takes, s, 0 where nothing is turned. */
-static double turn_to_slip(int dim, const fu_touch_point *point, int parts, path *of)
+static double turn_to_slip(int dim, const fu_contact_point *point, int parts, friction_course *of)
 {
     const double h = (1.0 - of->from) * of->way.h;
     double fine[3], coarse[3];
@@ -136,39 +136,39 @@ static double turn_to_slip(int dim, const fu_touch_point *point, int parts, path
     return h;
 }
 
-void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point,
-                     fu_friction_way *way, double along[3])
+void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point,
+                     fu_friction_path *way, double along[3])
 {
-    path of;
+    friction_course of;
     path_of(model, contact, on, point, &of);
     *way = of.way;
     memcpy(along, of.along, sizeof of.along);
 }
 
-double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_touch_point *point)
+double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point)
 {
     const int dim = model->dim;
     double square = 0.0;
-    path of, other;
+    friction_course of, other;
     path_of(model, contact, on, point, &of);
     other = of;
-    turn_to_slip(dim, point, PARTS, &of);
-    turn_to_slip(dim, point, PARTS / 2, &other);
+    turn_to_slip(dim, point, DIRECTION_PARTS, &of);
+    turn_to_slip(dim, point, DIRECTION_PARTS / 2, &other);
     for (int d = 0; d < dim; ++d) square += (of.along[d] - other.along[d]) * (of.along[d] - other.along[d]);
     return sqrt(square) * fabs(point->friction_end.stretch);
 }
 
-void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point)
+void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point)
 {
     const int dim = model->dim;
     const double most = contact->law.friction * point->press / contact->law.tangential;
     double x[3];
-    path of;
+    friction_course of;
     path_of(model, contact, on, point, &of);
     if (of.way.h > 0.0) point->friction_end = fu_end_of_friction(&of.way);
     else point->friction_end = (fu_friction_end){fmin(of.size, most), 1.0, of.size > most || most == 0.0};
     point->slides = point->friction_end.slid != 0 && point->friction_end.part == 1.0;
-    turn_to_slip(dim, point, PARTS, &of);
+    turn_to_slip(dim, point, DIRECTION_PARTS, &of);
     for (int d = 0; d < dim; ++d) point->stretch[d] = point->friction_end.stretch * of.along[d];
     fu_surface_out(dim, on, point->stretch, x);
     for (int d = 0; d < dim; ++d) {
@@ -179,7 +179,7 @@ void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const 
 }
 
 /* Adds what follows from a way that touches only after a part of the step: of that the place and the velocity at the end count less. */
-static void add_touching(int dim, const fu_attachment_state *on, const path *of, fu_touch_point *point)
+static void add_touching(int dim, const fu_attachment_state *on, const friction_course *of, fu_contact_point *point)
 {
     const double h = of->way.h, *n = point->distance.n;
     const fu_cubic at = fu_cubic_at(of->from);
@@ -209,7 +209,7 @@ static void add_touching(int dim, const fu_attachment_state *on, const path *of,
 }
 
 /* Makes the derivatives of friction that has slid within the step and then sticks, or slides to its end. */
-static void add_sliding(int dim, const fu_contact *contact, const fu_attachment_state *on, const path *of, const double *x, fu_touch_point *point)
+static void add_sliding(int dim, const fu_contact *contact, const fu_attachment_state *on, const friction_course *of, const double *x, fu_contact_point *point)
 {
     const fu_distance *at = &point->distance;
     const fu_friction_end *end = &point->friction_end;
@@ -223,7 +223,7 @@ static void add_sliding(int dim, const fu_contact *contact, const fu_attachment_
         depth = fu_value_within(&of->way.depth, of->way.h, end->part);
         sinking = fu_rate_within(&of->way.depth, of->way.h, end->part);
     }
-    const fu_pressing law = fu_press_at(contact, depth, sinking, depth);
+    const fu_normal_force law = fu_normal_force_at(contact, depth, sinking, depth);
     const double h = of->way.h, sign = end->slid;
     const double rate = h > 0.0 ? weights.slope / h : 0.0, lag = h > 0.0 ? h * weights.rates[1] : 0.0;
     const double press[3] = {k * end->stretch / mu, sign * (law.by_depth * weights.change + law.by_rate * rate),
@@ -239,14 +239,14 @@ static void add_sliding(int dim, const fu_contact *contact, const fu_attachment_
         }
 }
 
-void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point)
+void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point)
 {
     const int dim = model->dim;
     const fu_distance *at = &point->distance;
     double x[3], f[3], t[3], by_place[9];
-    path of;
+    friction_course of;
     path_of(model, contact, on, point, &of);
-    const double h = turn_to_slip(dim, point, PARTS, &of);
+    const double h = turn_to_slip(dim, point, DIRECTION_PARTS, &of);
     fu_surface_out(dim, on, of.x, x);
     if (fu_dot(dim, point->mark->normal, point->mark->normal) > 0.0) /* half of what it sinks by turns with this normal, half with that before */
         for (int d = 0; d < dim; ++d) x[d] -= 0.5 * (point->depth + point->mark->gap) * at->n[d];

@@ -9,7 +9,7 @@
 
 /* A point that may touch within a step: at its end, the change of its place and the stretch there. */
 typedef struct {
-    fu_touch_point end;
+    fu_contact_point end;
     fu_attachment_state on;
     double change[3], stretch[3];
 } step_point;
@@ -28,7 +28,7 @@ static fu_friction_travel travel_of(int dim, const step_point *of)
 static double taken(const fu_model *model, const fu_contact *contact, const step_point *of, int by_ends)
 {
     const fu_friction_travel travel = travel_of(model->dim, of);
-    const fu_friction_way way = fu_contact_way(contact, &of->end);
+    const fu_friction_path way = fu_contact_normal_path(contact, &of->end);
     return fu_taken_by_friction(model->dim, &travel, &way, of->stretch, by_ends);
 }
 
@@ -48,7 +48,7 @@ static double astray(const fu_model *model, const fu_contact *contact, step_poin
 {
     const int dim = model->dim;
     fu_friction_mark other = *of->end.mark;
-    fu_touch_point end = of->end;
+    fu_contact_point end = of->end;
     double square = 0.0;
     if (!(end.depth > 0.0)) return 0.0;
     const double turned = fu_contact_turn_error(model, contact, &of->on, &end);
@@ -66,10 +66,10 @@ typedef double visitor(const fu_model *model, const fu_contact *contact, step_po
 static int point_over_step(const fu_model *model, const fu_contact *contact, const fu_state *to, int element, int number, step_point *out)
 {
     const int dim = model->dim;
-    fu_touch_point *end = &out->end;
+    fu_contact_point *end = &out->end;
     double normal[3];
     fu_contact_place(model, contact, &out->on, to, element, number, end);
-    const int touches = fu_contact_touches(model, contact, &out->on, end);
+    const int touches = fu_contact_is_active(model, contact, &out->on, end);
     if (!touches && !(end->mark->gap < 0.0)) return 0;
     fu_surface_into(dim, &out->on, end->distance.n, normal);
     fu_contact_change(dim, contact, end, normal, out->change);
@@ -88,7 +88,7 @@ static double visit_points(const fu_model *model, const fu_contact *contact, con
     fu_surface_at(model, &contact->surface, from, &before);
     fu_surface_at(model, &contact->surface, to, &of.on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_touch(model, contact, &before, from, e, 0.0) && !fu_contact_may_touch(model, contact, &of.on, to, e, 0.0)) continue;
+        if (!fu_contact_may_be_active(model, contact, &before, from, e, 0.0) && !fu_contact_may_be_active(model, contact, &of.on, to, e, 0.0)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             if (!point_over_step(model, contact, to, e, k, &of)) continue;
             const double value = visit(model, contact, &of);
@@ -104,7 +104,7 @@ double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const
     return contact->law.tangential * visit_points(model, contact, from, to, by_ends ? taken_by_ends : taken_on_way, 0);
 }
 
-double fu_contact_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+double fu_contact_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
 {
     return visit_points(model, (const fu_contact *)coupling, from, to, astray, 1);
 }

@@ -49,7 +49,7 @@ static int is_far(int dim, int n, const fu_contact *contact, const fu_attachment
 }
 
 /* Returns whether any point of an element may be nearer to the surface than `below` is beyond the radius. */
-int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
+int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
                          double below)
 {
     const int dim = model->dim;
@@ -79,7 +79,7 @@ int fu_contact_may_touch(const fu_model *model, const fu_contact *contact, const
 
 /* Makes the place and the velocity of a point, its mark, and the turn since then. */
 void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
-                      int point, fu_touch_point *out)
+                      int point, fu_contact_point *out)
 {
     const int dim = model->dim;
     out->mark = contact->law.friction > 0.0 ? fu_contact_mark(contact, state, element, point) : 0;
@@ -115,7 +115,7 @@ void fu_contact_add_along(int dim, int n, const int *at, const double *P, const 
 /* Adds the force where a point touches, and its reaction on the body that the surface is on, to what stands on the left of the
  * equations. */
 void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
-                          int number, const fu_touch_point *point, double *f)
+                          int number, const fu_contact_point *point, double *f)
 {
     const int dim = model->dim;
     const double weight = fu_contact_weight(contact, element, number), *force = point->f;
@@ -143,11 +143,11 @@ void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_touch(model, contact, &on, state, e, 0.0)) continue;
+        if (!fu_contact_may_be_active(model, contact, &on, state, e, 0.0)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
-            fu_touch_point point;
+            fu_contact_point point;
             fu_contact_place(model, contact, &on, state, e, k, &point);
-            if (fu_contact_touches(model, contact, &on, &point)) visit(model, contact, &on, e, k, &point, context);
+            if (fu_contact_is_active(model, contact, &on, &point)) visit(model, contact, &on, e, k, &point, context);
         }
     }
 }

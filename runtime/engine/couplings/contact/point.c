@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point)
+void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point)
 {
     const int dim = model->dim;
     double w[3], normal[3], turned[3], arm[3] = {0.0}, turning[3] = {0.0};
@@ -29,12 +29,12 @@ void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_
 }
 
 /* Makes how a point touches, but for derivatives; returns whether it does. */
-int fu_contact_touches(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point)
+int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point)
 {
     const int dim = model->dim;
     fu_contact_slip(model, contact, on, point);
     if (!(point->depth > 0.0)) return 0;
-    const fu_pressing of = fu_press_at(contact, point->depth, point->sinking, point->depth);
+    const fu_normal_force of = fu_normal_force_at(contact, point->depth, point->sinking, point->depth);
     point->press = of.p;
     point->energy = of.energy;
     point->power = (of.p - of.elastic) * point->sinking;
@@ -46,14 +46,14 @@ int fu_contact_touches(const fu_model *model, const fu_contact *contact, const f
 }
 
 /* Makes the derivatives of the force on a point that touches. */
-void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_touch_point *point)
+void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point)
 {
     const int dim = model->dim;
     const fu_surface_kernels *kernel = contact->surface.kernel;
     const fu_distance *at = &point->distance;
     double w[3], f[3];
     fu_surface_past(dim, on, point->r, point->v, w);
-    const fu_pressing of = fu_press_at(contact, point->depth, -fu_dot(dim, at->n, w), point->depth);
+    const fu_normal_force of = fu_normal_force_at(contact, point->depth, -fu_dot(dim, at->n, w), point->depth);
     const double law[3] = {of.p, of.by_depth, of.by_rate};
     kernel->pressing(at->n, at->H, w, law, f, point->by_place, point->by_rate);
     memset(point->by_stretch, 0, sizeof point->by_stretch);
@@ -62,10 +62,10 @@ void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, co
 
 /* Makes friction over a step: that of the mean stretch, which at the end is as what presses allows; by_depth: what that changes by. */
 static void step_friction(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double press, double by_depth,
-                          const fu_touch_point *now, const fu_touch_point *next, double f[3], double by_next[9], double by_stretch[9])
+                          const fu_contact_point *now, const fu_contact_point *next, double f[3], double by_next[9], double by_stretch[9])
 {
     const int dim = model->dim;
-    fu_touch_point end = *next, begin = *now;
+    fu_contact_point end = *next, begin = *now;
     end.mark = begin.mark = now->mark;
     end.press = press;
     begin.press = INFINITY; /* what is carried into the step is as long as it may be */
@@ -83,7 +83,7 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
         for (int d = 0; d < dim; ++d)
             for (int e = 0; e < dim; ++e) by_place[d * dim + e] = by_stretch[d * dim + e] = contact->law.tangential * (at->n[d] * at->n[e] - (d == e));
     else if (press > 0.0) {
-        fu_friction_way way;
+        fu_friction_path way;
         fu_contact_path(model, contact, on, &end, &way, own);
         for (int d = 0; d < dim; ++d) own[d] *= way.stretch.value[1];
         fu_surface_out(dim, on, own, x);
@@ -99,7 +99,7 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
  * do by the place, and by the stretch alone, at the end: of the normal force's elastic part a discrete gradient (Gonzalez 1996). Returns
  * the energy that its damping takes, J. */
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
-                       const fu_touch_point *now, const fu_touch_point *next, double f[3], double friction[3], double by_next[9],
+                       const fu_contact_point *now, const fu_contact_point *next, double f[3], double friction[3], double by_next[9],
                        double by_stretch[9])
 {
     const int dim = model->dim;
@@ -113,7 +113,7 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
     if (from == 0.0 && to == 0.0) return 0.0;
     fu_surface_step_normal(dim, &contact->surface, on, now->r, next->r, -sunk, &at, n);
     const double part = from > 0.0 && to > 0.0 ? 1.0 : (to - from) / sunk, rate = sunk / h;
-    const fu_pressing of = fu_press_at(contact, from, rate, to), end = fu_press_at(contact, to, 0.0, to);
+    const fu_normal_force of = fu_normal_force_at(contact, from, rate, to), end = fu_normal_force_at(contact, to, 0.0, to);
     const double elastic = part * of.mean, press = fmax(0.0, elastic * (1.0 + contact->law.damping * rate));
     /* of the end's depth: (U' - mean)/change, which is half of the stiffness where the law is linear */
     const double stiffness = from > 0.0 && contact->law.hertz == 0 && to > 0.0 ? 0.5 * end.by_depth
@@ -125,7 +125,7 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
     }
     if (!now->mark || !(press > 0.0)) return (press - elastic) * sunk;
     /* the bound at the end, with the rate there by that at the beginning: the mean over the step would lag by half of it */
-    const fu_pressing last = fu_press_at(contact, to, 2.0 * rate + now->mark->gap_rate, to);
+    const fu_normal_force last = fu_normal_force_at(contact, to, 2.0 * rate + now->mark->gap_rate, to);
     step_friction(model, contact, on, to > 0.0 ? last.p : 0.0, to > 0.0 ? last.by_depth + 2.0 * last.by_rate / h : 0.0, now, next, friction,
                   by_next, by_stretch);
     return (press - elastic) * sunk;

@@ -12,7 +12,7 @@ static const fu_contact *of(const fu_coupling *coupling)
 }
 
 static void add_energy(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
-                       const fu_touch_point *point, void *context)
+                       const fu_contact_point *point, void *context)
 {
     (void)model, (void)on;
     *(double *)context += fu_contact_weight(contact, element, number) * point->energy;
@@ -26,7 +26,7 @@ double fu_contact_energy(const fu_model *model, const fu_coupling *coupling, con
 }
 
 static void add_power(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
-                      const fu_touch_point *point, void *context)
+                      const fu_contact_point *point, void *context)
 {
     (void)model, (void)on;
     *(double *)context += fu_contact_weight(contact, element, number) * point->power;
@@ -48,7 +48,7 @@ void fu_contact_reset(const fu_coupling *coupling, fu_state *state)
 }
 
 /* Takes the marks along: the stretch of friction's springs, and where the points are; what does not touch has no stretch. */
-void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+void fu_contact_update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_contact *contact = of(coupling);
     const int dim = model->dim;
@@ -57,9 +57,9 @@ void fu_contact_carry(const fu_model *model, const fu_coupling *coupling, fu_sta
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e)
         for (int k = 0; k < contact->n_points; ++k) {
-            fu_touch_point point;
+            fu_contact_point point;
             fu_contact_place(model, contact, &on, state, e, k, &point);
-            const int touches = fu_contact_touches(model, contact, &on, &point);
+            const int touches = fu_contact_is_active(model, contact, &on, &point);
             fu_friction_mark *mark = fu_contact_mark(contact, state, e, k);
             memset(mark, 0, sizeof *mark);
             if (touches) memcpy(mark->stretch, point.stretch, sizeof(double) * (size_t)dim);
@@ -114,10 +114,10 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < n; ++e)
         for (int k = 0; k < contact->n_points; ++k) {
-            fu_touch_point point;
+            fu_contact_point point;
             const double weight = fu_contact_weight(contact, e, k);
             fu_contact_place(model, contact, &on, state, e, k, &point);
-            const int touches = fu_contact_touches(model, contact, &on, &point);
+            const int touches = fu_contact_is_active(model, contact, &on, &point);
             if (contact->cable >= 0) take_into_length(&sum, contact->arc[(long)e * contact->n_points + k], point.depth);
             if (!touches) continue;
             for (int d = 0; d < model->dim; ++d) {
@@ -138,9 +138,9 @@ void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, co
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e)
         for (int k = 0; k < contact->n_points; ++k, out += 3) {
-            fu_touch_point point;
+            fu_contact_point point;
             fu_contact_place(model, contact, &on, state, e, k, &point);
-            const int touches = fu_contact_touches(model, contact, &on, &point);
+            const int touches = fu_contact_is_active(model, contact, &on, &point);
             for (int d = 0; d < 3; ++d) out[d] = touches && d < model->dim ? point.f[d] : 0.0;
         }
 }

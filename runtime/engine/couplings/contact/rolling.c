@@ -66,7 +66,7 @@ void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], c
 }
 
 void fu_contact_turning(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
-                        fu_touch_point *point)
+                        fu_contact_point *point)
 {
     double axes[9];
     fu_contact_axes(model, contact, on, state, axes, point->spin);

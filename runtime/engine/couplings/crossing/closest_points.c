@@ -8,11 +8,11 @@
 #include <math.h>
 #include <string.h>
 
-#define MOST_ITERATIONS 40
-#define ROUNDING 1e-15 /* of the line's size and s: a correction that is rounding ends the iteration */
-#define CLOSE 1e-11    /* of the size: a correction as good as rounding where rounding keeps it from shrinking */
+#define MAX_ITERATIONS 40
+#define ROUNDING_OF_LENGTH 1e-15 /* of the line's size and s: a correction that is rounding ends the iteration */
+#define LENGTH_TOLERANCE 1e-11    /* of the size: a correction as good as rounding where rounding keeps it from shrinking */
 #define FARTHEST 2.0   /* elements that a correction goes at most */
-#define SAMPLES 4      /* of an element, where the search begins anew */
+#define SAMPLES_AN_ELEMENT 4      /* of an element, where the search begins anew */
 
 /* Returns the element of a cable that holds s. */
 static int element_at(const fu_cable *cable, double s)
@@ -172,7 +172,7 @@ static int converge(const fu_model *model, const fu_crossing *crossing, const fu
     const int lines = model->dim - 1;
     double step[FU_LINES] = {0.0, 0.0}, size[FU_LINES] = {1.0, 1.0};
     for (int line = 0; line < lines; ++line) size[line] = fu_line_size(model, crossing, line);
-    for (int i = 0; i < MOST_ITERATIONS; ++i) {
+    for (int i = 0; i < MAX_ITERATIONS; ++i) {
         double part = 1.0, left = 0.0;
         put_together(model, crossing, moment, out);
         crossing->kernel->closest(out->d, out->t, out->k, step);
@@ -181,7 +181,7 @@ static int converge(const fu_model *model, const fu_crossing *crossing, const fu
             if (!(fabs(step[line]) < INFINITY)) return 0;
             left = fmax(left, fabs(step[line]) / (size[line] + fabs(out->s[line])));
         }
-        if (left <= ROUNDING || (i == MOST_ITERATIONS - 1 && left <= CLOSE)) return 1;
+        if (left <= ROUNDING_OF_LENGTH || (i == MAX_ITERATIONS - 1 && left <= LENGTH_TOLERANCE)) return 1;
         for (int line = 0; line < lines; ++line) out->s[line] += part * step[line];
     }
     return 0;
@@ -191,7 +191,7 @@ static int converge(const fu_model *model, const fu_crossing *crossing, const fu
 static double distance_from_second(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, const double *r,
                                    double *s)
 {
-    const int dim = model->dim, cable = crossing->cables[1], n = cable >= 0 ? SAMPLES * model->cables[cable].n_elements : 0;
+    const int dim = model->dim, cable = crossing->cables[1], n = cable >= 0 ? SAMPLES_AN_ELEMENT * model->cables[cable].n_elements : 0;
     double least = INFINITY;
     fu_line_point point;
     for (int i = 0; i <= n; ++i) {
@@ -217,7 +217,7 @@ static double distance_from_second(const fu_model *model, const fu_crossing *cro
 static double search(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, double s[FU_LINES])
 {
     const fu_cable *cable = &model->cables[crossing->cables[0]];
-    const int n = SAMPLES * cable->n_elements;
+    const int n = SAMPLES_AN_ELEMENT * cable->n_elements;
     double least = INFINITY, other = 0.0;
     fu_line_point point;
     for (int i = 0; i <= n; ++i) {
@@ -238,7 +238,7 @@ void fu_find_closest_within(const fu_model *model, const fu_crossing *crossing, 
     memcpy(out->s, s, sizeof out->s);
     out->found = converge(model, crossing, moment, out);
     if (out->found) return;
-    const double apart = search(model, crossing, moment, out->s), reach = fu_line_size(model, crossing, 0) / SAMPLES;
+    const double apart = search(model, crossing, moment, out->s), reach = fu_line_size(model, crossing, 0) / SAMPLES_AN_ELEMENT;
     out->found = converge(model, crossing, moment, out);
     out->apart = fmax(apart - reach - crossing->law[0], 0.0);
 }

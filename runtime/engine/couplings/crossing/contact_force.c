@@ -18,7 +18,7 @@ int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const 
 }
 
 /* Returns how far the closest points are within the ends of their lines, m. */
-double fu_crossing_way_to_ends(const fu_crossing *crossing, const fu_closest_points *points)
+double fu_crossing_distance_to_ends(const fu_crossing *crossing, const fu_closest_points *points)
 {
     double way = INFINITY;
     for (int line = 0; line < FU_LINES; ++line)
@@ -32,7 +32,7 @@ double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_point
     double margin = contact->depth[0];
     /* a length, that of a millisecond's motion */
     if (damping > 0.0) margin = fmin(margin, (1.0 / damping + contact->depth[1]) * FU_INSTANT);
-    return fmin(margin, fu_crossing_way_to_ends(crossing, points));
+    return fmin(margin, fu_crossing_distance_to_ends(crossing, points));
 }
 
 double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state)

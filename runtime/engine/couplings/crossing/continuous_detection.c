@@ -2,7 +2,7 @@
  *
  * Between the ends of the step all points of the lines are taken along the cubics of their places and velocities there (Hermite's).
  * The closest points of the lines so placed are followed through the step. As their distance changes by no more than the ways of
- * points of both lines, lines can go as far as they are off without touching; so they are led on from one such place to the next
+ * points of both lines, lines can go as far as they are off without touching; so they are led on from one such line_place to the next
  * (conservative advancement; Mirtich 1996). Where they are led on by more, since so little is left, the cubic of the gap through both
  * places tells whether it dips below zero between them.
  */
@@ -12,12 +12,12 @@
 #include <math.h>
 #include <string.h>
 
-#define LONGEST 0.0625 /* of a step: lines are led on by no more, and by so much where nothing tells how far they can go */
-#define SHORTEST 1e-4  /* of a step: lines are led on by no less */
-#define SHARE 0.25     /* of the distance at which lines touch: what points go at least from place to place */
+#define MAX_ADVANCE 0.0625 /* of a step: lines are led on by no more, and by so much where nothing tells how far they can go */
+#define MIN_ADVANCE 1e-4  /* of a step: lines are led on by no less */
+#define ADVANCE_SHARE 0.25     /* of the distance at which lines touch: what points go at least from line_place to line_place */
 #define CAUTION 0.5    /* of the way that closest points have to the ends of their lines, at their rate */
 #define CORNER 1e-2    /* of a bracket: how far from its ends the bottom of a dip is looked for */
-#define NEAR 1e-2      /* of a dip: how far from zero its bottom may be predicted and yet be looked at */
+#define GRAZING_TOLERANCE 1e-2      /* of a dip: how far from zero its bottom may be predicted and yet be looked at */
 
 enum { SECTIONS = 8 }; /* of a bracket of the bottom of a dip */
 
@@ -26,7 +26,7 @@ enum { SECTIONS = 8 }; /* of a bracket of the bottom of a dip */
 typedef struct {
     double x, margin, gap, rate, free;
     int found;
-} place;
+} line_place;
 
 /* What is followed through a step: the numbers of the closest points and the normal; the way that lines go at most, m. */
 typedef struct {
@@ -34,7 +34,7 @@ typedef struct {
     const fu_crossing *crossing;
     fu_moment at;
     double s[FU_LINES], normal[3], way, shortest;
-} passage;
+} approach;
 
 /* Makes the rates of the arc-lengths of the closest points, m/s. */
 static void rates_of_points(const fu_crossing *crossing, const fu_closest_points *points, double rates[FU_LINES])
@@ -52,7 +52,7 @@ static void rates_of_points(const fu_crossing *crossing, const fu_closest_points
 }
 
 /* Returns the part of the step that a closest point needs at least to come within the ends of its line. */
-static double part_beyond_ends(const passage *of, const fu_closest_points *points)
+static double part_beyond_ends(const approach *of, const fu_closest_points *points)
 {
     const fu_crossing *crossing = of->crossing;
     double rates[FU_LINES], part = 0.0;
@@ -65,10 +65,10 @@ static double part_beyond_ends(const passage *of, const fu_closest_points *point
 }
 
 /* Follows the closest points to the part x of the step. */
-static place follow(passage *of, double x)
+static line_place follow(approach *of, double x)
 {
     const fu_crossing *crossing = of->crossing;
-    place out = {.x = x, .margin = -INFINITY, .gap = NAN, .rate = NAN, .free = LONGEST};
+    line_place out = {.x = x, .margin = -INFINITY, .gap = NAN, .rate = NAN, .free = MAX_ADVANCE};
     fu_closest_points points;
     fu_crossing_contact contact;
     of->at.x = x;
@@ -86,23 +86,23 @@ static place follow(passage *of, double x)
     out.rate = -of->at.h * contact.depth[1];
     out.margin = fu_crossing_margin_of(crossing, &points, &contact);
     out.free = out.margin > 0.0 ? out.margin / of->way : fmax(out.gap / of->way, part_beyond_ends(of, &points));
-    if (!(out.free > 0.0)) out.free = out.gap < 0.0 ? LONGEST : of->shortest; /* damping would turn the force round */
+    if (!(out.free > 0.0)) out.free = out.gap < 0.0 ? MAX_ADVANCE : of->shortest; /* damping would turn the force round */
     return out;
 }
 
 /* Returns the part of the step at which lines touch between two places of it, or nearly, as against the gap at its ends; 0 where they
  * do not: by the bottom of the gap, where its rate passes zero. */
-static double touch_between(const passage *of, place from, place to, double ends, double least)
+static double touch_between(const approach *of, line_place from, line_place to, double ends, double least)
 {
     if (!from.found || !to.found || !(from.gap >= 0.0 && from.rate < 0.0 && to.rate > 0.0)) return 0.0;
     for (int i = 0; i < SECTIONS; ++i) {
-        passage between = *of;
+        approach between = *of;
         const double part = fmin(fmax(from.rate / (from.rate - to.rate), CORNER), 1.0 - CORNER);
-        const place bottom = follow(&between, from.x + part * (to.x - from.x));
+        const line_place bottom = follow(&between, from.x + part * (to.x - from.x));
         if (!bottom.found) return 0.0;
         if (bottom.margin > least) return bottom.x;
         /* a convex gap lies above its tangent */
-        const double nearly = NEAR * (ends - bottom.gap), below = fabs(bottom.rate) * (to.x - from.x);
+        const double nearly = GRAZING_TOLERANCE * (ends - bottom.gap), below = fabs(bottom.rate) * (to.x - from.x);
         if (bottom.gap - below > fmax(nearly, 0.0)) return 0.0;
         if (i == SECTIONS - 1 && bottom.gap < nearly && bottom.margin >= -bottom.gap) return bottom.x;
         *(bottom.rate < 0.0 ? &from : &to) = bottom;
@@ -126,7 +126,7 @@ static double largest_way(int dim, const double *a, const double *b, const doubl
 }
 
 /* Returns how far points of a line go in the step at most, as against points that go at the mean velocity, m. */
-static double way_of_line(const passage *of, int line, const double *mean)
+static double way_of_line(const approach *of, int line, const double *mean)
 {
     static const double still[3] = {0.0};
     const fu_crossing *crossing = of->crossing;
@@ -157,7 +157,7 @@ static double way_of_line(const passage *of, int line, const double *mean)
 }
 
 /* Returns how far points of both lines can come nearer in the step at most, m. */
-static double most_way(const passage *of)
+static double most_way(const approach *of)
 {
     const fu_cable *cable = &of->model->cables[of->crossing->cables[0]];
     double mean[3] = {0.0};
@@ -167,29 +167,29 @@ static double most_way(const passage *of)
     return way_of_line(of, 0, mean) + way_of_line(of, 1, mean);
 }
 
-static void begin(passage *of)
+static void begin(approach *of)
 {
     const double *numbers = of->at.now->numbers + of->crossing->base.numbers;
     memcpy(of->s, numbers + FU_CROSSING_S, sizeof of->s);
     memcpy(of->normal, numbers + FU_CROSSING_NORMAL, sizeof of->normal);
     of->way = most_way(of);
-    of->shortest = fmin(fmax(SHARE * of->crossing->law[0] / of->way, SHORTEST), LONGEST);
+    of->shortest = fmin(fmax(ADVANCE_SHARE * of->crossing->law[0] / of->way, MIN_ADVANCE), MAX_ADVANCE);
 }
 
-double fu_crossing_pass(const fu_model *model, const fu_crossing *crossing, const fu_state *now, const fu_state *next, double h,
+double fu_crossing_detect_within(const fu_model *model, const fu_crossing *crossing, const fu_state *now, const fu_state *next, double h,
                         double least)
 {
-    passage of = {.model = model, .crossing = crossing, .at = {now, next, h, 0.0}};
+    approach of = {.model = model, .crossing = crossing, .at = {now, next, h, 0.0}};
     double first = 0.0;
     begin(&of);
-    place from = follow(&of, 0.0);
+    line_place from = follow(&of, 0.0);
     if (from.margin > 0.0 || (from.found && from.free > 1.0)) return 0.0;
-    passage beyond = of;
-    const place end = follow(&beyond, 1.0);
+    approach beyond = of;
+    const line_place end = follow(&beyond, 1.0);
     const double ends = fmin(from.gap, end.gap);
     while (from.x < 1.0) {
-        const double x = fmin(from.x + fmin(fmax(from.free, of.shortest), LONGEST), 1.0);
-        const place to = follow(&of, x);
+        const double x = fmin(from.x + fmin(fmax(from.free, of.shortest), MAX_ADVANCE), 1.0);
+        const line_place to = follow(&of, x);
         if (first > 0.0 && (!(to.margin > least) || -to.gap > crossing->law[0])) return 0.5 * h * (first + x);
         if (first == 0.0 && to.margin > least && x < 1.0) first = x;
         if (first == 0.0) {

@@ -19,11 +19,11 @@ static const fu_crossing *crossing_of(const fu_coupling *coupling)
 /* Makes the part of the force that is friction; adds that which sticks. */
 static void add_friction(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, fu_crossing_contact *contact)
 {
-    fu_crossing_grip grip;
+    fu_crossing_stick grip;
     for (int d = 0; d < 3 && crossing->law[FU_LAW_FRICTION] > 0.0; ++d)
         contact->friction[d] = contact->force[d] - contact->size * contact->normal[d];
     if (!(crossing->friction > 0.0)) return;
-    fu_crossing_grip_at(crossing, state, points, contact, &grip);
+    fu_crossing_stick_at(crossing, state, points, contact, &grip);
     contact->sticks = grip.sticks;
     contact->energy += grip.energy;
     for (int d = 0; d < 3; ++d) {
@@ -80,11 +80,11 @@ static void add_friction_derivatives(const fu_model *model, const fu_crossing *c
                                      const fu_closest_points *points, derivatives *by)
 {
     const int dim = crossing->kernel->dim;
-    fu_crossing_grip_changes of;
+    fu_crossing_stick_changes of;
     fu_crossing_contact contact;
     fu_crossing_contact_at(crossing, points, &contact);
     fu_line_bends_at(model, crossing, state, points, &by->bends);
-    fu_crossing_grip_derivatives(crossing, state, points, &by->bends, &contact, &of);
+    fu_crossing_stick_derivatives(crossing, state, points, &by->bends, &contact, &of);
     for (int d = 0; d < dim; ++d) by->F[d] += of.F[d];
     for (int i = 0; i < dim * dim; ++i) {
         by->F_d[i] += of.F_d[i];
@@ -265,7 +265,7 @@ static double lost_in_step(const fu_model *model, const fu_coupling *coupling, c
                            int by_ends)
 {
     if (!from->flags[coupling->flags]) return from->numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND];
-    return crossing_of(coupling)->friction > 0.0 ? fu_crossing_slid_on_way(model, crossing_of(coupling), from, to, by_ends) : 0.0;
+    return crossing_of(coupling)->friction > 0.0 ? fu_crossing_slip_work(model, crossing_of(coupling), from, to, by_ends) : 0.0;
 }
 
 /* Notes in the state where the closest points are, unless the lines have been parallel. */
@@ -288,7 +288,7 @@ static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *
     if (crossing_of(coupling)->friction > 0.0 && state->flags[coupling->flags] && points.found) {
         fu_crossing_contact contact;
         fu_crossing_contact_at(crossing_of(coupling), &points, &contact);
-        fu_crossing_carry_grip(crossing_of(coupling), &points, &contact, state);
+        fu_crossing_update_stick(crossing_of(coupling), &points, &contact, state);
     }
     note(coupling, &points, state);
 }
@@ -297,7 +297,7 @@ static void reset(const fu_coupling *coupling, fu_state *state)
 {
     const fu_crossing *crossing = crossing_of(coupling);
     memcpy(state->numbers + coupling->numbers + FU_CROSSING_S, crossing->start, sizeof crossing->start);
-    if (crossing->friction > 0.0) fu_crossing_reset_grip(crossing, state);
+    if (crossing->friction > 0.0) fu_crossing_reset_stick(crossing, state);
 }
 
 /* In statics lines touch where they penetrate; where that is not known, so is no force. */
@@ -328,7 +328,7 @@ static const fu_field fields[] = {
 };
 
 static const fu_proximity_operations proximity_of_lines = {.clearance = fu_crossing_clearance, .between = fu_crossing_between};
-static const fu_history_operations history = {.update = carry, .error = fu_crossing_carried_error};
+static const fu_history_operations history = {.update = carry, .error = fu_crossing_history_error};
 
 static const fu_output output_fields[] = {
     FU_OUTPUT(fu_crossing_output, force, "N", "direction"),
@@ -346,7 +346,7 @@ const fu_coupling_type fu_crossing_type = {
     .name = "crossing", .size = sizeof(fu_crossing), .fields = fields, .output_fields = output_fields, .n_numbers = FU_CROSSING_NUMBERS,
     .n_flags = 1, .residual = residual, .tangent = tangent,
     .step_residual = fu_crossing_step_residual, .step_tangent = step_tangent, .step_dissipation = fu_crossing_step_dissipation, .force = own_force,
-    .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step, .reset = reset, .touch = touch,
+    .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step, .reset = reset, .detect = touch,
     .proximity = &proximity_of_lines,
     .history = &history,
 };

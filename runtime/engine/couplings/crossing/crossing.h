@@ -12,7 +12,7 @@ enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4, FU_LAW_LEAST, FU_L
 
 /* The first line is a cable, the second another one, or a bar through the attachment's point; in the plane the bar is square to
  * it and has no axis. Numbers of a state: the arc-lengths of the closest points, the energy that
- * contact had stored when it ended, J, and the normal; where friction sticks, so many more as FU_CROSSING_GRIP; the flag: whether
+ * contact had stored when it ended, J, and the normal; where friction sticks, so many more as FU_CROSSING_STICK; the flag: whether
  * the lines touch. */
 typedef struct {
     fu_coupling base;
@@ -31,7 +31,7 @@ typedef struct {
 extern const fu_coupling_type fu_crossing_type;
 
 /* Of the numbers of a state. */
-enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3, FU_CROSSING_GRIP = 30 };
+enum { FU_CROSSING_S, FU_CROSSING_LEFT_BEHIND = FU_LINES, FU_CROSSING_NORMAL, FU_CROSSING_NUMBERS = FU_CROSSING_NORMAL + 3, FU_CROSSING_STICK = 30 };
 
 /* A point of a line, and its derivatives by arc-length and in time. */
 typedef struct {
@@ -70,12 +70,12 @@ typedef struct {
     double stretch[3], without_sliding[3], old[3], along[3], force[3], energy;
     fu_friction_end end;
     int slides, sticks, turns; /* the last: its direction follows the slip */
-} fu_crossing_grip;
+} fu_crossing_stick;
 
 /* The force of friction on the first line and its derivatives, as kernels give them. */
 typedef struct {
     double F[3], F_d[9], F_t[18], F_u[9], F_w[18], F_k[18];
-} fu_crossing_grip_changes;
+} fu_crossing_stick_changes;
 
 /* Makes how a point moves with its n coordinates: dr = P dq, dt = T dq; the numbers of these for fu_add in `at`. */
 typedef struct {
@@ -108,28 +108,28 @@ void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int li
 
 /* couplings/crossing/contact_force.c: how far the lines are in contact, m, negative where they are not; not a number where no points are
  * the closest, though the lines may touch. */
-double fu_crossing_way_to_ends(const fu_crossing *crossing, const fu_closest_points *points);
+double fu_crossing_distance_to_ends(const fu_crossing *crossing, const fu_closest_points *points);
 double fu_crossing_margin(const fu_model *model, const fu_crossing *crossing, const fu_state *state);
 double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact);
 
 /* couplings/crossing/continuous_detection.c: when lines that do not touch at the ends of a step of h do within it, by more than `least`, m: half-way from the
  * touch to where they part or their axes meet, or at the bottom of a dip, s after the start of the step; 0 where they are not predicted to touch. */
-double fu_crossing_pass(const fu_model *model, const fu_crossing *crossing, const fu_state *now, const fu_state *next, double h,
+double fu_crossing_detect_within(const fu_model *model, const fu_crossing *crossing, const fu_state *now, const fu_state *next, double h,
                         double least);
 
 /* couplings/crossing/friction.c */
-void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                         const fu_crossing_contact *contact, fu_crossing_grip *out);
-void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                                  const fu_line_bends *bends, const fu_crossing_contact *contact, fu_crossing_grip_changes *by);
+void fu_crossing_stick_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                         const fu_crossing_contact *contact, fu_crossing_stick *out);
+void fu_crossing_stick_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                                  const fu_line_bends *bends, const fu_crossing_contact *contact, fu_crossing_stick_changes *by);
 /* Returns what friction takes from one state of lines that touch to another, J; by_ends: by these alone. */
-double fu_crossing_slid_on_way(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int by_ends);
-double fu_crossing_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
+double fu_crossing_slip_work(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int by_ends);
+double fu_crossing_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 /* Lets the spring begin at a state, without stretch; take its stretch along to a state; begin as drawn. */
-void fu_crossing_begin_grip(const fu_crossing *crossing, const fu_closest_points *points, fu_state *state);
-void fu_crossing_carry_grip(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
+void fu_crossing_begin_stick(const fu_crossing *crossing, const fu_closest_points *points, fu_state *state);
+void fu_crossing_update_stick(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
                             fu_state *state);
-void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state);
+void fu_crossing_reset_stick(const fu_crossing *crossing, fu_state *state);
 
 /* couplings/crossing/contact_force.c; the second: whether the normal has swung round since the last state, as where the lines have been parallel. */
 void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out);

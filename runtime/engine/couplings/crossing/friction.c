@@ -13,21 +13,21 @@
 typedef struct {
     double s[FU_LINES], s_rate[FU_LINES], way[3], way_rate[3], slopes[6], slope_rates[6];
     double stretch[2], slid, rate[2], depth, sinking, time;
-} before;
-_Static_assert(sizeof(before) == FU_CROSSING_GRIP * sizeof(double), "numbers of a state are doubles");
+} last_step;
+_Static_assert(sizeof(last_step) == FU_CROSSING_STICK * sizeof(double), "numbers of a state are doubles");
 
-static before *before_of(const fu_crossing *crossing, const fu_state *state)
+static last_step *before_of(const fu_crossing *crossing, const fu_state *state)
 {
-    return (before *)(state->numbers + crossing->base.numbers + FU_CROSSING_NUMBERS);
+    return (last_step *)(state->numbers + crossing->base.numbers + FU_CROSSING_NUMBERS);
 }
 
-static void moved_since(const before *last, const fu_closest_points *points, double e[FU_LINES])
+static void moved_since(const last_step *last, const fu_closest_points *points, double e[FU_LINES])
 {
     for (int line = 0; line < FU_LINES; ++line) e[line] = points->s[line] - last->s[line];
 }
 
 /* Time since the last step, s; 0 since what is drawn. */
-static double time_since(const before *last, double time)
+static double time_since(const last_step *last, double time)
 {
     return fmax(time - last->time, 0.0);
 }
@@ -65,8 +65,8 @@ static void slip_of(int dim, const fu_closest_points *points, const fu_crossing_
 }
 
 /* Makes how friction's spring goes from the last step to points; the grip has the stretches by the kernel. */
-static void travel_since(const fu_crossing *crossing, const before *last, const fu_closest_points *points, const fu_crossing_contact *contact,
-                         double time, const fu_crossing_grip *grip, fu_friction_travel *travel, fu_friction_way *way)
+static void travel_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points, const fu_crossing_contact *contact,
+                         double time, const fu_crossing_stick *grip, fu_friction_travel *travel, fu_friction_path *way)
 {
     const int dim = crossing->kernel->dim;
     memset(travel, 0, sizeof *travel);
@@ -76,24 +76,24 @@ static void travel_since(const fu_crossing *crossing, const before *last, const 
     }
     in_space(dim, grip->along, contact->normal, last->rate, travel->rates[0]);
     slip_of(dim, points, contact, travel->rates[1]);
-    *way = (fu_friction_way){.h = time - last->time, .stiffness = crossing->tangential, .bound = bound, .of = crossing};
+    *way = (fu_friction_path){.h = time - last->time, .stiffness = crossing->tangential, .bound = bound, .of = crossing};
     way->depth = (fu_step_ends){{last->depth, contact->depth[0]}, {last->sinking, contact->depth[1]}};
 }
 
 /* Size of the stretch at the last step where it slid then, m, else 1. */
-static double slid_stretch(const before *last)
+static double slid_stretch(const last_step *last)
 {
     const double size = sqrt(fu_dot(2, last->stretch, last->stretch));
     return last->slid != 0.0 && size > 0.0 ? size : 1.0;
 }
 
-static int slid_before(const before *last)
+static int slid_before(const last_step *last)
 {
     return last->slid != 0.0 && fu_dot(2, last->stretch, last->stretch) > 0.0;
 }
 
 /* Whether a stretch takes the direction of turn_to_slip: in the plane there is one direction; against the slip it is unloaded. */
-static int turns(int dim, const fu_crossing_grip *grip, const fu_friction_travel *travel)
+static int turns(int dim, const fu_crossing_stick *grip, const fu_friction_travel *travel)
 {
     const double *now = grip->without_sliding;
     return dim == 3 && grip->slides && grip->end.slid > 0 && fu_dot(3, now, travel->change) > 0.0 && fu_dot(3, now, travel->rates[1]) > 0.0
@@ -101,8 +101,8 @@ static int turns(int dim, const fu_crossing_grip *grip, const fu_friction_travel
 }
 
 /* Direction of a stretch that slides as the step ends, as turned_stretch in derive/couplings/crossing_stretch.py. */
-static void turn_to_slip(const fu_crossing *crossing, const before *last, double time, const fu_closest_points *points,
-                         const fu_crossing_contact *contact, const fu_crossing_grip *grip, double along[3])
+static void turn_to_slip(const fu_crossing *crossing, const last_step *last, double time, const fu_closest_points *points,
+                         const fu_crossing_contact *contact, const fu_crossing_stick *grip, double along[3])
 {
     const double least = crossing->law[FU_LAW_LEAST], r = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
     const double slid = slid_before(last), r_0 = slid_stretch(last);
@@ -125,21 +125,21 @@ static void turn_to_slip(const fu_crossing *crossing, const before *last, double
     for (int d = 0; d < 3 && squares[2] > 0.0; ++d) along[d] /= sqrt(squares[2]);
 }
 
-static void grip_since(const fu_crossing *crossing, const before *last, const fu_closest_points *points, const fu_crossing_contact *contact,
-                       double time, fu_crossing_grip *out)
+static void grip_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points, const fu_crossing_contact *contact,
+                       double time, fu_crossing_stick *out)
 {
     const int dim = crossing->kernel->dim;
     const double most = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
     double e[FU_LINES], along[3] = {0.0};
     fu_friction_travel travel;
-    fu_friction_way way;
+    fu_friction_path way;
     memset(out, 0, sizeof *out);
     moved_since(last, points, e);
     crossing->kernel->stretch(points->d, points->t, points->k, points->w, points->u, crossing->law, e, time_since(last, time), last->way,
                               last->way_rate, last->slopes, last->slope_rates, last->s_rate, last->stretch, last->rate,
                               out->without_sliding, out->old, out->along);
     travel_since(crossing, last, points, contact, time, out, &travel, &way);
-    const double size = fu_way_along(dim, &travel, along, &way);
+    const double size = fu_path_length(dim, &travel, along, &way);
     if (way.h > 0.0) out->end = fu_end_of_friction(&way);
     else out->end = (fu_friction_end){fmin(size, most), 1.0, size > most};
     out->slides = out->end.slid && out->end.part == 1.0;
@@ -153,16 +153,16 @@ static void grip_since(const fu_crossing *crossing, const before *last, const fu
     out->energy = 0.5 * crossing->tangential * fu_dot(dim, out->stretch, out->stretch);
 }
 
-void fu_crossing_grip_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                         const fu_crossing_contact *contact, fu_crossing_grip *out)
+void fu_crossing_stick_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                         const fu_crossing_contact *contact, fu_crossing_stick *out)
 {
     grip_since(crossing, before_of(crossing, state), points, contact, state->t, out);
 }
 
 /* Makes the derivatives of what has slid within the step and then sticks: parts of those that stick, as a velocity at the end also
  * moves where it slid last, and of those that slide. */
-static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_grip *grip, double h, const fu_crossing_grip_changes *stuck,
-                            fu_crossing_grip_changes *by)
+static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_stick *grip, double h, const fu_crossing_stick_changes *stuck,
+                            fu_crossing_stick_changes *by)
 {
     const int dim = crossing->kernel->dim;
     const fu_cubic at = fu_cubic_at(grip->end.part);
@@ -180,16 +180,16 @@ static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_grip 
         }
 }
 
-void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                                  const fu_line_bends *bends, const fu_crossing_contact *contact, fu_crossing_grip_changes *by)
+void fu_crossing_stick_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                                  const fu_line_bends *bends, const fu_crossing_contact *contact, fu_crossing_stick_changes *by)
 {
-    const before *last = before_of(crossing, state);
+    const last_step *last = before_of(crossing, state);
     const fu_crossing_kernels *kernel = crossing->kernel;
     const double friction = contact->size > 0.0 ? crossing->friction : 0.0, h = time_since(last, state->t);
     double e[FU_LINES];
-    fu_crossing_grip grip;
-    fu_crossing_grip_changes stuck;
-    fu_crossing_grip_at(crossing, state, points, contact, &grip);
+    fu_crossing_stick grip;
+    fu_crossing_stick_changes stuck;
+    fu_crossing_stick_at(crossing, state, points, contact, &grip);
     moved_since(last, points, e);
     memset(by, 0, sizeof *by);
     memset(&stuck, 0, sizeof stuck);
@@ -209,7 +209,7 @@ void fu_crossing_grip_derivatives(const fu_crossing *crossing, const fu_state *s
 
 /* Takes the stretch of a grip, null for none, along to points. */
 static void take_along(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact, double time,
-                       const fu_crossing_grip *grip, const double *line, before *last)
+                       const fu_crossing_stick *grip, const double *line, last_step *last)
 {
     const int dim = crossing->kernel->dim;
     double across[3] = {0.0}, slip[3];
@@ -231,11 +231,11 @@ static void take_along(const fu_crossing *crossing, const fu_closest_points *poi
     last->stretch[1] = fu_dot(dim, across, grip->stretch);
 }
 
-void fu_crossing_begin_grip(const fu_crossing *crossing, const fu_closest_points *points, fu_state *state)
+void fu_crossing_begin_stick(const fu_crossing *crossing, const fu_closest_points *points, fu_state *state)
 {
-    before here = *before_of(crossing, state);
+    last_step here = *before_of(crossing, state);
     fu_crossing_contact contact;
-    fu_crossing_grip grip;
+    fu_crossing_stick grip;
     fu_crossing_contact_at(crossing, points, &contact);
     memcpy(here.s, points->s, sizeof here.s);
     memcpy(here.slopes, points->t, sizeof here.slopes);
@@ -243,19 +243,19 @@ void fu_crossing_begin_grip(const fu_crossing *crossing, const fu_closest_points
     take_along(crossing, points, &contact, state->t, 0, grip.along, before_of(crossing, state));
 }
 
-void fu_crossing_carry_grip(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
+void fu_crossing_update_stick(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
                             fu_state *state)
 {
-    fu_crossing_grip grip;
-    fu_crossing_grip_at(crossing, state, points, contact, &grip);
+    fu_crossing_stick grip;
+    fu_crossing_stick_at(crossing, state, points, contact, &grip);
     take_along(crossing, points, contact, state->t, &grip, grip.along, before_of(crossing, state));
 }
 
 /* Makes the grip at the end of a step, and the way to it; returns whether lines that touch have closest points there. */
-static int grip_over_step(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, fu_crossing_grip *grip,
-                          fu_friction_travel *travel, fu_friction_way *way)
+static int grip_over_step(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, fu_crossing_stick *grip,
+                          fu_friction_travel *travel, fu_friction_path *way)
 {
-    const before *last = before_of(crossing, from);
+    const last_step *last = before_of(crossing, from);
     fu_closest_points end;
     fu_crossing_contact contact;
     fu_find_closest(model, crossing, to, &end);
@@ -267,19 +267,19 @@ static int grip_over_step(const fu_model *model, const fu_crossing *crossing, co
 }
 
 /* By how much another way leads elsewhere, the parabola without the velocities at the beginning. */
-double fu_crossing_carried_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+double fu_crossing_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
 {
     const fu_crossing *crossing = (const fu_crossing *)coupling;
     const int dim = model->dim;
-    fu_crossing_grip grip;
+    fu_crossing_stick grip;
     fu_friction_travel travel;
-    fu_friction_way way;
+    fu_friction_path way;
     double along[3] = {0.0}, square = 0.0;
     if (!(crossing->friction > 0.0) || !from->flags[coupling->flags]) return 0.0;
     if (!grip_over_step(model, crossing, from, to, &grip, &travel, &way)) return 0.0;
     for (int d = 0; d < dim; ++d) travel.rates[0][d] = 2.0 * travel.change[d] / way.h - travel.rates[1][d];
     way.depth.rate[0] = 2.0 * (way.depth.value[1] - way.depth.value[0]) / way.h - way.depth.rate[1];
-    fu_way_along(dim, &travel, along, &way);
+    fu_path_length(dim, &travel, along, &way);
     const fu_friction_end other = fu_end_of_friction(&way);
     if (grip.turns && other.slid > 0 && other.part == 1.0) return fabs(other.stretch - grip.end.stretch);
     for (int d = 0; d < dim; ++d) {
@@ -289,18 +289,18 @@ double fu_crossing_carried_error(const fu_model *model, const fu_coupling *coupl
     return sqrt(square);
 }
 
-double fu_crossing_slid_on_way(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int by_ends)
+double fu_crossing_slip_work(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int by_ends)
 {
-    fu_crossing_grip grip;
+    fu_crossing_stick grip;
     fu_friction_travel travel;
-    fu_friction_way way;
+    fu_friction_path way;
     if (!grip_over_step(model, crossing, from, to, &grip, &travel, &way)) return 0.0;
     return crossing->tangential * fu_taken_by_friction(model->dim, &travel, &way, grip.stretch, by_ends);
 }
 
-void fu_crossing_reset_grip(const fu_crossing *crossing, fu_state *state)
+void fu_crossing_reset_stick(const fu_crossing *crossing, fu_state *state)
 {
-    before *last = before_of(crossing, state);
+    last_step *last = before_of(crossing, state);
     memset(last, 0, sizeof *last);
     memcpy(last->s, crossing->start, sizeof last->s);
     memcpy(last->way, crossing->way, sizeof last->way);

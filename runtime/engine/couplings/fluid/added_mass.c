@@ -183,7 +183,7 @@ static void on_cable(const fu_model *model, const fu_drag *drag, const fu_state 
     }
 }
 
-void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
+void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     const fu_cable *cable = &model->cables[drag->cable];
@@ -192,7 +192,7 @@ void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupli
         const int first = cable->first + e * cable->per_node;
         fu_drag_points points;
         fu_drag_points_on(model, drag, e, state->q + first, &points);
-        for (int k = 0; k < points.n; ++k, out += FU_INERTIA_DENSITIES) {
+        for (int k = 0; k < points.n; ++k, out += FU_ADDED_MASS_DENSITIES) {
             double left[3];
             fu_drag_place at;
             of_length terms;
@@ -200,7 +200,7 @@ void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupli
             const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
             terms_of_length(model, drag, &at, &past, &terms);
             fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, at.v, model->load_fraction, left, 0);
-            memset(out, 0, sizeof(double[FU_INERTIA_DENSITIES]));
+            memset(out, 0, sizeof(double[FU_ADDED_MASS_DENSITIES]));
             for (int d = 0; d < dim; ++d) {
                 out[d] = model->load_fraction * terms.wet.pull[d] - left[d];
                 out[3 + d] = model->load_fraction * terms.g[d];
@@ -366,14 +366,14 @@ static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu
     }
 }
 
-void fu_fluid_inertia_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                              const fu_drag_sums *sums)
 {
     if (drag->cable >= 0) on_cable(model, drag, state, a, sums);
     else on_body(model, drag, state, a, sums);
 }
 
-void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                               const double *psi, fu_weights weights, fu_system *system)
 {
     if (drag->cable >= 0) tangent_of_cable(model, drag, state, a, weights, system);

@@ -180,7 +180,7 @@ static void on_body_in_step(const fu_model *model, const fu_drag *drag, const fu
     }
 }
 
-void fu_fluid_inertia_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
+void fu_added_mass_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
 {
     if (drag->cable >= 0) on_cable_in_step(model, drag, at, sums);
     else on_body_in_step(model, drag, at, sums);

@@ -25,7 +25,7 @@ static void impulse(const fu_model *model, const fu_drag *drag, const double *q,
     wet_impulse(model, drag, at.r, p, M);
 }
 
-void fu_fluid_inertia(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f)
+void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     const int dim = model->dim;
@@ -57,7 +57,7 @@ void fu_fluid_inertia(const fu_model *model, const fu_coupling *coupling, const 
     }
 }
 
-void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system)
+void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     const int dim = model->dim;
@@ -94,7 +94,7 @@ void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const dou
     }
 }
 
-double fu_fluid_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
+double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
                                int past_fluid)
 {
     const fu_drag *drag = (const fu_drag *)coupling;

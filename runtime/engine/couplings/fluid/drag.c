@@ -219,7 +219,7 @@ static void add_all(const fu_model *model, const fu_coupling *coupling, const fu
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     add(model, drag, state, 0, sums);
-    if (coupling->has_inertia) fu_fluid_inertia_forces(model, drag, state, a, sums);
+    if (coupling->has_inertia) fu_added_mass_forces(model, drag, state, a, sums);
 }
 
 /* Adds the same over a step. */
@@ -227,7 +227,7 @@ static void add_step(const fu_model *model, const fu_coupling *coupling, const f
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     add(model, drag, at->middle, at, sums);
-    if (coupling->has_inertia) fu_fluid_inertia_step_forces(model, drag, at, sums);
+    if (coupling->has_inertia) fu_added_mass_step_forces(model, drag, at, sums);
 }
 
 static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
@@ -255,7 +255,7 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     const fu_drag *drag = (const fu_drag *)coupling;
     if (drag->cable >= 0) matrix_of_cable(model, drag, state, weights, system);
     else matrix_of_body(model, drag, state, psi, weights, system);
-    if (coupling->has_inertia) fu_fluid_inertia_tangent(model, drag, state, weights.inertia != 0.0 ? a : 0, psi, weights, system);
+    if (coupling->has_inertia) fu_added_mass_tangent(model, drag, state, weights.inertia != 0.0 ? a : 0, psi, weights, system);
 }
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
@@ -367,7 +367,7 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_inertia_operations inertia = {.force = fu_fluid_inertia, .matrix = fu_fluid_mass, .kinetic_energy = fu_fluid_kinetic_energy};
+static const fu_inertia_operations inertia = {.force = fu_added_mass_force, .matrix = fu_added_mass_matrix, .kinetic_energy = fu_added_mass_kinetic_energy};
 static const fu_supply_operations supply = {.power = external_power, .step_work = step_work};
 
 typedef struct {

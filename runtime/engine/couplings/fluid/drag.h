@@ -7,7 +7,7 @@
 #include "couplings/fluid/velocity_field.h"
 
 #define FU_NO_SURFACE 1e300  /* m: beyond all heights (runtime/parts/fluid.py) */
-#define FU_SURFACE_WATCHES 4 /* events of its two surfaces */
+#define FU_SURFACE_EVENT_FUNCTIONS 4 /* events of its two surfaces */
 
 /* What of a cable's section or of a body's volume a fluid wets: all of it, or what is below its surface and above its bottom, of a
  * circle, a sphere, or a column (couplings/fluid/wetness.c). */
@@ -122,7 +122,7 @@ void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, 
 void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all, double *K);
 
 /* Flags of a state are one of the table and one a watch of surfaces */
-#define FU_DRAG_FLAGS (1 + FU_SURFACE_WATCHES)
+#define FU_DRAG_FLAGS (1 + FU_SURFACE_EVENT_FUNCTIONS)
 
 /* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is minus the flow's gradient.
  * The wet part, its derivative by the place, and the second one by the height. */
@@ -132,17 +132,17 @@ typedef struct {
 } fu_fluid_past;
 
 /* couplings/fluid/added_mass.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or without, null. */
-void fu_fluid_inertia_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                              const fu_drag_sums *sums);
-void fu_fluid_inertia_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                               const double *psi, fu_weights weights, fu_system *system);
-void fu_fluid_inertia(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
-void fu_fluid_mass(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
-/* Makes what it does a length of a cable without accelerations, at all points of quadrature: out (points x FU_INERTIA_DENSITIES),
+void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
+void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
+/* Makes what it does a length of a cable without accelerations, at all points of quadrature: out (points x FU_ADDED_MASS_DENSITIES),
  * the force (3) and that on the slope (3), as they act on the cable, and the mass added (dim x dim of 9). */
-#define FU_INERTIA_DENSITIES 15
-void fu_fluid_inertia_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
-double fu_fluid_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
+#define FU_ADDED_MASS_DENSITIES 15
+void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
+double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
                                int past_fluid);
 fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v, const double *a);
 /* Makes the force with the particles, of an impulse p and its rate, as it stands on the left of the equations of motion, and adds
@@ -154,6 +154,6 @@ void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, 
                          const double *on_slope, const fu_drag_sums *sums);
 
 /* couplings/fluid/added_mass_energy_step.c */
-void fu_fluid_inertia_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums);
+void fu_added_mass_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums);
 
 #endif

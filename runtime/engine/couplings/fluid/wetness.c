@@ -12,10 +12,10 @@
 
 #define COLUMN_ROUNDING 0.05 /* of half the height of a column: its ends are rounded by this to both sides (runtime/parts/drag.py) */
 #define MOST_DEPTH 0.99      /* of the radius of a section: beyond, matrices leave out the second derivative, which has a pole */
-#define SPANS 4              /* an element is cut into, on each of which heights are a cubic: exact for cubic elements */
-#define MOST_CUTS 24         /* of an element by the ends of a section that two surfaces cut, of two cubics */
-#define REACH 0.35           /* of an element's length, times its steepest slope at the samples: what heights between them differ by */
-#define NARROW 1e-12         /* of an element: shorter parts of it hold no points */
+#define SPANS_AN_ELEMENT 4              /* an element is cut into, on each of which heights are a cubic: exact for cubic elements */
+#define MAX_CUTS 24         /* of an element by the ends of a section that two surfaces cut, of two cubics */
+#define HEIGHT_VARIATION 0.35           /* of an element's length, times its steepest slope at the samples: what heights between them differ by */
+#define MIN_PART 1e-12         /* of an element: shorter parts of it hold no points */
 
 static double end_of(const fu_drag *drag)
 {
@@ -118,11 +118,11 @@ static int monotone_parts(const heights *of, double ends[4])
 }
 
 /* Adds where heights are at a level to the cuts, in increasing order. */
-static void cut_at(const heights *of, double level, double cuts[MOST_CUTS], int *n)
+static void cut_at(const heights *of, double level, double cuts[MAX_CUTS], int *n)
 {
     double ends[4];
     const int parts = monotone_parts(of, ends);
-    for (int k = 0; k < parts && *n < MOST_CUTS; ++k) {
+    for (int k = 0; k < parts && *n < MAX_CUTS; ++k) {
         const double from = height_on(of, ends[k]) - level, to = height_on(of, ends[k + 1]) - level;
         if (!((from < 0.0 && to >= 0.0) || (from >= 0.0 && to < 0.0))) continue;
         const double cut = of->start + of->length * reached_at(of, level, ends[k], ends[k + 1]);
@@ -153,7 +153,7 @@ static void add_point(const fu_cable *cable, double length, int n, int part, dou
 /* The shape of an element by the coordinates e, and the heights of its axis over its spans. */
 typedef struct {
     const double *e;
-    heights of[SPANS];
+    heights of[SPANS_AN_ELEMENT];
 } shape;
 
 /* Adds the points of a part of an element, in the middle of which one or two shapes are wet so: none where all are dry. */
@@ -166,7 +166,7 @@ static void add_part(const fu_cable *cable, double length, int n, int number, do
         is_wet |= wet[k].part != 0.0 || wet[k].slope != 0.0;
         is_cut |= wet[k].slope != 0.0;
     }
-    if (part <= NARROW * length || !is_wet) return;
+    if (part <= MIN_PART * length || !is_wet) return;
     for (int k = 0; k < 4 && !is_cut; ++k)
         add_point(cable, length, n, number, from + part * PLAIN[0][k], part * PLAIN[1][k], out);
     for (int k = 0; k < 8 && is_cut; ++k) {
@@ -199,24 +199,24 @@ static int is_uncut(const fu_model *model, const fu_drag *drag, int n, int eleme
         high = fmax(high, h);
         steepest = fmax(steepest, fabs(along_axis(model, drag, n, point.N_x, e)));
     }
-    const double reach = drag->extent + REACH * fu_element_length(cable, element) * steepest;
+    const double reach = drag->extent + HEIGHT_VARIATION * fu_element_length(cable, element) * steepest;
     *height = low;
     return (low - reach > drag->surface || high + reach < drag->surface) && (low - reach > drag->bottom || high + reach < drag->bottom);
 }
 
 /* Makes the heights of a shape, and adds where a surface begins or ceases to cut its section to the cuts. */
-static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double length, shape *of, double cuts[MOST_CUTS], int *n_cuts)
+static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double length, shape *of, double cuts[MAX_CUTS], int *n_cuts)
 {
     const double levels[4] = {drag->surface - drag->extent, drag->surface + drag->extent, drag->bottom - drag->extent,
                               drag->bottom + drag->extent};
-    const double span = length / SPANS;
-    double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES], h[SPANS + 1], slope[SPANS + 1];
-    for (int k = 0; k <= SPANS; ++k) {
+    const double span = length / SPANS_AN_ELEMENT;
+    double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES], h[SPANS_AN_ELEMENT + 1], slope[SPANS_AN_ELEMENT + 1];
+    for (int k = 0; k <= SPANS_AN_ELEMENT; ++k) {
         model->cables[drag->cable].kernel->on_axis(length, k * span, N, N_x);
         h[k] = drag->flow.base + along_axis(model, drag, n, N, of->e);
         slope[k] = span * along_axis(model, drag, n, N_x, of->e);
     }
-    for (int k = 0; k < SPANS; ++k) {
+    for (int k = 0; k < SPANS_AN_ELEMENT; ++k) {
         of->of[k] = (heights){k * span, span, {h[k], slope[k], 3.0 * (h[k + 1] - h[k]) - 2.0 * slope[k] - slope[k + 1],
                                                2.0 * (h[k] - h[k + 1]) + slope[k] + slope[k + 1]}};
         for (int l = 0; l < 4; ++l) cut_at(&of->of[k], levels[l], cuts, n_cuts);
@@ -227,13 +227,13 @@ static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double 
 static void cut_points(const fu_model *model, const fu_drag *drag, int n, int element, shape *shapes, int n_shapes, fu_drag_points *out)
 {
     const fu_cable *cable = &model->cables[drag->cable];
-    const double length = fu_element_length(cable, element), span = length / SPANS;
-    double cuts[MOST_CUTS];
+    const double length = fu_element_length(cable, element), span = length / SPANS_AN_ELEMENT;
+    double cuts[MAX_CUTS];
     int n_cuts = 0;
     for (int s = 0; s < n_shapes; ++s) cut_shape(model, drag, n, length, &shapes[s], cuts, &n_cuts);
     for (int k = 0; k <= n_cuts; ++k) {
         const double from = k ? cuts[k - 1] : 0.0, to = k < n_cuts ? cuts[k] : length, middle = 0.5 * (from + to) / span;
-        const int in = middle < SPANS - 1 ? (int)middle : SPANS - 1;
+        const int in = middle < SPANS_AN_ELEMENT - 1 ? (int)middle : SPANS_AN_ELEMENT - 1;
         fu_wetness wet[2];
         for (int s = 0; s < n_shapes; ++s) wet[s] = fu_wet_at_height(drag, height_on(&shapes[s].of[in], middle - in));
         add_part(cable, length, n, k, from, to, wet, n_shapes, out);

@@ -14,7 +14,7 @@ static void force_of_piece(const fu_point_force *between, int piece, const doubl
                            double force[3])
 {
     if (between->senses[piece] == FU_HAS_NO_FORCE) memset(force, 0, sizeof(double[3]));
-    else between->law->force(fu_piece_parameters(between, piece), gap, rate, force);
+    else between->law->force(fu_segment_parameters(between, piece), gap, rate, force);
 }
 
 /* Makes the force on the first point by the law. */
@@ -23,7 +23,7 @@ static void force_at(const fu_model *model, const fu_coupling *coupling, const f
     const fu_point_force *between = (const fu_point_force *)coupling;
     double gap[3], rate[3];
     fu_gap(model, between, state->q, state->v, gap, rate);
-    force_of_piece(between, fu_force_piece(between, state), gap, rate, force);
+    force_of_piece(between, fu_force_segment(between, state), gap, rate, force);
 }
 
 static double length(int dim, const double *gap)
@@ -31,14 +31,14 @@ static double length(int dim, const double *gap)
     return sqrt(fu_dot(dim, gap, gap));
 }
 
-/* A way over several pieces of a law without a damper: the distances at its ends, m, and the mean tension, N. */
+/* A point_motion over several pieces of a law without a damper: the distances at its ends, m, and the mean tension, N. */
 typedef struct {
     double from, to, tension;
-} way;
+} point_motion;
 
-/* Returns the way from one gap to another. The tension of each piece counts for as much of it as lies on the piece: what the mean does
- * on the way is the change of the energy. */
-static way way_of(const fu_point_force *between, const double gap[3], const double gap_next[3])
+/* Returns the point_motion from one gap to another. The tension of each piece counts for as much of it as lies on the piece: what the mean does
+ * on the point_motion is the change of the energy. */
+static point_motion way_of(const fu_point_force *between, const double gap[3], const double gap_next[3])
 {
     const int dim = between->dim;
     const double from = length(dim, gap), to = length(dim, gap_next), low = fmin(from, to), high = fmax(from, to);
@@ -49,17 +49,17 @@ static way way_of(const fu_point_force *between, const double gap[3], const doub
         const double start[3] = {a, 0.0, 0.0}, end[3] = {b, 0.0, 0.0};
         double tension[3], unused;
         if (!(b > a) || between->senses[piece] == FU_HAS_NO_FORCE) continue;
-        between->law->discrete_force(fu_piece_parameters(between, piece), 1.0, start, end, tension, &unused);
+        between->law->discrete_force(fu_segment_parameters(between, piece), 1.0, start, end, tension, &unused);
         work += tension[0] * (b - a);
     }
-    return (way){from, to, work / (high - low)};
+    return (point_motion){from, to, work / (high - low)};
 }
 
 /* Makes the derivatives of the mean force by the gap in the middle, which moves by half of what its end does: those across the mean
  * direction are of the mean tension. */
 static void mean_stiffness(const fu_point_force *between, const double gap[3], const double gap_next[3], int piece, double by_gap[9])
 {
-    const way w = way_of(between, gap, gap_next);
+    const point_motion w = way_of(between, gap, gap_next);
     const int dim = between->dim;
     const double end[3] = {w.to, 0.0, 0.0}, rate[3] = {0.0, 0.0, 0.0};
     double tension[3], e[3];
@@ -73,14 +73,14 @@ static void mean_stiffness(const fu_point_force *between, const double gap[3], c
 /* Returns the piece on which a step ends: without a damper that of the distance, as energy has it. */
 static int step_piece(const fu_model *model, const fu_point_force *between, const fu_equations *at)
 {
-    return between->base.is_damped ? fu_force_piece(between, at->next) : fu_piece_at(model, between, at->next);
+    return between->base.is_damped ? fu_force_segment(between, at->next) : fu_segment_at(model, between, at->next);
 }
 
 /* Returns whether the force over a step is that of several pieces: those of a law without a damper that the distance goes over. */
 static int is_of_several(const fu_model *model, const fu_point_force *between, const fu_equations *at)
 {
     if (between->base.is_damped || between->n_pieces == 1) return 0;
-    return fu_piece_at(model, between, at->now) != fu_piece_at(model, between, at->next);
+    return fu_segment_at(model, between, at->now) != fu_segment_at(model, between, at->next);
 }
 
 /* Makes the force over a step; returns the power that it dissipates, W. */
@@ -96,11 +96,11 @@ static double step_force(const fu_model *model, const fu_coupling *coupling, con
     fu_gap(model, between, at->now->q, model->zero, gap, unused);
     fu_gap(model, between, at->next->q, model->zero, gap_next, unused);
     if (several) {
-        const way w = way_of(between, gap, gap_next);
+        const point_motion w = way_of(between, gap, gap_next);
         for (int d = 0; d < between->dim; ++d) force[d] = w.tension * (gap[d] + gap_next[d]) / (w.from + w.to);
         return 0.0;
     }
-    between->law->discrete_force(fu_piece_parameters(between, piece), at->h, gap, gap_next, force, &power);
+    between->law->discrete_force(fu_segment_parameters(between, piece), at->h, gap, gap_next, force, &power);
     return power;
 }
 
@@ -139,7 +139,7 @@ void fu_add_force_change(const fu_model *model, const fu_point_force *between, c
 {
     double gap[3], rate[3], force[3], other[3];
     fu_gap(model, between, state->q, state->v, gap, rate);
-    force_of_piece(between, fu_force_piece(between, state), gap, rate, force);
+    force_of_piece(between, fu_force_segment(between, state), gap, rate, force);
     force_of_piece(between, piece, gap, rate, other);
     for (int d = 0; d < between->dim; ++d) force[d] = factor * (force[d] - other[d]);
     add_forces(model, between, state->q, force, f);
@@ -205,7 +205,7 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     memset(by_gap, 0, sizeof by_gap), memset(by_rate, 0, sizeof by_rate);
     if (known) memcpy(by_gap, known, sizeof by_gap);
     else if (between->senses[piece] != FU_HAS_NO_FORCE)
-        between->law->tangent(fu_piece_parameters(between, piece), gap, rate, force, by_gap, by_rate);
+        between->law->tangent(fu_segment_parameters(between, piece), gap, rate, force, by_gap, by_rate);
     for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
@@ -234,7 +234,7 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    const int piece = fu_force_piece((const fu_point_force *)coupling, at->next);
+    const int piece = fu_force_segment((const fu_point_force *)coupling, at->next);
     matrix(model, coupling, at->next, piece, at->next->forces + coupling->force, at->psi, 0, at->weights, system);
 }
 
@@ -284,11 +284,11 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
 static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    const int piece = fu_piece_at(model, between, state);
+    const int piece = fu_segment_at(model, between, state);
     double gap[3], rate[3], stored;
     if (between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
     fu_gap(model, between, state->q, model->zero, gap, rate);
-    between->law->energy(fu_piece_parameters(between, piece), gap, &stored);
+    between->law->energy(fu_segment_parameters(between, piece), gap, &stored);
     return stored;
 }
 
@@ -296,12 +296,12 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
                           const fu_accelerator *work)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    const int piece = fu_force_piece(between, state);
+    const int piece = fu_force_segment(between, state);
     double gap[3], rate[3], power;
     (void)work;
     if (!coupling->is_damped || between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
     fu_gap(model, between, state->q, state->v, gap, rate);
-    between->law->dissipation(fu_piece_parameters(between, piece), gap, rate, &power);
+    between->law->dissipation(fu_segment_parameters(between, piece), gap, rate, &power);
     return power;
 }
 
@@ -309,7 +309,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
 static double energy_without_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    const int has_none = between->senses[fu_force_piece(between, state)] == FU_HAS_NO_FORCE;
+    const int has_none = between->senses[fu_force_segment(between, state)] == FU_HAS_NO_FORCE;
     return has_none ? energy(model, coupling, state) : 0.0;
 }
 
@@ -344,7 +344,7 @@ static const fu_output output_fields[] = {
 };
 
 const fu_coupling_type fu_point_force_type = {
-    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .output_fields = output_fields, .n_flags = 1, .touch = fu_touch_piece, .residual = residual, .tangent = tangent, .step_residual = step_residual,
+    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .output_fields = output_fields, .n_flags = 1, .detect = fu_detect_segment, .residual = residual, .tangent = tangent, .step_residual = step_residual,
     .step_tangent = step_tangent, .step_dissipation = step_dissipation, .force = own_force, .take_forces = take_forces,
     .outputs = outputs, .energy = energy, .dissipation = dissipation,
     .lost_in_step = lost_in_step};

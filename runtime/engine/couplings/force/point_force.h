@@ -42,10 +42,10 @@ void fu_add_force_change(const fu_model *model, const fu_point_force *between, c
                          double *f);
 
 /* couplings/force/segments.c */
-int fu_force_piece(const fu_point_force *between, const fu_state *state);
-int fu_piece_at(const fu_model *model, const fu_point_force *between, const fu_state *state);
-int fu_piece_at_distance(const fu_point_force *between, double distance);
-const double *fu_piece_parameters(const fu_point_force *between, int piece);
-void fu_touch_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+int fu_force_segment(const fu_point_force *between, const fu_state *state);
+int fu_segment_at(const fu_model *model, const fu_point_force *between, const fu_state *state);
+int fu_segment_at_distance(const fu_point_force *between, double distance);
+const double *fu_segment_parameters(const fu_point_force *between, int piece);
+void fu_detect_segment(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
 #endif

@@ -15,18 +15,18 @@ static const fu_point_force *force_of(const fu_coupling *coupling)
 }
 
 /* Returns the piece whose law the force follows. */
-int fu_force_piece(const fu_point_force *between, const fu_state *state)
+int fu_force_segment(const fu_point_force *between, const fu_state *state)
 {
     return state->flags[between->base.flags];
 }
 
-const double *fu_piece_parameters(const fu_point_force *between, int piece)
+const double *fu_segment_parameters(const fu_point_force *between, int piece)
 {
     return between->parameters + (long)piece * between->n_parameters;
 }
 
 /* Returns the piece that a distance is on. */
-int fu_piece_at_distance(const fu_point_force *between, double distance)
+int fu_segment_at_distance(const fu_point_force *between, double distance)
 {
     int piece = 0;
     while (piece < between->n_pieces - 1 && distance > between->bounds[piece]) ++piece;
@@ -34,16 +34,16 @@ int fu_piece_at_distance(const fu_point_force *between, double distance)
 }
 
 /* Returns the piece that the distance of the points is on. */
-int fu_piece_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
+int fu_segment_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
 {
     double gap[3], rate[3];
     if (between->n_pieces == 1) return 0;
     fu_gap(model, between, state->q, model->zero, gap, rate);
-    return fu_piece_at_distance(between, sqrt(fu_dot(between->dim, gap, gap)));
+    return fu_segment_at_distance(between, sqrt(fu_dot(between->dim, gap, gap)));
 }
 
 /* In statics the force follows from the positions. */
-void fu_touch_piece(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+void fu_detect_segment(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
-    state->flags[coupling->flags] = fu_piece_at(model, force_of(coupling), state);
+    state->flags[coupling->flags] = fu_segment_at(model, force_of(coupling), state);
 }

@@ -5,10 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-#define SLOW 1e-6  /* of the velocity below which a point comes to rest: what turns the direction of sliding */
-#define SOFT 1e-10 /* m/s^2 over N: so little do points that stick give way, and share by their normal forces what holds them */
-#define SLACK 1e-9 /* of the weight: so much more is held, as a point may bear nothing, and be held by rounding */
-#define LEAST 1e-10 /* m/s^2: normal force over mass, below which it counts as that */
+#define SLIDING_SPEED 1e-6  /* of the velocity below which a point comes to rest: what turns the direction of sliding */
+#define STICKING_COMPLIANCE 1e-10 /* m/s^2 over N: so little do points that stick give way, and share by their normal forces what holds them */
+#define WEIGHT_TOLERANCE 1e-9 /* of the weight: so much more is held, as a point may bear nothing, and be held by rounding */
+#define MIN_ACCELERATION 1e-10 /* m/s^2: normal force over mass, below which it counts as that */
 
 /* Makes directions across the normal: one in the plane, two in space. */
 static void across(int dim, const double *n, double t[2][3])
@@ -33,7 +33,7 @@ static void across(int dim, const double *n, double t[2][3])
 /* Makes the direction of sliding: that of the velocity while it goes on forwards, that of the last step where it has turned. */
 static void find_direction(int dim, const fu_hard_contact *contact, const fu_state *state, const double *n, const double *past, double *out)
 {
-    const double *last = fu_hard_numbers_of(&contact->contact.base, state)->direction, slow = SLOW * contact->rest_velocity;
+    const double *last = fu_hard_numbers_of(&contact->contact.base, state)->direction, slow = SLIDING_SPEED * contact->rest_velocity;
     const int forwards = fu_dot(dim, last, past) > 0.0;
     double along = 0.0, square = 0.0;
     for (int d = 0; d < dim; ++d) out[d] = forwards ? past[d] + slow * last[d] : last[d];
@@ -76,12 +76,12 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
 }
 
 /* Returns what friction can take of a point that sticks, N. */
-double fu_hard_grip(const fu_hard_contact *contact, double multiplier)
+double fu_hard_friction_limit(const fu_hard_contact *contact, double multiplier)
 {
-    return contact->friction * fmax(SLACK * contact->weight - multiplier, SLACK * contact->weight);
+    return contact->friction * fmax(WEIGHT_TOLERANCE * contact->weight - multiplier, WEIGHT_TOLERANCE * contact->weight);
 }
 
 double fu_hard_softness(const fu_hard_contact *contact, double multiplier)
 {
-    return SOFT / fmax(-multiplier, LEAST * contact->contact.base.scale[0]);
+    return STICKING_COMPLIANCE / fmax(-multiplier, MIN_ACCELERATION * contact->contact.base.scale[0]);
 }

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#define NEAR 1e-9 /* m: what is no farther apart touches in statics */
+#define CONTACT_TOLERANCE 1e-9 /* m: what is no farther apart touches in statics */
 
 static const fu_hard_contact *contact_of(const fu_coupling *coupling)
 {
@@ -163,7 +163,7 @@ static void tangent_of_closed(const fu_model *model, const fu_coupling *coupling
     const double *psi = at->psi, multiplier = at->next->forces[coupling->force];
     const double unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
     fu_attachment_state on;
-    fu_touch_point point = {.depth = 0.0};
+    fu_contact_point point = {.depth = 0.0};
     double turned[2 * FU_ATTACHMENT_COORDINATES];
     memcpy(turned, row->H, sizeof turned);
     fu_surface_at(model, &contact->contact.surface, at->next, &on);
@@ -313,7 +313,7 @@ static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *
     fu_hard_row row;
     fu_hard_row_at(model, contact, state, &row);
     const double press = -state->forces[coupling->force];
-    fu_hard_flags_of(coupling, state)->mode = press > contact->stiffness * (row.g - NEAR) ? FU_CLOSED : FU_APART;
+    fu_hard_flags_of(coupling, state)->mode = press > contact->stiffness * (row.g - CONTACT_TOLERANCE) ? FU_CLOSED : FU_APART;
 }
 
 static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
@@ -350,6 +350,6 @@ const fu_coupling_type fu_hard_contact_type = {
     .output_fields = output_fields,
     .n_flags = (int)(sizeof(fu_hard_flags) / sizeof(int)), .n_numbers = (int)(sizeof(fu_hard_numbers) / sizeof(double)),
     .residual = residual, .tangent = tangent, .step_residual = step_residual, .step_tangent = step_tangent, .rows = rows,
-    .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .dissipation = dissipation, .touch = touch, .is_possible = is_possible,
+    .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .dissipation = dissipation, .detect = touch, .is_possible = is_possible,
     .history = &history,
 };

@@ -62,7 +62,7 @@ double fu_hard_beyond(const fu_model *model, const fu_hard_contact *hard, const 
 /* couplings/hard_contact/friction.c */
 void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, const fu_hard_row *row,
                       fu_hard_along *out);
-double fu_hard_grip(const fu_hard_contact *contact, double multiplier);
+double fu_hard_friction_limit(const fu_hard_contact *contact, double multiplier);
 double fu_hard_softness(const fu_hard_contact *contact, double multiplier);
 
 #endif

@@ -16,7 +16,7 @@ double fu_hard_beyond(const fu_model *model, const fu_hard_contact *hard, const 
 {
     const fu_contact *contact = &hard->contact;
     fu_attachment_state on;
-    fu_touch_point point;
+    fu_contact_point point;
     fu_surface_at(model, &contact->surface, state, &on);
     fu_contact_place(model, contact, &on, state, 0, 0, &point);
     return fu_surface_beyond(model->dim, &contact->surface, &on, point.r);

@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-#define MOST_ITERATIONS 50 /* of Newton's method: it converges quadratically, or there is no such point of the cable near */
-#define ROUNDING 1e-15     /* of an element and of s: a correction that is rounding ends the iteration */
-#define CLOSE 1e-12        /* of an element: a correction that is as good as rounding where rounding keeps it from shrinking */
+#define MAX_ITERATIONS 50 /* of Newton's method: it converges quadratically, or there is no such point of the cable near */
+#define ROUNDING_OF_LENGTH 1e-15     /* of an element and of s: a correction that is rounding ends the iteration */
+#define LENGTH_TOLERANCE 1e-12        /* of an element: a correction that is as good as rounding where rounding keeps it from shrinking */
 #define ALONG 0.99         /* cosine of the angle between tangent and director from which on another axis takes over: 8 degrees */
 
 /* Returns the Newton step for s of a slide, m, and the unit tangent there. */
@@ -24,17 +24,17 @@ int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, doub
 {
     const double length = model->cables[model->slides[j].cable].length;
     double step = 0.0, tangent[3];
-    for (int i = 0; i < MOST_ITERATIONS; ++i) {
+    for (int i = 0; i < MAX_ITERATIONS; ++i) {
         step = evaluate_constraint(model, state, j, *s, tangent);
         *s += step;
-        if (fabs(step) <= ROUNDING * (length + fabs(*s))) return 0;
+        if (fabs(step) <= ROUNDING_OF_LENGTH * (length + fabs(*s))) return 0;
     }
-    return fabs(step) <= CLOSE * length ? 0 : 1;
+    return fabs(step) <= LENGTH_TOLERANCE * length ? 0 : 1;
 }
 
 /* Turns the director that no element gives with the tangent: it becomes its part across the tangent, of unit length. Where the
  * tangent has swung onto it, the axis least along the tangent takes over. */
-void fu_carry_director(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+void fu_update_director(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;
     double *d = fu_slide_numbers_of(model, state, j)->director, i[3];

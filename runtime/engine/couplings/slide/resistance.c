@@ -13,8 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-#define TRIAL 0.1          /* of the change that the law asks for: the first step of R, lest it turn the normal force round */
-#define STEEP 0.1          /* slope of the secant below which R takes the change that its law asks for */
+#define FIRST_SHARE 0.1          /* of the change that the law asks for: the first step of R, lest it turn the normal force round */
+#define MIN_SECANT_SLOPE 0.1          /* slope of the secant below which R takes the change that its law asks for */
 #define LEAST_NORMAL 1e-30 /* N: of a normal force of zero there is no direction */
 
 /* Returns whether R acts on a slide as it is. */
@@ -110,7 +110,7 @@ double fu_lost_in_buffers(const fu_model *model, const fu_coupling *coupling, co
     return energy_in_buffers(model, from, j, 0) - energy_in_buffers(model, to, j, 0);
 }
 
-void fu_touch_buffers(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+void fu_detect_buffers(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;
     if (!model->slides[j].resistance) return;
@@ -171,7 +171,7 @@ static void along(const fu_model *model, const fu_slide_state *slide_state, doub
 static double secant_step(fu_slide_state *last, double change)
 {
     const double slope = last->step != 0.0 ? (last->change - change) / last->step : 0.0;
-    last->step = last->step == 0.0 ? TRIAL * change : slope > STEEP ? change / slope : change;
+    last->step = last->step == 0.0 ? FIRST_SHARE * change : slope > MIN_SECANT_SLOPE ? change / slope : change;
     last->change = change;
     return last->step;
 }

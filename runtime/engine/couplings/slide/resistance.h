@@ -27,6 +27,6 @@ double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupl
                                  const fu_accelerator *work);
 double fu_buffer_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_lost_in_buffers(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends);
-void fu_touch_buffers(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+void fu_detect_buffers(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
 #endif

@@ -304,7 +304,7 @@ static const fu_field fields[] = {
 
 static const fu_reaction_operations reaction = {.update = fu_resistance_update, .accept = fu_resistance_accept, .friction_error = fu_resistance_friction_error};
 static const fu_coordinate_operations coordinates = {.rates = rates, .solve = solve};
-static const fu_history_operations history = {.update = fu_carry_director};
+static const fu_history_operations history = {.update = fu_update_director};
 
 static const fu_output output_fields[] = {
     FU_OUTPUT(fu_slide_output, s_rate, "m/s", NULL),
@@ -337,7 +337,7 @@ const fu_coupling_type fu_slide_type = {
     .dissipation = fu_resistance_dissipation,
     .lost_in_step = fu_lost_in_buffers,
     .may_start_open = may_start_open,
-    .touch = fu_touch_buffers,
+    .detect = fu_detect_buffers,
     .is_possible = is_possible,
     .reaction = &reaction,
     .coordinates = &coordinates,

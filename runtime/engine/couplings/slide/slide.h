@@ -73,7 +73,7 @@ void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupli
 
 /* couplings/slide/position.c: s where C_l = 0, eq 21, not zero where there is none; and the director that goes with it. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int slide, double *s);
-void fu_carry_director(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+void fu_update_director(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
 /* How one slide moves, and its ds/dt. */
 void fu_slide_now(const fu_model *model, const fu_state *state, int slide, fu_slide_state *slide_state);
