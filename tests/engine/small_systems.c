@@ -1,5 +1,5 @@
-/* Random systems of the engine's own linear algebra: complex bands, inverses of bands, small matrices. Prints the largest
- * residual of each, of 400, in units of rounding; tests/engine/test_small_systems.py.
+/* Random systems of the engine's own linear algebra: complex bands, inverses of bands, small matrices. Prints the
+ * largest residual of each, of 400, in units of rounding; tests/engine/test_small_systems.py.
  */
 #include "linear/complex_system.h"
 
@@ -72,7 +72,8 @@ static double complex_band(int n, int width, int symmetric)
 /* The inverse of a band that is factored already, times a part of a column: how far it is from the substitution. */
 static double inverse(int n, int width)
 {
-    static double L[(WIDEST + 1) * (MOST + FU_BAND_GROUP)], made[FU_INVERSE_ROWS(MOST) * MOST], out[FU_INVERSE_ROWS(MOST)];
+    static double L[(WIDEST + 1) * (MOST + FU_BAND_GROUP)], made[FU_INVERSE_ROWS(MOST) * MOST],
+        out[FU_INVERSE_ROWS(MOST)];
     const int stride = width + 1, first = rand() % n, end = first + rand() % (n - first + 1);
     double worst = 0.0;
     for (int j = 0; j < n + FU_BAND_GROUP; ++j)

@@ -7,7 +7,7 @@
 
 int main(void)
 {
-    const double l = 2.0, stiffness[2] = {1000.0, 0.5}; /* m; EA in N, EI in N m^2 */
+    const double l = 2.0, stiffness[2] = {1000.0, 0.5};                                   /* m; EA in N, EI in N m^2 */
     const double e[12] = {0.0, 0.0, 0.0, 1.01, 0.0, 0.0, 2.02, 0.0, 0.0, 1.01, 0.0, 0.0}; /* r and r_x at both ends */
     double constants[2], energy;
     cable12_green_exact_stiffness(l, stiffness, constants);

@@ -2,7 +2,6 @@
 #ifndef FUNICULAR_BASE_CLOCK_H
 #define FUNICULAR_BASE_CLOCK_H
 
-
 double fu_clock(void); /* s */
 
 #endif

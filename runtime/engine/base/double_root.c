@@ -3,11 +3,12 @@
 
 #include <math.h>
 
-#define GRAZING_TOLERANCE 1e-2    /* of a dip: how far from zero its end may be predicted and yet be looked at */
-#define ROUNDING_OF_VALUES 1e-14  /* of what a watch is of, and of its values: dips less deep are rounding */
+/* of a dip: how far from zero its end may be predicted and yet be looked at */
+#define GRAZING_TOLERANCE 1e-2
+#define ROUNDING_OF_VALUES 1e-14 /* of what a watch is of, and of its values: dips less deep are rounding */
 
-/* Returns the part of a step at which the cubic with the values y and the slopes m at its ends has a minimum; not within 0 and 1
- * where it has none there. */
+/* Returns the part of a step at which the cubic with the values y and the slopes m at its ends has a minimum; not
+ * within 0 and 1 where it has none there. */
 double fu_part_of_minimum(const double y[2], const double m[2])
 {
     const double a = 2.0 * (y[0] - y[1]) + m[0] + m[1], b = 3.0 * (y[1] - y[0]) - 2.0 * m[0] - m[1];
@@ -24,7 +25,8 @@ static double cubic(const double y[2], const double m[2], double x)
 
 double fu_grazing_time(fu_course from, fu_course to, int side, double h, double least)
 {
-    const double y[2] = {fmax(side * from.value, 0.0), side * to.value}, m[2] = {side * h * from.rate, side * h * to.rate};
+    const double y[2] = {fmax(side * from.value, 0.0), side * to.value},
+                 m[2] = {side * h * from.rate, side * h * to.rate};
     const double x = fu_part_of_minimum(y, m);
     if (!(side * from.value >= -least && y[1] >= 0.0) || !(x > 0.0 && x < 1.0)) return 0.0;
     const double bottom = cubic(y, m, x), depth = fmin(y[0], y[1]) - bottom;

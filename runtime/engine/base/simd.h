@@ -1,5 +1,5 @@
-/* Several numbers at a time, with AVX2 where compiler and machine have it: the same operations on each as one by one, so
- * that without contraction the bits are the same. */
+/* Several numbers at a time, with AVX2 where compiler and machine have it: the same operations on each as one by one,
+ * so that without contraction the bits are the same. */
 #ifndef FUNICULAR_BASE_SIMD_H
 #define FUNICULAR_BASE_SIMD_H
 
@@ -17,8 +17,14 @@ typedef double fu_lanes __attribute__((vector_size(FU_LANES * sizeof(double)), a
 
 /* Defines a function without result, and a second one for AVX2, by a body that is inlined in both. */
 #define FU_IN_LANES(name, body, parameters, arguments)                                                                 \
-    FU_AVX2 static void name##_avx2 parameters { body arguments; }                                                     \
-    static void name##_plain parameters { body arguments; }                                                            \
+    FU_AVX2 static void name##_avx2 parameters                                                                         \
+    {                                                                                                                  \
+        body arguments;                                                                                                \
+    }                                                                                                                  \
+    static void name##_plain parameters                                                                                \
+    {                                                                                                                  \
+        body arguments;                                                                                                \
+    }                                                                                                                  \
     void name parameters                                                                                               \
     {                                                                                                                  \
         if (FU_HAS_AVX2) name##_avx2 arguments;                                                                        \

@@ -1,5 +1,5 @@
-/* Threads that share the work of a run, for pieces of work of some microseconds: OpenMP's wait for each other either for
- * milliseconds at full load or by way of the system, and both takes longer than such a piece on a machine that does
+/* Threads that share the work of a run, for pieces of work of some microseconds: OpenMP's wait for each other either
+ * for milliseconds at full load or by way of the system, and both takes longer than such a piece on a machine that does
  * other things, too.
  *
  * A piece of work has as many parts as there are threads. Each thread takes its own part, which it knows in its cache
@@ -55,7 +55,6 @@ int fu_share_among(fu_threads *threads, int dofs, fu_work work, const void *what
 
 #else
 
-
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
@@ -78,8 +77,8 @@ typedef struct {
 
 struct fu_threads {
     int n;
-    unsigned forks;     /* when they were started */
-    atomic_uint work;   /* the number of the last one; with what it is beside it, on one line of the cache */
+    unsigned forks;   /* when they were started */
+    atomic_uint work; /* the number of the last one; with what it is beside it, on one line of the cache */
     atomic_int sleeping, ending;
     fu_work function;
     const void *what;
@@ -175,8 +174,8 @@ long fu_threads_size(int n)
     return (long)(sizeof(fu_threads) + (size_t)n * sizeof(member));
 }
 
-/* Starts n - 1 threads beside the calling one, in memory that is zero; returns how many there are with it. Signals remain the
- * calling thread's. */
+/* Starts n - 1 threads beside the calling one, in memory that is zero; returns how many there are with it. Signals
+ * remain the calling thread's. */
 int fu_threads_start(fu_threads *all, int n)
 {
     sigset_t every, before;

@@ -2,7 +2,8 @@
 #ifndef FUNICULAR_BASE_THREADS_H
 #define FUNICULAR_BASE_THREADS_H
 
-#define FU_DOFS_APART 64 /* dofs, or unknowns, that one thread takes at least: not those of one line of the cache */
+/* dofs, or unknowns, that one thread takes at least: not those of one line of the cache */
+#define FU_DOFS_APART 64
 
 typedef struct fu_threads fu_threads;
 

@@ -1,5 +1,6 @@
-/* Numbers below the least normal one, 2e-308. Motion that decays along many bodies or elements ends in them, and some processors
- * take a hundred times as long with each: in the time loop they are zero. Elsewhere, in what callers compute, they stay. */
+/* Numbers below the least normal one, 2e-308. Motion that decays along many bodies or elements ends in them, and some
+ * processors take a hundred times as long with each: in the time loop they are zero. Elsewhere, in what callers
+ * compute, they stay. */
 #ifndef FUNICULAR_BASE_UNDERFLOW_H
 #define FUNICULAR_BASE_UNDERFLOW_H
 

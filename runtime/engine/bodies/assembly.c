@@ -4,14 +4,21 @@
 
 #include <string.h>
 
-#define CHUNK 16 /* elements whose forces are made before they are added: few enough to stay in the first cache */
+/* elements whose forces are made before they are added: few enough to stay in the first cache */
+#define CHUNK 16
 
 /* Returns the elements of a cable from the k-th on, as block kernels take them. */
 static fu_elements elements_from(const fu_cable *cable, const double *q, const double *v, int k)
 {
     const long at = cable->first + (long)k * cable->per_node;
-    return (fu_elements){cable->lengths + (long)k * cable->l_stride, cable->tau, q + at, v ? v + at : 0,
-                         fu_element_constants(cable, k), cable->per_node, cable->A_stride, cable->l_stride};
+    return (fu_elements){cable->lengths + (long)k * cable->l_stride,
+                         cable->tau,
+                         q + at,
+                         v ? v + at : 0,
+                         fu_element_constants(cable, k),
+                         cable->per_node,
+                         cable->A_stride,
+                         cable->l_stride};
 }
 
 /* Returns how many of n elements a block kernel takes; the others go one by one. */
@@ -55,7 +62,8 @@ static void damping_forces(const fu_cable *cable, int first, int n, const fu_ele
 static void inertia_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
 {
     for (int k = 0; k < n; ++k)
-        cable->kernel->inertia_force(fu_element_mass(cable, first + k), of->v + k * of->per_node, f + k * cable->coordinates);
+        cable->kernel->inertia_force(fu_element_mass(cable, first + k), of->v + k * of->per_node,
+                                     f + k * cable->coordinates);
 }
 
 static void mass_damping_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
@@ -121,8 +129,8 @@ static void add_part(const void *what, int part, int parts)
     }
 }
 
-/* Adds the forces to those on the dofs: on each node those of the element before it, then those of the element behind it,
- * whatever the number of threads. */
+/* Adds the forces to those on the dofs: on each node those of the element before it, then those of the element behind
+ * it, whatever the number of threads. */
 static void add_sum(const sum *job)
 {
     const fu_cable *cable = job->cable;
@@ -154,7 +162,8 @@ void fu_constant_mass_times(const fu_model *model, const double *q, const double
     fu_bodies_mass_times(model, q, a, f);
 }
 
-/* Adds elastic, damping and bodies' forces, as they stand on the left of the equations of motion; not those of couplings. */
+/* Adds elastic, damping and bodies' forces, as they stand on the left of the equations of motion; not those of
+ * couplings. */
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
     for (int c = 0; c < model->n_cables; ++c) {
@@ -171,7 +180,8 @@ void fu_discrete_forces(const fu_model *model, const double *q, const double *q_
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            cable->law->discrete_force(fu_element_length(cable, k), q + at, q_next + at, fu_element_constants(cable, k), part);
+            cable->law->discrete_force(fu_element_length(cable, k), q + at, q_next + at, fu_element_constants(cable, k),
+                                       part);
             for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
         }
     }
@@ -200,13 +210,15 @@ static void add_mass(const fu_cable *cable, int k, double mass, double *K)
             for (int d = 0; d < dim; ++d) K[(j * dim + d) * n + i * dim + d] += mass * m[j * vectors + i];
 }
 
-void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by, double *K)
+void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by,
+                            double *K)
 {
     const int vectors = n / dim;
     for (int k = 0; k < vectors; ++k)
         for (int l = 0; l < vectors; ++l)
             for (int i = 0; i < dim; ++i)
-                for (int j = 0; j < dim; ++j) K[(k * dim + i) * n + l * dim + j] += factor * a[k] * b[l] * by[i * dim + j];
+                for (int j = 0; j < dim; ++j)
+                    K[(k * dim + i) * n + l * dim + j] += factor * a[k] * b[l] * by[i * dim + j];
 }
 
 /* A matrix of a cable that threads share. */
@@ -246,9 +258,9 @@ static void complete(const matrix *job, int k, double *K)
     add_mass(cable, k, job->mass, K);
 }
 
-/* Adds a part of the elements. Where threads share the work, the first of each part, which another thread's has a node with,
- * and those with shared unknowns are for `add_matrix_of` to add: afterwards, in their order. An entry of two neighbours
- * alone is the same in either order. */
+/* Adds a part of the elements. Where threads share the work, the first of each part, which another thread's has a node
+ * with, and those with shared unknowns are for `add_matrix_of` to add: afterwards, in their order. An entry of two
+ * neighbours alone is the same in either order. */
 static void add_matrix_part(const void *what, int part, int parts)
 {
     const matrix *job = what;
@@ -291,7 +303,8 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
 {
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
-        const matrix job = {model, cable, q, v, inertia + stiffness * rate * cable->mass_damping, rate, stiffness, system};
+        const matrix job = {model, cable,     q,     v, inertia + stiffness * rate * cable->mass_damping,
+                            rate,  stiffness, system};
         add_matrix_of(&job);
     }
 }

@@ -56,8 +56,9 @@ static double none_along(const fu_body *body, const double *b, const double *w)
     return 0.0;
 }
 
-const fu_matter fu_rigid_matter = {1,       of_rigid_mass_times,     of_rigid_forces, of_rigid_mass, of_rigid_tangent,
-                                   of_rigid_kinetic_energy, none_at, none_at,         none_along};
+const fu_matter fu_rigid_matter = {
+    1,       of_rigid_mass_times, of_rigid_forces, of_rigid_mass, of_rigid_tangent, of_rigid_kinetic_energy, none_at,
+    none_at, none_along};
 
 /* Returns the number of a body's dofs: its frame's, and its modes'. */
 int fu_body_dofs(const fu_body *body)
@@ -83,10 +84,10 @@ void fu_bodies_forces(const fu_model *model, const double *q, const double *v, d
     }
 }
 
-/* Adds weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state to a system; psi: what moved it there,
- * or null. Without acceleration K is that of rest. */
-static void add_body(const fu_model *model, const fu_body *body, const fu_state *at, const double *psi, fu_weights weights,
-                     fu_system *system)
+/* Adds weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state to a system; psi: what moved it
+ * there, or null. Without acceleration K is that of rest. */
+static void add_body(const fu_model *model, const fu_body *body, const fu_state *at, const double *psi,
+                     fu_weights weights, fu_system *system)
 {
     double few[3 * FU_FRAME_DOFS * FU_FRAME_DOFS]; /* M, D, K of a rigid body */
     const int n = fu_body_dofs(body), turns = !body->matter->constant && weights.stiffness != 0.0;
@@ -106,7 +107,8 @@ static void add_body(const fu_model *model, const fu_body *body, const fu_state 
     fu_add_body(model, system, body->dof, n, M);
 }
 
-void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights, fu_system *system)
+void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights,
+                      fu_system *system)
 {
     for (int k = 0; k < model->n_bodies; ++k) add_body(model, &model->bodies[k], at, psi, weights, system);
 }

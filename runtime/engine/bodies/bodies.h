@@ -27,10 +27,10 @@ extern const fu_matter fu_rigid_matter, fu_modal_matter;
 /* Modes of a body; index 0 of S and X is the undeformed place (derive/bodies/modal.py). */
 typedef struct {
     const fu_modal_kernels *kernel;
-    const double *S, *X;               /* (n + 1) x dim; (n + 1) x (n + 1) x dim x dim */
+    const double *S, *X;                      /* (n + 1) x dim; (n + 1) x (n + 1) x dim x dim */
     const double *mass, *stiffness, *damping; /* n x n */
-    const double *zero;                /* as many as it has dofs */
-    double *sums, *matrices;           /* work space: 3 (n + 1) dim^2; 3 dofs^2 (mass_times takes the first) */
+    const double *zero;                       /* as many as it has dofs */
+    double *sums, *matrices;                  /* work space: 3 (n + 1) dim^2; 3 dofs^2 (mass_times takes the first) */
     double g[3];
 } fu_shape;
 
@@ -58,7 +58,8 @@ typedef struct {
 int fu_body_dofs(const fu_body *body);
 void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f);
 void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f);
-void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights, fu_system *system);
+void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights,
+                      fu_system *system);
 void fu_bodies_mass(const fu_model *model, const double *q, int constant, fu_system *system);
 double fu_bodies_kinetic_energy(const fu_model *model, const double *q, const double *v);
 double fu_bodies_elastic_energy(const fu_model *model, const double *q);
@@ -66,11 +67,11 @@ double fu_bodies_potential_energy(const fu_model *model, const double *q);
 double fu_bodies_dissipation(const fu_model *model, const double *q, const double *v);
 
 /* modal.c: points */
-void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *w,
-                               fu_modal_point *out, double *P, double *T);
-void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *f,
-                               const double *m, double *K);
-void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *c,
-                                  double *g, double *K);
+void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
+                               const double *w, fu_modal_point *out, double *P, double *T);
+void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
+                               const double *f, const double *m, double *K);
+void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
+                                  const double *c, double *g, double *K);
 
 #endif

@@ -9,21 +9,22 @@ typedef struct {
     const fu_law_kernels *law;
     const fu_law_blocks *blocks; /* null where there are none */
     int n_elements;
-    int first;        /* first dof and first entry in q */
-    int coordinates;  /* of an element */
-    int per_node;     /* coordinates of a node */
-    double length;    /* of an element, m; the mean where they differ */
+    int first;             /* first dof and first entry in q */
+    int coordinates;       /* of an element */
+    int per_node;          /* coordinates of a node */
+    double length;         /* of an element, m; the mean where they differ */
     const double *lengths; /* of the elements, m */
     const double *nodes;   /* arc-lengths of the nodes, m; null where the elements are equal */
-    double tau;       /* Kelvin-Voigt retardation time, s */
-    double mass_damping; /* 1/s */
-    const double *m;  /* mass matrix of the first element over nodal vectors */
-    int l_stride;     /* from one element's length to the next's: zero where they are equal */
-    int m_stride;     /* from one element's mass matrix to the next's: zero where they are equal */
-    const double *A;  /* constants of the law, of the first element */
-    int A_stride;     /* from one element's to the next's: zero where they are equal */
-    const double *share; /* of each vector of a node: what it moves points of its elements by at most; null where that is not known */
-    int gives_way;    /* not zero where its law gives way in compression */
+    double tau;            /* Kelvin-Voigt retardation time, s */
+    double mass_damping;   /* 1/s */
+    const double *m;       /* mass matrix of the first element over nodal vectors */
+    int l_stride;          /* from one element's length to the next's: zero where they are equal */
+    int m_stride;          /* from one element's mass matrix to the next's: zero where they are equal */
+    const double *A;       /* constants of the law, of the first element */
+    int A_stride;          /* from one element's to the next's: zero where they are equal */
+    const double *share;   /* of each vector of a node: what it moves points of its elements by at most; null where that
+                              is not known */
+    int gives_way;         /* not zero where its law gives way in compression */
     int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 
@@ -33,8 +34,10 @@ void fu_rate_forces(const fu_model *model, const double *q, const double *v, dou
 void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system);
-/* Adds to the matrix K (n x n) of an element factor times a' by b, of two rows of n / dim numbers and a matrix (dim x dim). */
-void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by, double *K);
+/* Adds to the matrix K (n x n) of an element factor times a' by b, of two rows of n / dim numbers and a matrix (dim x
+ * dim). */
+void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by,
+                            double *K);
 double fu_constant_elastic_energy(const fu_model *model, const double *q);
 double fu_constant_kinetic_energy(const fu_model *model, const double *q, const double *v);
 double fu_potential_energy(const fu_model *model, const double *q);

@@ -10,7 +10,8 @@ typedef struct {
     double S[RATES][FU_SPACE], X[RATES][FU_MATRIX_ENTRIES], *Y[RATES];
 } moments;
 
-/* Fills the moments: sums over the coefficients c = (1, eta), c' = (0, eta'), c'' = (0, eta''); null stands for zero. */
+/* Fills the moments: sums over the coefficients c = (1, eta), c' = (0, eta'), c'' = (0, eta''); null stands for zero.
+ */
 static moments sum_of(const fu_body *body, const double *eta, const double *rate, const double *acceleration)
 {
     const fu_shape *shape = body->shape;
@@ -113,7 +114,8 @@ static void tangent(const fu_body *body, const fu_instant *at, double *D, double
     const int dim = body->kernel->dim, square = dim * dim, frame = body->kernel->velocity;
     const int modes = body->modes, n = frame + modes;
     const moments m = sum_of(body, eta_of(body, at->b), rate_of(body, at->w), rate_of(body, at->a));
-    double D_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], K_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], D_of[FU_FRAME_DOFS], K_of[FU_FRAME_DOFS], D_by[FU_FRAME_DOFS], K_by[FU_FRAME_DOFS];
+    double D_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], K_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], D_of[FU_FRAME_DOFS],
+        K_of[FU_FRAME_DOFS], D_by[FU_FRAME_DOFS], K_by[FU_FRAME_DOFS];
     kernel->inertia_tangent(at->b, at->w, at->a, shape->g, body->mass, m.S[0], m.S[1], m.S[2], m.X[0], m.X[1], m.X[2],
                             D_frame, K_frame);
     for (int i = 0; i < frame; ++i)
@@ -183,11 +185,12 @@ static double dissipation(const fu_body *body, const double *b, const double *w)
     return total;
 }
 
-const fu_matter fu_modal_matter = {0,       mass_times,     forces,         mass,             tangent,
-                                   kinetic_energy, elastic_energy, potential_energy, dissipation};
+const fu_matter fu_modal_matter = {
+    0, mass_times, forces, mass, tangent, kinetic_energy, elastic_energy, potential_energy, dissipation};
 
 /* Makes displacement and turn of a point from its modes, or their rates. */
-static void point_of(const fu_body *body, const fu_modal_attachment *attachment, const double *c, int is_rate, double u[FU_SPACE], double theta[FU_SPACE])
+static void point_of(const fu_body *body, const fu_modal_attachment *attachment, const double *c, int is_rate,
+                     double u[FU_SPACE], double theta[FU_SPACE])
 {
     const int dim = body->kernel->dim, turns = body->kernel->velocity - dim;
     for (int d = 0; d < dim; ++d) u[d] = is_rate ? 0.0 : attachment->x[d];
@@ -199,16 +202,16 @@ static void point_of(const fu_body *body, const fu_modal_attachment *attachment,
 }
 
 /* Computes the state of a point of a modal body with its axes: P (dim x n) and T (turns x n) are over all its dofs. */
-void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *w,
-                               fu_modal_point *out, double *P, double *T)
+void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
+                               const double *w, fu_modal_point *out, double *P, double *T)
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
     double u[FU_SPACE], u1[3], theta[FU_SPACE], theta1[3], frame_P[18], frame_T[18], column[3], turn[3];
     point_of(body, attachment, eta_of(body, b), 0, u, theta);
     point_of(body, attachment, rate_of(body, w), 1, u1, theta1);
-    kernel->attachment(b, u, theta, w, u1, theta1, out->p, out->axes, frame_P, frame_T, out->velocity, out->omega, out->bias,
-                   out->omega_bias);
+    kernel->attachment(b, u, theta, w, u1, theta1, out->p, out->axes, frame_P, frame_T, out->velocity, out->omega,
+                       out->bias, out->omega_bias);
     for (int j = 0; j < frame; ++j) {
         for (int d = 0; d < dim; ++d) P[d * n + j] = frame_P[d * frame + j];
         for (int d = 0; d < turns; ++d) T[d * n + j] = frame_T[d * frame + j];
@@ -221,12 +224,13 @@ void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *a
 }
 
 /* Computes K (n x n), the derivative by the body's dofs of P' f + T' m at fixed f and m. */
-void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *f,
-                               const double *m, double *K)
+void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
+                               const double *f, const double *m, double *K)
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
-    double u[FU_SPACE], theta[FU_SPACE], of_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], row[FU_FRAME_DOFS], column[FU_FRAME_DOFS];
+    double u[FU_SPACE], theta[FU_SPACE], of_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], row[FU_FRAME_DOFS],
+        column[FU_FRAME_DOFS];
     point_of(body, attachment, eta_of(body, b), 0, u, theta);
     kernel->attachment_force(b, u, theta, f, m, of_frame);
     for (int i = 0; i < frame; ++i)
@@ -239,15 +243,15 @@ void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *a
             K[i * n + frame + k] = column[i];
         }
         for (int l = 0; l < body->modes; ++l)
-            kernel->attachment_pair_force(b, u, theta, phi, psi, attachment->phi + l * dim, attachment->psi + l * turns, f, m,
-                                      K + (frame + k) * n + frame + l);
+            kernel->attachment_pair_force(b, u, theta, phi, psi, attachment->phi + l * dim, attachment->psi + l * turns,
+                                          f, m, K + (frame + k) * n + frame + l);
     }
 }
 
-/* Computes the generalised force g of a force c along the axes of the section at a point, with which it turns, and K (n x
- * n), the derivative of g by the body's dofs. The frame's motion does not change the row of a mode. */
-void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *c,
-                                  double *g, double *K)
+/* Computes the generalised force g of a force c along the axes of the section at a point, with which it turns, and K (n
+ * x n), the derivative of g by the body's dofs. The frame's motion does not change the row of a mode. */
+void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
+                                  const double *c, double *g, double *K)
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
@@ -264,7 +268,7 @@ void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment
             K[i * n + frame + k] = column[i];
         }
         for (int l = 0; l < body->modes; ++l)
-            kernel->attachment_pair_follower(b, u, theta, phi, psi, attachment->phi + l * dim, attachment->psi + l * turns, c,
-                                         K + (frame + k) * n + frame + l);
+            kernel->attachment_pair_follower(b, u, theta, phi, psi, attachment->phi + l * dim,
+                                             attachment->psi + l * turns, c, K + (frame + k) * n + frame + l);
     }
 }

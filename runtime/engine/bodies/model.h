@@ -1,14 +1,15 @@
 /* The model: what is integrated.
  *
  * Coordinates. q is the configuration: for each cable its nodal vectors node by node, then for each body position and
- * attitude (unit quaternion; in the plane unit complex number) and, of a modal one, the coordinates of its modes. v, accelerations and increments have one entry a degree
- * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes; modes).
+ * attitude (unit quaternion; in the plane unit complex number) and, of a modal one, the coordinates of its modes. v,
+ * accelerations and increments have one entry a degree of freedom (dof): the cables' as in q, then the bodies'
+ * (translation; rotation about body axes; modes).
  *
- * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of nodes where cables
- * meet, if that is cheaper (model/numbering.py), those of the bodies, then what each joint and spring adds. Supports make
- * dofs linear in the unknowns, dofs = T unknowns + what motions prescribe; unknown_of_dof[dof] is the number of the unknown
- * that the dof is, -1 where it is fixed or prescribed, -2 - k where it is the k-th combination of unknowns
- * (bodies/unknowns.c).
+ * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of nodes where
+ * cables meet, if that is cheaper (model/numbering.py), those of the bodies, then what each joint and spring adds.
+ * Supports make dofs linear in the unknowns, dofs = T unknowns + what motions prescribe; unknown_of_dof[dof] is the
+ * number of the unknown that the dof is, -1 where it is fixed or prescribed, -2 - k where it is the k-th combination of
+ * unknowns (bodies/unknowns.c).
  *
  * Every array belongs to the caller; nothing here allocates.
  */
@@ -24,21 +25,21 @@ struct fu_model {
     int dim, n_cables, n_bodies, n_couplings, n_motions;
     const fu_cable *cables;
     const fu_body *bodies;
-    const fu_slide *slides; /* those of the couplings, one behind the other; null where there are none */
+    const fu_slide *slides;              /* those of the couplings, one behind the other; null where there are none */
     const fu_coupling *const *couplings; /* all of them: loads, slides, joints, springs */
     /* Those of them that are more than a contact (fu_acts_alone); those that carry something along with a step. */
     const fu_coupling **always_active, **with_history;
     int n_always_active, n_with_history, n_pairs; /* n_pairs: couplings that have a clearance */
-    fu_proximity *proximity;              /* which of these are far; null: it is not known */
+    fu_proximity *proximity;                      /* which of these are far; null: it is not known */
     const fu_motion *motions;
     const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
     /* Sums over the couplings: own coordinates, own forces, sets of constraint rows, numbers in a row of output, own
      * numbers and flags in a state, own work space; how many
      * react, act from outside, are driven, are damped, may be gone over, have inertia. */
-    int n_coordinates, n_forces, n_rows, n_outputs, n_numbers, n_flags, n_scratch, n_reacting, n_external, n_driven, n_damped,
-        n_passing, n_inertial;
-    int n_dissipation_state; /* zero without algorithmic dissipation */
+    int n_coordinates, n_forces, n_rows, n_outputs, n_numbers, n_flags, n_scratch, n_reacting, n_external, n_driven,
+        n_damped, n_passing, n_inertial;
+    int n_dissipation_state;    /* zero without algorithmic dissipation */
     int n_extra, n_multipliers; /* unknowns of couplings in a Newton system, and in eq 38 */
     const int *unknown_of_dof;
     const int *combination_start, *combination_unknown; /* combinations, row by row */
@@ -49,8 +50,10 @@ struct fu_model {
     double load_fraction;  /* of all loads but gravity that acts: 1, or less on a path of loads of statics */
     const fu_lapack *lapack;
     fu_threads *threads; /* null for one alone, for which the rest is not needed */
-    double *thread_work; /* n_coordinates^2 for each element of the longest cable: what threads leave to be added afterwards */
-    const int *is_shared;   /* of each dof: others are the same unknown, it is a combination, or its unknown is in the border */
+    double *thread_work; /* n_coordinates^2 for each element of the longest cable: what threads leave to be added
+                            afterwards */
+    const int
+        *is_shared; /* of each dof: others are the same unknown, it is a combination, or its unknown is in the border */
     const int *shared_dofs, *shared_unknowns; /* the numbers of these, and of their unknowns */
     int n_shared_dofs, n_shared_unknowns;
 };

@@ -5,18 +5,18 @@
 #include "base/common.h"
 
 /* ARRAY(name, axes: 1 for a number a row, items of a row) */
-#define FU_RECORD_ARRAYS(ARRAY)                                                                                          \
-    ARRAY(time, 1, 1)                                                                                                    \
-    ARRAY(kinetic, 1, 1)                                                                                                 \
-    ARRAY(elastic, 1, 1)                                                                                                 \
-    ARRAY(potential, 1, 1)                                                                                               \
-    ARRAY(dissipated, 1, 1)                                                                                              \
-    ARRAY(q, 2, model->n_q)                                                                                              \
-    ARRAY(v, 2, model->n_dof)                                                                                            \
-    ARRAY(acceleration, 2, model->n_dof)                                                                                 \
-    ARRAY(reaction, 2, model->n_dof)                                                                                     \
-    ARRAY(external, 1, 1)                                                                                                \
-    ARRAY(s, 2, model->n_coordinates)                                                                                    \
+#define FU_RECORD_ARRAYS(ARRAY)                                                                                        \
+    ARRAY(time, 1, 1)                                                                                                  \
+    ARRAY(kinetic, 1, 1)                                                                                               \
+    ARRAY(elastic, 1, 1)                                                                                               \
+    ARRAY(potential, 1, 1)                                                                                             \
+    ARRAY(dissipated, 1, 1)                                                                                            \
+    ARRAY(q, 2, model->n_q)                                                                                            \
+    ARRAY(v, 2, model->n_dof)                                                                                          \
+    ARRAY(acceleration, 2, model->n_dof)                                                                               \
+    ARRAY(reaction, 2, model->n_dof)                                                                                   \
+    ARRAY(external, 1, 1)                                                                                              \
+    ARRAY(s, 2, model->n_coordinates)                                                                                  \
     ARRAY(output, 2, model->n_outputs) /* of each coupling n_outputs of its type from `output` on */
 
 typedef struct {

@@ -1,5 +1,5 @@
-/* Finite rotations of bodies: configurations moved by steps, and derivatives made derivatives by steps. What a body's frame
- * does is in the kernels of derive/bodies/moves.py. */
+/* Finite rotations of bodies: configurations moved by steps, and derivatives made derivatives by steps. What a body's
+ * frame does is in the kernels of derive/bodies/moves.py. */
 #include "bodies/model.h"
 #include "bodies/rotation.h"
 
@@ -42,8 +42,8 @@ void fu_move(const fu_model *model, double *q, const double *dofs)
     move_all(model, q, dofs, 0);
 }
 
-/* Moves a configuration by a step psi: a translation, and Theta in body axes with A_next = A cay(Theta). In the plane Theta is
- * twice the tangent of half the angle. */
+/* Moves a configuration by a step psi: a translation, and Theta in body axes with A_next = A cay(Theta). In the plane
+ * Theta is twice the tangent of half the angle. */
 void fu_cayley_move(const fu_model *model, double *q, const double *psi)
 {
     move_all(model, q, psi, 1);
@@ -75,7 +75,8 @@ void fu_body_increment(const fu_body_kernels *kernel, const double *b, const dou
 }
 
 /* Multiplies rows by T in the columns of a body's rotations. */
-static inline void turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *T)
+static inline void turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first,
+                                const double *T)
 {
     double *p = rows + first + kernel->dim;
     if (kernel->dim == 2) {
@@ -91,8 +92,10 @@ static inline void turn_columns(const fu_body_kernels *kernel, double *rows, int
     }
 }
 
-/* Makes derivatives by a body's dofs, the first of them in column `first`, those by psi of `fu_move`. In the plane they are. */
-void fu_turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi)
+/* Makes derivatives by a body's dofs, the first of them in column `first`, those by psi of `fu_move`. In the plane they
+ * are. */
+void fu_turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first,
+                     const double *psi)
 {
     double T[FU_MATRIX_ENTRIES];
     if (kernel->dim == 2) return;
@@ -101,7 +104,8 @@ void fu_turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, in
 }
 
 /* Does the same for psi of `fu_cayley_move`. */
-void fu_cayley_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi)
+void fu_cayley_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first,
+                       const double *psi)
 {
     double T[FU_MATRIX_ENTRIES];
     kernel->cayley_tangent(psi, T);

@@ -14,7 +14,7 @@ int fu_all_finite(const double *numbers, long n)
     return 1;
 }
 
-#define IS_REAL(type) _Generic((type)0, double : 1, default : 0)
+#define IS_REAL(type) _Generic((type)0, double: 1, default: 0)
 
 /* Returns the k-th array of a state of the model. */
 fu_array fu_state_array(const fu_model *model, const fu_state *state, int k)
@@ -31,7 +31,7 @@ fu_array fu_state_array(const fu_model *model, const fu_state *state, int k)
 void fu_state_attach(fu_state *state, int k, void *data)
 {
     int at = 0;
-#define ATTACH(type, name, items) \
+#define ATTACH(type, name, items)                                                                                      \
     if (k == at++) state->name = data;
     FU_STATE_ARRAYS(ATTACH)
 #undef ATTACH
@@ -60,7 +60,7 @@ fu_array fu_record_array(const fu_model *model, const fu_record *record, int k)
 void fu_record_attach(fu_record *record, int k, double *data)
 {
     int at = 0;
-#define ATTACH(name, axes, items) \
+#define ATTACH(name, axes, items)                                                                                      \
     if (k == at++) record->name = data;
     FU_RECORD_ARRAYS(ATTACH)
 #undef ATTACH

@@ -5,23 +5,23 @@
 #include "base/common.h"
 
 /* The couplings' part of a state, which the first guess of a step takes over: ARRAY(type, name, items of a model). */
-#define FU_STATE_OF_COUPLINGS(ARRAY)                                                                                     \
-    /* couplings' own forces: on the rider of a slide, multipliers of a joint, on a spring's first end */               \
-    ARRAY(double, forces, model->n_forces)                                                                               \
-    ARRAY(int, piece, model->n_coordinates)     /* per own coordinate: the piece of its path (coupling_events.h) */      \
-    /* what a coupling's type alone knows the meaning of, n_numbers and n_flags of it */                                 \
-    ARRAY(double, numbers, model->n_numbers)                                                                             \
+#define FU_STATE_OF_COUPLINGS(ARRAY)                                                                                   \
+    /* couplings' own forces: on the rider of a slide, multipliers of a joint, on a spring's first end */              \
+    ARRAY(double, forces, model->n_forces)                                                                             \
+    ARRAY(int, piece, model->n_coordinates) /* per own coordinate: the piece of its path (coupling_events.h) */        \
+    /* what a coupling's type alone knows the meaning of, n_numbers and n_flags of it */                               \
+    ARRAY(double, numbers, model->n_numbers)                                                                           \
     ARRAY(int, flags, model->n_flags)
 
 /* All arrays of a state. */
-#define FU_STATE_ARRAYS(ARRAY)                                                                                           \
-    ARRAY(double, q, model->n_q)                                                                                         \
-    ARRAY(double, v, model->n_dof)                                                                                       \
-    ARRAY(double, acceleration, model->n_dof)                                                                            \
-    ARRAY(double, a, model->n_dof)              /* the integrator's auxiliary acceleration */                            \
-    ARRAY(double, s, model->n_coordinates)      /* couplings' own coordinates: of each slide the arc-length, m */        \
-    FU_STATE_OF_COUPLINGS(ARRAY)                                                                                         \
-    /* of algorithmic dissipation (integrators/algorithmic_dissipation.c) */                                             \
+#define FU_STATE_ARRAYS(ARRAY)                                                                                         \
+    ARRAY(double, q, model->n_q)                                                                                       \
+    ARRAY(double, v, model->n_dof)                                                                                     \
+    ARRAY(double, acceleration, model->n_dof)                                                                          \
+    ARRAY(double, a, model->n_dof)         /* the integrator's auxiliary acceleration */                               \
+    ARRAY(double, s, model->n_coordinates) /* couplings' own coordinates: of each slide the arc-length, m */           \
+    FU_STATE_OF_COUPLINGS(ARRAY)                                                                                       \
+    /* of algorithmic dissipation (integrators/algorithmic_dissipation.c) */                                           \
     ARRAY(double, dissipation_state, model->n_dissipation_state)
 
 struct fu_state {

@@ -125,8 +125,8 @@ static void add(fu_system *s, int row, int column, double value)
     }
 }
 
-/* Adds T' value T to a system at dofs (or unknowns beyond them, fu_extra) i, j, and notes which rows of the border that touches;
- * to no system (null) nothing. */
+/* Adds T' value T to a system at dofs (or unknowns beyond them, fu_extra) i, j, and notes which rows of the border that
+ * touches; to no system (null) nothing. */
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value)
 {
     if (!system) return;
@@ -139,15 +139,16 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
     }
     const row a = row_of(model, &unknown_i), b = row_of(model, &unknown_j);
     for (int k = 0; k < a.n; ++k)
-        for (int m = 0; m < b.n; ++m)
-            add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
+        for (int m = 0; m < b.n; ++m) add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
 }
 
-/* Adds T' K T of an n x n matrix, row by row, over the dofs from `first` on to a system; to no system (null) nothing. */
+/* Adds T' K T of an n x n matrix, row by row, over the dofs from `first` on to a system; to no system (null) nothing.
+ */
 void fu_add_element_matrix(const fu_model *model, int first, int n, const double *K, fu_system *system)
 {
     if (!system) return;
-    const int rows = FU_BAND_ROWS(system->width), diagonal = FU_BAND_DIAGONAL(system->width), *unknown = model->unknown_of_dof + first;
+    const int rows = FU_BAND_ROWS(system->width), diagonal = FU_BAND_DIAGONAL(system->width),
+              *unknown = model->unknown_of_dof + first;
     int outside_band = 0;
     for (int j = 0; j < n; ++j) outside_band |= unknown[j] <= FU_COMBINED || unknown[j] >= system->n;
     if (outside_band) {
@@ -163,9 +164,10 @@ void fu_add_element_matrix(const fu_model *model, int first, int n, const double
     }
 }
 
-/* Adds T' values T of a block over the border's unknowns from these on, which stand together in a front, rows and columns both. */
-static void add_together(fu_system *s, int row, int rows, int column, int columns, double factor, const double *restrict values,
-                         int by_row, int by_column)
+/* Adds T' values T of a block over the border's unknowns from these on, which stand together in a front, rows and
+ * columns both. */
+static void add_together(fu_system *s, int row, int rows, int column, int columns, double factor,
+                         const double *restrict values, int by_row, int by_column)
 {
     int stride;
     const int at = fu_fronts_block(s->fronts, row, column, &stride), has_place = at < s->fronts->size;
@@ -178,8 +180,8 @@ static void add_together(fu_system *s, int row, int rows, int column, int column
 }
 
 /* Adds T' values T to a system: of row i and column j the factor times values[i by_row + j by_column]. */
-void fu_add_block(const fu_model *model, fu_system *system, fu_side rows, fu_side columns, double factor, const double *values,
-                  int by_row, int by_column)
+void fu_add_block(const fu_model *model, fu_system *system, fu_side rows, fu_side columns, double factor,
+                  const double *values, int by_row, int by_column)
 {
     if (!system || !rows.n || !columns.n) return;
     if (rows.together && columns.together) {
@@ -204,8 +206,8 @@ void fu_add_body(const fu_model *model, fu_system *s, int dof, int n, const doub
     add_together(s, first, n, first, n, 1.0, values, n, 1);
 }
 
-/* Adds a row of the border and the column that is its transpose: a factor times n values over the dofs `at`. row: as fu_extra
- * numbers it. To no system (null) nothing. */
+/* Adds a row of the border and the column that is its transpose: a factor times n values over the dofs `at`. row: as
+ * fu_extra numbers it. To no system (null) nothing. */
 void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, int n, const int *at, const double *value,
                            double factor)
 {
@@ -253,14 +255,16 @@ static void size_part(const void *what, int part, int parts)
     job->largest[part] = check + fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
 }
 
-/* Returns the largest of what the dofs, times their weights, move points by, as a length, m; not a number where one is none. */
+/* Returns the largest of what the dofs, times their weights, move points by, as a length, m; not a number where one is
+ * none. */
 double fu_weighted_size(const fu_model *model, const double *weight, const double *dofs)
 {
     double alone;
     const measure job = {model->n_dof, weight, dofs, model->threads ? model->thread_work : &alone};
     const int parts = fu_share(model->threads, model->n_dof, size_part, &job);
     double size = job.largest[0];
-    for (int part = 1; part < parts; ++part) size = job.largest[part] > size || isnan(job.largest[part]) ? job.largest[part] : size;
+    for (int part = 1; part < parts; ++part)
+        size = job.largest[part] > size || isnan(job.largest[part]) ? job.largest[part] : size;
     return size;
 }
 

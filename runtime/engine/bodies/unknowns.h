@@ -4,12 +4,12 @@
 
 #include "linear/linear.h"
 
-/* Entries of model->unknown_of_dof: the place of the unknown that a dof is; that it is fixed; from FU_COMBINED on downwards, the number of
- * the combination of unknowns that it is. */
+/* Entries of model->unknown_of_dof: the place of the unknown that a dof is; that it is fixed; from FU_COMBINED on
+ * downwards, the number of the combination of unknowns that it is. */
 enum { FU_FIXED = -1, FU_COMBINED = -2 };
 
-/* Rows or columns of a block of a system: dofs or unknowns beyond them, as fu_add numbers them; `together`: all dofs of a body, or all
- * own unknowns of a coupling, one behind the other. */
+/* Rows or columns of a block of a system: dofs or unknowns beyond them, as fu_add numbers them; `together`: all dofs of
+ * a body, or all own unknowns of a coupling, one behind the other. */
 typedef struct {
     int n;
     const int *at;
@@ -20,8 +20,8 @@ void fu_gather(const fu_model *model, const double *force, double *x);
 void fu_spread(const fu_model *model, const double *x, double *dofs);
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value);
 void fu_add_element_matrix(const fu_model *model, int first, int n, const double *K, fu_system *system);
-void fu_add_block(const fu_model *model, fu_system *system, fu_side rows, fu_side columns, double factor, const double *values,
-                  int by_row, int by_column);
+void fu_add_block(const fu_model *model, fu_system *system, fu_side rows, fu_side columns, double factor,
+                  const double *values, int by_row, int by_column);
 void fu_add_body(const fu_model *model, fu_system *system, int dof, int n, const double *values);
 void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, int n, const int *at, const double *value,
                            double factor);

@@ -8,10 +8,11 @@
 #include <math.h>
 #include <string.h>
 
-#define MAX_SWEEPS 100 /* over the couplings whose forces depend on multipliers, before there is no solution */
-#define ROUNDING_OF_FORCE 1e-15   /* change of R by a sweep, over the force: one that is rounding */
-#define FORCE_TOLERANCE 1e-7     /* the same, where it is enough if a sweep changes R no less than the one before */
-#define DIVERGED 1e30   /* the same, of a sweep that runs away */
+#define MAX_SWEEPS 100          /* over the couplings whose forces depend on multipliers, before there is no solution */
+#define ROUNDING_OF_FORCE 1e-15 /* change of R by a sweep, over the force: one that is rounding */
+/* the same, where it is enough if a sweep changes R no less than the one before */
+#define FORCE_TOLERANCE 1e-7
+#define DIVERGED 1e30 /* the same, of a sweep that runs away */
 
 /* Makes the constraint rows of all couplings. */
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
@@ -34,8 +35,8 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
     }
 }
 
-/* Factors the band of M once, and solves for the columns of its border that are constant: those of the cables, and of rigid
- * bodies, by body axes. Returns 0, or not 0 where the band is not positive definite. */
+/* Factors the band of M once, and solves for the columns of its border that are constant: those of the cables, and of
+ * rigid bodies, by body axes. Returns 0, or not 0 where the band is not positive definite. */
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -52,8 +53,8 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
     return !s->definite; /* else it would be in K, which the Newton matrix takes */
 }
 
-/* Makes all of M at a state where couplings have inertia, and factors its band; returns 0, or not 0 where that is not positive
- * definite. */
+/* Makes all of M at a state where couplings have inertia, and factors its band; returns 0, or not 0 where that is not
+ * positive definite. */
 static int whole(const fu_model *model, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -64,7 +65,8 @@ static int whole(const fu_model *model, const double *q, fu_accelerator *work)
     return fu_system_factor_band(s, model->lapack) || !s->definite;
 }
 
-/* Makes the border of M, and where it depends on the configuration the band; returns 0, or not 0 where that is not definite. */
+/* Makes the border of M, and where it depends on the configuration the band; returns 0, or not 0 where that is not
+ * definite. */
 static int border(const fu_model *model, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -106,11 +108,13 @@ static void solve(const fu_model *model, fu_accelerator *work, const double *for
     double *x = work->rhs, *lambda = x + model->n_band + model->n_border_dof;
     fu_gather(model, force, x);
     for (int r = 0; r < model->n_rows; ++r)
-        for (int c = 0; c < work->rows[r].max_multipliers; ++c) lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
+        for (int c = 0; c < work->rows[r].max_multipliers; ++c)
+            lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
     fu_system_solve(&work->mass, model->lapack, x);
     fu_spread(model, x, solution);
     for (int r = 0; r < model->n_rows; ++r)
-        for (int c = 0; c < work->rows[r].max_multipliers; ++c) lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
+        for (int c = 0; c < work->rows[r].max_multipliers; ++c)
+            lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
 }
 
 /* Returns -sum_k H_ck x_k, what the right sides lose to known accelerations or velocities. */
@@ -121,8 +125,8 @@ static double minus_H(const fu_rows *rows, int c, const double *x)
     return sum;
 }
 
-/* Adds the forces that depend on these multipliers to work->work; null: on those of the state. Returns the largest change over the
- * force, of the coupling that work->self_locking tells. */
+/* Adds the forces that depend on these multipliers to work->work; null: on those of the state. Returns the largest
+ * change over the force, of the coupling that work->self_locking tells. */
 static double react(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
     double largest = 0.0;
@@ -145,9 +149,9 @@ static void reacted(const fu_model *model, const fu_state *state, fu_accelerator
     }
 }
 
-/* Finds accelerations and multipliers, in work->rhs, by the forces in work->work; by sweeps where friction depends on the
- * multipliers. Returns not zero where these do not converge: where friction presses the rider on the cable by more than what it
- * comes from, there is no solution (Painleve's). */
+/* Finds accelerations and multipliers, in work->rhs, by the forces in work->work; by sweeps where friction depends on
+ * the multipliers. Returns not zero where these do not converge: where friction presses the rider on the cable by more
+ * than what it comes from, there is no solution (Painleve's). */
 static int solve_friction(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, last = INFINITY;
@@ -155,8 +159,8 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
     for (int sweep = 0;; ++sweep) {
         for (int r = 0; r < model->n_rows; ++r)
             for (int c = 0; c < work->rows[r].max_multipliers; ++c)
-                lambda[work->rows[r].first + c] = c < work->rows[r].rows
-                    ? work->rows[r].W[c] + minus_H(&work->rows[r], c, work->prescribed) : 0.0;
+                lambda[work->rows[r].first + c] =
+                    c < work->rows[r].rows ? work->rows[r].W[c] + minus_H(&work->rows[r], c, work->prescribed) : 0.0;
         solve(model, work, work->work, acceleration);
         if (!model->n_reacting) return 0;
         const double change = react(model, state, work, lambda);
@@ -168,15 +172,16 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
     return 0;
 }
 
-/* Makes S = H M^-1 H' (n x n) at a state, of n multipliers: singular where joints hold the same. at: of each multiplier its row
- * of S, -1 where it has none. */
+/* Makes S = H M^-1 H' (n x n) at a state, of n multipliers: singular where joints hold the same. at: of each multiplier
+ * its row of S, -1 where it has none. */
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)
 {
     fu_system *s = &work->mass;
     const int all = model->n_multipliers;
     evaluate(model, state, work);
     if (border(model, state->q, work)) return 1;
-    for (int k = 0; k < all; ++k) fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, and no multipliers */
+    for (int k = 0; k < all; ++k)
+        fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, and no multipliers */
     const int info = fu_system_factor_border(s, model->lapack);
     for (int r = 0; r < model->n_rows && !info; ++r) {
         const fu_rows *rows = &work->rows[r];
@@ -192,7 +197,8 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
             for (int i = 0; i < model->n_rows; ++i)
                 for (int d = 0; d < work->rows[i].rows; ++d)
                     if (at[work->rows[i].first + d] >= 0)
-                        S[(long)at[rows->first + c] * n + at[work->rows[i].first + d]] = -minus_H(&work->rows[i], d, work->work);
+                        S[(long)at[rows->first + c] * n + at[work->rows[i].first + d]] =
+                            -minus_H(&work->rows[i], d, work->work);
         }
     }
     return info;
@@ -204,17 +210,18 @@ static void reactions(const fu_model *model, const fu_state *state, fu_accelerat
 {
     fu_mass_times(model, state->q, acceleration, work->work);
     for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i]; /* M q'' - Q (eq 26) */
-    for (int r = 0; r < model->n_rows; ++r) { /* + H' lambda (eq 32) */
+    for (int r = 0; r < model->n_rows; ++r) {                                            /* + H' lambda (eq 32) */
         const fu_rows *rows = &work->rows[r];
         for (int c = 0; c < rows->rows; ++c)
             for (int k = 0; k < rows->n; ++k)
-                reaction[rows->at[k]] += (rows->is_pushed && !c ? rows->column : rows->H + c * rows->n)[k] * lambda[rows->first + c];
+                reaction[rows->at[k]] +=
+                    (rows->is_pushed && !c ? rows->column : rows->H + c * rows->n)[k] * lambda[rows->first + c];
         for (int k = 0; k < rows->n && rows->by_push; ++k) reaction[rows->at[k]] -= rows->by_push[k] * rows->push;
     }
 }
 
-/* Finds accelerations and multipliers by eq 38, and the reactions of supports, unless `reaction` is null; returns 0 where there is
- * one solution. */
+/* Finds accelerations and multipliers by eq 38, and the reactions of supports, unless `reaction` is null; returns 0
+ * where there is one solution. */
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      double *reaction)
 {
@@ -251,7 +258,8 @@ int fu_prepare_response(const fu_model *model, const fu_state *state, fu_acceler
     return factor_border(model, state, work);
 }
 
-/* Makes `change`, the jump of velocities (or the accelerations) by impulses (or forces) on the dofs where constraints stay as they are. */
+/* Makes `change`, the jump of velocities (or the accelerations) by impulses (or forces) on the dofs where constraints
+ * stay as they are. */
 void fu_response(const fu_model *model, fu_accelerator *work, const double *force, double *change)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof;
@@ -265,8 +273,8 @@ typedef struct {
     double rate;
 } strike;
 
-/* Makes `change` the smallest (in the mass norm) change of the dofs with H change = -C_m, or, of velocities, -H v; of these the
- * constraint that has been `struck`, which may be null, gets its rate */
+/* Makes `change` the smallest (in the mass norm) change of the dofs with H change = -C_m, or, of velocities, -H v; of
+ * these the constraint that has been `struck`, which may be null, gets its rate */
 static int project(const fu_model *model, const fu_state *state, fu_accelerator *work, int of_velocities,
                    const strike *struck, double *change)
 {
@@ -298,8 +306,8 @@ int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accel
     return project(model, state, work, 1, 0, change);
 }
 
-/* Makes `change` that of v where a constraint is struck: M change + H' L = 0, so that momentum changes by what the constraints give
- * alone; minus `rate` is what that constraint changes by afterwards */
+/* Makes `change` that of v where a constraint is struck: M change + H' L = 0, so that momentum changes by what the
+ * constraints give alone; minus `rate` is what that constraint changes by afterwards */
 int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int row, int constraint, double rate,
               double *change)
 {

@@ -12,7 +12,7 @@ int fu_project_positions(const fu_model *model, const fu_state *state, fu_accele
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_prepare_response(const fu_model *model, const fu_state *state, fu_accelerator *work);
 void fu_response(const fu_model *model, fu_accelerator *work, const double *force, double *change);
-int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int row, int constraint,
-              double rate, double *change);
+int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int row, int constraint, double rate,
+              double *change);
 
 #endif

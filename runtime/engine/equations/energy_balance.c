@@ -7,10 +7,10 @@
 
 #include <math.h>
 
-#define MOST_GROWTH 0.5    /* of the energy exchanged, or of motion: beyond it the result is none */
-#define BEGUN 1e-4         /* of the size of the scene: with less motion it has not begun */
-#define LEAST_MOTION 1e-10 /* of the largest coordinate: less is what step control and rounding leave of rest */
-#define ROUNDING_OF_ENERGY 1e-14     /* of the energies: what a sum over many elements may be off by */
+#define MOST_GROWTH 0.5          /* of the energy exchanged, or of motion: beyond it the result is none */
+#define BEGUN 1e-4               /* of the size of the scene: with less motion it has not begun */
+#define LEAST_MOTION 1e-10       /* of the largest coordinate: less is what step control and rounding leave of rest */
+#define ROUNDING_OF_ENERGY 1e-14 /* of the energies: what a sum over many elements may be off by */
 
 /* Returns the power of what drives constraints, by the multipliers that eq 38 left, W. */
 static double driving_power(const fu_run *run)
@@ -24,15 +24,15 @@ static double driving_power(const fu_run *run)
     return power;
 }
 
-/* Returns the power that goes to heat at a state, W: in friction by the forces that a Newton method solves for, else by those of
- * eq 38. */
+/* Returns the power that goes to heat at a state, W: in friction by the forces that a Newton method solves for, else by
+ * those of eq 38. */
 double fu_dissipated_power(const fu_run *run, const fu_state *state)
 {
     return fu_dissipation(run->model, state, run->integrator->newton ? 0 : &run->accelerator);
 }
 
-/* Returns the power of the loads; of what drives constraints, by the last call of fu_accelerations; and of the motions, with the
- * forces that the supports give, which are not looked at where no support moves, W. */
+/* Returns the power of the loads; of what drives constraints, by the last call of fu_accelerations; and of the motions,
+ * with the forces that the supports give, which are not looked at where no support moves, W. */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
     const fu_model *model = run->model;
@@ -49,10 +49,10 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
     return power;
 }
 
-/* Returns what drives give in the step just made beyond the trapezoidal rule, J. Their power is by the force of eq 38, as it is
- * reported, since the multipliers that Newton's method finds are off by h^2 of it. The error of the rule is -h^3/12 of the second
- * derivative of the power, which three instants tell. A very short step, as to an event, joins the interval before it: over so
- * short a time Newton's remainder would rule the rate of the power. */
+/* Returns what drives give in the step just made beyond the trapezoidal rule, J. Their power is by the force of eq 38,
+ * as it is reported, since the multipliers that Newton's method finds are off by h^2 of it. The error of the rule is
+ * -h^3/12 of the second derivative of the power, which three instants tell. A very short step, as to an event, joins
+ * the interval before it: over so short a time Newton's remainder would rule the rate of the power. */
 static double beyond_trapezoid(fu_run *run, double h)
 {
     const double power = driving_power(run);
@@ -73,7 +73,8 @@ static double beyond_trapezoid(fu_run *run, double h)
     return beyond;
 }
 
-/* Adds the step just made to the balance by the trapezoidal rule, as good as a method of order 2; what drives give, better. */
+/* Adds the step just made to the balance by the trapezoidal rule, as good as a method of order 2; what drives give,
+ * better. */
 void fu_account_trapezoid(fu_run *run, double h)
 {
     const int driven = run->model->n_driven > 0;
@@ -87,8 +88,8 @@ void fu_account_trapezoid(fu_run *run, double h)
     run->external_power = external;
 }
 
-/* Changes the velocities of `now` by a jump M change = H' L, of which impacts take the energy `lost`, J. The impulses of what drives
- * the scene, and of a fluid that moves, have done the rest. */
+/* Changes the velocities of `now` by a jump M change = H' L, of which impacts take the energy `lost`, J. The impulses
+ * of what drives the scene, and of a fluid that moves, have done the rest. */
 void fu_take_jump(fu_run *run, const double *change, double lost)
 {
     const fu_model *model = run->model;
@@ -100,8 +101,8 @@ void fu_take_jump(fu_run *run, const double *change, double lost)
         run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before + lost;
 }
 
-/* Changes the velocities of `now` by an impact, so that constraints hold that they broke. What is lost is (1 - e)/(1 + e) of the
- * kinetic energy of the change (Carnot), with the restitution e of the constraint that was broken. */
+/* Changes the velocities of `now` by an impact, so that constraints hold that they broke. What is lost is (1 - e)/(1 +
+ * e) of the kinetic energy of the change (Carnot), with the restitution e of the constraint that was broken. */
 void fu_impact(fu_run *run, const double *change, double restitution)
 {
     const double of_change = fu_kinetic_energy_of_change(run->model, run->now.q, change);
@@ -114,7 +115,8 @@ int fu_moves(const fu_run *run)
     return run->motion > LEAST_MOTION * run->extent;
 }
 
-/* Returns what rounding may make of the sum of the energies, J, that of coordinates far from the origin under gravity included. */
+/* Returns what rounding may make of the sum of the energies, J, that of coordinates far from the origin under gravity
+ * included. */
 static double rounding(const fu_run *run, const double energies[FU_ENERGIES])
 {
     double sum = 0.0, weight = 0.0;
@@ -123,8 +125,9 @@ static double rounding(const fu_run *run, const double energies[FU_ENERGIES])
     return ROUNDING_OF_ENERGY * (sum + weight * run->extent);
 }
 
-/* Compares the energies at an output with the first: kinetic, elastic, potential, dissipated, and minus external energy. Returns
- * not zero where energy has come from nowhere, as where an explicit method's step is beyond its limit. */
+/* Compares the energies at an output with the first: kinetic, elastic, potential, dissipated, and minus external
+ * energy. Returns not zero where energy has come from nowhere, as where an explicit method's step is beyond its limit.
+ */
 int fu_check_energy_balance(fu_run *run, const double energies[FU_ENERGIES], int first)
 {
     fu_energy_balance *balance = &run->balance;
@@ -139,6 +142,7 @@ int fu_check_energy_balance(fu_run *run, const double energies[FU_ENERGIES], int
     balance->rounding = fmax(balance->rounding, rounding(run, energies));
     balance->grown = fmax(balance->grown, grown);
     balance->lost = fmax(balance->lost, -grown);
-    if (run->motion <= BEGUN * run->size || grown <= MOST_GROWTH * fmax(balance->exchanged, balance->in_motion)) return 0;
+    if (run->motion <= BEGUN * run->size || grown <= MOST_GROWTH * fmax(balance->exchanged, balance->in_motion))
+        return 0;
     return fu_fail(run, FU_NO_FAILURE, run->now.v, -1);
 }

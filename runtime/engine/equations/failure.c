@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-/* Notes why a step failed: the cause, the dof that moves farthest (or is not a number), and the number of the coupling or -1.
- * Returns 1. */
+/* Notes why a step failed: the cause, the dof that moves farthest (or is not a number), and the number of the coupling
+ * or -1. Returns 1. */
 int fu_fail(fu_run *run, int cause, const double *dofs, int coupling)
 {
     const fu_model *model = run->model;

@@ -5,7 +5,16 @@
 #include "base/common.h"
 
 /* Why a step failed, and where that shows most: a dof, and the number of a coupling or -1. */
-enum { FU_NO_FAILURE = 0, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING, FU_NOT_KNOWN };
+enum {
+    FU_NO_FAILURE = 0,
+    FU_ITERATION,
+    FU_MATRIX,
+    FU_ERROR,
+    FU_LOST_RIDER,
+    FU_NOT_FINITE,
+    FU_SELF_LOCKING,
+    FU_NOT_KNOWN
+};
 typedef struct {
     int cause, dof, coupling;
 } fu_failure;

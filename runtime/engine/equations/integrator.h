@@ -26,17 +26,18 @@ typedef struct {
     int (*step)(fu_run *run, double h);
     /* Returns the local error of positions of the step just made, m. */
     double (*error)(fu_run *run, double h);
-    /* Returns the rule by which forces of a step count; null: steps of which the error is controlled end on each passage. */
+    /* Returns the rule by which forces of a step count; null: steps of which the error is controlled end on each
+     * passage. */
     fu_quadrature (*quadrature)(const fu_run *run);
     /* Adds what the step just accepted has dissipated and got from outside. */
     void (*account)(fu_run *run, double h);
     /* Drops what it keeps from step to step in its work space, as at a pause; null: nothing. */
     void (*forget)(fu_run *run);
-    int keeps_scratch;      /* checkpoints hold its work space, which is real numbers alone */
-    int keeps_energy;       /* velocities stay as they are where it starts anew: to project them would cost energy */
-    int coasts;             /* nothing of a very short step is in what it goes on with: it is not started anew after one */
-    int has_matrix;         /* run->newton has the mass and the stiffness of a step, times its square */
-    int crosses_boundaries; /* it finds the slides' elements within a step, which may go over boundaries of elements */
+    int keeps_scratch; /* checkpoints hold its work space, which is real numbers alone */
+    int keeps_energy;  /* velocities stay as they are where it starts anew: to project them would cost energy */
+    int coasts;        /* nothing of a very short step is in what it goes on with: it is not started anew after one */
+    int has_matrix;    /* run->newton has the mass and the stiffness of a step, times its square */
+    int crosses_boundaries;  /* it finds the slides' elements within a step, which may go over boundaries of elements */
     const fu_newton *newton; /* of implicit steps with constraints on positions; null where eq 38 gives accelerations */
 } fu_integrator;
 

@@ -8,14 +8,20 @@
 
 #include <math.h>
 
-#define STAGNANT 0.3          /* increments that shrink less than to this, at the size of rounding, are rounding */
-#define FIRST_CONTRACTION 0.5 /* assumed before there are two increments: too large to stop after one iteration */
-#define MAX_CONTRACTION 0.9           /* largest contraction by which the rest of the error is estimated */
-#define MIN_CONTRACTION 0.03            /* least contraction by which it is: first iterations mend what is linear, the next are slower */
+/* increments that shrink less than to this, at the size of rounding, are rounding */
+#define STAGNANT 0.3
+/* assumed before there are two increments: too large to stop after one iteration */
+#define FIRST_CONTRACTION 0.5
+#define MAX_CONTRACTION 0.9 /* largest contraction by which the rest of the error is estimated */
+/* least contraction by which it is: first iterations mend what is linear, the next are slower */
+#define MIN_CONTRACTION 0.03
 #define ROUNDING_FACTOR 100.0 /* times the rounding of positions: an increment that is not rounding */
-#define MATRIX_COST 2.0       /* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
-#define UNDERESTIMATE 10.0    /* how many times less an increment may shrink than its residual, which counts stiffness more */
-#define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
+/* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
+#define MATRIX_COST 2.0
+/* how many times less an increment may shrink than its residual, which counts stiffness more */
+#define UNDERESTIMATE 10.0
+/* a step of more than a fourth of the most iterations has its matrix made anew for the next */
+#define MANY 4
 
 static int factor(fu_run *run, const fu_newton *method, double h)
 {
@@ -77,8 +83,8 @@ static int blame(fu_run *run)
     return fu_fail(run, FU_ITERATION, run->work, coupling);
 }
 
-/* Counts the step just made for the matrix, which is made anew where going on with it costs more than steps did on the average,
- * the matrix included. */
+/* Counts the step just made for the matrix, which is made anew where going on with it costs more than steps did on the
+ * average, the matrix included. */
 static void count_for_matrix(fu_run *run, int iterations, int most)
 {
     run->matrix_cost += iterations;
@@ -100,9 +106,10 @@ static double largest_gap(fu_run *run)
     return gap;
 }
 
-/* Closes the gaps that an iteration has left, with the factored matrix, as if the dofs' own equations were linear: gaps come of
- * directions that have turned since it was made, and are the most of what the next iteration would mend. This takes no forces
- * of cables and no substitution in their chains; without chains it would take as much as an iteration. */
+/* Closes the gaps that an iteration has left, with the factored matrix, as if the dofs' own equations were linear: gaps
+ * come of directions that have turned since it was made, and are the most of what the next iteration would mend. This
+ * takes no forces of cables and no substitution in their chains; without chains it would take as much as an iteration.
+ */
 static void close_gaps(fu_run *run, const fu_newton *method, double h)
 {
     const fu_model *model = run->model;
@@ -114,8 +121,8 @@ static void close_gaps(fu_run *run, const fu_newton *method, double h)
     method->kinematics(run, h);
 }
 
-/* Returns whether an iteration may end after an increment of this size, which is `ratio` of the last. Increments that shrink
- * no more are rounding, of which long chains of joints make more than one position has. */
+/* Returns whether an iteration may end after an increment of this size, which is `ratio` of the last. Increments that
+ * shrink no more are rounding, of which long chains of joints make more than one position has. */
 static int leaves_nothing(const fu_run *run, const fu_newton *method, double size, double ratio)
 {
     if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance) return 1;
@@ -140,7 +147,9 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         if (i > 0) {
             ratio = size / last;
             if (ratio >= 1.0 && size > ROUNDING_FACTOR * run->round_off) return blame(run);
-            run->contraction = ratio < MIN_CONTRACTION ? MIN_CONTRACTION : ratio > MAX_CONTRACTION ? MAX_CONTRACTION : ratio;
+            run->contraction = ratio < MIN_CONTRACTION   ? MIN_CONTRACTION
+                               : ratio > MAX_CONTRACTION ? MAX_CONTRACTION
+                                                         : ratio;
         }
         if (leaves_nothing(run, method, size, ratio)) {
             method->kinematics(run, h);
@@ -157,8 +166,8 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
     return 0;
 }
 
-/* Largest residuals in run->rhs: root of the sum of squares over the equations of motion; of the couplings' own equations;
- * and gaps of constraints, m. */
+/* Largest residuals in run->rhs: root of the sum of squares over the equations of motion; of the couplings' own
+ * equations; and gaps of constraints, m. */
 typedef struct {
     double motion, own, gap;
 } residual_size;
@@ -183,15 +192,16 @@ static double contraction_of_residual(residual_size before, residual_size after)
     return fmin(1.0, UNDERESTIMATE * fmax(motion, own));
 }
 
-/* Returns whether an iteration may end after an increment of this size, which the next will be `contraction` of, at these
- * gaps. */
+/* Returns whether an iteration may end after an increment of this size, which the next will be `contraction` of, at
+ * these gaps. */
 static int leaves_little(const fu_run *run, double size, double contraction, double gap)
 {
     const double enough = fmax(run->newton_tolerance, run->round_off);
     return size <= run->round_off || (size * contraction <= enough && gap <= enough);
 }
 
-/* Does the same where the steps to come make up for what is left: its residual is evaluated, and tells how much that is. */
+/* Does the same where the steps to come make up for what is left: its residual is evaluated, and tells how much that
+ * is. */
 static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
 {
     double last = INFINITY;
@@ -244,8 +254,8 @@ int fu_newton_step(fu_run *run, const fu_newton *method, double h)
     return 1;
 }
 
-/* Returns the size of an error of positions in run->work, passed through (M + sigma K)^-1 M on the constraints' tangent space
- * so that vibrations that the step does not resolve count by their amplitude and not by their acceleration. */
+/* Returns the size of an error of positions in run->work, passed through (M + sigma K)^-1 M on the constraints' tangent
+ * space so that vibrations that the step does not resolve count by their amplitude and not by their acceleration. */
 double fu_filtered_size(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -259,8 +269,8 @@ double fu_filtered_size(fu_run *run)
     return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
 }
 
-/* Makes, for tests of the matrix, the residual after moving the predicted step by `change` (unknowns), in run->rhs with its sign
- * turned, and the unfactored matrix there in run->newton. */
+/* Makes, for tests of the matrix, the residual after moving the predicted step by `change` (unknowns), in run->rhs with
+ * its sign turned, and the unfactored matrix there in run->newton. */
 void fu_linearise(fu_run *run, double h, const double *change)
 {
     const fu_newton *method = run->integrator->newton;

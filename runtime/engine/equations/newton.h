@@ -8,8 +8,8 @@
 #define FU_SAME_STEP 1e-6 /* of a step: one that differs by less has the same matrix */
 
 /* What implicit integrators have in common. `predict` makes a first `next`; `kinematics` completes it from the
- * unknowns; `residual` leaves minus the scaled residual in run->rhs, `matrix` its derivative in run->newton; `apply` adds
- * the solution in run->rhs and returns its size as a length. */
+ * unknowns; `residual` leaves minus the scaled residual in run->rhs, `matrix` its derivative in run->newton; `apply`
+ * adds the solution in run->rhs and returns its size as a length. */
 
 typedef struct {
     void (*predict)(fu_run *run, double h);
@@ -17,9 +17,10 @@ typedef struct {
     void (*residual)(fu_run *run, double h);
     void (*matrix)(fu_run *run, double h);
     double (*apply)(fu_run *run, double h);
-    int most_iterations, to_rounding; /* the latter: go on below the rounding of positions, until increments shrink no more */
-    /* Notes what Newton leaves, in run->rhs, which the steps to come make up for; null: they do not, and what Newton leaves
-     * acts on the motion like a force. */
+    int most_iterations,
+        to_rounding; /* the latter: go on below the rounding of positions, until increments shrink no more */
+    /* Notes what Newton leaves, in run->rhs, which the steps to come make up for; null: they do not, and what Newton
+     * leaves acts on the motion like a force. */
     void (*note_rest)(fu_run *run, double h);
     /* Leaves minus the scaled residual of the couplings' own equations in run->rhs, and zero for the dofs. */
     void (*own_residual)(fu_run *run, double h);

@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-#define COARSE_ERROR 1e-4           /* of the motion: error of a step beyond which its iteration may lead anywhere */
+/* of the motion: error of a step beyond which its iteration may lead anywhere */
+#define COARSE_ERROR 1e-4
 
 double *fu_internal_unknowns(fu_run *run)
 {
@@ -25,9 +26,9 @@ int fu_goes_on(const fu_run *run)
     return run->net_rejections <= 0 && run->last_error <= COARSE_ERROR * fmax(run->motion, run->least_motion);
 }
 
-/* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are solved to
- * rounding instead: a gap of 1e-14 m after a step of 1 ms takes a force of 1e-8 N for each kg in the next one, which
- * vibrations of the scheme keep for long. So are fixed steps that had to be divided, or are too coarse. */
+/* Returns whether the steps to come make up for what Newton leaves of one. Fixed steps of scenes with couplings are
+ * solved to rounding instead: a gap of 1e-14 m after a step of 1 ms takes a force of 1e-8 N for each kg in the next
+ * one, which vibrations of the scheme keep for long. So are fixed steps that had to be divided, or are too coarse. */
 int fu_carries_rest(const fu_run *run)
 {
     const fu_newton *method = run->integrator->newton;

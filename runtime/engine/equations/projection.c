@@ -1,5 +1,5 @@
-/* What the integrators on eq 38 share: slides where C_l = 0, projection of what the constraints lost in a step, and what
- * follows from positions and velocities. */
+/* What the integrators on eq 38 share: slides where C_l = 0, projection of what the constraints lost in a step, and
+ * what follows from positions and velocities. */
 #include "bodies/rotation.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
@@ -10,10 +10,12 @@
 #include <math.h>
 #include <string.h>
 
-#define MOST_PROJECTIONS 10 /* of positions, each of second order, before a state has no way back onto its joints */
-#define SHORT_STEP 1e-3     /* of the usual step: in a shorter one rounding over h^2 would rule accelerations */
-#define CLOSED 1e-13        /* of the largest length: smaller gaps at the start are rounding */
-#define PROBE_TOLERANCE 1e-12        /* of the largest length: gaps with which a probed mechanism is back on its joints */
+/* of positions, each of second order, before a state has no way back onto its joints */
+#define MOST_PROJECTIONS 10
+#define SHORT_STEP 1e-3 /* of the usual step: in a shorter one rounding over h^2 would rule accelerations */
+#define CLOSED 1e-13    /* of the largest length: smaller gaps at the start are rounding */
+/* of the largest length: gaps with which a probed mechanism is back on its joints */
+#define PROBE_TOLERANCE 1e-12
 
 /* Notes that a coupling's own coordinates do not follow from the others; returns 1. */
 static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
@@ -21,8 +23,8 @@ static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
     return fu_fail(run, FU_LOST_RIDER, v, coupling->number);
 }
 
-/* Finds the own coordinates of `next` that follow from the others, from what the last step's slope predicts; returns 0 where they
- * were found. */
+/* Finds the own coordinates of `next` that follow from the others, from what the last step's slope predicts; returns 0
+ * where they were found. */
 int fu_find_internal(fu_run *run)
 {
     fu_state *next = &run->next;
@@ -43,8 +45,8 @@ static void normalise(const fu_model *model, double *q)
     }
 }
 
-/* Brings the positions of a state back onto its joints, and s with them, until a correction is small enough; returns 0 where that
- * converged. */
+/* Brings the positions of a state back onto its joints, and s with them, until a correction is small enough; returns 0
+ * where that converged. */
 static int close_gaps(fu_run *run, fu_state *state, double enough)
 {
     const fu_model *model = run->model;
@@ -60,8 +62,8 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
     }
 }
 
-/* Brings a start with small gaps onto its joints, if it is not there; run->closed is how large they are. Returns 0 where that
- * converged. */
+/* Brings a start with small gaps onto its joints, if it is not there; run->closed is how large they are. Returns 0
+ * where that converged. */
 int fu_close(fu_run *run)
 {
     const double rounding = CLOSED * fu_largest_length(run);
@@ -83,9 +85,9 @@ int fu_return_to_joints(fu_run *run, fu_state *state)
     return 0;
 }
 
-/* Goes from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints. `left` is
- * what is left of the couplings' equations then, redundant ones too, in the places of their forces. Returns not zero where
- * there is no way back. */
+/* Goes from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints.
+ * `left` is what is left of the couplings' equations then, redundant ones too, in the places of their forces. Returns
+ * not zero where there is no way back. */
 int fu_probe_mechanism(fu_run *run, const double *along, double *left)
 {
     const fu_model *model = run->model;
@@ -104,8 +106,8 @@ int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     return 0;
 }
 
-/* Finds the accelerations of a state by eq 38, and with them the couplings' forces; run->force is what supports give, where
- * something moves them. Returns 0 where that was found. */
+/* Finds the accelerations of a state by eq 38, and with them the couplings' forces; run->force is what supports give,
+ * where something moves them. Returns 0 where that was found. */
 int fu_complete(fu_run *run, fu_state *state)
 {
     const fu_model *model = run->model;
@@ -115,15 +117,15 @@ int fu_complete(fu_run *run, fu_state *state)
     return info;
 }
 
-/* Returns whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding of
- * positions would rule a velocity or an acceleration that is made of them. */
+/* Returns whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding
+ * of positions would rule a velocity or an acceleration that is made of them. */
 int fu_is_short(const fu_run *run, double h)
 {
     return h < SHORT_STEP * run->usual;
 }
 
-/* Makes such a step, of any length: `next` from `now` by its accelerations, and back onto the joints, but for what the scheme has
- * beside them; returns 0 where that converged. */
+/* Makes such a step, of any length: `next` from `now` by its accelerations, and back onto the joints, but for what the
+ * scheme has beside them; returns 0 where that converged. */
 int fu_coast(fu_run *run, double h)
 {
     const fu_model *model = run->model;

@@ -37,9 +37,9 @@ static double square_moved(const double *weight, const double *from, const doubl
     return square;
 }
 
-/* Returns how far a body has turned, as a length, m: the chord 2 sin(angle/2) of unit vectors times the weight of the turns. A
- * quaternion turns by half the angle, so that the product of its distances from the other and from the other's opposite, which
- * is the same attitude, is this chord. */
+/* Returns how far a body has turned, as a length, m: the chord 2 sin(angle/2) of unit vectors times the weight of the
+ * turns. A quaternion turns by half the angle, so that the product of its distances from the other and from the other's
+ * opposite, which is the same attitude, is this chord. */
 static double turned(const fu_body *body, const double *weight, const double *from, const double *to)
 {
     const fu_body_kernels *kernel = body->kernel;
@@ -53,8 +53,8 @@ static double turned(const fu_body *body, const double *weight, const double *fr
     return largest * (kernel->dim == 3 ? sqrt(there * opposite) : sqrt(there));
 }
 
-/* Returns the largest distance that what tol is the error of has moved since the start, m: nodes, bodies' centres, and where
- * they count turns and modes. */
+/* Returns the largest distance that what tol is the error of has moved since the start, m: nodes, bodies' centres, and
+ * where they count turns and modes. */
 double fu_controlled_motion(const fu_run *run)
 {
     const fu_model *model = run->model;
@@ -77,8 +77,8 @@ double fu_controlled_motion(const fu_run *run)
     return fmax(largest, sqrt(square));
 }
 
-/* Returns the size of what coordinates are rounded to, m: the farthest position, or what unit slopes and turns move a point
- * by. */
+/* Returns the size of what coordinates are rounded to, m: the farthest position, or what unit slopes and turns move a
+ * point by. */
 double fu_extent(const fu_model *model, const double *origin, const double *q)
 {
     double largest = fu_largest_motion(model, origin, q);
@@ -93,13 +93,15 @@ double fu_extent(const fu_model *model, const double *origin, const double *q)
     return largest;
 }
 
-/* Returns the largest side of the box around all nodes and bodies' centres, or what unit slopes and turns move a point by, m. */
+/* Returns the largest side of the box around all nodes and bodies' centres, or what unit slopes and turns move a point
+ * by, m. */
 double fu_scene_size(const fu_model *model, const double *origin, const double *q)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     double largest = fu_extent(model, origin, origin);
     for (int c = 0; c < model->n_cables; ++c)
-        for (int k = 0, at = model->cables[c].first; k <= model->cables[c].n_elements; ++k, at += model->cables[c].per_node)
+        for (int k = 0, at = model->cables[c].first; k <= model->cables[c].n_elements;
+             ++k, at += model->cables[c].per_node)
             for (int d = 0; d < model->dim; ++d) {
                 low[d] = fmin(low[d], q[at + d]);
                 high[d] = fmax(high[d], q[at + d]);
@@ -122,8 +124,9 @@ static double length_of(int dim, const fu_field *field, const char *item)
     return sqrt(fu_dot(dim, place, place));
 }
 
-/* Returns the longest length from which constraints compute positions, m: points in the axes of bodies and of the ground, sizes
- * of shapes. A distance between two of them is rounded relative to it, however close to the origin the scene is. */
+/* Returns the longest length from which constraints compute positions, m: points in the axes of bodies and of the
+ * ground, sizes of shapes. A distance between two of them is rounded relative to it, however close to the origin the
+ * scene is. */
 double fu_longest_lever(const fu_model *model)
 {
     double longest = 0.0;
@@ -133,7 +136,8 @@ double fu_longest_lever(const fu_model *model)
         for (const fu_field *field = model->couplings[c]->type->fields; field->name; ++field) {
             if (field->kind != FU_LENGTH && field->kind != FU_ATTACHMENT) continue;
             for (int i = 0; i < field->most; ++i)
-                longest = fmax(longest, length_of(model->dim, field, structure + field->offset + (size_t)i * field->stride));
+                longest =
+                    fmax(longest, length_of(model->dim, field, structure + field->offset + (size_t)i * field->stride));
         }
     }
     return longest;

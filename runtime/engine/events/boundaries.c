@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TOLERANCE 1e-11 /* of a piece: a coordinate is not beyond a boundary that it has passed by less, which is rounding */
+/* of a piece: a coordinate is not beyond a boundary that it has passed by less, which is rounding */
+#define TOLERANCE 1e-11
 
 /* Returns how far a coordinate may be beyond its piece without being outside, m. */
 double fu_boundary_tolerance(fu_path path)
@@ -36,7 +37,8 @@ static int piece_of(const fu_coupling *coupling, const fu_state *state)
     return state->piece[coupling->coordinate];
 }
 
-/* Returns how far the coordinate of a coupling lies outside its piece, m, negative inside, and the side that is nearer. */
+/* Returns how far the coordinate of a coupling lies outside its piece, m, negative inside, and the side that is nearer.
+ */
 double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side)
 {
     const fu_path path = fu_path_of(model, coupling, state);
@@ -57,8 +59,8 @@ int fu_stop_at_boundaries(const fu_model *model)
     return 0;
 }
 
-/* Puts the couplings of `next` on the pieces that hold their coordinates, unless they are to keep those of `now`. The matrix
- * is of the pieces that it was made with. */
+/* Puts the couplings of `next` on the pieces that hold their coordinates, unless they are to keep those of `now`. The
+ * matrix is of the pieces that it was made with. */
 void fu_choose_path_segments(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -69,14 +71,15 @@ void fu_choose_path_segments(fu_run *run)
         int side, *piece = &run->next.piece[c->coordinate];
         if (!path.n || !(fu_outside(model, c, &run->next, &side) > fu_boundary_tolerance(path))) continue;
         const double s = coordinate_of(c, &run->next);
-        const double holds = path.boundaries ? fu_last_reached(path.boundaries, 0, path.n, s) : fmin(fmax(s / path.length, 0.0), path.n - 1.0);
+        const double holds = path.boundaries ? fu_last_reached(path.boundaries, 0, path.n, s)
+                                             : fmin(fmax(s / path.length, 0.0), path.n - 1.0);
         if ((int)holds != *piece) run->factored = 0;
         *piece = (int)holds;
     }
 }
 
-/* Puts the couplings of a state on the pieces that hold their coordinates, but those that are on one of these, at its ends
- * too. */
+/* Puts the couplings of a state on the pieces that hold their coordinates, but those that are on one of these, at its
+ * ends too. */
 void fu_find_path_segments(const fu_model *model, fu_state *state)
 {
     for (int k = 0; k < model->n_always_active; ++k) {
@@ -85,8 +88,9 @@ void fu_find_path_segments(const fu_model *model, fu_state *state)
         const double s = path.n ? coordinate_of(c, state) : 0.0;
         int *piece = &state->piece[c->coordinate];
         if (!path.n || (fu_boundary(path, *piece) <= s && s <= fu_boundary(path, *piece + 1))) continue;
-        const double holds = path.boundaries ? fu_last_reached(path.boundaries, 0, path.n, s)
-                                             : round((s - fmod(s, path.length)) / path.length); /* a quotient may be rounded up */
+        const double holds = path.boundaries
+                                 ? fu_last_reached(path.boundaries, 0, path.n, s)
+                                 : round((s - fmod(s, path.length)) / path.length); /* a quotient may be rounded up */
         *piece = (int)fmin(fmax(holds, 0.0), path.n - 1.0);
     }
 }
@@ -121,8 +125,8 @@ double fu_time_to_boundary(const fu_run *run)
     return least;
 }
 
-/* Returns after which part of a step a coupling turns, by the parabola through both ends of the step, that is back at `next`
- * from beyond a boundary, or beyond one that it stood on and has left inwards; 0 where it does neither. */
+/* Returns after which part of a step a coupling turns, by the parabola through both ends of the step, that is back at
+ * `next` from beyond a boundary, or beyond one that it stood on and has left inwards; 0 where it does neither. */
 static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path, double h)
 {
     const double rise = h * c->events->path->rate(run->model, c, &run->now), tolerance = fu_boundary_tolerance(path);

@@ -12,7 +12,8 @@ static const fu_contact *of(const fu_coupling *coupling)
     return (const fu_contact *)coupling;
 }
 
-/* Returns how deep the deepest point is, m; negative off the surface, where elements that are farther than others do not count. */
+/* Returns how deep the deepest point is, m; negative off the surface, where elements that are farther than others do
+ * not count. */
 static double deepest(const fu_model *model, const fu_contact *contact, const fu_state *state)
 {
     double depth = -INFINITY;
@@ -90,8 +91,8 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
-double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
-                      int number, double *rate, fu_surface_end *end)
+double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                      const fu_state *state, int element, int number, double *rate, fu_surface_end *end)
 {
     fu_contact_point point;
     double w[3] = {0.0};
@@ -108,8 +109,10 @@ double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu
     return point.distance.g - contact->radius;
 }
 
-/* Returns how far a point that is near may have moved over a step past the surface, m, by the velocities at one end of it. */
-static double reach_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double h)
+/* Returns how far a point that is near may have moved over a step past the surface, m, by the velocities at one end of
+ * it. */
+static double reach_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                       const fu_state *state, double h)
 {
     double fastest = 0.0, farthest = 0.0;
     if (contact->cable < 0) return INFINITY;
@@ -120,7 +123,8 @@ static double reach_of(const fu_model *model, const fu_contact *contact, const f
     if (!on->n) return h * fastest;
     for (int i = cable->first; i < cable->first + n; i += cable->per_node)
         for (int d = 0; d < model->dim; ++d) farthest = fmax(farthest, fabs(state->q[i + d] - on->p[d]));
-    return h * (fastest + sqrt(fu_dot(model->dim, on->v, on->v)) + 2.0 * farthest * sqrt(fu_dot(model->dim == 3 ? 3 : 1, on->omega, on->omega)));
+    return h * (fastest + sqrt(fu_dot(model->dim, on->v, on->v)) +
+                2.0 * farthest * sqrt(fu_dot(model->dim == 3 ? 3 : 1, on->omega, on->omega)));
 }
 
 double fu_contact_detect_within(const fu_run *run, const fu_contact *contact, double h)
@@ -138,8 +142,8 @@ double fu_contact_detect_within(const fu_run *run, const fu_contact *contact, do
 
 #define RESOLVED 0.25 /* of an impact's time over pi: what steps in it stay below */
 
-/* Returns the step that resolves the impact of a body that begins at `now`, s, 0 where that is not needed: where its speed, which the
- * impact turns round, would not move it by more than tol allows in the time that is left. */
+/* Returns the step that resolves the impact of a body that begins at `now`, s, 0 where that is not needed: where its
+ * speed, which the impact turns round, would not move it by more than tol allows in the time that is left. */
 static double step_of_impact(const fu_run *run, const fu_contact *contact, double h)
 {
     const fu_model *model = run->model;
@@ -154,7 +158,8 @@ static double step_of_impact(const fu_run *run, const fu_contact *contact, doubl
         fastest = fmax(fastest, fabs(rate));
         deepest_now = fmax(deepest_now, depth);
     }
-    if (!(fastest * (run->duration - run->now.t) > fmax(run->absolute_tol, run->tol * run->controlled_motion))) return 0.0;
+    if (!(fastest * (run->duration - run->now.t) > fmax(run->absolute_tol, run->tol * run->controlled_motion)))
+        return 0.0;
     const double mass = model->bodies[contact->attachments[0].body].mass;
     double stiffness = contact->n_points * contact->law.stiffness;
     if (contact->law.hertz) /* at the depth that the speed leads to: 2/5 k d^(5/2) = m v^2/2 */
@@ -173,7 +178,8 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     if (run->now.flags[coupling->flags]) return step_of_impact(run, contact, h);
     fu_surface_at(model, &contact->surface, &run->now, &on);
     fu_surface_at(model, &contact->surface, &run->next, &on_next);
-    const double reach = fmax(reach_of(model, contact, &on, &run->now, h), reach_of(model, contact, &on_next, &run->next, h));
+    const double reach =
+        fmax(reach_of(model, contact, &on, &run->now, h), reach_of(model, contact, &on_next, &run->next, h));
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
         if (!fu_contact_may_be_active(model, contact, &on_next, &run->next, e, reach)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
@@ -181,13 +187,22 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
             fu_surface_end ends[2];
             const double gap = fu_contact_gap(model, contact, &on, &run->now, e, k, &rate, &ends[0]);
             const double gap_next = fu_contact_gap(model, contact, &on_next, &run->next, e, k, &rate_next, &ends[1]);
-            double found = fu_grazing_time((fu_course){gap, rate}, (fu_course){gap_next, rate_next}, 1, h, run->round_off);
-            if (found == 0.0) found = fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
+            double found =
+                fu_grazing_time((fu_course){gap, rate}, (fu_course){gap_next, rate_next}, 1, h, run->round_off);
+            if (found == 0.0)
+                found =
+                    fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
             if (found > 0.0 && (first == 0.0 || found < first)) first = found;
         }
     }
     return first;
 }
 
-const fu_coupling_events fu_contact_events = {
-    .watches = watches, .watched = watched, .depth = depth, .beyond = beyond, .sign = sign, .act = act, .begin = begin, .grazing = dip};
+const fu_coupling_events fu_contact_events = {.watches = watches,
+                                              .watched = watched,
+                                              .depth = depth,
+                                              .beyond = beyond,
+                                              .sign = sign,
+                                              .act = act,
+                                              .begin = begin,
+                                              .grazing = dip};

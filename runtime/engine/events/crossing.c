@@ -1,5 +1,5 @@
-/* Lines of a crossing come into contact, and lose it: where the penetration passes zero, where damping would turn the force
- * round, and where a closest point passes the end of its line.
+/* Lines of a crossing come into contact, and lose it: where the penetration passes zero, where damping would turn the
+ * force round, and where a closest point passes the end of its line.
  */
 #include "base/double_root.h"
 #include "couplings/crossing/crossing.h"
@@ -13,7 +13,8 @@ static const fu_crossing *crossing_of(const fu_coupling *coupling)
     return (const fu_crossing *)coupling;
 }
 
-/* Makes the gap of lines that touch less or more than nil, m, and its rate; returns whether they are closest within their ends. */
+/* Makes the gap of lines that touch less or more than nil, m, and its rate; returns whether they are closest within
+ * their ends. */
 static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_course *gap)
 {
     fu_closest_points points;
@@ -30,7 +31,8 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     const fu_crossing *crossing = crossing_of(coupling);
     fu_course from, to;
     (void)which;
-    if (!run->now.flags[coupling->flags]) return fu_crossing_detect_within(run->model, crossing, &run->now, &run->next, h, run->round_off);
+    if (!run->now.flags[coupling->flags])
+        return fu_crossing_detect_within(run->model, crossing, &run->now, &run->next, h, run->round_off);
     const int within = gap_of(run->model, crossing, &run->now, &from) && gap_of(run->model, crossing, &run->next, &to);
     return within ? fu_grazing_time(from, to, -1, h, run->round_off) : 0.0;
 }
@@ -42,8 +44,8 @@ static int watches(const fu_coupling *coupling, fu_event_function *out)
     return 1;
 }
 
-/* The value is negative while contact stays as it is. In motion lines that are apart from end to end do not touch: they may become
- * parallel, or pass round each other's ends. */
+/* The value is negative while contact stays as it is. In motion lines that are apart from end to end do not touch: they
+ * may become parallel, or pass round each other's ends. */
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const double margin = fu_crossing_margin(run->model, crossing_of(coupling), state);
@@ -63,8 +65,9 @@ static double depth(const fu_model *model, const fu_coupling *coupling, const fu
     return -gap.value;
 }
 
-/* Returns whether lines that are about to touch, as the closest points come within an end, are past each other's axes: they have come
- * round that end, and are on the other side than contact keeps them on. Lines that have gone past an end while they touched have not. */
+/* Returns whether lines that are about to touch, as the closest points come within an end, are past each other's axes:
+ * they have come round that end, and are on the other side than contact keeps them on. Lines that have gone past an end
+ * while they touched have not. */
 static int has_come_round(const fu_run *run, const fu_crossing *crossing)
 {
     const double left_behind = run->now.numbers[crossing->base.numbers + FU_CROSSING_LEFT_BEHIND];
@@ -72,7 +75,8 @@ static int has_come_round(const fu_run *run, const fu_crossing *crossing)
     fu_crossing_contact contact;
     fu_find_closest(run->model, crossing, &run->now, &points);
     fu_crossing_contact_at(crossing, &points, &contact);
-    const int at_end = fu_crossing_margin_of(crossing, &points, &contact) == fu_crossing_distance_to_ends(crossing, &points);
+    const int at_end =
+        fu_crossing_margin_of(crossing, &points, &contact) == fu_crossing_distance_to_ends(crossing, &points);
     return at_end && contact.depth[0] > crossing->law[0] && left_behind < PARTED * contact.energy;
 }
 

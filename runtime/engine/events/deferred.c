@@ -1,14 +1,14 @@
-/* Passages: changes of couplings that a step goes over, as the jump that they make in its forces is within what is allowed. The
- * forces at the step's end, and at all stages within it, are of what couplings are there.
+/* Passages: changes of couplings that a step goes over, as the jump that they make in its forces is within what is
+ * allowed. The forces at the step's end, and at all stages within it, are of what couplings are there.
  *
- * A passage at a part x of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. What a rule of weights b
- * at c makes of that is wrong by a part of F h, which is a change of momentum:
- * |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. That is the error of velocities, and times h it counts as a local error of
- * positions, as errors of velocities go on for the rest of the run and what is allowed is h/t of the whole. Estimates of
- * integrators do not replace it: they rest on smooth forces, and by chance are nil.
+ * A passage at a part x of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. What a rule of
+ * weights b at c makes of that is wrong by a part of F h, which is a change of momentum:
+ * |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. That is the error of velocities, and times h it counts as a local
+ * error of positions, as errors of velocities go on for the rest of the run and what is allowed is h/t of the whole.
+ * Estimates of integrators do not replace it: they rest on smooth forces, and by chance are nil.
  *
- * A discrete gradient of the energy is the mean force over the way, that over passages too: it keeps the energy, errs by
- * hardly more than where there is no passage, and goes over all of them, at steps of any kind. */
+ * A discrete gradient of the energy is the mean force over the way, that over passages too: it keeps the energy, errs
+ * by hardly more than where there is no passage, and goes over all of them, at steps of any kind. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
 #include "equations/acceleration.h"
@@ -21,8 +21,9 @@
 #include <string.h>
 
 #define DOUBLE 2.0 /* the error that is counted over the bound, lest energy come of many */
-#define AROUND 0.1 /* of a step: how far from where it seems to be a passage may be, for the bound of its error */
-#define SCANNED_INSTANTS 8    /* so many instants are looked at on either side */
+/* of a step: how far from where it seems to be a passage may be, for the bound of its error */
+#define AROUND 0.1
+#define SCANNED_INSTANTS 8 /* so many instants are looked at on either side */
 
 static int has_passed(const fu_run *run, const fu_coupling *c)
 {
@@ -56,7 +57,8 @@ int fu_strayed(const fu_run *run)
 int fu_count_deferred(const fu_run *run)
 {
     int count = 0;
-    for (int k = 0; k < run->model->n_always_active && run->model->n_passing; ++k) count += has_passed(run, run->model->always_active[k]);
+    for (int k = 0; k < run->model->n_always_active && run->model->n_passing; ++k)
+        count += has_passed(run, run->model->always_active[k]);
     return count;
 }
 
@@ -78,8 +80,8 @@ void fu_note_deferred(fu_run *run, double h)
     for (int k = 0; k < run->n_watches && run->model->n_passing; ++k) {
         const fu_coupling *c = fu_event_coupling(run, k);
         if (!c || !has_passed(run, c)) continue;
-        const double part = c->events->deferred->part(run->model, c, &run->now, &run->next, h, !run->integrator->keeps_energy,
-                                                    &run->passed[k]);
+        const double part = c->events->deferred->part(run->model, c, &run->now, &run->next, h,
+                                                      !run->integrator->keeps_energy, &run->passed[k]);
         run->passed_at[k] = run->now.t + part * h;
     }
 }
@@ -104,8 +106,8 @@ static double largest_defect(fu_quadrature rule, double x)
     return worst;
 }
 
-/* Returns the size of what a force makes in a time of which this is the square, s^2; by the matrix of the step, where there is
- * one, for vibrations that it does not resolve to count by their amplitude and not by their acceleration. */
+/* Returns the size of what a force makes in a time of which this is the square, s^2; by the matrix of the step, where
+ * there is one, for vibrations that it does not resolve to count by their amplitude and not by their acceleration. */
 static double size_of_response(fu_run *run, const double *force, double square)
 {
     const fu_model *model = run->model;
@@ -132,15 +134,16 @@ double fu_deferred_error(fu_run *run, double h)
         const fu_coupling *c = model->always_active[k];
         const char *unused;
         if (!has_passed(run, c)) continue;
-        const double x = c->events->deferred->part(model, c, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
+        const double x =
+            c->events->deferred->part(model, c, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
         const double part = largest_defect(run->integrator->quadrature(run), x);
         c->events->deferred->force_change(model, c, &run->now, &run->next, part, run->before);
     }
     return size_of_response(run, run->before, DOUBLE * h * h);
 }
 
-/* Returns the local error of positions by kinks of forces within the step just made that its estimate may not see, m: one of momentum, which
- * goes on for the rest of the run. */
+/* Returns the local error of positions by kinks of forces within the step just made that its estimate may not see, m:
+ * one of momentum, which goes on for the rest of the run. */
 double fu_friction_error(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -152,8 +155,8 @@ double fu_friction_error(fu_run *run, double h)
     return size_of_response(run, run->before, h * h);
 }
 
-/* Makes the earliest of passages and slack cables that the caller does not know of the run's event; returns 0 where there is
- * none. */
+/* Makes the earliest of passages and slack cables that the caller does not know of the run's event; returns 0 where
+ * there is none. */
 int fu_take_deferred(fu_run *run)
 {
     int first = -1;

@@ -1,7 +1,8 @@
 /* Slides that stick, break loose, or come to what waits at an end of their cable: events that change what locks s.
  *
- * mode is FU_SLIDES, FU_LOCKED (where it is: by friction that sticks, or against a hard stop, contact then tells which) or
- * FU_LEFT. slip_direction is that of sliding where friction sticks at rest: known then, as a change of it is an event.
+ * mode is FU_SLIDES, FU_LOCKED (where it is: by friction that sticks, or against a hard stop, contact then tells which)
+ * or FU_LEFT. slip_direction is that of sliding where friction sticks at rest: known then, as a change of it is an
+ * event.
  */
 #include "couplings/joint/joint.h"
 #include "couplings/slide/resistance.h"
@@ -15,15 +16,16 @@
 #include <string.h>
 
 #define REST_SPEED 1e-12 /* of the cable over the duration: speeds below are none */
-#define MIN_REBOUND 1e-6   /* of the cable: what would come no farther back stays at the stop */
+#define MIN_REBOUND 1e-6 /* of the cable: what would come no farther back stays at the stop */
 
 static int is_hard(const fu_model *model, int j, int side)
 {
     return side && model->slides[j].stops[side > 0].kind == FU_END_IS_HARD;
 }
 
-/* Finds the force on the rider of a slide that is locked, by eq 38, as a Newton method's has the rounding of positions over h^2.
- * Returns whether it is by eq 38: then `traction` is what of it is along the cable, without what moments put there. */
+/* Finds the force on the rider of a slide that is locked, by eq 38, as a Newton method's has the rounding of positions
+ * over h^2. Returns whether it is by eq 38: then `traction` is what of it is along the cable, without what moments put
+ * there. */
 static int locked_force(const fu_run *run, const fu_state *state, int j, double *f, double *traction)
 {
     const fu_model *model = run->model;
@@ -38,7 +40,8 @@ static int locked_force(const fu_run *run, const fu_state *state, int j, double 
     return 1;
 }
 
-/* Finds the force along the cable on a locked slide, N; returns how much of it neither friction nor a hard stop can take, N. */
+/* Finds the force along the cable on a locked slide, N; returns how much of it neither friction nor a hard stop can
+ * take, N. */
 static double excess(const fu_run *run, const fu_state *state, int j, double *pull)
 {
     const fu_model *model = run->model;
@@ -95,7 +98,8 @@ static void release(fu_run *run, int j, double pull)
     if (hard) flags->contact = 0;
 }
 
-/* Locks a slide that is at rest, if friction or its stop can take the force on it, else lets it slide on; returns a status. */
+/* Locks a slide that is at rest, if friction or its stop can take the force on it, else lets it slide on; returns a
+ * status. */
 static int try_to_stick(fu_run *run, int j)
 {
     fu_state *now = &run->now;
@@ -132,7 +136,8 @@ int fu_begin_stops(fu_run *run, const fu_coupling *coupling)
     const int j = coupling->index;
     if (model->slides[j].drive >= 0) return FU_RUNNING;
     for (int side = -1; side <= 1; side += 2)
-        if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_buffer_margin(run, &run->now, j, side) > 0.0)
+        if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED &&
+            fu_buffer_margin(run, &run->now, j, side) > 0.0)
             fu_slide_flags_of(run->model, &run->now, j)->contact = side;
     return model->slides[j].sticks && is_at_rest(run, j) ? try_to_stick(run, j) : FU_RUNNING;
 }
@@ -152,7 +157,8 @@ static int strike(fu_run *run, int j, int side)
         const double restitution = model->slides[j].stops[side > 0].restitution;
         fu_slide_now(model, now, j, &slide_state);
         if (fu_strike(model, now, &run->accelerator, model->slides[j].base.row, model->dim - 1,
-                      restitution * slide_state.s_rate, run->work)) return FU_SINGULAR;
+                      restitution * slide_state.s_rate, run->work))
+            return FU_SINGULAR;
         fu_impact(run, run->work, restitution);
     }
     release(run, j, 0.0);
@@ -195,8 +201,8 @@ void fu_pass_buffer(fu_run *run, const fu_coupling *coupling, int end, int enter
     *what = enters ? "entered the buffer" : "left the buffer";
 }
 
-/* Lets a slide go that is locked by more than friction or its stop can take, or stick where it has come to rest; returns a
- * status. */
+/* Lets a slide go that is locked by more than friction or its stop can take, or stick where it has come to rest;
+ * returns a status. */
 int fu_release_or_stick(fu_run *run, const fu_coupling *coupling, const char **what)
 {
     const int j = coupling->index;

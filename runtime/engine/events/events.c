@@ -1,5 +1,5 @@
-/* Events: a coupling passes a boundary of its path or changes by itself, a quantity passes a threshold, a function of the user's
- * changes sign. */
+/* Events: a coupling passes a boundary of its path or changes by itself, a quantity passes a threshold, a function of
+ * the user's changes sign. */
 #include "base/underflow.h"
 #include "equations/acceleration.h"
 #include "equations/run.h"
@@ -9,15 +9,19 @@
 
 #include <math.h>
 
-#define MOST_TRIALS 80    /* steps that are tried to end on an event */
-#define FEW_TRIALS 10     /* after so many trials every second one halves the interval: rounding may rule the value */
-#define LEAST_STEP 1e-13  /* of the duration: shorter intervals are not divided */
-#define FINER 1e-2        /* of Newton's tolerance, which is used near an event, lest its noise rule where the event is */
-#define EVENT_TOLERANCE 1e-13     /* of a piece, or of what a watched quantity changes by in the step: how close to an event it ends */
-#define LITTLE 1e-2       /* of the allowed error: what a passage beside a boundary may make */
-#define DEFERRED_TOLERANCE 1e-6         /* of what a distance changes by in the step: how close to a passage an adaptive step ends */
-#define LARGEST_MISS 1e-6 /* of a piece: how close to a boundary a step ends at least */
-#define SIGNED_ZERO 1e-300   /* a value that has a sign and is nearly zero */
+#define MOST_TRIALS 80 /* steps that are tried to end on an event */
+/* after so many trials every second one halves the interval: rounding may rule the value */
+#define FEW_TRIALS 10
+#define LEAST_STEP 1e-13 /* of the duration: shorter intervals are not divided */
+/* of Newton's tolerance, which is used near an event, lest its noise rule where the event is */
+#define FINER 1e-2
+/* of a piece, or of what a watched quantity changes by in the step: how close to an event it ends */
+#define EVENT_TOLERANCE 1e-13
+#define LITTLE 1e-2 /* of the allowed error: what a passage beside a boundary may make */
+/* of what a distance changes by in the step: how close to a passage an adaptive step ends */
+#define DEFERRED_TOLERANCE 1e-6
+#define LARGEST_MISS 1e-6  /* of a piece: how close to a boundary a step ends at least */
+#define SIGNED_ZERO 1e-300 /* a value that has a sign and is nearly zero */
 
 const fu_event fu_no_event = {FU_NO_EVENT, 0, 0, 0};
 
@@ -84,8 +88,8 @@ static fu_event passes(const fu_run *run, int k, double after)
     return side && run->watches[k].direction * side >= 0 ? (fu_event){FU_EVENT_FUNCTION, k, side, 0} : fu_no_event;
 }
 
-/* Returns the crossing of the coupling of `next` that is farthest outside its piece, else the first of the watches that pass
- * zero between `now` and `next`; but for one event. */
+/* Returns the crossing of the coupling of `next` that is farthest outside its piece, else the first of the watches that
+ * pass zero between `now` and `next`; but for one event. */
 fu_event fu_find_event(fu_run *run, fu_event but)
 {
     fu_event found = fu_no_event;
@@ -107,13 +111,15 @@ fu_event fu_find_event(fu_run *run, fu_event but)
         const int k = fu_event_function_of(near, i);
         if (but.kind == FU_EVENT_FUNCTION && but.which == k) continue;
         found = passes(run, k, watched(run, &run->next, k));
-        if (found.kind && fu_is_far_event_function(run, k)) run->watched[k] = watched(run, &run->now, k); /* which was passed over */
+        if (found.kind && fu_is_far_event_function(run, k))
+            run->watched[k] = watched(run, &run->now, k); /* which was passed over */
     }
     run->watch_solution = FU_SOLVE_ANEW;
     return found;
 }
 
-/* Returns the part of a step at which g = g_low + rate x + ... reaches zero on its way to g_high: that of the parabola. */
+/* Returns the part of a step at which g = g_low + rate x + ... reaches zero on its way to g_high: that of the parabola.
+ */
 static double root_of_parabola(double g_low, double g_high, double rate)
 {
     const double bend = g_high - g_low - rate, square = rate * rate - 4.0 * bend * g_low;
@@ -127,8 +133,8 @@ static const fu_coupling *passing(const fu_run *run, fu_event event)
     return c && c->events->deferred ? c : 0;
 }
 
-/* Returns whether a step may end a little off an event: the slope of a force jumps there, which over so short a way makes
- * nothing, and the instant follows from the rate (run/event_handling.c). */
+/* Returns whether a step may end a little off an event: the slope of a force jumps there, which over so short a way
+ * makes nothing, and the instant follows from the rate (run/event_handling.c). */
 static int may_miss(const fu_run *run, fu_event event)
 {
     const fu_coupling *c = passing(run, event);
@@ -140,20 +146,23 @@ typedef struct {
     double aim, close;
 } landing_place;
 
-/* Returns how close to an event a step must end: beyond a passage, lest it happen again. A coupling that goes on in the next
- * piece, a way d from the boundary, has gone that way on the wrong curve, whose direction is wrong by d times the jump of
- * r_xx: its velocity by less than rate d/length for pieces that bend by less than a radian. Over the step that shall be little
- * of what is allowed. */
+/* Returns how close to an event a step must end: beyond a passage, lest it happen again. A coupling that goes on in the
+ * next piece, a way d from the boundary, has gone that way on the wrong curve, whose direction is wrong by d times the
+ * jump of r_xx: its velocity by less than rate d/length for pieces that bend by less than a radian. Over the step that
+ * shall be little of what is allowed. */
 static landing_place landing(const fu_run *run, fu_event event, double range)
 {
     if (event.kind == FU_EVENT_FUNCTION)
-        return may_miss(run, event) ? (landing_place){0.5 * DEFERRED_TOLERANCE * range, 0.5 * DEFERRED_TOLERANCE * range} : (landing_place){0.0, EVENT_TOLERANCE * range};
+        return may_miss(run, event)
+                   ? (landing_place){0.5 * DEFERRED_TOLERANCE * range, 0.5 * DEFERRED_TOLERANCE * range}
+                   : (landing_place){0.0, EVENT_TOLERANCE * range};
     const fu_coupling *c = run->model->couplings[event.which];
     const fu_path path = fu_path_of(run->model, c, &run->now);
     const int next = run->now.piece[c->coordinate] + event.side;
     if (run->fixed_step > 0.0 || next < 0 || next >= path.n) return (landing_place){0.0, EVENT_TOLERANCE * path.length};
     const double shorter = fmin(fu_path_segment_length(path, next), fu_path_segment_length(path, next - event.side));
-    return (landing_place){0.0, fmax(EVENT_TOLERANCE * path.length, fmin(LARGEST_MISS, LITTLE * run->allowed / range) * shorter)};
+    return (landing_place){
+        0.0, fmax(EVENT_TOLERANCE * path.length, fmin(LARGEST_MISS, LITTLE * run->allowed / range) * shorter)};
 }
 
 /* Returns whether an event is of a watch of a coupling's own, whose value leaves its zero anew after each event. */
@@ -189,8 +198,8 @@ static void narrow(bracket *b, double middle, double g)
     b->last = side;
 }
 
-/* Moves, for an event that has just happened, and whose value leaves its zero anew, the low end to where it is off that zero
- * again. Returns 1 where it is found, 0 where there is none, -1 where a step fails. */
+/* Moves, for an event that has just happened, and whose value leaves its zero anew, the low end to where it is off that
+ * zero again. Returns 1 where it is found, 0 where there is none, -1 where a step fails. */
 static int leave_zero(fu_run *run, fu_event event, bracket *b, double least, double close)
 {
     for (b->low = 0.5 * b->high; b->low > least; b->low *= 0.5) {
@@ -237,9 +246,11 @@ static double locate(fu_run *run, fu_event event, double h)
     const fu_coupling *passes = passing(run, event);
     const char *unused;
     if (passes)
-        middle = h * passes->events->deferred->part(run->model, passes, &run->now, &run->next, h, !run->integrator->keeps_energy, &unused);
+        middle = h * passes->events->deferred->part(run->model, passes, &run->now, &run->next, h,
+                                                    !run->integrator->keeps_energy, &unused);
     if (b.g_high <= at.aim + at.close) return h;
-    if (is_of_a_coupling(run, event) && fabs(b.g_low) <= (at.aim > 0.0 ? EVENT_TOLERANCE * (b.g_high - b.g_low) : at.close)) {
+    if (is_of_a_coupling(run, event) &&
+        fabs(b.g_low) <= (at.aim > 0.0 ? EVENT_TOLERANCE * (b.g_high - b.g_low) : at.close)) {
         const int found = leave_zero(run, event, &b, least, at.close);
         if (found < 0) return 0.0;
         if (!found) return b.high < h || !run->integrator->step(run, b.high) ? b.high : 0.0;
@@ -248,8 +259,8 @@ static double locate(fu_run *run, fu_event event, double h)
     return search(run, event, b, middle, least, at);
 }
 
-/* Shortens the step h, which leads beyond an event, until it ends there, with couplings that keep their pieces until one of
- * them leaves its piece. Returns the step, 0 on failure; `next` is there then. */
+/* Shortens the step h, which leads beyond an event, until it ends there, with couplings that keep their pieces until
+ * one of them leaves its piece. Returns the step, 0 on failure; `next` is there then. */
 double fu_locate(fu_run *run, fu_event event, double h)
 {
     const int kept = run->keep_pieces;
@@ -260,8 +271,8 @@ double fu_locate(fu_run *run, fu_event event, double h)
     return found;
 }
 
-/* Takes the values of what is watched at `now`, after a step of h, but not of those that have just passed, or rounding would let
- * them pass again. `late` tells which did together with the one that the step was for. */
+/* Takes the values of what is watched at `now`, after a step of h, but not of those that have just passed, or rounding
+ * would let them pass again. `late` tells which did together with the one that the step was for. */
 void fu_evaluate_event_functions(fu_run *run, fu_event event, double h)
 {
     const int moved = h > FU_AT_ONCE * run->duration;
@@ -298,8 +309,8 @@ int fu_has_lost_an_event(fu_run *run)
     return 0;
 }
 
-/* Gives couplings' watches the sign that they have now that a coupling (its number, or -1) has changed, and has just had the
- * value of one of them zero. */
+/* Gives couplings' watches the sign that they have now that a coupling (its number, or -1) has changed, and has just
+ * had the value of one of them zero. */
 void fu_restart_event_functions(fu_run *run, int coupling)
 {
     const fu_event_function_list near = fu_near_event_functions(run, &run->now);

@@ -1,6 +1,7 @@
-/* Events of drag in a fluid with a surface: a surface begins to cut what the fluid acts on, or all of it is on one side. Forces are
- * continuous there, with their first derivatives but for that of added mass. Steps end there all the same: a body that falls freely
- * takes long ones, and would go deep into the fluid, or through a thin layer, in one whose error estimate has not seen it.
+/* Events of drag in a fluid with a surface: a surface begins to cut what the fluid acts on, or all of it is on one
+ * side. Forces are continuous there, with their first derivatives but for that of added mass. Steps end there all the
+ * same: a body that falls freely takes long ones, and would go deep into the fluid, or through a thin layer, in one
+ * whose error estimate has not seen it.
  */
 #include "bodies/model.h"
 #include "events/fluid_surface.h"

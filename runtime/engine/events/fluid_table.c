@@ -1,5 +1,5 @@
-/* Events of drag in a fluid with a table: what it acts on leaves the table, or all of it is back; with those of surfaces
- * (events/fluid_surface.c). */
+/* Events of drag in a fluid with a table: what it acts on leaves the table, or all of it is back; with those of
+ * surfaces (events/fluid_surface.c). */
 #include "equations/run.h"
 #include "events/fluid_surface.h"
 #include "events/list.h"
@@ -7,7 +7,8 @@
 #include <math.h>
 
 #define OF_TABLE 1 /* watches of the table, before those of surfaces */
-#define AT_EDGE 1e-9 /* of an axis of a table: what is beyond its edge by less is at it, as a run that ends with a table */
+/* of an axis of a table: what is beyond its edge by less is at it, as a run that ends with a table */
+#define AT_EDGE 1e-9
 
 /* Returns how far within the table a place is, of what has a surface the nearest place of the fluid above or below. */
 static double margin_at(const fu_model *model, const fu_drag *drag, double t, const double *r)
@@ -18,7 +19,8 @@ static double margin_at(const fu_model *model, const fu_drag *drag, double t, co
     return fu_flow_margin(model, &drag->flow, t, at);
 }
 
-/* Returns how far within its table all of what a fluid acts on is, as a part of the table's axes; negative beyond its edges. */
+/* Returns how far within its table all of what a fluid acts on is, as a part of the table's axes; negative beyond its
+ * edges. */
 static double margin(const fu_model *model, const fu_drag *drag, const fu_state *state)
 {
     double least = 1.0;
@@ -56,7 +58,8 @@ static int watches(const fu_coupling *coupling, fu_event_function *out)
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
-    return which < OF_TABLE ? margin(run->model, drag, state) : fu_surface_event_value(run->model, drag, state, which - OF_TABLE);
+    return which < OF_TABLE ? margin(run->model, drag, state)
+                            : fu_surface_event_value(run->model, drag, state, which - OF_TABLE);
 }
 
 static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
@@ -65,7 +68,8 @@ static int sign(const fu_model *model, const fu_coupling *coupling, const fu_sta
     return is_outside(coupling, state)[which] ? -1 : 1;
 }
 
-/* Notes on which side of a surface something is. Of a table, that something leaves the table, or that all is in it again. The velocity does not jump there, but its derivatives do. */
+/* Notes on which side of a surface something is. Of a table, that something leaves the table, or that all is in it
+ * again. The velocity does not jump there, but its derivatives do. */
 static int pass_edge(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     is_outside(coupling, &run->now)[which] = side < 0;

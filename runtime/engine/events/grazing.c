@@ -1,5 +1,6 @@
-/* Dips: what is watched passes zero within a step and is back at its end, as by a grazing contact. The step then ends where it
- * is predicted to be farthest beyond zero, by the cubic through its values and rates at both ends (Hermite's). */
+/* Dips: what is watched passes zero within a step and is back at its end, as by a grazing contact. The step then ends
+ * where it is predicted to be farthest beyond zero, by the cubic through its values and rates at both ends (Hermite's).
+ */
 #include "base/double_root.h"
 #include "bodies/rotation.h"
 #include "equations/run.h"
@@ -9,7 +10,7 @@
 
 #include <math.h>
 
-#define ROUNDING_OF_VALUES 1e-14  /* of what a watch is of, and of its values: dips less deep are rounding */
+#define ROUNDING_OF_VALUES 1e-14 /* of what a watch is of, and of its values: dips less deep are rounding */
 
 /* Returns the rate of an entry of the configuration, 1/s or m/s. */
 static double rate_of_q(const fu_model *model, const fu_state *state, int index)
@@ -20,7 +21,8 @@ static double rate_of_q(const fu_model *model, const fu_state *state, int index)
         const int k = index - body->configuration;
         double rate[FU_FRAME_ENTRIES];
         if (k < 0) continue;
-        if (k >= body->kernel->configuration) return state->v[body->dof + body->kernel->velocity + k - body->kernel->configuration];
+        if (k >= body->kernel->configuration)
+            return state->v[body->dof + body->kernel->velocity + k - body->kernel->configuration];
         fu_body_rate(body->kernel, state->q + body->configuration, state->v + body->dof, rate);
         return rate[k];
     }
@@ -32,7 +34,8 @@ static fu_course course_of(const fu_model *model, const fu_event_function *watch
 {
     if (watch->kind == FU_EVENT_OF_Q)
         return (fu_course){state->q[watch->index] - watch->value, rate_of_q(model, state, watch->index)};
-    if (watch->kind == FU_EVENT_OF_V) return (fu_course){state->v[watch->index] - watch->value, state->acceleration[watch->index]};
+    if (watch->kind == FU_EVENT_OF_V)
+        return (fu_course){state->v[watch->index] - watch->value, state->acceleration[watch->index]};
     for (int k = 0; k < model->n_always_active && watch->kind == FU_EVENT_OF_S; ++k) {
         const fu_coupling *c = model->always_active[k];
         if (c->n_coordinates && c->coordinate == watch->index)
@@ -41,8 +44,8 @@ static fu_course course_of(const fu_model *model, const fu_event_function *watch
     return (fu_course){0.0, NAN};
 }
 
-/* Returns after what part of a step a watch that has just passed to this side is farthest there, and is back at the end; 0 where
- * it is not. Without a value of its own it would not be seen to pass back. */
+/* Returns after what part of a step a watch that has just passed to this side is farthest there, and is back at the
+ * end; 0 where it is not. Without a value of its own it would not be seen to pass back. */
 static double return_of(fu_course from, fu_course to, double h, double least)
 {
     const int side = from.rate > 0.0 ? 1 : -1;
@@ -59,13 +62,14 @@ static double dip_of(const fu_run *run, int k, double h)
     if (c) return c->events->grazing ? c->events->grazing(run, c, watch->which, h) : 0.0;
     const fu_course from = course_of(run->model, watch, &run->now), to = course_of(run->model, watch, &run->next);
     if (isnan(from.rate)) return 0.0;
-    const double least = ROUNDING_OF_VALUES * fmax(fabs(watch->value), fmax(fabs(from.value + watch->value), fabs(to.value + watch->value)));
+    const double least = ROUNDING_OF_VALUES *
+                         fmax(fabs(watch->value), fmax(fabs(from.value + watch->value), fabs(to.value + watch->value)));
     if (run->watched[k] == 0.0) return return_of(from, to, h, least);
     return fu_grazing_time(from, to, run->watched[k] > 0.0 ? 1 : -1, h, least);
 }
 
-/* Returns when the first of the watches that pass zero and are back within the step is farthest beyond, s after `now`; 0 where
- * none is predicted to. */
+/* Returns when the first of the watches that pass zero and are back within the step is farthest beyond, s after `now`;
+ * 0 where none is predicted to. */
 double fu_time_of_grazing(const fu_run *run, double h)
 {
     double first = 0.0;

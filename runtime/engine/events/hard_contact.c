@@ -1,4 +1,5 @@
-/* What a hard contact does by itself (couplings/common/coupling_events.h): it comes together, and opens where it would pull. */
+/* What a hard contact does by itself (couplings/common/coupling_events.h): it comes together, and opens where it would
+ * pull. */
 #include "base/double_root.h"
 #include "equations/run.h"
 #include "events/contact.h"
@@ -8,7 +9,8 @@
 
 #include <math.h>
 
-#define PULL_TOLERANCE 3e-10 /* of the weight: what is pulled by less stays closed, as three of four points that bear have none to spare */
+/* of the weight: what is pulled by less stays closed, as three of four points that bear have none to spare */
+#define PULL_TOLERANCE 3e-10
 
 static const char *const words[] = {"", "struck", "came into contact", "lost contact", "stuck", "broke loose"};
 
@@ -27,7 +29,8 @@ static int watches(const fu_coupling *coupling, fu_event_function *out)
     return n;
 }
 
-/* Returns the multipliers of a contact that is closed, N: by eq 38, as a Newton method's have the rounding of positions over h^2. */
+/* Returns the multipliers of a contact that is closed, N: by eq 38, as a Newton method's have the rounding of positions
+ * over h^2. */
 static const double *multipliers(const fu_run *run, const fu_coupling *coupling, const fu_state *state)
 {
     static const double none[FU_SPACE] = {NAN, NAN, NAN};
@@ -69,7 +72,8 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     if (which == OF_FRICTION || fu_hard_flags_of(coupling, &run->now)->mode != FU_APART) return 0.0;
     fu_hard_row_at(run->model, contact_of(coupling), &run->now, &from);
     fu_hard_row_at(run->model, contact_of(coupling), &run->next, &to);
-    const double found = fu_grazing_time((fu_course){from.g, from.rate}, (fu_course){to.g, to.rate}, 1, h, run->round_off);
+    const double found =
+        fu_grazing_time((fu_course){from.g, from.rate}, (fu_course){to.g, to.rate}, 1, h, run->round_off);
     if (found > 0.0 || !(from.g > run->round_off && to.g > run->round_off)) return found;
     return fu_contact_detect_within(run, &contact_of(coupling)->contact, h);
 }
@@ -81,7 +85,8 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     (void)side;
     *what = words[FU_NO_NEWS];
     if (which == OF_FRICTION && flags->mode != FU_CLOSED) return FU_RUNNING;
-    if (flags->news && run->now.t - *time <= FU_AT_ONCE * run->duration) { /* of what another one has brought; older news is none */
+    if (flags->news &&
+        run->now.t - *time <= FU_AT_ONCE * run->duration) { /* of what another one has brought; older news is none */
         *what = words[flags->news];
         flags->news = FU_NO_NEWS;
         return FU_RUNNING;
@@ -106,7 +111,8 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 
 static double beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    return fu_hard_flags_of(coupling, state)->mode == FU_APART ? -INFINITY : fu_hard_beyond(model, contact_of(coupling), state);
+    return fu_hard_flags_of(coupling, state)->mode == FU_APART ? -INFINITY
+                                                               : fu_hard_beyond(model, contact_of(coupling), state);
 }
 
 const fu_coupling_events fu_hard_contact_events = {

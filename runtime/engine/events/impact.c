@@ -1,6 +1,6 @@
-/* How hard contacts go on where one of them comes together or would pull: impacts by Newton's law of restitution, all that touch at
- * once; then which of them press, by the accelerations that follow. Both are problems of complementarity over the compliance
- * H M^-1 H' of the points that touch, with all other constraints as they are.
+/* How hard contacts go on where one of them comes together or would pull: impacts by Newton's law of restitution, all
+ * that touch at once; then which of them press, by the accelerations that follow. Both are problems of complementarity
+ * over the compliance H M^-1 H' of the points that touch, with all other constraints as they are.
  */
 #include "bodies/unknowns.h"
 #include "equations/acceleration.h"
@@ -13,11 +13,13 @@
 #include <math.h>
 #include <string.h>
 
-#define CONTACT_TOLERANCE 1e-12 /* of the largest length: distances at which points touch */
+#define CONTACT_TOLERANCE 1e-12    /* of the largest length: distances at which points touch */
 #define ROUNDING_OF_VELOCITY 1e-11 /* of velocities, or of accelerations: less is none */
-#define SEPARATION_SPEED 1e-3      /* of the velocity below which a point comes to rest: what parts more slowly stays, if it is pressed */
-#define REST_SPEED 1e-6     /* of the velocity below which a point comes to rest: the same */
-#define ENERGY_TOLERANCE 1e-9    /* of the kinetic energy of the jump: more than that an impact must not bring */
+/* of the velocity below which a point comes to rest: what parts more slowly stays, if it is pressed */
+#define SEPARATION_SPEED 1e-3
+#define REST_SPEED 1e-6 /* of the velocity below which a point comes to rest: the same */
+/* of the kinetic energy of the jump: more than that an impact must not bring */
+#define ENERGY_TOLERANCE 1e-9
 
 enum { MOST = FU_MOST_HARD_CONTACTS };
 
@@ -38,7 +40,8 @@ static void collect(fu_run *run, const fu_coupling *first, fu_active_contacts *t
         fu_hard_row *row = &t->row[t->n];
         fu_hard_row_at(model, contact_of(c), &run->now, row);
         if (flags->mode == FU_APART && c != first && row->g > CONTACT_TOLERANCE * fu_largest_length(run)) continue;
-        fu_keep_largest(&run->farthest[c->number], fu_hard_beyond(model, contact_of(c), &run->now)); /* it may part within the step */
+        fu_keep_largest(&run->farthest[c->number],
+                        fu_hard_beyond(model, contact_of(c), &run->now)); /* it may part within the step */
         t->was[t->n] = flags->mode;
         t->stuck[t->n] = flags->sticks;
         t->friction |= contact_of(c)->friction > 0.0;
@@ -57,7 +60,8 @@ static int comply(fu_run *run, fu_active_contacts *t)
         for (int j = 0; j < t->n; ++j) t->G[j * t->n + k] = fu_hard_rate(&t->row[j], t->row[j].H, run->work);
     }
     for (int k = 0; k < t->n; ++k)
-        for (int j = 0; j < k; ++j) t->G[j * t->n + k] = t->G[k * t->n + j] = 0.5 * (t->G[j * t->n + k] + t->G[k * t->n + j]);
+        for (int j = 0; j < k; ++j)
+            t->G[j * t->n + k] = t->G[k * t->n + j] = 0.5 * (t->G[j * t->n + k] + t->G[k * t->n + j]);
     return 0;
 }
 
@@ -69,7 +73,8 @@ static void jump(fu_run *run, const fu_active_contacts *t)
     fu_response(run->model, &run->accelerator, run->before, run->work);
 }
 
-/* Finds the impulses by which nothing leaves more slowly than by its restitution; returns not zero where there are none. */
+/* Finds the impulses by which nothing leaves more slowly than by its restitution; returns not zero where there are
+ * none. */
 static int solve_impulses(fu_active_contacts *t, double least)
 {
     double b[MOST];
@@ -88,7 +93,8 @@ static double lost(const fu_active_contacts *t)
     return sum;
 }
 
-/* Makes the jump of velocities, in run->work, by the impulses that the law asks for; returns not zero where there are none. */
+/* Makes the jump of velocities, in run->work, by the impulses that the law asks for; returns not zero where there are
+ * none. */
 static int solve(fu_run *run, fu_active_contacts *t, double least)
 {
     if (t->friction) return fu_impact_with_friction(run, t);
@@ -98,8 +104,8 @@ static int solve(fu_run *run, fu_active_contacts *t, double least)
     return 0;
 }
 
-/* Lets what comes together part by its restitution, or stay where it would part too slowly. Restitution that differs from point to
- * point may bring energy: then there is none. Returns not zero where no impulses part it. */
+/* Lets what comes together part by its restitution, or stay where it would part too slowly. Restitution that differs
+ * from point to point may bring energy: then there is none. Returns not zero where no impulses part it. */
 static int strike(fu_run *run, fu_active_contacts *t, double least)
 {
     for (int k = 0; k < t->n; ++k) {
@@ -117,7 +123,8 @@ static int strike(fu_run *run, fu_active_contacts *t, double least)
     return 0;
 }
 
-/* Finds which of the points that do not part press, by the accelerations without them; returns not zero where that has no solution. */
+/* Finds which of the points that do not part press, by the accelerations without them; returns not zero where that has
+ * no solution. */
 static int press(fu_run *run, fu_active_contacts *t, double least)
 {
     const fu_model *model = run->model;
@@ -138,8 +145,9 @@ static int press(fu_run *run, fu_active_contacts *t, double least)
     }
     if (fu_complement(n, G, b, ROUNDING_OF_VELOCITY * largest, force, kind)) return 1;
     for (int i = 0; i < n; ++i)
-        fu_hard_flags_of(t->of[at[i]], &run->now)->mode =
-            kind[i] == FU_IS_BASIC ? FU_CLOSED : kind[i] == FU_IS_DEPENDENT ? FU_IMPLIED : FU_APART;
+        fu_hard_flags_of(t->of[at[i]], &run->now)->mode = kind[i] == FU_IS_BASIC       ? FU_CLOSED
+                                                          : kind[i] == FU_IS_DEPENDENT ? FU_IMPLIED
+                                                                                       : FU_APART;
     return 0;
 }
 
@@ -156,8 +164,7 @@ static int news_of(const fu_active_contacts *t, int k, const fu_hard_flags *flag
 static void let_happen(fu_run *run, const fu_coupling *coupling)
 {
     for (int k = 0; k < run->n_watches; ++k)
-        if (fu_event_coupling(run, k) == coupling && !run->watches[k].which)
-            run->late[k] = 1;
+        if (fu_event_coupling(run, k) == coupling && !run->watches[k].which) run->late[k] = 1;
 }
 
 int fu_resolve_hard_contacts(fu_run *run, const fu_coupling *first, int yields)

@@ -1,6 +1,7 @@
-/* Friction of hard contacts where something jumps. An impact: impulses across the normal against the velocity past the surface, at most
- * friction times the normal impulse, and as large where the point still slides afterwards (Coulomb's law for impulses, with Newton's
- * restitution). After it, or where sliding stops: which points press, stick and slide, by the accelerations that follow.
+/* Friction of hard contacts where something jumps. An impact: impulses across the normal against the velocity past the
+ * surface, at most friction times the normal impulse, and as large where the point still slides afterwards (Coulomb's
+ * law for impulses, with Newton's restitution). After it, or where sliding stops: which points press, stick and slide,
+ * by the accelerations that follow.
  */
 #include "equations/acceleration.h"
 #include "equations/energies.h"
@@ -12,12 +13,13 @@
 #include <string.h>
 
 #define MAX_SWEEPS 20000 /* over the points of an impact, before there is no solution */
-#define CONVERGED 1e-14   /* change of an impulse in a sweep, over the largest */
-#define STICKING_SPEED 0.1       /* of the velocity below which a point comes to rest: what is slower sticks, if it can */
-#define EXCESS 1e-9       /* of what friction can take: so much more breaks it loose */
-#define PULL_TOLERANCE 1e-10        /* of the largest force: more opens a point, less is rounding */
-#define APPROACH 1e-6     /* of the accelerations: more than what sticking gives way by */
-#define MOST_CHANGES 200  /* of how points go on, before there is no motion */
+#define CONVERGED 1e-14  /* change of an impulse in a sweep, over the largest */
+/* of the velocity below which a point comes to rest: what is slower sticks, if it can */
+#define STICKING_SPEED 0.1
+#define EXCESS 1e-9          /* of what friction can take: so much more breaks it loose */
+#define PULL_TOLERANCE 1e-10 /* of the largest force: more opens a point, less is rounding */
+#define APPROACH 1e-6        /* of the accelerations: more than what sticking gives way by */
+#define MOST_CHANGES 200     /* of how points go on, before there is no motion */
 
 enum { MOST = FU_MOST_HARD_CONTACTS, ROWS = FU_SPACE * FU_MOST_HARD_CONTACTS };
 
@@ -47,7 +49,8 @@ static void prepare(fu_run *run, const fu_active_contacts *t, friction_impulse *
     for (int k = 0; k < t->n; ++k) fu_hard_along_at(model, contact_of(t->of[k]), &run->now, &t->row[k], &r->along[k]);
     for (int k = 0; k < r->n; ++k) {
         fu_hard_respond(run, &t->row[k / dim], row_of(t, r, dim, k));
-        for (int j = 0; j < r->n; ++j) r->A[j * r->n + k] = fu_hard_rate(&t->row[j / dim], row_of(t, r, dim, j), run->work);
+        for (int j = 0; j < r->n; ++j)
+            r->A[j * r->n + k] = fu_hard_rate(&t->row[j / dim], row_of(t, r, dim, j), run->work);
         const fu_hard_along *along = &r->along[k / dim];
         r->before[k] = k % dim ? fu_dot(dim, along->t[k % dim - 1], along->past) : t->before[k / dim];
         r->impulse[k] = 0.0;
@@ -71,7 +74,8 @@ static double mend(const fu_active_contacts *t, friction_impulse *r, int point, 
     for (int d = 1; d < dim; ++d) stiff += r->A[(k + d) * r->n + k + d];
     for (int d = 1; d < dim; ++d) r->after[k + d] = velocity(r, k + d);
     for (int d = 1; d < dim && stiff > 0.0; ++d) {
-        r->impulse[k + d] -= r->after[k + d] / stiff * (dim == 3 && fabs(r->A[(k + 1) * r->n + k + 2]) < 1e-12 * stiff ? 2.0 : 1.0);
+        r->impulse[k + d] -=
+            r->after[k + d] / stiff * (dim == 3 && fabs(r->A[(k + 1) * r->n + k + 2]) < 1e-12 * stiff ? 2.0 : 1.0);
         size += r->impulse[k + d] * r->impulse[k + d];
     }
     const double most = friction * r->impulse[k];
@@ -103,7 +107,8 @@ int fu_impact_with_friction(fu_run *run, fu_active_contacts *t)
         if (k % dim) continue;
         t->impulse[k / dim] = r.impulse[k];
         t->after[k / dim] = fabs(r.after[k] - t->target[k / dim]) <= sqrt(CONVERGED) * fabs(t->before[k / dim])
-                                ? t->target[k / dim] : r.after[k];
+                                ? t->target[k / dim]
+                                : r.after[k];
     }
     fu_response(run->model, &run->accelerator, run->before, run->work);
     return 0;
@@ -146,14 +151,15 @@ static void aim(fu_run *run, const fu_coupling *c)
     fu_hard_along_at(run->model, contact_of(c), &run->now, &row, &along);
     for (int d = 0; d < dim; ++d) {
         direction[d] = 0.0;
-        for (int k = 1; k < dim; ++k) direction[d] += multipliers[k] * along.t[k - 1][d]; /* minus the force on the body */
+        for (int k = 1; k < dim; ++k)
+            direction[d] += multipliers[k] * along.t[k - 1][d]; /* minus the force on the body */
         square += direction[d] * direction[d];
     }
     for (int d = 0; d < dim && square > 0.0; ++d) direction[d] /= sqrt(square);
 }
 
-/* Aims the points that stick, but those that have been aimed: of points that break loose one after the other at one instant, the last
- * would else be twisted by what those before no longer hold. */
+/* Aims the points that stick, but those that have been aimed: of points that break loose one after the other at one
+ * instant, the last would else be twisted by what those before no longer hold. */
 static void aim_all(fu_run *run, const fu_active_contacts *t, int *aimed)
 {
     for (int k = 0; k < t->n; ++k) {

@@ -13,9 +13,14 @@
 static const struct {
     const fu_coupling_type *type;
     const fu_coupling_events *events;
-} types[] = {{&fu_dead_load_type, 0}, {&fu_load_type, 0}, {&fu_slide_type, &fu_slide_events}, {&fu_joint_type, 0},
-             {&fu_point_force_type, &fu_point_force_events}, {&fu_drag_type, &fu_drag_events},
-             {&fu_crossing_type, &fu_crossing_events}, {&fu_contact_type, &fu_contact_events},
+} types[] = {{&fu_dead_load_type, 0},
+             {&fu_load_type, 0},
+             {&fu_slide_type, &fu_slide_events},
+             {&fu_joint_type, 0},
+             {&fu_point_force_type, &fu_point_force_events},
+             {&fu_drag_type, &fu_drag_events},
+             {&fu_crossing_type, &fu_crossing_events},
+             {&fu_contact_type, &fu_contact_events},
              {&fu_hard_contact_type, &fu_hard_contact_events}};
 
 const fu_coupling_type *fu_coupling_type_of(const char *name)

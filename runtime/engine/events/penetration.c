@@ -1,5 +1,5 @@
-/* How deep couplings have let parts sink below what they touch, and how far beyond its ends these touch, at the ends of steps: rows of
- * output may miss it. */
+/* How deep couplings have let parts sink below what they touch, and how far beyond its ends these touch, at the ends of
+ * steps: rows of output may miss it. */
 #include "couplings/common/coupling_events.h"
 #include "equations/run.h"
 #include "events/penetration.h"
@@ -27,7 +27,8 @@ void fu_note_depths(fu_run *run)
         const fu_coupling *c = fu_event_coupling(run, k);
         if (!c) continue;
         const fu_coupling_events *events = c->events;
-        if (events->depth) fu_keep_largest(&run->deepest[c->number], events->depth(run->model, c, &run->now, run->watched[k]));
+        if (events->depth)
+            fu_keep_largest(&run->deepest[c->number], events->depth(run->model, c, &run->now, run->watched[k]));
         fu_keep_largest(&run->farthest[c->number], fu_beyond(run->model, c, &run->now));
     }
 }

@@ -1,5 +1,5 @@
-/* Forces between two points pass from piece to piece of their law (couplings/force/segments.c): the distance passes a bound, or the force
- * turns round.
+/* Forces between two points pass from piece to piece of their law (couplings/force/segments.c): the distance passes a
+ * bound, or the force turns round.
  */
 #include "base/double_root.h"
 #include "couplings/force/point_force.h"
@@ -21,7 +21,8 @@ static double norm(int dim, const double *gap)
 }
 
 /* Returns how far the force of a piece is on the right side of nil, m; infinity where it may pull and push. */
-static double margin_of_sense(const fu_point_force *between, int piece, const double *gap, const double *rate, double distance)
+static double margin_of_sense(const fu_point_force *between, int piece, const double *gap, const double *rate,
+                              double distance)
 {
     const int sense = between->senses[piece];
     double force[3];
@@ -49,10 +50,10 @@ static int free_beside(const fu_point_force *between, int piece)
     return piece;
 }
 
-/* Returns the transition of the force to a piece with a force on one side of a piece without: where the points are on it, and its
- * force has its sense. */
+/* Returns the transition of the force to a piece with a force on one side of a piece without: where the points are on
+ * it, and its force has its sense. */
 static transition entering(const fu_point_force *between, int piece, int side, const double *gap, const double *rate,
-                        double distance)
+                           double distance)
 {
     const double beyond = side * (distance - between->bounds[piece - (side < 0)]);
     int entered = fu_segment_at_distance(between, distance);
@@ -74,8 +75,7 @@ static transition passage_from(const fu_model *model, const fu_point_force *betw
         if (beside < 0 || beside >= between->n_pieces) continue;
         if (between->senses[piece] == FU_HAS_NO_FORCE)
             found = farther(found, entering(between, piece, side, gap, rate, distance));
-        else
-            found = farther(found, (transition){side * (distance - between->bounds[piece - (side < 0)]), beside});
+        else found = farther(found, (transition){side * (distance - between->bounds[piece - (side < 0)]), beside});
     }
     return found;
 }
@@ -103,7 +103,8 @@ static int follow(const fu_model *model, const fu_coupling *coupling, const fu_s
 /* What has happened where the force has passed from piece to piece, in words; nothing at a corner of a table. */
 static const char *words(const fu_point_force *between, int before, int after)
 {
-    const int was_free = between->senses[before] == FU_HAS_NO_FORCE, is_free = between->senses[after] == FU_HAS_NO_FORCE;
+    const int was_free = between->senses[before] == FU_HAS_NO_FORCE,
+              is_free = between->senses[after] == FU_HAS_NO_FORCE;
     return is_free ? "became slack" : !was_free ? "" : after > before ? "became taut" : "came into contact";
 }
 
@@ -139,12 +140,14 @@ static fu_course from_bound(const fu_model *model, const fu_point_force *between
     return (fu_course){distance - between->bounds[bound], fu_dot(between->dim, gap, gap_rate) / distance};
 }
 
-/* The distance of the points at an end of a step, less that at which a piece ends, and its derivatives by the part of the step, m. */
+/* The distance of the points at an end of a step, less that at which a piece ends, and its derivatives by the part of
+ * the step, m. */
 typedef struct {
     double value, rate, bend;
 } end_course;
 
-static end_course end_of(const fu_model *model, const fu_point_force *between, const fu_state *state, int bound, double h)
+static end_course end_of(const fu_model *model, const fu_point_force *between, const fu_state *state, int bound,
+                         double h)
 {
     const int dim = between->dim;
     const gap_motion l = look_at(model, between, state);
@@ -153,7 +156,8 @@ static end_course end_of(const fu_model *model, const fu_point_force *between, c
     return (end_course){l.distance - between->bounds[bound], h * rate, h * h * bend};
 }
 
-/* Returns where the polynomial is at a part of the step: of degree 3 where the bends at its ends are not known, else of degree 5. */
+/* Returns where the polynomial is at a part of the step: of degree 3 where the bends at its ends are not known, else of
+ * degree 5. */
 static double between_ends(end_course a, end_course b, int bends, double x)
 {
     const double y = 1.0 - x;
@@ -163,10 +167,10 @@ static double between_ends(end_course a, end_course b, int bends, double x)
            x * x * x * ((1.0 + 3.0 * y + 6.0 * y * y) * b.value - y * (1.0 + 3.0 * y) * b.rate + 0.5 * y * y * b.bend);
 }
 
-/* By the polynomial of the distance through both ends of the step (Hermite's); where a damper turns the force round, by the line of its
- * margins. */
-static double part_of_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, double h,
-                     int bends, const char **what)
+/* By the polynomial of the distance through both ends of the step (Hermite's); where a damper turns the force round, by
+ * the line of its margins. */
+static double part_of_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                           double h, int bends, const char **what)
 {
     const fu_point_force *between = force_of(coupling);
     const int before = fu_force_segment(between, from), there = fu_force_segment(between, to);
@@ -174,7 +178,8 @@ static double part_of_step(const fu_model *model, const fu_coupling *coupling, c
     double low = 0.0, high = 1.0;
     *what = words(between, before, after);
     if (coupling->is_damped) {
-        const double a = passage_from(model, between, from, before).margin, b = passage_from(model, between, to, before).margin;
+        const double a = passage_from(model, between, from, before).margin,
+                     b = passage_from(model, between, to, before).margin;
         return a < 0.0 && b > 0.0 ? a / (a - b) : 1.0;
     }
     const int bound = up ? before : before - 1;
@@ -237,7 +242,8 @@ static fu_course wrong_sense(const fu_point_force *between, int piece, const gap
     return (fu_course){unit * along, unit * slope};
 }
 
-/* Each of the passages alone is smooth. A piece with a force is entered at its bound first, as its damper then has its sense. */
+/* Each of the passages alone is smooth. A piece with a force is entered at its bound first, as its damper then has its
+ * sense. */
 static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_point_force *between = force_of(coupling);
@@ -247,11 +253,13 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     (void)which;
     for (int side = -1; side <= 1; ++side) {
         const int bound = piece - (side < 0), by_sense = side == 0;
-        if (by_sense ? sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE : bound < 0 || bound >= between->n_pieces - 1) continue;
-        const double found = by_sense ? fu_grazing_time(wrong_sense(between, piece, &from), wrong_sense(between, piece, &to), -1, h,
-                                               run->round_off)
-                                      : fu_grazing_time(beyond(between, bound, side, &from), beyond(between, bound, side, &to), -1, h,
-                                               run->round_off);
+        if (by_sense ? sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE
+                     : bound < 0 || bound >= between->n_pieces - 1)
+            continue;
+        const double found = by_sense ? fu_grazing_time(wrong_sense(between, piece, &from),
+                                                        wrong_sense(between, piece, &to), -1, h, run->round_off)
+                                      : fu_grazing_time(beyond(between, bound, side, &from),
+                                                        beyond(between, bound, side, &to), -1, h, run->round_off);
         if (found > 0.0 && (first == 0.0 || found < first)) first = found;
     }
     return first;
@@ -284,7 +292,8 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
-static const fu_deferred_operations deferred = {.follow = follow, .part = part_of_step, .since = since, .force_change = force_change};
+static const fu_deferred_operations deferred = {
+    .follow = follow, .part = part_of_step, .since = since, .force_change = force_change};
 
 const fu_coupling_events fu_point_force_events = {
     .watches = watches,

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#define STEPS_A_LOOK 16      /* for which a look shall do */
-#define MAX_STEPS_A_LOOK 256  /* steps after which there is another look, as motions may have become slower */
+#define STEPS_A_LOOK 16            /* for which a look shall do */
+#define MAX_STEPS_A_LOOK 256       /* steps after which there is another look, as motions may have become slower */
 #define ROUNDING_OF_CLEARANCE 1e-9 /* of clearances, ways and places */
 
 /* Makes the speeds of a mover, m/s and rad/s. */
@@ -88,7 +88,8 @@ static void measure(const fu_model *model, fu_pair *pair, const fu_state *state)
     const fu_clearance found = c->type->proximity->clearance(model, c, state);
     pair->lever = found.lever + fmax(found.gap, 0.0);
     pair->limit = found.gap * (1.0 - ROUNDING_OF_CLEARANCE) + used_by(p, pair, 0);
-    if (pair->between[0] >= model->n_cables) p->movers[pair->between[0]].radius = fmax(p->movers[pair->between[0]].radius, found.radius);
+    if (pair->between[0] >= model->n_cables)
+        p->movers[pair->between[0]].radius = fmax(p->movers[pair->between[0]].radius, found.radius);
 }
 
 /* Returns whether a pair stays far while its movers go no farther than they may until the next look. */
@@ -138,7 +139,8 @@ static int count_ways(const fu_model *model, const fu_state *state, double *ways
 }
 
 /* Lets movers go as far until the next look as they have gone of late, or go now, in some steps of h. */
-static void expect(const fu_model *model, const fu_state *state, double h, int steps, const double *ways, const double *turns)
+static void expect(const fu_model *model, const fu_state *state, double h, int steps, const double *ways,
+                   const double *turns)
 {
     fu_proximity *p = model->proximity;
     for (int m = 0; m < p->n_movers; ++m) {

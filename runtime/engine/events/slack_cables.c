@@ -1,6 +1,6 @@
-/* Cables that give way in compression: when the first of a cable's elements becomes slack, and when all are taut again, by the
- * axial strain in the middle of each. Nothing jumps there, as the law is smooth: steps go over it, and the instant is that of
- * the line through the least strains at both ends of a step. */
+/* Cables that give way in compression: when the first of a cable's elements becomes slack, and when all are taut again,
+ * by the axial strain in the middle of each. Nothing jumps there, as the law is smooth: steps go over it, and the
+ * instant is that of the line through the least strains at both ends of a step. */
 #include "equations/run.h"
 #include "events/slack_cables.h"
 
@@ -62,8 +62,8 @@ void fu_note_slackness(fu_run *run, double h)
     }
 }
 
-/* Makes the earliest of what the caller does not know of, if it is before an instant, the run's event; returns 0 where there
- * is none. */
+/* Makes the earliest of what the caller does not know of, if it is before an instant, the run's event; returns 0 where
+ * there is none. */
 int fu_take_slackness(fu_run *run, double before)
 {
     fu_slackness *first = 0;

@@ -6,8 +6,9 @@
 
 #define FU_SLACK_STRAIN 1e-9 /* what is compressed by less is not slack, lest rounding say so */
 
-/* Of a cable: the least axial strain in the middle of its elements at `now`; whether any is slack; the one that was first, or last,
- * slack; what the caller is to learn: 1 that some are slack, -1 that none is any more, 0 nothing; and when that was, s. */
+/* Of a cable: the least axial strain in the middle of its elements at `now`; whether any is slack; the one that was
+ * first, or last, slack; what the caller is to learn: 1 that some are slack, -1 that none is any more, 0 nothing; and
+ * when that was, s. */
 struct fu_slackness {
     double least, at;
     int is_slack, element, pending;

@@ -1,5 +1,5 @@
-/* What a slide does by itself (couplings/common/coupling_events.h): it passes from element to element of its cable, sticks, breaks loose,
- * and reaches what waits at the ends. events/end_stops.c has what then happens.
+/* What a slide does by itself (couplings/common/coupling_events.h): it passes from element to element of its cable,
+ * sticks, breaks loose, and reaches what waits at the ends. events/end_stops.c has what then happens.
  */
 #include "base/double_root.h"
 #include "couplings/joint/joint.h"
@@ -10,7 +10,8 @@
 #include "events/end_stops.h"
 #include "events/list.h"
 
-/* Watches of a slide: whether it stays locked, or slides on in its direction; or, as the side of that end, its buffer. */
+/* Watches of a slide: whether it stays locked, or slides on in its direction; or, as the side of that end, its buffer.
+ */
 enum { BUFFER_AT_START = -1, STICKING = 0, BUFFER_AT_END = 1 };
 
 static const fu_slide *slide_of(const fu_coupling *coupling)
@@ -37,16 +38,17 @@ static int can_act(const fu_coupling *coupling)
     return slide->resistance || slide->stops[0].kind || slide->stops[1].kind;
 }
 
-/* A slide that can act passes no boundary unseen; axes that a slide ties to the cable turn by a jump where curvature jumps. */
+/* A slide that can act passes no boundary unseen; axes that a slide ties to the cable turn by a jump where curvature
+ * jumps. */
 static int stops_at_boundaries(const fu_model *model, const fu_coupling *coupling)
 {
     return can_act(coupling) || fu_ties_a_frame(model, coupling->index);
 }
 
-/* Where the rider's axes are tied to the cable they get a new angular velocity. What the step has left of the constraints is
- * projected away before, lest it be taken for a loss. The tangent of the neighbour differs by the jump of the curvature times
- * how far the slide is beyond the boundary: were the axes not turned along at once, the first short step would turn them, at a
- * speed that none of the energies has. */
+/* Where the rider's axes are tied to the cable they get a new angular velocity. What the step has left of the
+ * constraints is projected away before, lest it be taken for a loss. The tangent of the neighbour differs by the jump
+ * of the curvature times how far the slide is beyond the boundary: were the axes not turned along at once, the first
+ * short step would turn them, at a speed that none of the energies has. */
 static int enter(fu_run *run, const fu_coupling *coupling, int piece)
 {
     const fu_model *model = run->model;
@@ -70,7 +72,8 @@ static int watches(const fu_coupling *coupling, fu_event_function *out)
     if (slide->sticks || slide->stops[0].kind == FU_END_IS_HARD || slide->stops[1].kind == FU_END_IS_HARD)
         found[n++] = (fu_event_function){.which = STICKING, .direction = 1};
     for (int side = BUFFER_AT_START; side <= BUFFER_AT_END; side += 2)
-        if (slide->stops[side > 0].kind == FU_END_IS_BUFFERED) found[n++] = (fu_event_function){.which = side, .direction = 0};
+        if (slide->stops[side > 0].kind == FU_END_IS_BUFFERED)
+            found[n++] = (fu_event_function){.which = side, .direction = 0};
     for (int i = 0; i < n && out; ++i) out[i] = found[i];
     return n;
 }
@@ -106,7 +109,8 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return FU_RUNNING;
 }
 
-static const fu_path_operations path = {.at = path_at, .rate = rate, .stops_at_boundaries = stops_at_boundaries, .enter = enter, .reach_end = fu_reach_end};
+static const fu_path_operations path = {
+    .at = path_at, .rate = rate, .stops_at_boundaries = stops_at_boundaries, .enter = enter, .reach_end = fu_reach_end};
 
 const fu_coupling_events fu_slide_events = {
     .watches = watches,

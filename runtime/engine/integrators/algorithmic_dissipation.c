@@ -4,20 +4,21 @@
  *
  *   S = D (viscosity (g_1 - g_0) + inertia (r_1 - r_0)),   g_1 - g_0 = dE - (g_0 + g_1)/(2 lag),   r_0 + r_1 = 2 dE
  *
- * is added, D the stiffness: the first part is a Maxwell element between the strain and what follows it within `lag` steps,
- * g how far that is behind; the second is inertia against strain, r the change that the velocities at an end of the step
- * would make in one. What S takes out over the step, S dE, is
+ * is added, D the stiffness: the first part is a Maxwell element between the strain and what follows it within `lag`
+ * steps, g how far that is behind; the second is inertia against strain, r the change that the velocities at an end of
+ * the step would make in one. What S takes out over the step, S dE, is
  *
  *   viscosity D (g_1 - g_0)^2   and what goes into   viscosity/(2 lag) D g^2 + inertia/2 D r^2
  *
- * which comes back or is lost: energy is never above its start. r_0 = h B v_0 at the start of the step; where its energy would be
- * more than r_1 of the step before has left, it is shortened to that. S is of the order of h^2 in slow motion, and none in
- * rigid motion. The aim is that of Armero & Romero (Comput. Methods Appl. Mech. Eng. 190 (2001) 6783-6824); the form is
- * linear: an oscillator of stiffness D has p^2 (1 + lag p) + (h omega)^2 (1 + p/a)^3 = 0 for its eigenvalues
- * (1 + p/2)/(1 - p/2), with the three numbers of integrators/energy.py, and all three reach the spectral radius as h omega grows.
+ * which comes back or is lost: energy is never above its start. r_0 = h B v_0 at the start of the step; where its
+ * energy would be more than r_1 of the step before has left, it is shortened to that. S is of the order of h^2 in slow
+ * motion, and none in rigid motion. The aim is that of Armero & Romero (Comput. Methods Appl. Mech. Eng. 190 (2001)
+ * 6783-6824); the form is linear: an oscillator of stiffness D has p^2 (1 + lag p) + (h omega)^2 (1 + p/a)^3 = 0 for
+ * its eigenvalues (1 + p/2)/(1 - p/2), with the three numbers of integrators/energy.py, and all three reach the
+ * spectral radius as h omega grows.
  *
- * B of a spatial cable sees a turn about the tangent where it is bent (cable_damping.py), which would cost momentum. A turn
- * of the cable as a whole is taken off, v - omega x r, the one that leaves its forces without a moment.
+ * B of a spatial cable sees a turn about the tangent where it is bent (cable_damping.py), which would cost momentum. A
+ * turn of the cable as a whole is taken off, v - omega x r, the one that leaves its forces without a moment.
  *
  * g of a bent cable has directions in space, and stays there while the cable turns: that changes S by the order of h^2.
  */
@@ -64,8 +65,8 @@ static double *state_of(const fu_cable *cable, double *numbers, int k)
     return numbers + cable->dissipation_state + k * numbers_of(cable);
 }
 
-/* Returns the head of the work space, laid out as a state's numbers: r, what the velocities at the start of the step would
- * change, and its energy; at the head of the scratch. */
+/* Returns the head of the work space, laid out as a state's numbers: r, what the velocities at the start of the step
+ * would change, and its energy; at the head of the scratch. */
 static double *expected_of(const fu_run *run)
 {
     return run->scratch;
@@ -97,8 +98,8 @@ static double element_force(const moving *m, int k, const double *relaxed, doubl
     double v[FU_MAX_COORDINATES];
     memcpy(v, m->v + entry_of(cable, k), sizeof(double) * (size_t)cable->coordinates);
     if (cable->law->spins) turn(m, k, back, v);
-    cable->law->algorithmic_force(fu_element_length(cable, k), m->q + entry_of(cable, k), v, fu_element_constants(cable, k),
-                                  m->weight, relaxed, f, dE);
+    cable->law->algorithmic_force(fu_element_length(cable, k), m->q + entry_of(cable, k), v,
+                                  fu_element_constants(cable, k), m->weight, relaxed, f, dE);
     return fu_dot(cable->coordinates, f, v);
 }
 

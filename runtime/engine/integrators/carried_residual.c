@@ -1,19 +1,20 @@
 /* What Newton's method leaves of the equations of motion, carried into the next steps.
  *
- * The residual r that an iteration leaves has one sign step after step, and acts like a force: after n steps it has moved
- * positions by n^2/2 times the increment that was left out. Here its impulse P and the moment X of that are summed,
+ * The residual r that an iteration leaves has one sign step after step, and acts like a force: after n steps it has
+ * moved positions by n^2/2 times the increment that was left out. Here its impulse P and the moment X of that are
+ * summed,
  *
  *   P_n+1 = P_n + h r_n+1,   X_n+1 = X_n + h P_n+1
  *
- * and the next step is solved with the force c = -(X/T + P)/T on its right side, r = c + what Newton leaves there. With T = h
- * that brings both sums back in one step: r_n+1 = e_n+1 - 2 e_n + e_n-1 of what is left in each step, e, so that the motion
- * is off by e alone, however many steps are made. (The same is done to the noise of quantisation: Schreier & Temes 2005.)
- * Equations of motion are those of the dofs and of couplings' own coordinates: of a slide, the balance along the cable. What is
- * left of a constraint is a gap of `next` alone. After a step of T, T does not end sooner than that step would have been made up
- * for: each step takes no more than its own h from T. Otherwise one short step to an event would make up for a long one with a
- * large force, and many, each shorter than the last, with forces that grow without bounds. For T > h the sums go to zero in some
- * steps, for any T. Steps that are solved to rounding make up for those before as well: without the force c, the impulse would go
- * on moving positions.
+ * and the next step is solved with the force c = -(X/T + P)/T on its right side, r = c + what Newton leaves there. With
+ * T = h that brings both sums back in one step: r_n+1 = e_n+1 - 2 e_n + e_n-1 of what is left in each step, e, so that
+ * the motion is off by e alone, however many steps are made. (The same is done to the noise of quantisation: Schreier &
+ * Temes 2005.) Equations of motion are those of the dofs and of couplings' own coordinates: of a slide, the balance
+ * along the cable. What is left of a constraint is a gap of `next` alone. After a step of T, T does not end sooner than
+ * that step would have been made up for: each step takes no more than its own h from T. Otherwise one short step to an
+ * event would make up for a long one with a large force, and many, each shorter than the last, with forces that grow
+ * without bounds. For T > h the sums go to zero in some steps, for any T. Steps that are solved to rounding make up for
+ * those before as well: without the force c, the impulse would go on moving positions.
  */
 #include "base/workspace.h"
 #include "equations/run.h"
@@ -50,7 +51,8 @@ static double span(const fu_carried_residual *carried, double h)
     return fmax(h, *carried->span - h);
 }
 
-/* Makes the force by which a step of size h makes up for the steps before: its residual, unless Newton leaves something. */
+/* Makes the force by which a step of size h makes up for the steps before: its residual, unless Newton leaves
+ * something. */
 void fu_carried_residual_correct(const fu_carried_residual *carried, const fu_model *model, double h)
 {
     const double per = 1.0 / span(carried, h);

@@ -1,4 +1,5 @@
-/* What Newton's method leaves of the equations of motion, carried into the next steps: integrators/carried_residual.c. */
+/* What Newton's method leaves of the equations of motion, carried into the next steps: integrators/carried_residual.c.
+ */
 #ifndef FUNICULAR_INTEGRATORS_CARRIED_RESIDUAL_H
 #define FUNICULAR_INTEGRATORS_CARRIED_RESIDUAL_H
 
@@ -6,8 +7,8 @@
 
 /* Arrays over the unknowns, in the work space of an integrator. */
 typedef struct {
-    double *impulse;    /* of what has been left until `now`, N s */
-    double *moment;     /* sum of steps times impulses, N s^2: what has been left moves positions by this over the mass */
+    double *impulse; /* of what has been left until `now`, N s */
+    double *moment;  /* sum of steps times impulses, N s^2: what has been left moves positions by this over the mass */
     double *correction; /* force of the step to come that makes up for both, N */
     double *left;       /* residual of the step just made, N */
     double *span;       /* s: over which they were made up for last; 0 where they never were */

@@ -10,9 +10,9 @@
  * Theta/h x J Theta/h with the moments along them: the inertia force as it stands, at the mean velocity.
  *
  * Unknowns as in genalpha.c with sigma = h^2/2. The Newton matrix takes elasticity at the middle, which leaves the
- * change of curvature of the energy over a step out: Newton converges linearly, by a factor that falls as h^2 or faster.
- * Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but for turns
- * and tension.
+ * change of curvature of the energy over a step out: Newton converges linearly, by a factor that falls as h^2 or
+ * faster. Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but
+ * for turns and tension.
  */
 #include "base/clock.h"
 #include "base/workspace.h"
@@ -117,8 +117,8 @@ static void residual(fu_run *run, double h)
     run->statistics.time_residual += fu_clock() - begin;
 }
 
-/* Adds the stiffness of the mean stress. Elasticity half-way has the stress of the mean vectors, which a turn over the step
- * shortens; the mean stress it does not change. */
+/* Adds the stiffness of the mean stress. Elasticity half-way has the stress of the mean vectors, which a turn over the
+ * step shortens; the mean stress it does not change. */
 static void mean_stress(fu_run *run, double stiffness)
 {
     const fu_model *model = run->model;
@@ -178,9 +178,9 @@ static int step(fu_run *run, double h)
     return fu_newton_step(run, &newton, h);
 }
 
-/* Adds to the local error of turns, dofs, what the change of the rate of turn does not hold: with Omega at the middle of the step
- * Cayley's map turns by h Omega - h^3/12 |Omega|^2 Omega, and the frame by h^3/12 Omega x Omega' more than the integral of Omega
- * (Magnus' series). A steady turn has this error alone. */
+/* Adds to the local error of turns, dofs, what the change of the rate of turn does not hold: with Omega at the middle
+ * of the step Cayley's map turns by h Omega - h^3/12 |Omega|^2 Omega, and the frame by h^3/12 Omega x Omega' more than
+ * the integral of Omega (Magnus' series). A steady turn has this error alone. */
 static void add_turn_errors(const fu_model *model, double h, const double *rate, const double *change, double *error)
 {
     const double factor = h * h * h / 12.0;
@@ -200,8 +200,8 @@ static void add_turn_errors(const fu_model *model, double h, const double *rate,
     }
 }
 
-/* Returns the local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the one
- * before, and that of finite turns. */
+/* Returns the local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the
+ * one before, and that of finite turns. */
 static double error(fu_run *run, double h)
 {
     const double factor = h * h * h / 12.0 / (0.5 * h + run->since);
@@ -242,8 +242,8 @@ static void account(fu_run *run, double h)
     for (int k = 0; k < model->n_motions; ++k) {
         const int i = model->motions[k].dof;
         if (model->motions[k].first)
-            run->external += run->force[i] * run->psi[i] +
-                             m.force[i] * (0.5 * h * (now->v[i] + next->v[i]) - run->psi[i]);
+            run->external +=
+                run->force[i] * run->psi[i] + m.force[i] * (0.5 * h * (now->v[i] + next->v[i]) - run->psi[i]);
     }
 }
 

@@ -18,10 +18,13 @@
 #include <math.h>
 #include <string.h>
 
-#define COARSE_SHARE 0.01 /* of the coarse estimate's square, as in DOP853 (Hairer, Norsett & Wanner 1993, II.10) */
-#define HEAT_TOLERANCE 0.01     /* of the heat of a step: what the method's quadrature may be off by; from -z = 3 on it is more */
+/* of the coarse estimate's square, as in DOP853 (Hairer, Norsett & Wanner 1993, II.10) */
+#define COARSE_SHARE 0.01
+/* of the heat of a step: what the method's quadrature may be off by; from -z = 3 on it is more */
+#define HEAT_TOLERANCE 0.01
 
-/* The powers that a state keeps: that of damping within bodies, of all else that goes to heat, and external power, W. */
+/* The powers that a state keeps: that of damping within bodies, of all else that goes to heat, and external power, W.
+ */
 enum { INTERNAL, OTHER, EXTERNAL, POWERS };
 
 /* An explicit Runge-Kutta method with two embedded error estimates: A (stages x stages, row by row), b, c (stages),
@@ -45,8 +48,8 @@ static long n_parameters(const double *given)
     return 1 + n * n + 2 * n + 2 * (n + 1);
 }
 
-/* Returns the size of the work space: the rates of q and v of each stage, of the end of the step, and of an error estimate; then
- * the powers of each stage and of the end. */
+/* Returns the size of the work space: the rates of q and v of each stage, of the end of the step, and of an error
+ * estimate; then the powers of each stage and of the end. */
 static long n_scratch(const fu_run *run)
 {
     const long n = tableau_of(run).stages;
@@ -98,7 +101,8 @@ static void keep(fu_run *run, int k, const fu_state *state)
     powers(run, k)[EXTERNAL] = fu_external_power(run, state, run->force);
 }
 
-/* Makes `next` from `now` and the row's combination, at t, with each slide where C_l = 0; returns 0 where that was found. */
+/* Makes `next` from `now` and the row's combination, at t, with each slide where C_l = 0; returns 0 where that was
+ * found. */
 static int move_to(fu_run *run, const double *row, int n, double t, double h)
 {
     const fu_model *model = run->model;
@@ -130,8 +134,7 @@ static int evaluate(fu_run *run, double h)
     for (int k = 1; k < n; ++k) {
         if (move_to(run, method.A + k * n, k, run->now.t + method.c[k] * h, h)) return 1;
         double *reaction = fu_supports_move(model, next) ? run->force : 0;
-        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, reaction))
-            return fu_fail_eq38(run);
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, reaction)) return fu_fail_eq38(run);
         keep(run, k, next);
     }
     run->statistics.time_residual += fu_clock() - begin;
@@ -206,8 +209,9 @@ static fu_quadrature quadrature(const fu_run *run)
     return (fu_quadrature){method.stages, method.b, method.c};
 }
 
-/* Returns what damping takes in a step by its force's mean over the stages, along the way of the step, J. The power is a quadratic form of
- * velocities, B(v, v), and this is h B(dq/h, (v_n + v_n+1)/2): what the method itself takes from a mode, however fast that decays. */
+/* Returns what damping takes in a step by its force's mean over the stages, along the way of the step, J. The power is
+ * a quadratic form of velocities, B(v, v), and this is h B(dq/h, (v_n + v_n+1)/2): what the method itself takes from a
+ * mode, however fast that decays. */
 static double taken_by_means(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -225,9 +229,9 @@ static double taken_by_means(fu_run *run, double h)
     return taken;
 }
 
-/* Returns what damping within bodies takes in a step, J: by the method's quadrature, whose error is known like that of the step. In steps
- * at the stability limit the fastest modes decay by so much that stages overshoot them, and their squares count for many times the
- * energy that the modes have. */
+/* Returns what damping within bodies takes in a step, J: by the method's quadrature, whose error is known like that of
+ * the step. In steps at the stability limit the fastest modes decay by so much that stages overshoot them, and their
+ * squares count for many times the energy that the modes have. */
 static double taken_within(fu_run *run, double h)
 {
     const tableau method = tableau_of(run);
@@ -239,8 +243,8 @@ static double taken_within(fu_run *run, double h)
     return fabs(off) <= HEAT_TOLERANCE * fabs(sum) ? h * sum : taken_by_means(run, h);
 }
 
-/* Counts heat, J. In a step beyond the limit the method gives energy to the fastest modes, which is no heat: it is owed, and what the modes
- * lose again pays for it first. While it is owed the balance shows it. */
+/* Counts heat, J. In a step beyond the limit the method gives energy to the fastest modes, which is no heat: it is
+ * owed, and what the modes lose again pays for it first. While it is owed the balance shows it. */
 static void count_heat(fu_run *run, double heat)
 {
     const double counted = fmax(heat - run->heat_owed, 0.0);

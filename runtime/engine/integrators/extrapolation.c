@@ -1,11 +1,12 @@
 /* Prediction of a step from the steps before. Accelerations are those of what a step resolves, which a polynomial
- * through the last steps predicts, and of vibrations that it does not, which none predicts. So the next step is predicted
- * by the polynomial, of degree 0 to 2, that would have predicted the last one best; or, where velocities alone would have
- * been better, by `rest` times the last acceleration, with which the integrator goes on with its velocities.
+ * through the last steps predicts, and of vibrations that it does not, which none predicts. So the next step is
+ * predicted by the polynomial, of degree 0 to 2, that would have predicted the last one best; or, where velocities
+ * alone would have been better, by `rest` times the last acceleration, with which the integrator goes on with its
+ * velocities.
  *
- * A polynomial goes over unknowns alone: dofs that are tied to them follow, those that are prescribed have `rest` times the
- * last. Newton's method does not mend what a prediction has besides, and rounding in that, continued by polynomials, would
- * grow without bounds.
+ * A polynomial goes over unknowns alone: dofs that are tied to them follow, those that are prescribed have `rest` times
+ * the last. Newton's method does not mend what a prediction has besides, and rounding in that, continued by
+ * polynomials, would grow without bounds.
  */
 #include "base/workspace.h"
 #include "bodies/unknowns.h"
@@ -46,7 +47,8 @@ static factors factors_of(const fu_last_steps *last, int degree, double rest, do
     if (degree == 0) return (factors){1.0, 0.0, 0.0};
     const double first = h / last->h;
     if (degree == 1) return (factors){1.0 + first, -first, 0.0};
-    const double bend = h * (h + last->h) / (last->h + last->h_before), now = bend / last->h, earlier = bend / last->h_before;
+    const double bend = h * (h + last->h) / (last->h + last->h_before), now = bend / last->h,
+                 earlier = bend / last->h_before;
     return (factors){1.0 + first + now, -first - now - earlier, earlier};
 }
 
@@ -69,17 +71,20 @@ static void predict_accelerations(const fu_extrapolation *past, fu_run *run, fac
     for (int i = 0; i < model->n_dof; ++i) run->next.a[i] = rest * a[i] + run->work[i];
 }
 
-/* Makes the forces of a first `next`, which go with accelerations. Those that have not changed stay as they are, as those of
- * redundant rows do. Steps that the error chooses gain nothing by it: they are as large as Newton's method takes them. */
+/* Makes the forces of a first `next`, which go with accelerations. Those that have not changed stay as they are, as
+ * those of redundant rows do. Steps that the error chooses gain nothing by it: they are as large as Newton's method
+ * takes them. */
 static void predict_forces(const fu_extrapolation *past, fu_run *run, factors f)
 {
     const double *now = run->now.forces;
     for (int i = 0; i < run->model->n_forces; ++i)
         if (now[i] != past->force_before[i])
-            run->next.forces[i] = f.now * now[i] + f.before * past->force_before[i] + f.earlier * past->force_earlier[i];
+            run->next.forces[i] =
+                f.now * now[i] + f.before * past->force_before[i] + f.earlier * past->force_earlier[i];
 }
 
-/* Makes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola, and forces. */
+/* Makes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola, and
+ * forces. */
 void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, double h)
 {
     const fu_last_steps *last = past->last;

@@ -4,8 +4,8 @@
 
 #include "base/common.h"
 
-/* Of the last steps: sizes of the last one and of the one before, s; how many are known; the degree of the polynomial that would
- * have predicted the last one best, -1: none. Whole numbers are real ones here, as work spaces have. */
+/* Of the last steps: sizes of the last one and of the one before, s; how many are known; the degree of the polynomial
+ * that would have predicted the last one best, -1: none. Whole numbers are real ones here, as work spaces have. */
 typedef struct {
     double h, h_before, steps, degree;
 } fu_last_steps;

@@ -10,10 +10,11 @@
  * by sigma, constraint rows by the mass: the matrix is M + sigma K bordered by mass C_q, of one scale for any h
  * (Bottasso, Dopico & Trainelli 2008). What Newton leaves of a step, the next ones make up for (carried_residual.c).
  *
- * Of vibrations that steps do not resolve, h a_n is as large as velocities are, however long h is. Where a step is much shorter than
- * the next one, as what is left between an event and an output time can be, its a_n+1 would push the next one by that times the ratio
- * of both, and vibrations would grow from event to event, the more so the stiffer a cable is. After such a step the a_n that it began
- * with goes on, nor is the scheme started anew with a_n = q''_n, which holds their acceleration in full.
+ * Of vibrations that steps do not resolve, h a_n is as large as velocities are, however long h is. Where a step is much
+ * shorter than the next one, as what is left between an event and an output time can be, its a_n+1 would push the next
+ * one by that times the ratio of both, and vibrations would grow from event to event, the more so the stiffer a cable
+ * is. After such a step the a_n that it began with goes on, nor is the scheme started anew with a_n = q''_n, which
+ * holds their acceleration in full.
  */
 #include "base/workspace.h"
 #include "bodies/rotation.h"
@@ -30,7 +31,8 @@
 #include <math.h>
 #include <string.h>
 
-#define BRIEF 0.1 /* of the usual step: a shorter one leaves a_n as it was, which is off by less than the usual step's error */
+/* of the usual step: a shorter one leaves a_n as it was, which is off by less than the usual step's error */
+#define BRIEF 0.1
 #define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
 
 typedef struct {
@@ -195,15 +197,17 @@ static int step(fu_run *run, double h)
     return fu_coast(run, h);
 }
 
-/* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has
- * changed its element the accelerations have jumped at some instant of the step, and velocities are wrong by the part of h
- * that lies between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. */
+/* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide
+ * has changed its element the accelerations have jumped at some instant of the step, and velocities are wrong by the
+ * part of h that lies between it and the middle, times the jump. That counts as over one step: what is allowed is h/t
+ * of the whole. */
 static double error(fu_run *run, double h)
 {
     const parameters *g = scheme_of(run);
     const double smooth = fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
     const double factor = h * h * (fu_count_changes(run) ? JUMP : smooth);
-    fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration, run->work);
+    fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration,
+                      run->work);
     return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run);
 }
 
@@ -219,7 +223,8 @@ static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_accept(&w.carried, run->model, h);
-    if (run->is_remainder && h < BRIEF * run->usual) memcpy(run->next.a, run->now.a, sizeof(double) * (size_t)run->model->n_dof);
+    if (run->is_remainder && h < BRIEF * run->usual)
+        memcpy(run->next.a, run->now.a, sizeof(double) * (size_t)run->model->n_dof);
     else if (fu_goes_on(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
     else fu_extrapolation_start(&w.past);
     fu_account_trapezoid(run, h);

@@ -16,14 +16,17 @@
 #include <math.h>
 #include <string.h>
 
-#define MAX_ITERATIONS 10    /* of Newton's in a step, before it fails */
+#define MAX_ITERATIONS 10     /* of Newton's in a step, before it fails */
 #define FIRST_CONTRACTION 0.5 /* of an increment to the one before: what is assumed before there are two */
-#define SLOW_CONTRACTION 0.3              /* contraction above which the matrix is made anew for the next step */
-#define MIN_CONTRACTION 1e-3         /* least contraction by which the rest of the error is estimated: a smaller one may be chance */
-#define MAX_CONTRACTION 0.9           /* largest contraction by which the rest is estimated, at 9 increments */
-#define DIVERGENCE_GROWTH 2.0          /* growth of an increment from one iteration to the next at which the iteration fails */
+/* contraction above which the matrix is made anew for the next step */
+#define SLOW_CONTRACTION 0.3
+/* least contraction by which the rest of the error is estimated: a smaller one may be chance */
+#define MIN_CONTRACTION 1e-3
+#define MAX_CONTRACTION 0.9 /* largest contraction by which the rest is estimated, at 9 increments */
+/* growth of an increment from one iteration to the next at which the iteration fails */
+#define DIVERGENCE_GROWTH 2.0
 #define ROUNDING_FACTOR 100.0 /* times the rounding of positions: an increment that is not rounding */
-#define NEWTON_SHARE 1.5e-2           /* of the allowed error: what Newton may leave */
+#define NEWTON_SHARE 1.5e-2   /* of the allowed error: what Newton may leave */
 
 static long n_parameters(const double *given)
 {
@@ -61,7 +64,8 @@ static long n_scratch(const fu_run *run)
 static int iterate(fu_run *run, fu_radau_workspace *w, double h)
 {
     double last = 0.0, before = 0.0;
-    const double enough = fmax(run->fixed_step > 0.0 ? run->newton_tolerance : NEWTON_SHARE * run->allowed, run->round_off);
+    const double enough =
+        fmax(run->fixed_step > 0.0 ? run->newton_tolerance : NEWTON_SHARE * run->allowed, run->round_off);
     fu_radau_predict(run, w, h);
     for (int i = 0; i < MAX_ITERATIONS; ++i) {
         if (fu_radau_evaluate(run, w, h)) return 1;
@@ -76,7 +80,9 @@ static int iterate(fu_run *run, fu_radau_workspace *w, double h)
             /* the mean of two, as in RADAU5: one may be small by chance, where corrections of what is stiff and of what
              * constraints hold take turns */
             const double mean = i > 1 ? sqrt(ratio * before) : ratio;
-            run->contraction = mean < MIN_CONTRACTION ? MIN_CONTRACTION : mean > MAX_CONTRACTION ? MAX_CONTRACTION : mean;
+            run->contraction = mean < MIN_CONTRACTION   ? MIN_CONTRACTION
+                               : mean > MAX_CONTRACTION ? MAX_CONTRACTION
+                                                        : mean;
             before = ratio;
         }
         if (size * run->contraction / (1.0 - run->contraction) <= enough || size <= run->round_off) {

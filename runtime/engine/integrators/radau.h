@@ -20,17 +20,17 @@ _Static_assert(sizeof(fu_radau_parameters) == (4 * STAGES * STAGES + 2 * STAGES 
 
 /* The head of the integrator's work space, and the arrays behind it. */
 typedef struct {
-    double *Z;        /* stages' increments of velocity, n_dof each */
-    double *a;        /* accelerations: likewise */
-    double *w;        /* their transforms: likewise */
-    double *q;        /* configurations, n_q each */
-    double *powers;   /* dissipated and external, of each stage */
+    double *Z;           /* stages' increments of velocity, n_dof each */
+    double *a;           /* accelerations: likewise */
+    double *w;           /* their transforms: likewise */
+    double *q;           /* configurations, n_q each */
+    double *powers;      /* dissipated and external, of each stage */
     double *multipliers; /* of eq 38 at the start and at each stage, where forces depend on them */
-    double *unknowns; /* of a Newton system */
-    double *D_real;   /* the real system's border before it was factored */
-    double *kept;     /* what the border's rows make of dofs */
-    double *last;     /* the last step's Z */
-    double h_last;    /* its size, s; 0: there is none to predict from */
+    double *unknowns;    /* of a Newton system */
+    double *D_real;      /* the real system's border before it was factored */
+    double *kept;        /* what the border's rows make of dofs */
+    double *last;        /* the last step's Z */
+    double h_last;       /* its size, s; 0: there is none to predict from */
     fu_complex_system newton;
 } fu_radau_workspace;
 
@@ -43,17 +43,19 @@ void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h);
 void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h);
 /* Makes `next` stage k, without accelerations; returns 0 where its slides were found. */
 int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h);
-/* Finds the accelerations of all stages, and the powers of their couplings and loads; returns 0 where they were found. */
+/* Finds the accelerations of all stages, and the powers of their couplings and loads; returns 0 where they were found.
+ */
 int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h);
-/* Adds what damping of cables and bodies takes to the powers of the stages, once the iteration has found them; `next` is the last
- * of them then. */
+/* Adds what damping of cables and bodies takes to the powers of the stages, once the iteration has found them; `next`
+ * is the last of them then. */
 void fu_radau_add_internal_dissipation(fu_run *run, fu_radau_workspace *w, double h);
 /* Keeps the multipliers of the state that accelerations have just been found of, as those of stage k. */
 void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k);
 /* Adds the powers of the stages to the energy balance, and keeps the stages for the next prediction. */
 void fu_radau_account(fu_run *run, double h);
 
-/* radau_newton.c. Makes and factors the real and the complex matrix at `now`; returns 0, or not 0 where one is singular. */
+/* radau_newton.c. Makes and factors the real and the complex matrix at `now`; returns 0, or not 0 where one is
+ * singular. */
 int fu_radau_factor(fu_run *run, double h);
 /* Makes run->rhs = [M r; H r] of dofs r that keep to the supports; unknowns: work space. */
 void fu_radau_right_side(fu_run *run, const double *r, double *unknowns);

@@ -6,19 +6,24 @@
 
 #include <math.h>
 
-#define VIBRATION 0.5     /* times the estimate for vibrations is what counts: errors of one are not of one sign */
-#define EMBEDDED 0.08     /* times the embedded estimate is what counts, as its order is too low */
-#define FED_VIBRATION 4.0 /* the same where motions, drives or friction feed vibrations: there errors grow with them */
+/* times the estimate for vibrations is what counts: errors of one are not of one sign */
+#define VIBRATION 0.5
+#define EMBEDDED 0.08 /* times the embedded estimate is what counts, as its order is too low */
+/* the same where motions, drives or friction feed vibrations: there errors grow with them */
+#define FED_VIBRATION 4.0
 #define FED_EMBEDDED 0.1
-#define TURNING_VIBRATION 2.0 /* the same where bodies turn: there what vibrations lose changes the turns for good */
-#define TURNING_EMBEDDED 0.1  /* as the matrix has nothing of turns */
-#define TURN_SHARE 0.01       /* of what is allowed: by how much a body, as a length, turns within a step where it turns */
-#define REPORTED 2.0      /* times the estimate for vibrations is what is told of a fixed step */
-#define VIBRATION_SHARE 0.1          /* of all that is allowed: the error of vibrations that a step does not resolve */
-#define KINK 0.15         /* of tol: the error that one kink of friction may make */
+/* the same where bodies turn: there what vibrations lose changes the turns for good */
+#define TURNING_VIBRATION 2.0
+#define TURNING_EMBEDDED 0.1 /* as the matrix has nothing of turns */
+/* of what is allowed: by how much a body, as a length, turns within a step where it turns */
+#define TURN_SHARE 0.01
+#define REPORTED 2.0 /* times the estimate for vibrations is what is told of a fixed step */
+/* of all that is allowed: the error of vibrations that a step does not resolve */
+#define VIBRATION_SHARE 0.1
+#define KINK 0.15 /* of tol: the error that one kink of friction may make */
 
-/* Returns the largest error that a kink of a force within the step may make, as a part of what is allowed, m. Kinks are single
- * events, so that one may cost a part of tol, however short its step. */
+/* Returns the largest error that a kink of a force within the step may make, as a part of what is allowed, m. Kinks are
+ * single events, so that one may cost a part of tol, however short its step. */
 static double kink(fu_run *run, fu_radau_workspace *w, double h)
 {
     const fu_model *model = run->model;
@@ -32,7 +37,8 @@ static double kink(fu_run *run, fu_radau_workspace *w, double h)
     for (int k = 0; k < model->n_always_active; ++k) {
         const fu_coupling *coupling = model->always_active[k];
         if (!coupling->type->reaction) continue;
-        worst = fmax(worst, coupling->type->reaction->friction_error(model, coupling, &run->next, STAGES + 1, weight, w->multipliers, h * left));
+        worst = fmax(worst, coupling->type->reaction->friction_error(model, coupling, &run->next, STAGES + 1, weight,
+                                                                     w->multipliers, h * left));
     }
     return worst * run->allowed / (KINK * fu_allowed_error(run));
 }
@@ -48,7 +54,8 @@ static double filtered(fu_run *run, fu_radau_workspace *w, const double *r)
     return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
 }
 
-/* Makes run->work what the filter takes from what is in run->work, which it was made by; returns the size of what it leaves. */
+/* Makes run->work what the filter takes from what is in run->work, which it was made by; returns the size of what it
+ * leaves. */
 static double take_filtered(fu_run *run, fu_radau_workspace *w)
 {
     const int n = run->model->n_dof;
@@ -84,21 +91,23 @@ static int turns(const fu_run *run, double h)
     for (int b = 0; b < model->n_bodies; ++b) {
         const fu_body *body = &model->bodies[b];
         for (int i = body->dof + body->kernel->dim; i < body->dof + body->kernel->velocity; ++i)
-            if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > TURN_SHARE * run->allowed) return 1;
+            if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > TURN_SHARE * run->allowed)
+                return 1;
     }
     return 0;
 }
 
-/* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the stages
- * say of it for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the method. What the
- * same filter, applied to E, takes away, V, has the right order, and is 0.55 to 2.5 times the error for every z. A part of E
- * counts beside it, for what the matrix has nothing of: loads that change in time, bodies that turn.
+/* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the
+ * stages say of it for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the
+ * method. What the same filter, applied to E, takes away, V, has the right order, and is 0.55 to 2.5 times the error
+ * for every z. A part of E counts beside it, for what the matrix has nothing of: loads that change in time, bodies that
+ * turn.
  *
- * Errors of steps add up, those of vibrations that a step does not resolve do not: the method damps them, so that all that can
- * be lost is what there is, once. They may be a part of all that is allowed; what adds up, which the filter leaves of E and V,
- * may be the step's share of it. Friction has kinks, which show in what the filter takes away: there all counts as adding up.
- * So it does where bodies turn: a vibration acts on a turn with the square of its size, as a torque, and one that is lost
- * makes an error that grows with the square of the time. */
+ * Errors of steps add up, those of vibrations that a step does not resolve do not: the method damps them, so that all
+ * that can be lost is what there is, once. They may be a part of all that is allowed; what adds up, which the filter
+ * leaves of E and V, may be the step's share of it. Friction has kinks, which show in what the filter takes away: there
+ * all counts as adding up. So it does where bodies turn: a vibration acts on a turn with the square of its size, as a
+ * torque, and one that is lost makes an error that grows with the square of the time. */
 double fu_radau_error(fu_run *run, double h)
 {
     const fu_model *model = run->model;

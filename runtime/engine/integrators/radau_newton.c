@@ -17,7 +17,8 @@ static fu_complex complex_step(const fu_radau_parameters *method, double h)
 static int cables_are_damped(const fu_model *model)
 {
     int damped = 0;
-    for (int c = 0; c < model->n_cables; ++c) damped |= model->cables[c].tau > 0.0 || model->cables[c].mass_damping > 0.0;
+    for (int c = 0; c < model->n_cables; ++c)
+        damped |= model->cables[c].tau > 0.0 || model->cables[c].mass_damping > 0.0;
     return damped;
 }
 
@@ -32,8 +33,8 @@ static void add_weights(fu_run *run, fu_weights weights, int whole, fu_complex f
     fu_complex_system_accumulate(&fu_radau_space(run)->newton, &run->newton, factor);
 }
 
-/* Makes both matrices at `now`. They are made of M + J, K and D, which systems of other weights differ by. Cables without damping
- * have M, and M + K; their K, which takes longest, is made once. */
+/* Makes both matrices at `now`. They are made of M + J, K and D, which systems of other weights differ by. Cables
+ * without damping have M, and M + K; their K, which takes longest, is made once. */
 static void make_matrices(fu_run *run, double h)
 {
     const fu_radau_parameters *method = fu_radau_method(run);
@@ -43,11 +44,13 @@ static void make_matrices(fu_run *run, double h)
     const fu_complex other = complex_step(method, h), square = fu_complex_product(other, other);
     const fu_complex by_damping = {other.re / real, other.im / real};
     const fu_complex by_stiffness = {square.re / (real * real), square.im / (real * real)};
-    const int whole = cables_are_damped(model), damped = whole || model->n_damped || model->n_bodies; /* forces of inertia
-                                                                        * go with the velocity of a body */
+    const int whole = cables_are_damped(model),
+              damped = whole || model->n_damped || model->n_bodies; /* forces of inertia
+                                                                     * go with the velocity of a body */
     const fu_complex last = damped ? by_damping : (fu_complex){2.0 - by_stiffness.re, -by_stiffness.im};
     fu_complex_system_clear(c, &run->newton);
-    add_weights(run, (fu_weights){1.0, 0.0, 2.0 * real * real}, whole, (fu_complex){by_stiffness.re - 1.0, by_stiffness.im});
+    add_weights(run, (fu_weights){1.0, 0.0, 2.0 * real * real}, whole,
+                (fu_complex){by_stiffness.re - 1.0, by_stiffness.im});
     if (damped) {
         const fu_complex rest = {2.0 - by_stiffness.re - by_damping.re, -by_stiffness.im - by_damping.im};
         add_weights(run, (fu_weights){1.0, 0.0, real * real}, whole, rest);
@@ -58,7 +61,8 @@ static void make_matrices(fu_run *run, double h)
     }
     fu_matrix_of_cables(run, (fu_weights){1.0, rate, real * real});
     if (!whole)
-        fu_complex_system_accumulate(c, &run->newton, (fu_complex){by_stiffness.re - last.re, by_stiffness.im - last.im});
+        fu_complex_system_accumulate(c, &run->newton,
+                                     (fu_complex){by_stiffness.re - last.re, by_stiffness.im - last.im});
     fu_add_matrix_of_others(run, (fu_weights){1.0, rate, real * real});
     fu_complex_system_accumulate(c, &run->newton, last);
 }
@@ -101,7 +105,8 @@ static void keep_rows(fu_run *run, const double *unknowns)
     for (int c = 0; c < s->n_chains; ++c) {
         const fu_matrix_block *rows = s->rows + FU_HALVES * s->chain_start[c];
         for (const fu_matrix_block *p = rows; p < rows + s->n_rows[c]; ++p)
-            for (int i = p->rows.first; i < p->rows.end; ++i) kept[p->k] += s->C[s->strips[p->strip].at + i] * unknowns[i];
+            for (int i = p->rows.first; i < p->rows.end; ++i)
+                kept[p->k] += s->C[s->strips[p->strip].at + i] * unknowns[i];
     }
     fu_fronts_add_product(s->fronts, fu_radau_space(run)->D_real, run->model->n_border_dof, unknowns + s->n, kept);
 }
@@ -141,8 +146,8 @@ double fu_radau_correct(fu_run *run, fu_radau_workspace *w, double h)
             w->w[(long)r * n + i] = 0.0;
             for (int k = 0; k < STAGES; ++k) {
                 const double *A = method->A_inverse + STAGES * k;
-                w->w[(long)r * n + i] += row[k] * (w->a[(long)k * n + i] - (A[0] * w->Z[i] + A[1] * w->Z[n + i] +
-                                                                       A[2] * w->Z[2 * n + i]) / h);
+                w->w[(long)r * n + i] += row[k] * (w->a[(long)k * n + i] -
+                                                   (A[0] * w->Z[i] + A[1] * w->Z[n + i] + A[2] * w->Z[2 * n + i]) / h);
             }
         }
     for (int i = 0; i < n; ++i) {

@@ -9,7 +9,8 @@
 
 #include <string.h>
 
-#define SWEEPS 4 /* of the attitudes' quadrature for each iteration of Newton's, which goes on with those at hand */
+/* of the attitudes' quadrature for each iteration of Newton's, which goes on with those at hand */
+#define SWEEPS 4
 
 /* Moves the entries of the stages' q that have n dofs for rates by the quadrature of velocities. */
 static void integrate(fu_run *run, fu_radau_workspace *w, double h, int at, int dof, int n)
@@ -89,7 +90,8 @@ void fu_radau_add_internal_dissipation(fu_run *run, fu_radau_workspace *w, doubl
 void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k)
 {
     const long n = run->model->n_multipliers;
-    if (run->model->n_reacting) memcpy(w->multipliers + k * n, run->accelerator.multipliers, sizeof(double) * (size_t)n);
+    if (run->model->n_reacting)
+        memcpy(w->multipliers + k * n, run->accelerator.multipliers, sizeof(double) * (size_t)n);
 }
 
 /* Finds the accelerations of all stages, the powers of their couplings and loads; returns 0 where they were found. */
@@ -129,9 +131,9 @@ void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h)
                 if (m != j) weight[j] *= (x - c[m]) / (c[j] - c[m]);
         }
         for (int i = 0; i < n; ++i)
-            w->Z[(long)k * n + i] = w->h_last > 0.0
-                ? weight[0] * w->last[i] + weight[1] * w->last[n + i] + weight[2] * w->last[2 * n + i] - w->last[2 * n + i]
-                : c[k] * h * run->now.acceleration[i];
+            w->Z[(long)k * n + i] = w->h_last > 0.0 ? weight[0] * w->last[i] + weight[1] * w->last[n + i] +
+                                                          weight[2] * w->last[2 * n + i] - w->last[2 * n + i]
+                                                    : c[k] * h * run->now.acceleration[i];
         memcpy(w->q + (long)k * model->n_q, run->now.q, sizeof(double) * (size_t)model->n_q);
     }
 }

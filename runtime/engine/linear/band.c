@@ -2,8 +2,8 @@
  * each column, which for the short columns of cables takes three times as long as their arithmetic
  * (tests/benchmarks/linear_cost.py).
  *
- * Storage: columns of the lower triangle from the diagonal down, width + 1 each, and columns of a unit matrix to a whole
- * number of groups: the columns of a group are eliminated at once. */
+ * Storage: columns of the lower triangle from the diagonal down, width + 1 each, and columns of a unit matrix to a
+ * whole number of groups: the columns of a group are eliminated at once. */
 #include "linear/linear.h"
 
 /* Makes Cholesky's columns those of L D L': L below the diagonal, 1/D on it. */

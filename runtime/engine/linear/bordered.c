@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#define NEGLIGIBLE_ENTRY 1e-32     /* of a column's largest entry: smaller ones add nothing to a solution */
+#define NEGLIGIBLE_ENTRY 1e-32 /* of a column's largest entry: smaller ones add nothing to a solution */
 
 void fu_system_clear(fu_system *s)
 {
@@ -100,7 +100,8 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
     int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
     if (s->inverted) multiply_chain(s, chain, (fu_span){of.first - start, of.end - start}, x + start);
     else if (s->way[chain] == FU_SYMMETRIC && fu_is_twisted(s, chain)) fu_twisted_solve(s, chain, of, x);
-    else if (s->way[chain] == FU_SYMMETRIC) fu_band_solve(n, width, fu_factor_of(s, chain), of.first - start, x + start);
+    else if (s->way[chain] == FU_SYMMETRIC)
+        fu_band_solve(n, width, fu_factor_of(s, chain), of.first - start, x + start);
     else if (s->way[chain] == FU_UNPIVOTED) {
         fu_band_forward(n, width, s->L + fu_factor_at(s, chain), of.first - start, x + start);
         if (n) fu_band_backward(n, width, s->U + fu_factor_at(s, chain), x + start);
@@ -127,8 +128,8 @@ static double times(const fu_system *s, const fu_matrix_block *p, fu_span of, co
     return sum;
 }
 
-/* Finds the rows that count of a column of X in a chain, by halves; returns how many pieces they are. The column decays away from
- * what it touches, in the end to numbers so small that the processor is slow with them. */
+/* Finds the rows that count of a column of X in a chain, by halves; returns how many pieces they are. The column decays
+ * away from what it touches, in the end to numbers so small that the processor is slow with them. */
 int fu_matrix_blocks(const fu_system *s, int strip, const double *x, fu_matrix_block *pieces)
 {
     const int chain = s->strips[strip].chain;
@@ -212,7 +213,8 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
         const fu_matrix_block *columns = s->columns + start, *rows = s->rows + start;
         for (const fu_matrix_block *p = columns; p < columns + s->n_columns[c]; ++p)
             for (const fu_matrix_block *r = rows; r < rows + s->n_rows[c]; ++r)
-                if (r->rows.first < p->rows.end && p->rows.first < r->rows.end) /* else to find the place takes longer */
+                if (r->rows.first < p->rows.end &&
+                    p->rows.first < r->rows.end) /* else to find the place takes longer */
                     s->D[fu_fronts_at(s->fronts, r->k, p->k)] -= times(s, r, p->rows, s->X + s->strips[p->strip].x);
     }
     if (s->D[s->fronts->size] != 0.0) return 1; /* the order of elimination has no place for it */
@@ -249,8 +251,8 @@ FU_INLINE void take(const fu_system *s, const double *y, double *x)
 static void take_columns(const fu_system *s, const double *y, double *x);
 FU_IN_LANES(take_columns, take, (const fu_system *s, const double *y, double *x), (s, y, x))
 
-/* Makes zero what goes on beyond the unknowns: a step that has overflowed leaves no numbers there, and no later step would have
- * any. */
+/* Makes zero what goes on beyond the unknowns: a step that has overflowed leaves no numbers there, and no later step
+ * would have any. */
 static void clear_beyond(const fu_system *s, double *y)
 {
     for (int i = s->m; i < s->m + FU_BAND_BEYOND(s->width); ++i) y[i] = 0.0;

@@ -31,9 +31,10 @@ static double complement_of(int n, const double *G, int n_basic, const int *basi
     return left;
 }
 
-/* Finds, of the rows that are not basic, those with w = 0: such that others imply, and such that join the basic ones. */
-static void sort_the_rest(int n, const double *G, const double *b, double least, const double *x, int *kind, int n_basic,
-                          int *basic)
+/* Finds, of the rows that are not basic, those with w = 0: such that others imply, and such that join the basic ones.
+ */
+static void sort_the_rest(int n, const double *G, const double *b, double least, const double *x, int *kind,
+                          int n_basic, int *basic)
 {
     double y[MOST];
     for (int i = 0; i < n; ++i) {
@@ -45,9 +46,9 @@ static void sort_the_rest(int n, const double *G, const double *b, double least,
     }
 }
 
-/* Finds x >= 0 with w = G x + b >= 0 and x w = 0, for a symmetric G (n x n) without negative eigenvalues, by the dual method of
- * Goldfarb and Idnani (1983): basic are rows that do not depend on each other, with w = 0; dependent rows have w = 0 with them. w
- * within `least` is zero. Returns not zero where there is no solution. */
+/* Finds x >= 0 with w = G x + b >= 0 and x w = 0, for a symmetric G (n x n) without negative eigenvalues, by the dual
+ * method of Goldfarb and Idnani (1983): basic are rows that do not depend on each other, with w = 0; dependent rows
+ * have w = 0 with them. w within `least` is zero. Returns not zero where there is no solution. */
 int fu_complement(int n, const double *G, const double *b, double least, double *x, int *kind)
 {
     int basic[MOST], n_basic = 0, entering = -1;

@@ -1,17 +1,18 @@
 /* Complex band matrices that are symmetric, or but for a little, factored without pivots: A = L D L', or A = L D U'.
  *
- * The stages of Radau IIA have A = M + z D + z^2 K with z = h/L and an argument of -49 degrees. Times conj(z)/|z|, the real part of
- * A is cos 49 (M + |z|^2 K) + |z| D, and positive definite where the real system's M + s D + s^2 K is, as |z| < s = h/gamma and
- * D takes energy. The values x* A x then lie in a sector of less than a half plane. So do those of the inverse, of its
- * diagonal blocks, and of their inverses, the Schur complements: no pivot is small beside its column. What is not symmetric must be
- * small, as in unsymmetric_band.c.
+ * The stages of Radau IIA have A = M + z D + z^2 K with z = h/L and an argument of -49 degrees. Times conj(z)/|z|, the
+ * real part of A is cos 49 (M + |z|^2 K) + |z| D, and positive definite where the real system's M + s D + s^2 K is, as
+ * |z| < s = h/gamma and D takes energy. The values x* A x then lie in a sector of less than a half plane. So do those
+ * of the inverse, of its diagonal blocks, and of their inverses, the Schur complements: no pivot is small beside its
+ * column. What is not symmetric must be small, as in unsymmetric_band.c.
  *
- * Storage: columns of the lower triangle from the diagonal down, FU_COMPLEX_STRIDE numbers each with zeros beyond the band, real
- * and imaginary parts apart; those of the upper one, transposed, likewise. */
+ * Storage: columns of the lower triangle from the diagonal down, FU_COMPLEX_STRIDE numbers each with zeros beyond the
+ * band, real and imaginary parts apart; those of the upper one, transposed, likewise. */
 #include "base/simd.h"
 #include "linear/complex_system.h"
 
-#define MIN_PIVOT 1e-8 /* of the diagonal: what elimination must leave of it where the matrix is not symmetric */
+/* of the diagonal: what elimination must leave of it where the matrix is not symmetric */
+#define MIN_PIVOT 1e-8
 
 /* Returns 1 / d. */
 static fu_complex inverse_of(double re, double im)
@@ -129,8 +130,8 @@ FU_IN_LANES(fu_complex_band_add, add, (int n, int width, const double *K, fu_com
 FU_IN_LANES(fu_complex_band_factor, factor, (int n, int width, double *re, double *im), (n, width, re, im))
 
 static void unsymmetric_in_lanes(int n, int width, double *const L[2], double *const U[2], int *failed);
-FU_IN_LANES(unsymmetric_in_lanes, factor_unsymmetric, (int n, int width, double *const L[2], double *const U[2], int *failed),
-            (n, width, L, U, failed))
+FU_IN_LANES(unsymmetric_in_lanes, factor_unsymmetric,
+            (int n, int width, double *const L[2], double *const U[2], int *failed), (n, width, L, U, failed))
 
 /* Factors in place: L and U' below the diagonal, 1/D on both; returns not zero where a pivot is too small. */
 int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *const U[2])
@@ -140,8 +141,8 @@ int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *
     return failed;
 }
 
-/* Makes x + i y = A^-1 (x + i y), which is zero before `first`, of a symmetric A with L as U; both go on FU_COMPLEX_BEYOND numbers
- * beyond n, which are finite and stay. */
+/* Makes x + i y = A^-1 (x + i y), which is zero before `first`, of a symmetric A with L as U; both go on
+ * FU_COMPLEX_BEYOND numbers beyond n, which are finite and stay. */
 FU_IN_LANES(fu_complex_band_solve, solve,
             (int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y),
             (n, width, L, U, first, x, y))

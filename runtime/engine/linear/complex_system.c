@@ -35,8 +35,8 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->factors = *real;
     c->factors.numbers = (double *)take(scratch, taken, real->most_numbers);
     c->factors.x = (double *)take(scratch, taken, 2 * m);
-    int **own[] = {&c->factors.unknowns, &c->factors.map, &c->factors.start, &c->factors.first, &c->factors.size,
-                   &c->factors.pivots, &c->factors.done};
+    int **own[] = {&c->factors.unknowns, &c->factors.map,    &c->factors.start, &c->factors.first,
+                   &c->factors.size,     &c->factors.pivots, &c->factors.done};
     const long fronts = s->fronts->n, lengths[] = {real->most_unknowns, m, fronts, fronts, fronts, fronts, fronts};
     for (int k = 0; k < (int)(sizeof own / sizeof *own); ++k)
         *own[k] = (int *)fu_take(scratch, taken, FU_DOUBLES(lengths[k], int));
@@ -53,7 +53,8 @@ void fu_complex_system_clear(fu_complex_system *c, const fu_system *s)
 {
     const size_t n = (size_t)s->n, beside = (size_t)s->n_strip_rows;
     if (c->is_lower)
-        for (int part = 0; part < 2; ++part) memset(c->L[part], 0, sizeof(double) * FU_COMPLEX_STRIDE((size_t)s->width) * n);
+        for (int part = 0; part < 2; ++part)
+            memset(c->L[part], 0, sizeof(double) * FU_COMPLEX_STRIDE((size_t)s->width) * n);
     else memset(c->K, 0, sizeof(fu_complex) * (size_t)storage_rows(s) * n);
     memset(c->B, 0, sizeof(fu_complex) * beside);
     memset(c->C, 0, sizeof(fu_complex) * beside);
@@ -78,8 +79,8 @@ void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_c
     for (long i = 0; i < corner; ++i) fu_complex_add(&c->D[i], factor, s->D[i]);
 }
 
-/* Makes the lower half of a chain, or the upper one, transposed, as complex_band.c wants it. next: from an entry of a column, or
- * of a row, to the next one. */
+/* Makes the lower half of a chain, or the upper one, transposed, as complex_band.c wants it. next: from an entry of a
+ * column, or of a row, to the next one. */
 static void pack(const fu_complex_system *c, const fu_system *s, int chain, long next, double *const half[2])
 {
     const int end = s->chains[chain + 1], width = s->width, stride = FU_COMPLEX_STRIDE(width);
@@ -110,8 +111,8 @@ static int factor_unpivoted(fu_complex_system *c, const fu_system *s, int chain)
     return fu_complex_unsymmetric_factor(n, s->width, L, U);
 }
 
-/* Factors the band: a chain without pivots where the real one was so, as the complex one has none that are small then; but
- * for symmetric ones all of it must be there. Returns 0, or not 0 where it is singular. */
+/* Factors the band: a chain without pivots where the real one was so, as the complex one has none that are small then;
+ * but for symmetric ones all of it must be there. Returns 0, or not 0 where it is singular. */
 static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack)
 {
     int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
@@ -127,7 +128,8 @@ static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack
 }
 
 /* Makes x = K^-1 x in a chain, where x is zero before the row `from`. */
-static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int chain, int from, fu_complex *x)
+static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int chain, int from,
+                        fu_complex *x)
 {
     int first = s->chains[chain], n = s->chains[chain + 1] - first, width = s->width, rows = FU_BAND_ROWS(width);
     int one = 1, info;

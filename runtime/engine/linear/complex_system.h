@@ -5,7 +5,8 @@
 #include "linear/complex_number.h"
 #include "linear/linear.h"
 
-/* complex_band.c: numbers of a column of the factor's storage, and those that are touched behind a column of unknowns. */
+/* complex_band.c: numbers of a column of the factor's storage, and those that are touched behind a column of unknowns.
+ */
 #define FU_COMPLEX_STRIDE(width) ((width) + 4)
 #define FU_COMPLEX_BEYOND(width) ((width) + 4)
 
@@ -17,15 +18,15 @@ void fu_complex_band_solve(int n, int width, double *const L[2], double *const U
 /* [K B; C D] as an fu_system has it; real systems of several weights are combined to it. */
 typedef struct {
     fu_complex *K, *B, *C, *D, *X;
-    fu_complex *x;     /* right side, then solution */
+    fu_complex *x;      /* right side, then solution */
     fu_factors factors; /* of D, unless there is only one front */
     int *n_columns;
     fu_matrix_block *columns; /* of X, by chain; those of C are the real system's */
     int *pivot_band, *pivot_border;
-    int is_lower;      /* the band is made in L, its lower half, else in K, all of it */
+    int is_lower;        /* the band is made in L, its lower half, else in K, all of it */
     double *L[2], *U[2]; /* FU_COMPLEX_STRIDE x n, real and imaginary parts (complex_band.c) */
-    int *way;          /* n_chains: how each is factored, an fu_factorisation: in L, in L and U, in K (zgbtrf) */
-    double *right[2];  /* n + FU_COMPLEX_BEYOND: a right side of the band, likewise */
+    int *way;            /* n_chains: how each is factored, an fu_factorisation: in L, in L and U, in K (zgbtrf) */
+    double *right[2];    /* n + FU_COMPLEX_BEYOND: a right side of the band, likewise */
 } fu_complex_system;
 
 int fu_complex_fronts_factor(const fu_fronts *fronts, const fu_complex *matrix, fu_factors *factors,

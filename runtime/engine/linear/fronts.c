@@ -44,8 +44,8 @@ FU_INLINE void eliminate_four(const double *F, int n, int k, double *restrict co
     column[k + 1] = x;
     column[k + 2] = y;
     column[k + 3] = z;
-    subtract_four(n - k - 4, (const double *const[4]){a + k + 4, b + k + 4, c + k + 4, d + k + 4}, (const double[4]){w, x, y, z},
-                  column + k + 4);
+    subtract_four(n - k - 4, (const double *const[4]){a + k + 4, b + k + 4, c + k + 4, d + k + 4},
+                  (const double[4]){w, x, y, z}, column + k + 4);
 }
 
 FU_INLINE void eliminate_one(const double *F, int n, int k, double *restrict column)
@@ -61,7 +61,8 @@ FU_INLINE void eliminated(const double *F, int n, int from, int to, double *rest
     for (; k < to; ++k) eliminate_one(F, n, k, column);
 }
 
-/* Makes the four pivots before k from their right side, and takes what they have in the right side of those before them. */
+/* Makes the four pivots before k from their right side, and takes what they have in the right side of those before
+ * them. */
 FU_INLINE void substitute_four(const double *F, int n, int k, double *restrict x)
 {
     const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
@@ -88,15 +89,16 @@ FU_INLINE void substituted(const double *F, int n, int done, double *restrict x)
     int k = n;
     for (; k - 4 >= done; k -= 4) {
         const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
-        subtract_four(done, (const double *const[4]){a, b, c, d}, (const double[4]){x[k - 4], x[k - 3], x[k - 2], x[k - 1]}, x);
+        subtract_four(done, (const double *const[4]){a, b, c, d},
+                      (const double[4]){x[k - 4], x[k - 3], x[k - 2], x[k - 1]}, x);
     }
     for (; k > done; --k) subtract_one(done, F + (k - 1) * n, x[k - 1], x);
     for (; k >= 4; k -= 4) substitute_four(F, n, k, x);
     for (; k > 0; --k) substitute_one(F, n, k, x);
 }
 
-/* A link of a chain: a body's unknowns and those of its spherical joint go, those of the next joint stay. Sizes that the compiler
- * knows take half the instructions. */
+/* A link of a chain: a body's unknowns and those of its spherical joint go, those of the next joint stay. Sizes that
+ * the compiler knows take half the instructions. */
 enum { LINK_PIVOTS = FU_FRAME_DOFS + 3, LINK = LINK_PIVOTS + 3 };
 _Static_assert(LINK_PIVOTS == 4 + 4 + 1, "as forward and backward do them");
 
@@ -130,7 +132,8 @@ FU_INLINE void factor(const fu_fronts *t, const double *matrix, fu_factors *fact
     *info = real_factor(t, matrix, factors, lapack);
 }
 
-static void factor_in_lanes(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack, int *info);
+static void factor_in_lanes(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack,
+                            int *info);
 FU_IN_LANES(factor_in_lanes, factor,
             (const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack, int *info),
             (t, matrix, factors, lapack, info))
@@ -158,8 +161,8 @@ static int neighbour(const fu_fronts *t, int k, int unknown)
     return -1;
 }
 
-/* Returns where the storage has an entry of the matrix; behind its end, which is `stray`, what has no place there. stride: from it to
- * that of the next column, where both are in the same front. */
+/* Returns where the storage has an entry of the matrix; behind its end, which is `stray`, what has no place there.
+ * stride: from it to that of the next column, where both are in the same front. */
 int fu_fronts_block(const fu_fronts *t, int row, int column, int *stride)
 {
     *stride = t->m;
@@ -169,7 +172,8 @@ int fu_fronts_block(const fu_fronts *t, int row, int column, int *stride)
     if (of_column == k) {
         const int below = of_row == k ? 0 : neighbour(t, k, row);
         *stride = p + s;
-        return below < 0 ? t->size : t->start[k] + t->place[column] * (p + s) + (of_row == k ? t->place[row] : p + below);
+        return below < 0 ? t->size
+                         : t->start[k] + t->place[column] * (p + s) + (of_row == k ? t->place[row] : p + below);
     }
     const int beside = neighbour(t, k, column);
     *stride = p;

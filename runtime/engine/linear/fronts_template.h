@@ -1,20 +1,22 @@
 /* Gaussian elimination by fronts (Duff & Reid 1983) with threshold pivoting, for real and for complex numbers:
  * linear/fronts.c, linear/complex_fronts.c. A file that includes this has defined NUMBER, PREFIX(name), SIZE(x),
  * DIVIDE(x, by), TIMES(a, b), ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), APPLY, which makes a column what pivots
- * leave of it, FORWARD, which does that to a right side with all pivots of a front, and BACK, which makes the first unknowns of a
- * front from the others.
+ * leave of it, FORWARD, which does that to a right side with all pivots of a front, and BACK, which makes the first
+ * unknowns of a front from the others.
  *
- * A pivot is taken from the rows and columns that have all their entries, if it is not much smaller than what its column
- * has elsewhere. What finds none is left to the parent front. The last front has no other rows: LAPACK factors it.
- * Pivots are kept as their inverses. */
-#define THRESHOLD 1e-5 /* of a column's largest entry: less is no pivot. Rounding grows by no more than its inverse. */
+ * A pivot is taken from the rows and columns that have all their entries, if it is not much smaller than what its
+ * column has elsewhere. What finds none is left to the parent front. The last front has no other rows: LAPACK factors
+ * it. Pivots are kept as their inverses. */
+/* of a column's largest entry: less is no pivot. Rounding grows by no more than its inverse. */
+#define THRESHOLD 1e-5
 
 FU_INLINE NUMBER *PREFIX(front)(const fu_factors *f, int k)
 {
     return (NUMBER *)f->numbers + f->start[k];
 }
 
-/* Copies what the matrix has of a front of n unknowns, of which `delayed` ones stand between its own p and their s neighbours. */
+/* Copies what the matrix has of a front of n unknowns, of which `delayed` ones stand between its own p and their s
+ * neighbours. */
 FU_INLINE void PREFIX(copy)(const NUMBER *from, int p, int s, int delayed, NUMBER *F)
 {
     const int q = p + delayed, n = q + s;
@@ -35,7 +37,8 @@ FU_INLINE void PREFIX(add_child)(const fu_fronts *t, fu_factors *f, int k, int c
 {
     const int n = f->size[k], delayed = f->pivots[k] - p;
     const int size = f->size[c], done = f->done[c], left = f->pivots[c] - done, rest = size - done;
-    const int *in_parent = t->in_parent + t->first[c] + t->pivots[c] - left, *of_rows = f->unknowns + f->first[c] + done;
+    const int *in_parent = t->in_parent + t->first[c] + t->pivots[c] - left,
+              *of_rows = f->unknowns + f->first[c] + done;
     int *rows = f->unknowns + f->first[k], *columns = rows + n;
     for (int i = 0; i < left; ++i) {
         rows[next] = of_rows[i];
@@ -88,7 +91,8 @@ FU_INLINE void PREFIX(swap_unknowns)(int *unknowns, int a, int b)
     unknowns[b] = kept;
 }
 
-/* Returns the row of the largest entry of a column among those from k to q, -1 where that is no pivot; n: its length. */
+/* Returns the row of the largest entry of a column among those from k to q, -1 where that is no pivot; n: its length.
+ */
 FU_INLINE int PREFIX(pivot)(const NUMBER *column, int k, int q, int n)
 {
     double largest = 0.0, elsewhere = 0.0;
@@ -102,8 +106,8 @@ FU_INLINE int PREFIX(pivot)(const NUMBER *column, int k, int q, int n)
     return largest >= THRESHOLD * elsewhere ? row : -1;
 }
 
-/* Eliminates as many of the first q unknowns of a front as find a pivot; returns how many. updated: work space of n, how many
- * pivots each column has been changed by. */
+/* Eliminates as many of the first q unknowns of a front as find a pivot; returns how many. updated: work space of n,
+ * how many pivots each column has been changed by. */
 FU_INLINE int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns, int *updated)
 {
     int k = 0;

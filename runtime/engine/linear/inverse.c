@@ -1,5 +1,6 @@
-/* The inverse of a short band matrix that is factored once and solved with at every evaluation, as the mass is. A product with it
- * has more terms than a substitution, but none of them waits for another: it takes a fifth of the time for 42 unknowns. */
+/* The inverse of a short band matrix that is factored once and solved with at every evaluation, as the mass is. A
+ * product with it has more terms than a substitution, but none of them waits for another: it takes a fifth of the time
+ * for 42 unknowns. */
 #include "base/simd.h"
 #include "linear/linear.h"
 

@@ -14,11 +14,12 @@ const char *fu_lapack_name(int k)
     return k < (int)(sizeof names / sizeof *names) ? names[k] : 0;
 }
 
-/* Sets the k-th function. ISO C has no conversion of a pointer to data into one to a function, but both have one size. */
+/* Sets the k-th function. ISO C has no conversion of a pointer to data into one to a function, but both have one size.
+ */
 void fu_lapack_attach(fu_lapack *lapack, int k, const void *function)
 {
     int at = 0;
-#define ATTACH(name, ...) \
+#define ATTACH(name, ...)                                                                                              \
     if (k == at++) memcpy(&lapack->name, &function, sizeof function);
     FU_LAPACK_FUNCTIONS(ATTACH)
 #undef ATTACH

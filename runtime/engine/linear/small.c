@@ -1,5 +1,5 @@
-/* Small full matrices, column by column: the border of a scene of few bodies, where LAPACK's calls take longer than their
- * arithmetic. */
+/* Small full matrices, column by column: the border of a scene of few bodies, where LAPACK's calls take longer than
+ * their arithmetic. */
 #include "linear/linear.h"
 
 #include <math.h>
@@ -13,7 +13,8 @@ static int pivot_of(int n, const double *column, int diagonal)
     return largest;
 }
 
-/* Factors A = P L U in place, with pivots from rows; on the diagonal is 1 over that of U. Returns 0, or the number from 1 on of the first pivot that is zero. */
+/* Factors A = P L U in place, with pivots from rows; on the diagonal is 1 over that of U. Returns 0, or the number from
+ * 1 on of the first pivot that is zero. */
 int fu_small_factor(int n, double *A, int *pivot)
 {
     int info = 0;

@@ -1,12 +1,13 @@
-/* Long chains: eliminated from both ends towards their middle, which is a twisted factorisation (van der Vorst 1987, "Analysis
- * of a parallel solution method for tridiagonal linear systems"; for bands Lang 1992). There is no fill beyond the middle,
- * operations are as many as from one end, and both halves are independent of each other: in the factorisation, and in
- * either half of a substitution. The order is the same for any number of threads, and so are the bits.
+/* Long chains: eliminated from both ends towards their middle, which is a twisted factorisation (van der Vorst 1987,
+ * "Analysis of a parallel solution method for tridiagonal linear systems"; for bands Lang 1992). There is no fill
+ * beyond the middle, operations are as many as from one end, and both halves are independent of each other: in the
+ * factorisation, and in either half of a substitution. The order is the same for any number of threads, and so are the
+ * bits.
  *
- * A chain of n unknowns has n = count + middle + count. Each half is a banded matrix of count + middle columns, the second
- * one backwards, from the chain's end on. Cholesky's factors of both, L1 and L2, have in their last columns what is left of
- * the middle block A once one half is eliminated: A - U1 = L1 L1' and A - U2 = L2 L2'. Without both halves that is
- * A - U1 - U2 = L1 L1' + L2 L2' - A. */
+ * A chain of n unknowns has n = count + middle + count. Each half is a banded matrix of count + middle columns, the
+ * second one backwards, from the chain's end on. Cholesky's factors of both, L1 and L2, have in their last columns what
+ * is left of the middle block A once one half is eliminated: A - U1 = L1 L1' and A - U2 = L2 L2'. Without both halves
+ * that is A - U1 - U2 = L1 L1' + L2 L2' - A. */
 #include "linear/linear.h"
 
 /* A chain in halves. L: columns of either half, those of the first one with the middle's. */
@@ -51,15 +52,17 @@ static void multiply(int n, int width, double *L)
         }
 }
 
-/* Eliminates half a chain; what is left of the middle is in the last columns. The half's entry of pivot_band, which only
- * factorisations with pivots have use for, becomes not zero where the half is not symmetric or not positive definite. */
+/* Eliminates half a chain; what is left of the middle is in the last columns. The half's entry of pivot_band, which
+ * only factorisations with pivots have use for, becomes not zero where the half is not symmetric or not positive
+ * definite. */
 static void eliminate(const job *job, int half)
 {
     const fu_system *s = job->system;
     const chain_in_halves *c = &job->chain;
     int columns = c->count + c->middle, width = s->width, stride = width + 1, info = 1;
     double *L = c->L[half];
-    const fu_span rows = half ? (fu_span){c->start + c->count, c->start + c->n} : (fu_span){c->start, c->start + columns};
+    const fu_span rows =
+        half ? (fu_span){c->start + c->count, c->start + c->n} : (fu_span){c->start, c->start + columns};
     if (fu_pack(s, rows, half, L)) job->lapack->dpbtrf("L", &columns, &width, L, &stride, &info);
     if (!info) {
         multiply(c->middle, width, L + (long)c->count * stride);

@@ -1,5 +1,5 @@
-/* Sums of vectors that threads share. These are small against what is made of the vectors, but done by one thread they would
- * take half of each vector from the cache of the other. */
+/* Sums of vectors that threads share. These are small against what is made of the vectors, but done by one thread they
+ * would take half of each vector from the cache of the other. */
 #include "linear/linear.h"
 
 /* x = factor (y - z), or y alone where z is null; `adds`: to what x is. */

@@ -19,9 +19,9 @@ const fu_breakpoint *fu_next_breakpoint(const fu_run *run, double latest)
     return low < run->n_knots && run->knots[low].t <= latest + close ? &run->knots[low] : 0;
 }
 
-/* Goes on from a knot that `now` has reached; returns a status. What jumps there starts the scheme anew; so does any knot
- * between steps of a fixed length, whose neighbours can be of any ratio. Where a rate jumps, all that joints tie to it jumps,
- * too, and what drives it does the work of that; a drive that turned within an instant would lose none. */
+/* Goes on from a knot that `now` has reached; returns a status. What jumps there starts the scheme anew; so does any
+ * knot between steps of a fixed length, whose neighbours can be of any ratio. Where a rate jumps, all that joints tie
+ * to it jumps, too, and what drives it does the work of that; a drive that turned within an instant would lose none. */
 int fu_pass_breakpoint(fu_run *run, const fu_breakpoint *knot, int event)
 {
     const fu_model *model = run->model;

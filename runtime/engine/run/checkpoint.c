@@ -12,9 +12,10 @@
 #include <string.h>
 
 /* What a state that a run has paused in keeps to, by far: other bytes are damaged or forged. */
-#define ASIDE 1e-3        /* of a piece: how far from it a coupling may stand, where events leave it within 1e-6 */
+/* of a piece: how far from it a coupling may stand, where events leave it within 1e-6 */
+#define ASIDE 1e-3
 #define MIN_STEP 1e-13    /* of the duration: a step, or what steps stay below; a run gives up at 1e-12 */
-#define MAX_STEP 2.0       /* of the duration: a step, or what steps stay below */
+#define MAX_STEP 2.0      /* of the duration: a step, or what steps stay below */
 #define MOST_COUNT 100000 /* rejected steps, and turns on a boundary; a run gives up at 10000 */
 
 enum { MEASURE, SAVE, RESTORE };
@@ -45,8 +46,8 @@ static void copy_state(copier *c, const fu_model *model, fu_state *state)
     }
 }
 
-/* Copies all that the steps to come depend on. Factored matrices are not in it: fu_pause drops the Newton matrix, and fu_start
- * makes that of eq 38. */
+/* Copies all that the steps to come depend on. Factored matrices are not in it: fu_pause drops the Newton matrix, and
+ * fu_start makes that of eq 38. */
 static void copy_all(copier *c, fu_run *run)
 {
     const fu_model *model = run->model;
@@ -65,8 +66,8 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, (char *)run + numbers, sizeof *run - numbers);
 }
 
-/* Drops what a checkpoint does not hold, and takes the values of all watches, as it does not hold which are passed over. Done
- * at each pause whether a checkpoint is taken or not, so that results do not depend on it. */
+/* Drops what a checkpoint does not hold, and takes the values of all watches, as it does not hold which are passed
+ * over. Done at each pause whether a checkpoint is taken or not, so that results do not depend on it. */
 void fu_pause(fu_run *run)
 {
     run->factored = 0;
@@ -116,21 +117,23 @@ static int is_paused(const fu_run *run, int rows)
 static int possible_counts(const fu_run *run)
 {
     const fu_statistics *s = &run->statistics;
-    const long counts[] = {s->steps, s->rejected, s->newton_iterations, s->factorisations, s->crossings,
-                           s->newton_failures, s->evaluations, run->accelerator.evaluated};
+    const long counts[] = {s->steps,     s->rejected,        s->newton_iterations, s->factorisations,
+                           s->crossings, s->newton_failures, s->evaluations,       run->accelerator.evaluated};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i)
         if (counts[i] < 0) return 0;
     for (int k = 0; k < run->n_watches; ++k)
         if (!in_range(run->late[k], -1, 1)) return 0;
-    return fu_possible_slackness(run) && in_range(run->turned, 0, MOST_COUNT) && in_range(run->net_rejections, -MOST_COUNT, MOST_COUNT);
+    return fu_possible_slackness(run) && in_range(run->turned, 0, MOST_COUNT) &&
+           in_range(run->net_rejections, -MOST_COUNT, MOST_COUNT);
 }
 
 /* Returns whether flags, and numbers of couplings and dofs, are possible: some lead to places in memory. */
 static int possible_indices(const fu_run *run)
 {
     const int last = last_of(run->model->n_couplings);
-    return in_range(run->stopped_slide, 0, last) && in_range(run->keep_pieces, 0, 1) && in_range(run->keep_forces, 0, 1) && in_range(run->goes_over, 0, 1) &&
-           in_range(run->rest_start, 0, 1) && in_range(run->failure.cause, FU_NO_FAILURE, FU_SELF_LOCKING) &&
+    return in_range(run->stopped_slide, 0, last) && in_range(run->keep_pieces, 0, 1) &&
+           in_range(run->keep_forces, 0, 1) && in_range(run->goes_over, 0, 1) && in_range(run->rest_start, 0, 1) &&
+           in_range(run->failure.cause, FU_NO_FAILURE, FU_SELF_LOCKING) &&
            in_range(run->failure.dof, 0, last_of(run->model->n_dof)) && in_range(run->failure.coupling, -1, last);
 }
 
@@ -139,11 +142,16 @@ static int possible_numbers(const fu_run *run)
 {
     const double steps[] = {run->h, run->ceiling};
     const double positive[] = {run->motion, run->least_motion, run->extent, run->controlled_motion};
-    const double numbers[] = {run->contraction, run->since, run->dissipated, run->dissipated_power, run->external,
-                              run->external_power, run->drive_power, run->drive_power_before, run->drive_step,
-                              run->closed, run->allowed, run->round_off, run->newton_tolerance, run->statistics.h_min,
-                              run->statistics.h_max, run->statistics.error_sum, run->balance.exchanged,
-                              run->balance.grown, run->balance.lost, run->heat_owed};
+    const double numbers[] = {run->contraction,       run->since,
+                              run->dissipated,        run->dissipated_power,
+                              run->external,          run->external_power,
+                              run->drive_power,       run->drive_power_before,
+                              run->drive_step,        run->closed,
+                              run->allowed,           run->round_off,
+                              run->newton_tolerance,  run->statistics.h_min,
+                              run->statistics.h_max,  run->statistics.error_sum,
+                              run->balance.exchanged, run->balance.grown,
+                              run->balance.lost,      run->heat_owed};
     for (size_t i = 0; i < sizeof steps / sizeof *steps; ++i)
         if (!(steps[i] >= MIN_STEP * run->duration && steps[i] <= MAX_STEP * run->duration)) return 0;
     for (size_t i = 0; i < sizeof positive / sizeof *positive; ++i)
@@ -154,8 +162,8 @@ static int possible_numbers(const fu_run *run)
            fu_all_finite(run->first, run->model->n_q) && fu_all_finite(run->s_slope, run->model->n_coordinates);
 }
 
-/* Takes up a run again, after fu_start of the same model and settings; the rows before, so many, are not in the arrays. Returns
- * not zero where the bytes are of no run that could have paused there: it must not go on then. */
+/* Takes up a run again, after fu_start of the same model and settings; the rows before, so many, are not in the arrays.
+ * Returns not zero where the bytes are of no run that could have paused there: it must not go on then. */
 int fu_restore(fu_run *run, const char *bytes, int rows)
 {
     copier c = {(char *)bytes, 0, RESTORE};

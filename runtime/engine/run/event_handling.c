@@ -5,11 +5,11 @@
 
 #include <math.h>
 
-#define MOST_SINCE 1e-6      /* of the duration: how far from its end a step may have passed what it ends on */
-#define MOST_ACTS 100        /* changes of couplings at one instant: more is no motion */
+#define MOST_SINCE 1e-6 /* of the duration: how far from its end a step may have passed what it ends on */
+#define MOST_ACTS 100   /* changes of couplings at one instant: more is no motion */
 
-/* Starts the scheme anew after a coupling has changed, as `what` says, so long ago, s; returns FU_EVENT, for the caller to learn of it, or the
- * status of a run that cannot go on. */
+/* Starts the scheme anew after a coupling has changed, as `what` says, so long ago, s; returns FU_EVENT, for the caller
+ * to learn of it, or the status of a run that cannot go on. */
 static int acted(fu_run *run, const fu_coupling *coupling, const char *what, double since)
 {
     const int status = fu_start_scheme(run, 1);
@@ -26,8 +26,9 @@ static int acted(fu_run *run, const fu_coupling *coupling, const char *what, dou
 }
 
 /* Puts a coupling that stands on a boundary on the next piece, or lets it reach the end of its path; returns a status.
- * Accelerations and force jump with r_xx there: the scheme starts anew. Were they carried over, the short steps around a boundary would raise what the
- * constraints left in them by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. */
+ * Accelerations and force jump with r_xx there: the scheme starts anew. Were they carried over, the short steps around
+ * a boundary would raise what the constraints left in them by the ratio of the steps, crossing by crossing, and a
+ * spectral radius of 1 never lets it decay. */
 static int cross(fu_run *run, const fu_coupling *coupling, int side)
 {
     const fu_coupling_events *events = coupling->events;
@@ -46,16 +47,19 @@ static int cross(fu_run *run, const fu_coupling *coupling, int side)
     return fu_start_scheme(run, !run->integrator->keeps_energy);
 }
 
-/* Lets happen what follows from an event that `now` stands on; returns a status, FU_EVENT where the caller is to learn of it. */
+/* Lets happen what follows from an event that `now` stands on; returns a status, FU_EVENT where the caller is to learn
+ * of it. */
 int fu_handle_event(fu_run *run, fu_event event)
 {
     if (event.kind == FU_PATH_BOUNDARY) return cross(run, run->model->couplings[event.which], event.side);
     const fu_coupling *coupling = fu_event_coupling(run, event.which);
     if (coupling) {
         const char *what = 0;
-        const double since = coupling->events->deferred ? coupling->events->deferred->since(run->model, coupling, &run->now) : 0.0;
+        const double since =
+            coupling->events->deferred ? coupling->events->deferred->since(run->model, coupling, &run->now) : 0.0;
         const int status = coupling->events->act(run, coupling, run->watches[event.which].which, event.side, &what);
-        return status || !what ? status : acted(run, coupling, what, fabs(since) < MOST_SINCE * run->duration ? since : 0.0);
+        return status || !what ? status
+                               : acted(run, coupling, what, fabs(since) < MOST_SINCE * run->duration ? since : 0.0);
     }
     run->event = event;
     return FU_EVENT;

@@ -1,6 +1,6 @@
-/* What each coupling costs by itself: its terms of residual, Newton matrix and eq 38 are timed where the run has stopped,
- * which changes nothing but scratch, and multiplied by how often the run made them. Solving for its unknowns is not
- * in it.
+/* What each coupling costs by itself: its terms of residual, Newton matrix and eq 38 are timed where the run has
+ * stopped, which changes nothing but scratch, and multiplied by how often the run made them. Solving for its unknowns
+ * is not in it.
  */
 #include "base/clock.h"
 #include "equations/equations.h"
@@ -9,10 +9,10 @@
 
 #include <math.h>
 
-#define BUDGET 1e-4 /* s, for all that is timed */
-#define BATCHES 4   /* of calls, of which the fastest counts: the machine may be busy */
+#define BUDGET 1e-4      /* s, for all that is timed */
+#define BATCHES 4        /* of calls, of which the fastest counts: the machine may be busy */
 #define MAX_CALLS 100    /* calls in a batch */
-#define MIN_CALLS 3    /* calls at least, each timed alone: the machine may interrupt one */
+#define MIN_CALLS 3      /* calls at least, each timed alone: the machine may interrupt one */
 #define MIN_SECONDS 1e-8 /* s: of a call, that a clock that stands still may not show */
 
 enum { RESIDUAL, TANGENT, ROWS, OWN_COORDINATES, WORKS };
@@ -64,7 +64,7 @@ void fu_part_timing(fu_run *run, double *seconds)
         seconds[k] = 0.0;
         for (int what = 0; what < WORKS; ++what)
             if (counts[what] > 0.0 && s->steps > 0)
-                seconds[k] += counts[what] / (double)s->steps
-                              * timed(run, model->couplings[k], what, BUDGET / (double)(model->n_couplings * WORKS));
+                seconds[k] += counts[what] / (double)s->steps *
+                              timed(run, model->couplings[k], what, BUDGET / (double)(model->n_couplings * WORKS));
     }
 }

@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/* Records `now` as a row. Returns FU_RUNNING; FU_SINGULAR or FU_UNSTABLE; or FU_NO_CONVERGENCE for a row that is not finite,
- * which does not count. */
+/* Records `now` as a row. Returns FU_RUNNING; FU_SINGULAR or FU_UNSTABLE; or FU_NO_CONVERGENCE for a row that is not
+ * finite, which does not count. */
 int fu_record_row(fu_run *run)
 {
     const double begin = fu_clock();
@@ -21,8 +21,7 @@ int fu_record_row(fu_run *run)
     memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
     memcpy(r->v + row * model->n_dof, now->v, sizeof(double) * (size_t)model->n_dof);
     memcpy(r->s + row * model->n_coordinates, now->s, sizeof(double) * (size_t)model->n_coordinates);
-    const int info = fu_accelerations(model, now, &run->accelerator, acceleration,
-                                      r->reaction + row * model->n_dof);
+    const int info = fu_accelerations(model, now, &run->accelerator, acceleration, r->reaction + row * model->n_dof);
     r->kinetic[row] = fu_kinetic_energy(model, now->t, now->q, now->v);
     r->elastic[row] = fu_elastic_energy(model, now);
     r->potential[row] = fu_potential_energy(model, now->q);
@@ -42,8 +41,8 @@ int fu_record_row(fu_run *run)
     return info ? FU_SINGULAR : fu_check_energy_balance(run, energies, row == 0) ? FU_UNSTABLE : FU_RUNNING;
 }
 
-/* Records where the run has stopped, if that is not done already; returns FU_EVENT, or the status of a row that cannot be
- * recorded. */
+/* Records where the run has stopped, if that is not done already; returns FU_EVENT, or the status of a row that cannot
+ * be recorded. */
 int fu_stop(fu_run *run)
 {
     const int recorded = run->now.t > run->recorded ? fu_record_row(run) : FU_RUNNING;

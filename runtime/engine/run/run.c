@@ -24,12 +24,13 @@ static int approach(fu_run *run, double target)
     return passed ? passed : status;
 }
 
-/* Returns whether the run has taken the evaluations after which it is asked whether it shall go on; iterations count where
- * an integrator has no evaluations. */
+/* Returns whether the run has taken the evaluations after which it is asked whether it shall go on; iterations count
+ * where an integrator has no evaluations. */
 int fu_has_worked(const fu_run *run)
 {
     const fu_statistics *done = &run->statistics;
-    return run->most_evaluations && (done->evaluations ? done->evaluations : done->newton_iterations) >= run->most_evaluations;
+    return run->most_evaluations &&
+           (done->evaluations ? done->evaluations : done->newton_iterations) >= run->most_evaluations;
 }
 
 /* Records the row of an output time, at which signals are those of the step that ended there; returns a status. */

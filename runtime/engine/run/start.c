@@ -12,13 +12,14 @@
 #include <math.h>
 #include <string.h>
 
-#define REST_MOTION 1e-9      /* of the extent: a scene that moves less may be at rest */
-#define LEAST_MOTION 1e-6        /* of the scene's size: a motion that errors may be relative to where the scene moves less */
+#define REST_MOTION 1e-9 /* of the extent: a scene that moves less may be at rest */
+/* of the scene's size: a motion that errors may be relative to where the scene moves less */
+#define LEAST_MOTION 1e-6
 #define FIRST_MOTION 1e-3 /* of the duration: until then the motion is judged by the velocities at the start */
 
-/* Starts the scheme at `now` with consistent velocities, which are projected on the joints where that is asked for, and with
- * accelerations and forces from eq 38; returns a status. Starting it from zero accelerations instead makes every error fall
- * with the first power of the step (tests/benchmarks/order.py). */
+/* Starts the scheme at `now` with consistent velocities, which are projected on the joints where that is asked for, and
+ * with accelerations and forces from eq 38; returns a status. Starting it from zero accelerations instead makes every
+ * error fall with the first power of the step (tests/benchmarks/order.py). */
 int fu_start_scheme(fu_run *run, int project)
 {
     const fu_model *model = run->model;
@@ -51,8 +52,9 @@ int fu_prepare(fu_run *run)
     return FU_RUNNING;
 }
 
-/* Makes the first state: on its cables, small gaps closed, velocities as constraints ask for; returns a status. What friction carries is
- * as from where its springs are anchored to where gaps are closed, with the velocities there: no part of closing a gap is a motion. */
+/* Makes the first state: on its cables, small gaps closed, velocities as constraints ask for; returns a status. What
+ * friction carries is as from where its springs are anchored to where gaps are closed, with the velocities there: no
+ * part of closing a gap is a motion. */
 static int begin_state(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -81,7 +83,8 @@ int fu_start(fu_run *run)
     if (model->proximity) model->proximity->is_known = 0;
     if (begin_state(run)) return FU_SINGULAR;
     if (fu_couplings_can_act(model)) {
-        memcpy(run->psi, run->before, sizeof(double) * (size_t)model->n_dof); /* what the start asked for, for the caller */
+        memcpy(run->psi, run->before,
+               sizeof(double) * (size_t)model->n_dof); /* what the start asked for, for the caller */
         if (fu_begin_couplings(run) || fu_start_scheme(run, 0)) return FU_SINGULAR;
         memcpy(run->before, run->psi, sizeof(double) * (size_t)model->n_dof);
     }

@@ -14,19 +14,25 @@
 
 #include <math.h>
 
-#define SMALLEST_STEP 1e-12   /* of the duration: a run that needs a shorter step ends */
-#define BEYOND 0.1            /* of a step: how far it may go on after a coupling should have reached its boundary */
+#define SMALLEST_STEP 1e-12 /* of the duration: a run that needs a shorter step ends */
+/* of a step: how far it may go on after a coupling should have reached its boundary */
+#define BEYOND 0.1
 #define MOST_REJECTIONS 10000 /* steps rejected beyond those taken, before a run ends */
 #define ACCEPTED 2.0          /* of what is allowed: a step with a larger error is rejected */
-#define DIVISIONS 8           /* rejections of a fixed step that each step taken makes up for: so often it may be divided */
-#define MOST_TURNS 2          /* of a coupling on one boundary before a step is taken all the same: it rests there */
-#define MAX_CUTS 4           /* of a step before what is watched dips beyond zero in it: then it is taken all the same */
-#define CARRIED 0.15          /* of the error that is allowed over the run: what one step may err by of what friction holds */
-#define PASSED_BY 0.5         /* of the step that was wanted: what is wanted after one whose event was not found */
+/* rejections of a fixed step that each step taken makes up for: so often it may be divided */
+#define DIVISIONS 8
+/* of a coupling on one boundary before a step is taken all the same: it rests there */
+#define MOST_TURNS 2
+/* of a step before what is watched dips beyond zero in it: then it is taken all the same */
+#define MAX_CUTS 4
+/* of the error that is allowed over the run: what one step may err by of what friction holds */
+#define CARRIED 0.15
+/* of the step that was wanted: what is wanted after one whose event was not found */
+#define PASSED_BY 0.5
 
-/* Starts the scheme anew after a very short step, unless the scheme went over it as one that leaves what it goes on with; returns a
- * status. What is left between an event and an output time can be so short that rounding, over h^2, is all there is in accelerations
- * that are made of it. */
+/* Starts the scheme anew after a very short step, unless the scheme went over it as one that leaves what it goes on
+ * with; returns a status. What is left between an event and an output time can be so short that rounding, over h^2, is
+ * all there is in accelerations that are made of it. */
 static int refresh(fu_run *run, double h)
 {
     const int coasted = run->integrator->coasts && fu_is_short(run, h);
@@ -62,9 +68,10 @@ static int must_keep_forces(const fu_run *run)
     return !is_adaptive(run) || !run->goes_over || !run->integrator->quadrature;
 }
 
-/* A step that is tried: the size that is wanted and the one that is taken, s; where it is cut, as something watched is farthest
- * beyond zero there, s, else 0, and how often; its error, m, and that over what is allowed; how many boundaries couplings have
- * passed in it, and how many passages it goes over; whether it has been found to go over none; the event that it ends on. */
+/* A step that is tried: the size that is wanted and the one that is taken, s; where it is cut, as something watched is
+ * farthest beyond zero there, s, else 0, and how often; its error, m, and that over what is allowed; how many
+ * boundaries couplings have passed in it, and how many passages it goes over; whether it has been found to go over
+ * none; the event that it ends on. */
 typedef struct {
     double want, h, cut, error, ratio;
     int cuts, changes, passages, refused;
@@ -85,7 +92,8 @@ static int choose_size(fu_run *run, trial *t, double remaining)
 static double uncounted(const fu_run *run)
 {
     const fu_statistics *s = &run->statistics;
-    return fu_clock() - (s->time_factor + s->time_solve + s->time_residual + s->time_output + s->time_step + s->time_error);
+    return fu_clock() -
+           (s->time_factor + s->time_solve + s->time_residual + s->time_output + s->time_step + s->time_error);
 }
 
 /* Makes a step; returns 0 where that was possible. */
@@ -100,10 +108,13 @@ static int make(fu_run *run, double h)
 /* Returns the estimate of the step's error, m. */
 static double error_of(fu_run *run, double h)
 {
-    const double begin = uncounted(run), error = fmax(fmax(run->integrator->error(run, h), fu_deferred_error(run, h)), fu_friction_error(run, h));
+    const double begin = uncounted(run), error = fmax(fmax(run->integrator->error(run, h), fu_deferred_error(run, h)),
+                                                      fu_friction_error(run, h));
     const double carried = fu_history_error(run->model, &run->now, &run->next) / (CARRIED * fu_allowed_error(run));
     run->statistics.time_error += uncounted(run) - begin;
-    return fmax(error, run->allowed * pow(carried, 0.5 * run->order)); /* what is carried errs by the square of the step at least */
+    return fmax(error,
+                run->allowed *
+                    pow(carried, 0.5 * run->order)); /* what is carried errs by the square of the step at least */
 }
 
 /* Lets couplings be as in `now` for the rest of the step. */
@@ -145,11 +156,13 @@ static int attempt(fu_run *run, trial *t)
     return 1;
 }
 
-/* Returns whether the step, which was made as if there were no passage, is to be made anew and go over those that it leads to.
- * This comes first where the last passage was not gone over: iterations and stages beyond one cost more than without. */
+/* Returns whether the step, which was made as if there were no passage, is to be made anew and go over those that it
+ * leads to. This comes first where the last passage was not gone over: iterations and stages beyond one cost more than
+ * without. */
 static int shall_go_over(fu_run *run, trial *t)
 {
-    if (!is_adaptive(run) || !run->integrator->quadrature || !run->keep_forces || t->refused || !run->model->n_passing) return 0;
+    if (!is_adaptive(run) || !run->integrator->quadrature || !run->keep_forces || t->refused || !run->model->n_passing)
+        return 0;
     run->keep_forces = 0;
     fu_choose_deferred(run, 1);
     if (fu_count_deferred(run) && fmax(t->error, fu_deferred_error(run, t->h)) <= run->allowed) return 1;
@@ -157,7 +170,8 @@ static int shall_go_over(fu_run *run, trial *t)
     return 0;
 }
 
-/* Finds the event that the step leads to. Where accelerations jump by too much within it, it shall end at the boundary. */
+/* Finds the event that the step leads to. Where accelerations jump by too much within it, it shall end at the boundary.
+ */
 static void find_event(fu_run *run, trial *t)
 {
     if (t->passages && is_adaptive(run) && !(t->ratio <= 1.0)) refuse(run, t);
@@ -222,7 +236,8 @@ static void accept(fu_run *run, const trial *t)
     fu_look_around(run, h, 0);
     const double moved = fu_largest_motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
-    run->controlled_motion = run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
+    run->controlled_motion =
+        run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
     fu_evaluate_event_functions(run, t->event, h);
     fu_note_depths(run);
     run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
@@ -245,7 +260,8 @@ static int take_step(fu_run *run, const trial *t)
     return refresh(run, t->h);
 }
 
-/* Makes and takes one step towards `target`, or lets happen what follows from an event that `now` stands on; returns a status. */
+/* Makes and takes one step towards `target`, or lets happen what follows from an event that `now` stands on; returns a
+ * status. */
 int fu_step_towards(fu_run *run, double target)
 {
     const fu_event late = fu_late_event(run);

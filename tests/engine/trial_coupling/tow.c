@@ -1,5 +1,5 @@
-/* A tow: a spring of no length from an attachment to a point that moves at a constant velocity. It breaks at a force. The flag of a
- * state: whether it has; the number: what it stored then, J.
+/* A tow: a spring of no length from an attachment to a point that moves at a constant velocity. It breaks at a force.
+ * The flag of a state: whether it has; the number: what it stored then, J.
  */
 #include "events/tow.h"
 #include "bodies/unknowns.h"
@@ -23,8 +23,10 @@ static const fu_tow *tow_of(const fu_coupling *coupling)
     return (const fu_tow *)coupling;
 }
 
-/* Makes how the attachment moves and, of a tow that holds, the force on it; returns the distance to the moving point, m. */
-static double pull(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_attachment_state *at, double f[3])
+/* Makes how the attachment moves and, of a tow that holds, the force on it; returns the distance to the moving point,
+ * m. */
+static double pull(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_attachment_state *at,
+                   double f[3])
 {
     const fu_tow *tow = tow_of(coupling);
     double square = 0.0;
@@ -57,8 +59,10 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     force(model, coupling, at->next, f);
 }
 
-/* Makes the mean force over a step: what it does on the way of the attachment is the change of the energy, less the work. */
-static void mean_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_attachment_state *on, double f[3])
+/* Makes the mean force over a step: what it does on the way of the attachment is the change of the energy, less the
+ * work. */
+static void mean_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                       fu_attachment_state *on, double f[3])
 {
     double now[3], next[3];
     pull(model, coupling, at->now, on, now);
@@ -66,7 +70,8 @@ static void mean_force(const fu_model *model, const fu_coupling *coupling, const
     for (int d = 0; d < 3; ++d) f[d] = 0.5 * (now[d] + next[d]);
 }
 
-static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                          double *own)
 {
     fu_attachment_state on;
     double mean[3];
@@ -85,7 +90,8 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         for (int j = 0; j < on.n; ++j) {
             double sum = 0.0;
             for (int d = 0; d < model->dim; ++d) sum += on.P[d * on.n + i] * on.P[d * on.n + j];
-            if (sum != 0.0) fu_add(model, system, on.at[i], on.at[j], at->weights.stiffness * tow_of(coupling)->stiffness * sum);
+            if (sum != 0.0)
+                fu_add(model, system, on.at[i], on.at[j], at->weights.stiffness * tow_of(coupling)->stiffness * sum);
         }
 }
 
@@ -116,14 +122,15 @@ static double step_work(const fu_model *model, const fu_coupling *coupling, cons
     return sum;
 }
 
-static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
-                    const fu_accelerator *work, double *out)
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                    const double *acceleration, const fu_accelerator *work, double *out)
 {
     fu_tow_output *numbers = (fu_tow_output *)out;
     fu_attachment_state at;
     (void)acceleration, (void)work;
     numbers->stretch = pull(model, coupling, state, &at, numbers->force);
-    for (int d = 0; d < 3; ++d) numbers->position[d] = tow_of(coupling)->start[d] + tow_of(coupling)->velocity[d] * state->t;
+    for (int d = 0; d < 3; ++d)
+        numbers->position[d] = tow_of(coupling)->start[d] + tow_of(coupling)->velocity[d] * state->t;
 }
 
 static int watches(const fu_coupling *coupling, fu_event_function *out)
@@ -175,9 +182,19 @@ static const fu_output output_fields[] = {
 
 static const fu_supply_operations supply = {.power = power, .step_work = step_work};
 
-const fu_coupling_type fu_tow_type = {
-    .name = "tow", .size = sizeof(fu_tow), .fields = fields, .output_fields = output_fields, .n_numbers = 1, .n_flags = 1,
-    .residual = residual, .tangent = tangent, .step_residual = step_residual, .step_tangent = tangent, .force = force,
-    .outputs = outputs, .energy = energy, .supply = &supply};
+const fu_coupling_type fu_tow_type = {.name = "tow",
+                                      .size = sizeof(fu_tow),
+                                      .fields = fields,
+                                      .output_fields = output_fields,
+                                      .n_numbers = 1,
+                                      .n_flags = 1,
+                                      .residual = residual,
+                                      .tangent = tangent,
+                                      .step_residual = step_residual,
+                                      .step_tangent = tangent,
+                                      .force = force,
+                                      .outputs = outputs,
+                                      .energy = energy,
+                                      .supply = &supply};
 
 const fu_coupling_events fu_tow_events = {.watches = watches, .watched = watched, .act = act, .begin = begin};

@@ -1,5 +1,5 @@
-/* Attachments: a point and axes of the ground, of a cable, of a body; how they move with the coordinates of what carries
- * them, and what a force and a moment on them change with these.
+/* Attachments: a point and axes of the ground, of a cable, of a body; how they move with the coordinates of what
+ * carries them, and what a force and a moment on them change with these.
  */
 #include "bodies/model.h"
 #include "bodies/rotation.h"
@@ -21,10 +21,12 @@ static void multiply(int n, int k, int m, const double *A, const double *B, doub
         }
 }
 
-/* Makes the two vectors of a cable's frame; `rows` then holds their derivatives by the element's coordinates and, on a slide, by s. */
+/* Makes the two vectors of a cable's frame; `rows` then holds their derivatives by the element's coordinates and, on a
+ * slide, by s. */
 typedef struct {
     double value[2][3], rate[2][3], second[2][3], rows[6 * FU_ATTACHMENT_COORDINATES];
-    double S[2][3 * FU_MAX_COORDINATES]; /* shape functions of each: themselves, their first and second derivative by x */
+    double S[2]
+            [3 * FU_MAX_COORDINATES]; /* shape functions of each: themselves, their first and second derivative by x */
 } frame_vectors;
 
 static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int n_own,
@@ -42,7 +44,8 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
         cable->kernel->slopes(fu_element_length(cable, element),
                               state->s[on->slide] - fu_element_start(model, on->slide, element), every);
     for (int k = 0; k < 2; ++k) {
-        const double *fixed = on->slopes[k] == FU_CARRIED ? fu_slide_numbers_of(model, state, on->slide)->director : on->up;
+        const double *fixed =
+            on->slopes[k] == FU_CARRIED ? fu_slide_numbers_of(model, state, on->slide)->director : on->up;
         for (int d = 0; d < dim; ++d) {
             w->value[k][d] = fixed[d];
             w->rate[k][d] = w->second[k][d] = 0.0;
@@ -95,7 +98,8 @@ int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, co
     return n + 1;
 }
 
-static void point_of(const fu_model *model, const fu_attachment *on, const fu_state *state, int rates, fu_attachment_state *out)
+static void point_of(const fu_model *model, const fu_attachment *on, const fu_state *state, int rates,
+                     fu_attachment_state *out)
 {
     const int dim = model->dim, n = out->n;
     for (int d = 0; d < 3; ++d) out->v[d] = out->bias[d] = 0.0;
@@ -141,7 +145,7 @@ static void axes_of(const fu_model *model, const fu_attachment *on, const fu_sta
         vectors_of(model, on, state, s_rate, n, &w);
         on->frame->axes(w.value[0], w.value[1], A, T);
         on->frame->motion(w.value[0], w.value[1], w.rate[0], w.rate[1], w.second[0], w.second[1], out->omega,
-                           out->alpha);
+                          out->alpha);
         multiply(turns, 2 * dim, n, T, w.rows, out->T);
     } else if (dim == 2) {
         A[1] = A[2] = 0.0;
@@ -156,7 +160,8 @@ static void of_modes(const fu_model *model, const fu_attachment *on, const fu_st
     const fu_body *body = &model->bodies[on->body];
     const int dim = model->dim;
     fu_modal_point at;
-    fu_modal_attachment_state(body, &on->modal, state->q + body->configuration, state->v + body->dof, &at, out->P, out->T);
+    fu_modal_attachment_state(body, &on->modal, state->q + body->configuration, state->v + body->dof, &at, out->P,
+                              out->T);
     memset(out->p, 0, sizeof out->p);
     memset(out->v, 0, sizeof out->v);
     memset(out->bias, 0, sizeof out->bias);
@@ -170,7 +175,7 @@ static void of_modes(const fu_model *model, const fu_attachment *on, const fu_st
 
 /* Makes the state of an attachment: of its point, its axes, or both; s_rate: of its slide, where velocities count. */
 void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
-                  fu_attachment_state *out)
+                      fu_attachment_state *out)
 {
     out->n = fu_attachment_coordinates(model, on, state, out->at);
     if (on->body >= 0 && model->bodies[on->body].modes) {
@@ -181,15 +186,16 @@ void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_s
     if (what & FU_AXES) axes_of(model, on, state, s_rate, out);
 }
 
-void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next, double *P)
+void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
+                       double *P)
 {
     const fu_body *body = &model->bodies[on->body];
     body->kernel->discrete_point(now->q + body->configuration, on->u, next->q + body->configuration, P);
 }
 
 /* Does what fu_geometric_stiffness does, for an attachment to a body. */
-static void add_stiffness_of_body(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
-                                  const double *m, int n, double *K)
+static void add_stiffness_of_body(const fu_model *model, const fu_attachment *on, const fu_state *state,
+                                  const double *f, const double *m, int n, double *K)
 {
     const fu_body *body = &model->bodies[on->body];
     const double *b = state->q + body->configuration, none[3] = {0.0};
@@ -209,7 +215,8 @@ static void add_stiffness_of_body(const fu_model *model, const fu_attachment *on
     }
 }
 
-/* Adds what depends on s of the frame where a slide is; g: derivatives of the moment's work by the frame's two vectors. */
+/* Adds what depends on s of the frame where a slide is; g: derivatives of the moment's work by the frame's two vectors.
+ */
 static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, const fu_state *state,
                                const frame_vectors *w, const double *g, int n, double *K)
 {
@@ -227,8 +234,8 @@ static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, c
         }
 }
 
-/* Adds to K (n x n) the derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m, either of which
- * may be null. */
+/* Adds to K (n x n) the derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m,
+ * either of which may be null. */
 void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
                             const double *m, int n, double *K)
 {

@@ -4,24 +4,29 @@
 
 #include "bodies/bodies.h"
 
-/* An attachment: a point with axes of the ground (cable and body -1), of a cable's element, of a body; or axes alone, of the
- * cable where a slide is. */
+/* An attachment: a point with axes of the ground (cable and body -1), of a cable's element, of a body; or axes alone,
+ * of the cable where a slide is. */
 enum { FU_UP = -1, FU_CARRIED = -2 };
 typedef struct {
     int cable, body, element, slide; /* -1 where it is not on one */
     double u[3];                     /* the point: of the ground; of the body in its axes */
     double N[FU_MAX_COORDINATES];    /* shape functions at the point of the element */
-    const fu_frame_kernels *frame;           /* of a cable; null where there are no axes */
-    int slopes[2];                   /* its vectors: 0 1 2 for r_x r_y r_z; FU_UP; FU_CARRIED for the slide's director */
+    const fu_frame_kernels *frame;   /* of a cable; null where there are no axes */
+    int slopes[2]; /* its vectors: 0 1 2 for r_x r_y r_z; FU_UP; FU_CARRIED for the slide's director */
     double S[2 * FU_MAX_COORDINATES]; /* derivatives of the shape functions for both, unless on a slide */
     double up[3];
-    double axes[9]; /* in those of what carries it, by columns */
-    fu_modal_attachment modal;   /* the point of a modal body, instead of u */
+    double axes[9];            /* in those of what carries it, by columns */
+    fu_modal_attachment modal; /* the point of a modal body, instead of u */
 } fu_attachment;
 
-/* State of an attachment, and how it moves with its n coordinates (numbers for fu_add in `at`): dp = P dq, and axes turn
- * by T dq about global axes; velocities, and accelerations where those of the coordinates are zero. */
-enum { FU_PLACE = 1, FU_AXES = 2, FU_RATES = 4, FU_POINT = FU_PLACE | FU_RATES }; /* of a point p and P, and v and bias */
+/* State of an attachment, and how it moves with its n coordinates (numbers for fu_add in `at`): dp = P dq, and axes
+ * turn by T dq about global axes; velocities, and accelerations where those of the coordinates are zero. */
+enum {
+    FU_PLACE = 1,
+    FU_AXES = 2,
+    FU_RATES = 4,
+    FU_POINT = FU_PLACE | FU_RATES
+}; /* of a point p and P, and v and bias */
 typedef struct {
     int n, at[FU_ATTACHMENT_COORDINATES];
     double p[3], v[3], bias[3], P[3 * FU_ATTACHMENT_COORDINATES];
@@ -36,13 +41,14 @@ static inline void fu_turn_in_space(int dim, const double *turn, double out[3])
 
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at);
 void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
-                  fu_attachment_state *out);
+                      fu_attachment_state *out);
 /* Makes how the point of a body moves with its dofs over a step, P: P psi is its whole way. */
-void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next, double *P);
+void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
+                       double *P);
 void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
                             const double *m, int n, double *K);
-/* Derivatives by an attachment's coordinates, the first of them in column `first`, made those by psi that moves the bodies;
- * psi null: they are. */
+/* Derivatives by an attachment's coordinates, the first of them in column `first`, made those by psi that moves the
+ * bodies; psi null: they are. */
 void fu_turn_attachment(const fu_model *model, const fu_attachment *on, const double *psi, double *rows, int n_rows,
                         int n_columns, int first);
 

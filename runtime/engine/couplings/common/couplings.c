@@ -6,18 +6,12 @@
 #include <math.h>
 
 const fu_field fu_coupling_fields[] = {
-    FU_FIELD(fu_coupling, unknown, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, n_coordinates, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, n_forces, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, n_multipliers, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, multiplier, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, n_numbers, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, reacts, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, is_damped, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, is_driven, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, has_inertia, FU_INTEGER, 0),
-    FU_FIELD_ARRAY(fu_coupling, scale, FU_REAL),
-    {0},
+    FU_FIELD(fu_coupling, unknown, FU_INTEGER, 0),    FU_FIELD(fu_coupling, n_coordinates, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, n_forces, FU_INTEGER, 0),   FU_FIELD(fu_coupling, n_multipliers, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, multiplier, FU_INTEGER, 0), FU_FIELD(fu_coupling, n_numbers, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, reacts, FU_INTEGER, 0),     FU_FIELD(fu_coupling, is_damped, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, is_driven, FU_INTEGER, 0),  FU_FIELD(fu_coupling, has_inertia, FU_INTEGER, 0),
+    FU_FIELD_ARRAY(fu_coupling, scale, FU_REAL),      {0},
 };
 
 /* Puts a coupling into the lists that it is in. */
@@ -46,11 +40,13 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
     model->slides = 0;
     model->n_coordinates = model->n_forces = model->n_rows = model->n_outputs = 0;
     model->n_numbers = model->n_flags = model->n_scratch = 0;
-    model->n_reacting = model->n_external = model->n_driven = model->n_damped = model->n_passing = model->n_inertial = 0;
+    model->n_reacting = model->n_external = model->n_driven = model->n_damped = model->n_passing = model->n_inertial =
+        0;
     for (int k = 0; k < n; ++k) {
         fu_coupling *c = couplings[k];
         c->number = k;
-        if (c->type == &fu_slide_type && !model->slides) model->slides = (const fu_slide *)c; /* attachments are on them */
+        if (c->type == &fu_slide_type && !model->slides)
+            model->slides = (const fu_slide *)c; /* attachments are on them */
         c->coordinate = model->n_coordinates;
         c->force = model->n_forces;
         c->output = model->n_outputs;
@@ -197,14 +193,16 @@ double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_sta
     return total;
 }
 
-int fu_coupling_quadrature_error(const fu_model *model, const fu_state *from, const fu_state *to, int n, const double *b, const double *c, double *f)
+int fu_coupling_quadrature_error(const fu_model *model, const fu_state *from, const fu_state *to, int n,
+                                 const double *b, const double *c, double *f)
 {
     const fu_equations step = {.now = from, .next = to};
     const fu_couplings near = fu_acting_in_step(model, &step);
     int found = 0;
     for (int k = 0; k < near.n; ++k) {
         const fu_coupling *coupling = near.list[k];
-        if (coupling->type->quadrature_error) found |= coupling->type->quadrature_error(model, coupling, from, to, n, b, c, f);
+        if (coupling->type->quadrature_error)
+            found |= coupling->type->quadrature_error(model, coupling, from, to, n, b, c, f);
     }
     return found;
 }

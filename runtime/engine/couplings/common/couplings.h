@@ -6,8 +6,8 @@
 #include "couplings/common/coupling.h"
 #include "bodies/model.h"
 
-/* Number the couplings of model->couplings: `index` and `unknown` and the like are given, offsets follow; sums go to model; `lists` has
- * room for 2 n. */
+/* Number the couplings of model->couplings: `index` and `unknown` and the like are given, offsets follow; sums go to
+ * model; `lists` has room for 2 n. */
 void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model);
 
 /* Couplings over which to loop. */
@@ -18,7 +18,6 @@ typedef struct {
 /* Those that may act at a state, or over a step (couplings/common/proximity.c). */
 fu_couplings fu_acting(const fu_model *model, const fu_state *state);
 fu_couplings fu_acting_in_step(const fu_model *model, const fu_equations *at);
-
 
 void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *own);
 void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system);
@@ -32,7 +31,8 @@ void fu_coupling_external_forces(const fu_model *model, double t, const double *
 double fu_coupling_external_power(const fu_model *model, const fu_state *state);
 double fu_coupling_energy(const fu_model *model, const fu_state *state);
 double fu_coupling_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work);
-int fu_coupling_quadrature_error(const fu_model *model, const fu_state *from, const fu_state *to, int n, const double *b, const double *c, double *f);
+int fu_coupling_quadrature_error(const fu_model *model, const fu_state *from, const fu_state *to, int n,
+                                 const double *b, const double *c, double *f);
 double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to, int by_ends);
 void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state *state);
 void fu_coupling_outputs(const fu_model *model, const fu_state *state, const double *acceleration,

@@ -1,10 +1,11 @@
 /* Couplings that are far from acting, as most of many pairs of bodies and surfaces are: loops pass them over.
  *
- * Each such coupling tells its clearance at a configuration. It is far while the ways of what it is between have not used that up.
- * The ways are counted from look to look; between two looks each cable and body may go as far as it is expected to go in some
- * steps, which is taken off the clearances beforehand. So a state needs only its distance from the configuration of the last look,
- * cable by cable and body by body: where one has gone farther, all couplings are taken. What is passed over would give nothing, and
- * the rest stays in its order: results do not depend on when it was looked.
+ * Each such coupling tells its clearance at a configuration. It is far while the ways of what it is between have not
+ * used that up. The ways are counted from look to look; between two looks each cable and body may go as far as it is
+ * expected to go in some steps, which is taken off the clearances beforehand. So a state needs only its distance from
+ * the configuration of the last look, cable by cable and body by body: where one has gone farther, all couplings are
+ * taken. What is passed over would give nothing, and the rest stays in its order: results do not depend on when it was
+ * looked.
  */
 #include "couplings/common/coupling_events.h"
 #include "couplings/common/couplings.h"
@@ -21,13 +22,14 @@ int fu_acts_alone(const fu_coupling *coupling)
 {
     const fu_coupling_type *type = coupling->type;
     const fu_coupling_events *events = coupling->events;
-    const int asked = type->inertia || type->rows || type->external_force || type->supply || type->reaction || type->take_forces ||
-                      type->gaps || type->coordinates || type->may_start_open || type->detect || type->is_possible ||
-                      (events && (events->path || events->deferred || events->take_velocities));
+    const int asked = type->inertia || type->rows || type->external_force || type->supply || type->reaction ||
+                      type->take_forces || type->gaps || type->coordinates || type->may_start_open || type->detect ||
+                      type->is_possible || (events && (events->path || events->deferred || events->take_velocities));
     return type->proximity && !asked;
 }
 
-/* Returns how far points of a cable may be moved at most by numbers that its nodal vectors differ by, or by their rates. */
+/* Returns how far points of a cable may be moved at most by numbers that its nodal vectors differ by, or by their
+ * rates. */
 double fu_most_of_cable(const fu_cable *cable, const double *to, const double *from)
 {
     const int dim = cable->kernel->dim, vectors = cable->kernel->vectors;
@@ -106,7 +108,9 @@ fu_couplings fu_acting(const fu_model *model, const fu_state *state)
 
 fu_couplings fu_acting_in_step(const fu_model *model, const fu_equations *at)
 {
-    return has_lone_pairs(model) && fu_movers_are_near(model, at->now->q) && fu_movers_are_near(model, at->next->q) ? near_of(model) : all_of(model);
+    return has_lone_pairs(model) && fu_movers_are_near(model, at->now->q) && fu_movers_are_near(model, at->next->q)
+               ? near_of(model)
+               : all_of(model);
 }
 
 /* Adds a cable or body to those whose ways are counted, where they can be told. */

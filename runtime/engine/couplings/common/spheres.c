@@ -5,8 +5,9 @@
 
 const fu_clearance fu_no_clearance = {.gap = -INFINITY};
 
-/* Makes the middle of a sphere about an element; returns its radius, m. Between the element's nodes its points are off the middle by
- * half of the way between these at most, with the share of places, and by what the other vectors move them. */
+/* Makes the middle of a sphere about an element; returns its radius, m. Between the element's nodes its points are off
+ * the middle by half of the way between these at most, with the share of places, and by what the other vectors move
+ * them. */
 double fu_sphere_about(const fu_cable *cable, const double *q, int element, double middle[3])
 {
     const int dim = cable->kernel->dim, vectors = cable->kernel->vectors;
@@ -19,7 +20,8 @@ double fu_sphere_about(const fu_cable *cable, const double *q, int element, doub
     reach = 0.5 * cable->share[0] * sqrt(square);
     for (int k = 1; k < vectors; ++k)
         if (cable->share[k] != 0.0)
-            reach += cable->share[k] * sqrt(fmax(fu_dot(dim, first + k * dim, first + k * dim), fu_dot(dim, last + k * dim, last + k * dim)));
+            reach += cable->share[k] * sqrt(fmax(fu_dot(dim, first + k * dim, first + k * dim),
+                                                 fu_dot(dim, last + k * dim, last + k * dim)));
     return reach;
 }
 

@@ -1,13 +1,15 @@
 /* Friction that sticks beside a force by penalty: of contact with surfaces and of crossings.
  *
- * A spring is stretched as what it holds goes past what is touched, and slides where it is stretched by more than the bound b that friction
- * has there. Along one direction, with the stretch a(x) as if nothing slid after the beginning of a step, the stretch at its end is
+ * A spring is stretched as what it holds goes past what is touched, and slides where it is stretched by more than the
+ * bound b that friction has there. Along one direction, with the stretch a(x) as if nothing slid after the beginning of
+ * a step, the stretch at its end is
  *
  *     a(1) + min(0, min over x of b(x) - a(x)),
  *
- * and the like of sliding backwards. Where it slides to the end of the step the smallest is that at the end: the spring is then as long as
- * friction allows. Where it slid within the step and then sticks, the smallest is where that changes. With the cubics through places and
- * velocities at both ends of the step that error is of the fourth order in the step; by the ends alone it was of the second.
+ * and the like of sliding backwards. Where it slides to the end of the step the smallest is that at the end: the spring
+ * is then as long as friction allows. Where it slid within the step and then sticks, the smallest is where that
+ * changes. With the cubics through places and velocities at both ends of the step that error is of the fourth order in
+ * the step; by the ends alone it was of the second.
  */
 #include "base/common.h"
 #include "couplings/common/stick_friction.h"
@@ -15,9 +17,10 @@
 #include <math.h>
 #include <string.h>
 
-#define BOUND_SAMPLES 3     /* parts of a step that the room to the bound is known at the ends of: of the cubic through it */
+/* parts of a step that the room to the bound is known at the ends of: of the cubic through it */
+#define BOUND_SAMPLES 3
 #define REFINEMENTS 2 /* of where that room is least */
-#define WORK_PARTS 8       /* of a step: those that friction's work is summed over */
+#define WORK_PARTS 8  /* of a step: those that friction's work is summed over */
 
 int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
 {
@@ -30,19 +33,24 @@ int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
 fu_cubic fu_cubic_at(double x)
 {
     const double rest = 1.0 - x;
-    return (fu_cubic){x * x * (3.0 - 2.0 * x), {rest * rest * x, -x * x * rest}, 6.0 * x * rest, {rest * (1.0 - 3.0 * x), x * (3.0 * x - 2.0)}};
+    return (fu_cubic){x * x * (3.0 - 2.0 * x),
+                      {rest * rest * x, -x * x * rest},
+                      6.0 * x * rest,
+                      {rest * (1.0 - 3.0 * x), x * (3.0 * x - 2.0)}};
 }
 
 double fu_value_within(const fu_step_ends *ends, double h, double x)
 {
     const fu_cubic at = fu_cubic_at(x);
-    return ends->value[0] + at.change * (ends->value[1] - ends->value[0]) + h * (at.rates[0] * ends->rate[0] + at.rates[1] * ends->rate[1]);
+    return ends->value[0] + at.change * (ends->value[1] - ends->value[0]) +
+           h * (at.rates[0] * ends->rate[0] + at.rates[1] * ends->rate[1]);
 }
 
 double fu_rate_within(const fu_step_ends *ends, double h, double x)
 {
     const fu_cubic at = fu_cubic_at(x);
-    return at.slope * (ends->value[1] - ends->value[0]) / h + at.slope_rates[0] * ends->rate[0] + at.slope_rates[1] * ends->rate[1];
+    return at.slope * (ends->value[1] - ends->value[0]) / h + at.slope_rates[0] * ends->rate[0] +
+           at.slope_rates[1] * ends->rate[1];
 }
 
 double fu_part_to_rise(const fu_step_ends *ends, double h)
@@ -127,9 +135,11 @@ fu_friction_end fu_end_of_friction(const fu_friction_path *way)
             part = way->from + (1.0 - way->from) * part;
             least = least_room(way, side, &part);
         }
-        if (least < 0.0 && side * (all + side * least) < side * end.stretch) end = (fu_friction_end){all + side * least, part, side};
+        if (least < 0.0 && side * (all + side * least) < side * end.stretch)
+            end = (fu_friction_end){all + side * least, part, side};
     }
-    if (fabs(end.stretch) > bound) end = (fu_friction_end){copysign(bound, end.stretch), 1.0, end.stretch > 0.0 ? 1 : -1};
+    if (fabs(end.stretch) > bound)
+        end = (fu_friction_end){copysign(bound, end.stretch), 1.0, end.stretch > 0.0 ? 1 : -1};
     return end;
 }
 
@@ -166,7 +176,8 @@ double fu_path_length(int dim, const fu_friction_travel *travel, double along[3]
 }
 
 /* Returns the work over the stiffness, m^2, summed over equal parts of the step. */
-static double taken(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end, int parts)
+static double taken(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end,
+                    int parts)
 {
     double sum = 0.0, stretch[3], last[3] = {0.0};
     memcpy(stretch, travel->stretch, sizeof stretch);
@@ -188,7 +199,8 @@ static double taken(int dim, const fu_friction_travel *travel, const fu_friction
     return sum + 0.5 * (fu_dot(dim, stretch, stretch) - fu_dot(dim, end, end));
 }
 
-double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end, int by_ends)
+double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end,
+                            int by_ends)
 {
     if (by_ends) return taken(dim, travel, way, end, 1);
     return (4.0 * taken(dim, travel, way, end, WORK_PARTS) - taken(dim, travel, way, end, WORK_PARTS / 2)) / 3.0;

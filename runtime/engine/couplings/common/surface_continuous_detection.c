@@ -1,18 +1,20 @@
 /* Points that go through a surface, or past its edge, within a step, and are off it again at a later time of that step.
  *
- * Between the ends a point is taken along the cubic of its places and velocities there, in the axes of the shape (Hermite). As the
- * distance from a surface changes by no more than the way, the point can go as far as it is off without touching; so it is led on
- * from one such place to the next (conservative advancement; Mirtich 1996). What is taken for the distance of a height field is the
- * vertical one, G, over the root of 1 + slope^2, which it is at the surface alone: over a way w the slope is the one here and w times
- * the largest second derivative at most, and nowhere more than the largest; with that one, s, the point stays off the surface while
- * G - w (1 + s^2)^(1/2) > radius (1 + s^2)^(1/2).
+ * Between the ends a point is taken along the cubic of its places and velocities there, in the axes of the shape
+ * (Hermite). As the distance from a surface changes by no more than the way, the point can go as far as it is off
+ * without touching; so it is led on from one such place to the next (conservative advancement; Mirtich 1996). What is
+ * taken for the distance of a height field is the vertical one, G, over the root of 1 + slope^2, which it is at the
+ * surface alone: over a way w the slope is the one here and w times the largest second derivative at most, and nowhere
+ * more than the largest; with that one, s, the point stays off the surface while G - w (1 + s^2)^(1/2) > radius (1 +
+ * s^2)^(1/2).
  */
 #include "couplings/common/surfaces.h"
 
 #include <math.h>
 #include <string.h>
 
-#define MIN_ADVANCE 1e-3 /* of a step: what the point is led on by at least; what touches for less is looked at by fu_grazing_time alone */
+/* of a step: what the point is led on by at least; what touches for less is looked at by fu_grazing_time alone */
+#define MIN_ADVANCE 1e-3
 #define HALVINGS 12
 
 /* A cubic_path: Bezier's points of the cubic; the largest speed along it, m/s. */
@@ -36,8 +38,8 @@ static void place_at(const cubic_path *of, double x, fu_surface_end *out)
     out->gap = at.g - of->radius;
 }
 
-/* Returns how far a point is beyond the edges of a terrain, m: what it can go without coming over the table. Makes the nearest place of
- * the table: beyond it heights stay. */
+/* Returns how far a point is beyond the edges of a terrain, m: what it can go without coming over the table. Makes the
+ * nearest place of the table: beyond it heights stay. */
 static double beyond_table(int dim, const fu_surface *surface, const double *y, double *inside)
 {
     double beyond = 0.0;
@@ -81,7 +83,8 @@ static double free_way(const cubic_path *of, const fu_surface_end *at, double mo
     return of->surface->shape == FU_TERRAIN ? free_over_terrain(of, at, most) : fabs(at->gap);
 }
 
-static void make_path(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, cubic_path *out)
+static void make_path(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h,
+                      cubic_path *out)
 {
     memset(out, 0, sizeof *out);
     out->dim = dim;
@@ -97,12 +100,14 @@ static void make_path(int dim, const fu_surface *surface, double radius, const f
     }
     for (int k = 0; k < 3; ++k) {
         double square = 0.0;
-        for (int d = 0; d < dim; ++d) square += (out->points[k + 1][d] - out->points[k][d]) * (out->points[k + 1][d] - out->points[k][d]);
+        for (int d = 0; d < dim; ++d)
+            square += (out->points[k + 1][d] - out->points[k][d]) * (out->points[k + 1][d] - out->points[k][d]);
         out->speed = fmax(out->speed, 3.0 * sqrt(square) / h);
     }
 }
 
-double fu_surface_detect_within(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, double least)
+double fu_surface_detect_within(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2],
+                                double h, double least)
 {
     cubic_path of;
     fu_surface_end at;
@@ -112,7 +117,7 @@ double fu_surface_detect_within(int dim, const fu_surface *surface, double radiu
     if (!(from + to <= way)) return 0.0;
     const double last = 1.0 - to / way;
     double first = 0.0;
-    for (double x = from / way; x < last; ) {
+    for (double x = from / way; x < last;) {
         place_at(&of, x, &at);
         if (first > 0.0 && at.gap > -least) return 0.5 * h * (first + x);
         if (first == 0.0 && at.gap < -least) first = x;

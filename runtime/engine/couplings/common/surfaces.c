@@ -1,4 +1,5 @@
-/* Surfaces that cables and bodies touch: distances by the kernels of derive/couplings/surface.py, in the axes of the ground. */
+/* Surfaces that cables and bodies touch: distances by the kernels of derive/couplings/surface.py, in the axes of the
+ * ground. */
 #include "bodies/model.h"
 #include "bodies/state.h"
 #include "couplings/common/surfaces.h"
@@ -37,8 +38,8 @@ static void local(int dim, const fu_attachment_state *at, const double *r, doubl
     fu_surface_into(dim, at, from, y);
 }
 
-/* Returns the cell of a table's knots that x is in, and in *x where from its first knot; beyond the table that is its edge, and
- * *inside is 0. */
+/* Returns the cell of a table's knots that x is in, and in *x where from its first knot; beyond the table that is its
+ * edge, and *inside is 0. */
 static int cell_of(int n, const double *knots, double *x, int *inside)
 {
     *inside = *x >= knots[0] && *x <= knots[n - 1];
@@ -48,11 +49,13 @@ static int cell_of(int n, const double *knots, double *x, int *inside)
     return low;
 }
 
-/* Makes powers of x by the order of their derivative: B[k] (4) are those of the k-th; those of what does not change are zero. */
+/* Makes powers of x by the order of their derivative: B[k] (4) are those of the k-th; those of what does not change are
+ * zero. */
 static void powers_of(double x, int changes, double B[4][4])
 {
     const double x2 = x * x;
-    const double all[4][4] = {{1.0, x, x2, x2 * x}, {0.0, 1.0, 2.0 * x, 3.0 * x2}, {0.0, 0.0, 2.0, 6.0 * x}, {0.0, 0.0, 0.0, 6.0}};
+    const double all[4][4] = {
+        {1.0, x, x2, x2 * x}, {0.0, 1.0, 2.0 * x, 3.0 * x2}, {0.0, 0.0, 2.0, 6.0 * x}, {0.0, 0.0, 0.0, 6.0}};
     memset(B, 0, sizeof all);
     memcpy(B, all, changes ? sizeof all : sizeof all[0]);
 }
@@ -78,8 +81,8 @@ static void heights_at(int dim, const fu_surface *surface, const double *y, doub
     }
 }
 
-/* Makes what a point is nearest to of a box: y from it, which is a corner (zero axis), an edge (its axis) or, returning 1, a face
- * (its normal); of a point inside the nearest face. */
+/* Makes what a point is nearest to of a box: y from it, which is a corner (zero axis), an edge (its axis) or, returning
+ * 1, a face (its normal); of a point inside the nearest face. */
 static int nearest_of_box(int dim, const fu_surface *surface, double *y, double *axis, double *normal)
 {
     const double *half = surface->half_size;
@@ -99,7 +102,8 @@ static int nearest_of_box(int dim, const fu_surface *surface, double *y, double 
 }
 
 /* Makes the distance from a shape, from where it lies outside. */
-static void from_outside(int dim, const fu_surface *surface, const fu_attachment_state *at, double y[3], fu_distance *out)
+static void from_outside(int dim, const fu_surface *surface, const fu_attachment_state *at, double y[3],
+                         fu_distance *out)
 {
     double n[3], H[9], heights[10], half[9], normal[3] = {0.0}, axis[3] = {0.0};
     switch (surface->shape) {
@@ -140,11 +144,13 @@ static int is_on_axis(int dim, const fu_surface *surface, const double *y)
 {
     double along = fu_dot(dim, surface->direction, y), square = 0.0;
     if (surface->shape == FU_CAPSULE) along = fmin(fmax(along, -surface->half_length), surface->half_length);
-    for (int d = 0; d < dim; ++d) square += (y[d] - along * surface->direction[d]) * (y[d] - along * surface->direction[d]);
+    for (int d = 0; d < dim; ++d)
+        square += (y[d] - along * surface->direction[d]) * (y[d] - along * surface->direction[d]);
     return square <= ON_AXIS * ON_AXIS * surface->round_radius * surface->round_radius;
 }
 
-void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, fu_distance *out)
+void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r,
+                         fu_distance *out)
 {
     double y[3] = {0.0, 0.0, 0.0};
     local(dim, at, r, y);
@@ -162,8 +168,8 @@ void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment
     for (int i = 0; i < dim * dim; ++i) out->H[i] = -out->H[i];
 }
 
-void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *from, const double *to,
-                            double rise, fu_distance *middle, double *n)
+void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *from,
+                            const double *to, double rise, fu_distance *middle, double *n)
 {
     double way[3] = {0.0}, halfway[3] = {0.0}, square = 0.0;
     for (int d = 0; d < dim; ++d) {
@@ -222,7 +228,8 @@ static double distance_at(int dim, const fu_surface *surface, double y[3])
     return sqrt(fu_dot(dim, y, y)) - surface->round_radius;
 }
 
-double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach)
+double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r,
+                            double reach)
 {
     double y[3] = {0.0, 0.0, 0.0};
     local(dim, at, r, y);

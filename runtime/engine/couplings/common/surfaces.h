@@ -5,44 +5,49 @@
 #include "couplings/common/attachments.h"
 #include "base/fields.h"
 
-/* Shapes: a plane; a sphere, or a cylinder without ends; a cylinder with half spheres at its ends; a height over a line or over
- * two horizontal axes; a box. */
+/* Shapes: a plane; a sphere, or a cylinder without ends; a cylinder with half spheres at its ends; a height over a line
+ * or over two horizontal axes; a box. */
 enum { FU_FLAT, FU_ROUND, FU_CAPSULE, FU_TERRAIN, FU_BOX };
 
 /* A surface: its shape from an origin along axes that an attachment gives, of the ground or of a body. */
 typedef struct {
     const fu_surface_kernels *kernel;
     int shape;
-    double direction[3];        /* normal of a plane; axis of a cylinder or capsule, zero for a sphere */
+    double direction[3];              /* normal of a plane; axis of a cylinder or capsule, zero for a sphere */
     double round_radius, half_length; /* m; a cylinder goes on beyond it */
-    double half_size[3];        /* of a box along its axes, m */
-    int inside;                 /* not zero: a hollow; what touches is within. Distances are `inset` less those of the shape */
-    double inset;               /* m: of a hollow box, by how much half_size is less than its own: a sphere of that radius then
-                                 * touches each wall where it is beyond that size, in edges and corners as the sum of the walls */
-    int n_first, n_second;      /* knots of a terrain along its horizontal axes, m; no second in the plane */
-    const double *first, *second, *heights; /* heights: 4 (or 4 x 4) coefficients of a cell's cubics, from its first knots */
-    double highest, steepest, bend; /* bounds of a terrain's height, m, its slope, and how much that changes along it, 1/m */
+    double half_size[3];              /* of a box along its axes, m */
+    int inside;   /* not zero: a hollow; what touches is within. Distances are `inset` less those of the shape */
+    double inset; /* m: of a hollow box, by how much half_size is less than its own: a sphere of that radius then
+                   * touches each wall where it is beyond that size, in edges and corners as the sum of the walls */
+    int n_first, n_second; /* knots of a terrain along its horizontal axes, m; no second in the plane */
+    const double *first, *second,
+        *heights; /* heights: 4 (or 4 x 4) coefficients of a cell's cubics, from its first knots */
+    double highest, steepest,
+        bend; /* bounds of a terrain's height, m, its slope, and how much that changes along it, 1/m */
     fu_attachment on[1];
 } fu_surface;
 
-/* Where the surface is: the state of its attachment. Distance of a point, its gradient and its second derivative, by the ground's axes;
- * the point from the origin along the shape's own. */
+/* Where the surface is: the state of its attachment. Distance of a point, its gradient and its second derivative, by
+ * the ground's axes; the point from the origin along the shape's own. */
 typedef struct {
     double g, n[3], H[9], y[3];
 } fu_distance;
 
 void fu_surface_at(const fu_model *model, const fu_surface *surface, const fu_state *state, fu_attachment_state *at);
-void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, fu_distance *out);
-/* How far r is beyond the ends of a cylinder or the table of a terrain, m, where the shape goes on; negative within them. */
+void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r,
+                         fu_distance *out);
+/* How far r is beyond the ends of a cylinder or the table of a terrain, m, where the shape goes on; negative within
+ * them. */
 double fu_surface_beyond(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r);
 /* Whether a surface has such ends. */
 int fu_surface_has_ends(const fu_surface *surface);
 /* The least that the distance of any point within `reach` of r can be, m. */
-double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r, double reach);
-/* The normal over a step on a surface that does not move: its product with the way between two points is what the distance changes by,
- * `rise` (Gonzalez 1996). middle: the distance half-way. */
-void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *from, const double *to,
-                            double rise, fu_distance *middle, double *n);
+double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r,
+                            double reach);
+/* The normal over a step on a surface that does not move: its product with the way between two points is what the
+ * distance changes by, `rise` (Gonzalez 1996). middle: the distance half-way. */
+void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *from,
+                            const double *to, double rise, fu_distance *middle, double *n);
 /* Velocity of the point of the body at r that the surface is on. */
 void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r, double *v);
 /* Velocity of what is at r, and moves at v, past that point. */
@@ -53,30 +58,35 @@ void fu_surface_motion(int dim, const fu_attachment_state *at, const double *r, 
 void fu_surface_out(int dim, const fu_attachment_state *at, const double *own, double *out);
 void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *own);
 
-/* A point at an end of a step, along the shape's axes: its place, m, its velocity past the surface, m/s, the gradient of its distance,
- * how far it is off the surface, m. */
+/* A point at an end of a step, along the shape's axes: its place, m, its velocity past the surface, m/s, the gradient
+ * of its distance, how far it is off the surface, m. */
 typedef struct {
     double y[3], rate[3], n[3], gap;
 } fu_surface_end;
-/* Returns when a point that is off the surface at the first end of a step of h is below it by more than `least` and comes off it again,
- * as its way is predicted to be, s after that end; 0 where it does not: couplings/common/surface_continuous_detection.c. */
-double fu_surface_detect_within(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2], double h, double least);
+/* Returns when a point that is off the surface at the first end of a step of h is below it by more than `least` and
+ * comes off it again, as its way is predicted to be, s after that end; 0 where it does not:
+ * couplings/common/surface_continuous_detection.c. */
+double fu_surface_detect_within(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2],
+                                double h, double least);
 
 /* Fields of a structure's member `surface` (base/fields.h), which has the words of its shapes in fu_surface_shapes. */
 extern const char *const fu_surface_shapes[], *const fu_surface_role[];
-#define FU_SURFACE_FIELD(structure, member, kind, words) \
+#define FU_SURFACE_FIELD(structure, member, kind, words)                                                               \
     {#member, kind, offsetof(structure, surface.member), 1, 0, words}
-#define FU_SURFACE_FIELDS(structure)                                                                                     \
-    FU_SURFACE_FIELD(structure, kernel, FU_KERNELS, fu_surface_role),                                                    \
-    FU_SURFACE_FIELD(structure, shape, FU_WORD, fu_surface_shapes),                                                      \
-    {"direction", FU_REAL, offsetof(structure, surface.direction), 3, sizeof(double), NULL},                            \
-    FU_SURFACE_FIELD(structure, round_radius, FU_LENGTH, 0), FU_SURFACE_FIELD(structure, half_length, FU_LENGTH, 0),     \
-    {"half_size", FU_LENGTH, offsetof(structure, surface.half_size), 3, sizeof(double), NULL},                          \
-    FU_SURFACE_FIELD(structure, inside, FU_INTEGER, 0), FU_SURFACE_FIELD(structure, inset, FU_LENGTH, 0),                \
-    FU_SURFACE_FIELD(structure, n_first, FU_INTEGER, 0), FU_SURFACE_FIELD(structure, n_second, FU_INTEGER, 0),           \
-    FU_SURFACE_FIELD(structure, first, FU_REALS, 0), FU_SURFACE_FIELD(structure, second, FU_REALS, 0),                   \
-    FU_SURFACE_FIELD(structure, heights, FU_REALS, 0), FU_SURFACE_FIELD(structure, highest, FU_LENGTH, 0),               \
-    FU_SURFACE_FIELD(structure, steepest, FU_REAL, 0), FU_SURFACE_FIELD(structure, bend, FU_REAL, 0),                    \
-    {"on", FU_ATTACHMENT, offsetof(structure, surface.on), 1, sizeof(fu_attachment), NULL}
+#define FU_SURFACE_FIELDS(structure)                                                                                   \
+    FU_SURFACE_FIELD(structure, kernel, FU_KERNELS, fu_surface_role),                                                  \
+        FU_SURFACE_FIELD(structure, shape, FU_WORD, fu_surface_shapes),                                                \
+        {"direction", FU_REAL, offsetof(structure, surface.direction), 3, sizeof(double), NULL},                       \
+        FU_SURFACE_FIELD(structure, round_radius, FU_LENGTH, 0),                                                       \
+        FU_SURFACE_FIELD(structure, half_length, FU_LENGTH, 0),                                                        \
+        {"half_size", FU_LENGTH, offsetof(structure, surface.half_size), 3, sizeof(double), NULL},                     \
+        FU_SURFACE_FIELD(structure, inside, FU_INTEGER, 0), FU_SURFACE_FIELD(structure, inset, FU_LENGTH, 0),          \
+        FU_SURFACE_FIELD(structure, n_first, FU_INTEGER, 0), FU_SURFACE_FIELD(structure, n_second, FU_INTEGER, 0),     \
+        FU_SURFACE_FIELD(structure, first, FU_REALS, 0), FU_SURFACE_FIELD(structure, second, FU_REALS, 0),             \
+        FU_SURFACE_FIELD(structure, heights, FU_REALS, 0), FU_SURFACE_FIELD(structure, highest, FU_LENGTH, 0),         \
+        FU_SURFACE_FIELD(structure, steepest, FU_REAL, 0), FU_SURFACE_FIELD(structure, bend, FU_REAL, 0),              \
+    {                                                                                                                  \
+        "on", FU_ATTACHMENT, offsetof(structure, surface.on), 1, sizeof(fu_attachment), NULL                           \
+    }
 
 #endif

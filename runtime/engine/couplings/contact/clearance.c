@@ -12,7 +12,8 @@ fu_clearance fu_contact_clearance(const fu_model *model, const fu_coupling *coup
     const fu_cable *cable = contact->cable < 0 ? 0 : &model->cables[contact->cable];
     fu_clearance found = {.gap = INFINITY};
     fu_attachment_state on;
-    if (state->flags[coupling->flags] || (cable ? !cable->share : !(contact->spread[0] < INFINITY))) return fu_no_clearance;
+    if (state->flags[coupling->flags] || (cable ? !cable->share : !(contact->spread[0] < INFINITY)))
+        return fu_no_clearance;
     const double *carrier = body < 0 ? 0 : fu_place_of_body(model, state, body);
     if (body >= 0 && !carrier) return fu_no_clearance;
     fu_surface_at(model, &contact->surface, state, &on);

@@ -1,7 +1,8 @@
 /* Contact of a cable, along its length, or of points of a body with a surface: residuals and their derivatives.
  *
- * Along a cable the force is integrated by quadrature on each element, points of which touch one after the other as the element comes
- * down: the sum has no jumps. Elements that are off the surface as a whole are passed over by a sphere about them.
+ * Along a cable the force is integrated by quadrature on each element, points of which touch one after the other as the
+ * element comes down: the sum has no jumps. Elements that are off the surface as a whole are passed over by a sphere
+ * about them.
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -20,8 +21,8 @@ typedef struct {
     double *f;
 } forces;
 
-static void add_force(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
-                      const fu_contact_point *point, void *context)
+static void add_force(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element,
+                      int number, const fu_contact_point *point, void *context)
 {
     const forces *to = context;
     fu_contact_add_force(model, contact, to->state, on, element, number, point, to->f);
@@ -39,8 +40,8 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     force(model, coupling, at->next, f);
 }
 
-static void matrix(const fu_model *model, const fu_contact *contact, const fu_state *state, const double *psi, fu_weights weights,
-                   fu_system *system)
+static void matrix(const fu_model *model, const fu_contact *contact, const fu_state *state, const double *psi,
+                   fu_weights weights, fu_system *system)
 {
     const int dim = model->dim, alone = contact->cable >= 0 && contact->surface.on->body < 0;
     double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
@@ -97,7 +98,8 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_proximity_operations proximity_of_surface = {.clearance = fu_contact_clearance, .between = fu_contact_between};
+static const fu_proximity_operations proximity_of_surface = {.clearance = fu_contact_clearance,
+                                                             .between = fu_contact_between};
 static const fu_history_operations history = {.update = fu_contact_update_history, .error = fu_contact_history_error};
 
 static const fu_output output_fields[] = {
@@ -111,9 +113,23 @@ static const fu_output output_fields[] = {
 };
 
 const fu_coupling_type fu_contact_type = {
-    .name = "contact", .size = sizeof(fu_contact), .fields = fields, .output_fields = output_fields, .n_flags = 1, .residual = residual, .tangent = tangent, .step_residual = fu_contact_step_residual, .step_tangent = fu_contact_step_tangent,
-    .step_dissipation = fu_contact_step_dissipation, .force = force, .energy = fu_contact_energy, .dissipation = fu_contact_dissipation,
-    .lost_in_step = fu_contact_lost, .outputs = fu_contact_outputs, .reset = fu_contact_reset, .quadrature_error = fu_contact_quadrature_error,
+    .name = "contact",
+    .size = sizeof(fu_contact),
+    .fields = fields,
+    .output_fields = output_fields,
+    .n_flags = 1,
+    .residual = residual,
+    .tangent = tangent,
+    .step_residual = fu_contact_step_residual,
+    .step_tangent = fu_contact_step_tangent,
+    .step_dissipation = fu_contact_step_dissipation,
+    .force = force,
+    .energy = fu_contact_energy,
+    .dissipation = fu_contact_dissipation,
+    .lost_in_step = fu_contact_lost,
+    .outputs = fu_contact_outputs,
+    .reset = fu_contact_reset,
+    .quadrature_error = fu_contact_quadrature_error,
     .proximity = &proximity_of_surface,
     .history = &history,
 };

@@ -8,17 +8,18 @@
 
 #define FU_CONTACT_POINTS 16 /* of a body */
 
-/* What presses, by its depth d: stiffness d^e (1 + damping d'), e 3/2 where hertz is not zero. Friction has the coefficient
- * `friction` and a spring along the surface, whose stretch is among the numbers of a state: fu_friction_mark. */
+/* What presses, by its depth d: stiffness d^e (1 + damping d'), e 3/2 where hertz is not zero. Friction has the
+ * coefficient `friction` and a spring along the surface, whose stretch is among the numbers of a state:
+ * fu_friction_mark. */
 typedef struct {
     double stiffness, damping, friction, tangential;
     int hertz;
 } fu_contact_law;
 
-/* What a state keeps of friction since the last step. Of each point, along the shape's axes: the stretch of the spring, the place, the
- * normal (zero as drawn, where it is not known) and its rate, the velocity where it touches past the surface, how far it is off the surface, and how
- * fast that grows. After those of all points, of the contact: the axes of the body along the shape's; the time, s (far ahead as drawn, from
- * where no step begins). */
+/* What a state keeps of friction since the last step. Of each point, along the shape's axes: the stretch of the spring,
+ * the place, the normal (zero as drawn, where it is not known) and its rate, the velocity where it touches past the
+ * surface, how far it is off the surface, and how fast that grows. After those of all points, of the contact: the axes
+ * of the body along the shape's; the time, s (far ahead as drawn, from where no step begins). */
 typedef struct {
     double stretch[3], place[3], normal[3], normal_rate[3], rate[3], gap, gap_rate;
 } fu_friction_mark;
@@ -33,33 +34,35 @@ typedef struct {
     fu_coupling base;
     fu_surface surface;
     fu_contact_law law;
-    int cable;           /* -1: points of a body */
-    double radius;       /* of the cable, or of the spheres about the points, m */
-    int n_points;        /* of an element; of the body */
-    int stride;          /* of shape functions and weights from one element's to the next's: 0 where they are equal */
+    int cable;     /* -1: points of a body */
+    double radius; /* of the cable, or of the spheres about the points, m */
+    int n_points;  /* of an element; of the body */
+    int stride;    /* of shape functions and weights from one element's to the next's: 0 where they are equal */
     const double *weights, *N, *arc; /* arc: arc-lengths of all points of the cable, m */
-    double length;       /* of the cable, m */
-    int n_hull;          /* points between which an element lies, made of its vectors by `hull` (n_hull x vectors of an element) */
+    double length;                   /* of the cable, m */
+    int n_hull; /* points between which an element lies, made of its vectors by `hull` (n_hull x vectors of an element)
+                 */
     const double *hull;
-    const double *spread; /* of each vector of an element: the largest share of it in a point of the hull; of a body: how far from its
-                           * origin its points are at most, m */
-    const double *marks; /* numbers of a state as drawn */
+    const double *spread; /* of each vector of an element: the largest share of it in a point of the hull; of a body:
+                           * how far from its origin its points are at most, m */
+    const double *marks;  /* numbers of a state as drawn */
     fu_attachment attachments[FU_CONTACT_POINTS];
 } fu_contact;
 extern const fu_coupling_type fu_contact_type;
 
-/* Numbers of a row of output: the force on the cable or body, and the part of it that is friction; the largest depth; the length that
- * touches, of a body how many points do; the arc-lengths of its ends. */
+/* Numbers of a row of output: the force on the cable or body, and the part of it that is friction; the largest depth;
+ * the length that touches, of a body how many points do; the arc-lengths of its ends. */
 typedef struct {
     double force[3], friction_force[3], penetration, touching, first, last;
 } fu_contact_output;
 
-/* A point that may touch: where it is, how it moves; its mark, null without friction; the time since, s, the turn of its body past the
- * surface since then, and the rate of that, along the shape's axes; and how it touches: how deep it is and how fast it sinks, the normal,
- * its rate along the shape's axes, the way from it to where its sphere touches, the velocity there past the surface, along the shape's axes, the force on it (a length)
- * with its part that is friction, derivatives by its place, by its velocity past the surface and by the stretch alone, the stored energy
- * and the power that goes to heat in the normal force, what friction's spring is stretched by, along the shape's axes, and how that has
- * come about, whether friction slides. */
+/* A point that may touch: where it is, how it moves; its mark, null without friction; the time since, s, the turn of
+ * its body past the surface since then, and the rate of that, along the shape's axes; and how it touches: how deep it
+ * is and how fast it sinks, the normal, its rate along the shape's axes, the way from it to where its sphere touches,
+ * the velocity there past the surface, along the shape's axes, the force on it (a length) with its part that is
+ * friction, derivatives by its place, by its velocity past the surface and by the stretch alone, the stored energy and
+ * the power that goes to heat in the normal force, what friction's spring is stretched by, along the shape's axes, and
+ * how that has come about, whether friction slides. */
 typedef struct {
     double r[3], v[3];
     const fu_friction_mark *mark;
@@ -70,85 +73,105 @@ typedef struct {
     int slides;
 } fu_contact_point;
 
-/* The normal force at a depth, with its derivatives, its elastic part, the stored energy; the mean of that part on a way to another depth. */
+/* The normal force at a depth, with its derivatives, its elastic part, the stored energy; the mean of that part on a
+ * way to another depth. */
 typedef struct {
     double p, by_depth, by_rate, elastic, energy, mean;
 } fu_normal_force;
 
-/* couplings/contact/friction.c: friction where a point touches, and its derivatives, added to those of the normal force. */
-void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point);
+/* couplings/contact/friction.c: friction where a point touches, and its derivatives, added to those of the normal
+ * force. */
+void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                        fu_contact_point *point);
 /* How far off the stretch may be at the end of the step by the parts that its direction is summed over, m. */
-double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point);
-/* Makes the way of a point through a step as fu_contact_stretch does, and the direction of its spring, along the shape's axes. */
-void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point,
-                     fu_friction_path *way, double along[3]);
+double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                             const fu_contact_point *point);
+/* Makes the way of a point through a step as fu_contact_stretch does, and the direction of its spring, along the
+ * shape's axes. */
+void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                     const fu_contact_point *point, fu_friction_path *way, double along[3]);
 /* The way of a point's spring through a step but for the stretch: how deep it is. */
 fu_friction_path fu_contact_normal_path(const fu_contact *contact, const fu_contact_point *point);
-/* Makes what a point has moved by along the surface since its mark, m: along the shape's axes, as the normal there is. */
-void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_point *point, const double *normal, double change[3]);
-void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point);
+/* Makes what a point has moved by along the surface since its mark, m: along the shape's axes, as the normal there is.
+ */
+void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_point *point, const double *normal,
+                       double change[3]);
+void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                                     fu_contact_point *point);
 
-/* couplings/contact/point.c; fu_contact_slip: makes distance, depth and velocities of a point, whether it touches or not. */
+/* couplings/contact/point.c; fu_contact_slip: makes distance, depth and velocities of a point, whether it touches or
+ * not. */
 fu_normal_force fu_normal_force_at(const fu_contact *contact, double depth, double rate, double depth_next);
-void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point);
-int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point);
-void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point);
+void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                     fu_contact_point *point);
+int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                         fu_contact_point *point);
+void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                            fu_contact_point *point);
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
-                       const fu_contact_point *now, const fu_contact_point *next, double f[3], double friction[3], double by_next[9],
-                       double by_stretch[9]);
+                       const fu_contact_point *now, const fu_contact_point *next, double f[3], double friction[3],
+                       double by_next[9], double by_stretch[9]);
 
 /* couplings/contact/places.c */
 int fu_contact_elements(const fu_model *model, const fu_contact *contact);
-int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
-                         double below);
+int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                             const fu_state *state, int element, double below);
 double fu_contact_weight(const fu_contact *contact, int element, int point);
 fu_friction_mark *fu_contact_mark(const fu_contact *contact, const fu_state *state, int element, int point);
-void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
-                      int point, fu_contact_point *out);
+void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                      const fu_state *state, int element, int point, fu_contact_point *out);
 const double *fu_contact_shapes(const fu_contact *contact, int n, int element, int point);
 int fu_contact_first(const fu_model *model, const fu_contact *contact, int element);
-void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
-                          int number, const fu_contact_point *point, double *f);
+void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state,
+                          const fu_attachment_state *on, int element, int number, const fu_contact_point *point,
+                          double *f);
 void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum);
 
-/* couplings/contact/rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the shape's, and how
- * fast they turn, along the shape's axes; the turn since the mark, and its rate. */
+/* couplings/contact/rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the
+ * shape's, and how fast they turn, along the shape's axes; the turn since the mark, and its rate. */
 int fu_contact_rolls(const fu_contact *contact);
-void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double axes[9],
-                     double spin[3]);
-void fu_contact_turning(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
-                        fu_contact_point *point);
+void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                     const fu_state *state, double axes[9], double spin[3]);
+void fu_contact_turning(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                        const fu_state *state, fu_contact_point *point);
 fu_friction_begin *fu_contact_begin_of(const fu_contact *contact, const fu_state *state);
 /* Makes what the point where a sphere touches has moved by its turning alone, along the shape's axes. */
-void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal, const fu_friction_mark *mark, double out[3]);
+void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal,
+                     const fu_friction_mark *mark, double out[3]);
 
 /* couplings/contact/friction_work.c */
-int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
-                     const double *c, double *f);
-double fu_contact_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
+int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
+                                const fu_state *to, int n, const double *b, const double *c, double *f);
+double fu_contact_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
+                                const fu_state *to);
 
 /* Calls `visit` with each point that touches. */
-typedef void fu_contact_visitor(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
-                                const fu_contact_point *point, void *context);
-void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state, fu_contact_visitor *visit, void *context);
+typedef void fu_contact_visitor(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                                int element, int number, const fu_contact_point *point, void *context);
+void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state,
+                      fu_contact_visitor *visit, void *context);
 
-/* couplings/contact/derivatives.c: adds to a system the derivatives of what a point that touches, and its reaction, put on the left
- * of the equations of motion; psi as in fu_equations. */
-void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
-                                int element, int number, const fu_contact_point *point, const double *psi, fu_weights weights,
-                                fu_system *system);
+/* couplings/contact/derivatives.c: adds to a system the derivatives of what a point that touches, and its reaction, put
+ * on the left of the equations of motion; psi as in fu_equations. */
+void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                                const fu_state *state, int element, int number, const fu_contact_point *point,
+                                const double *psi, fu_weights weights, fu_system *system);
 
 /* couplings/contact/energy_step.c */
-void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
-void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
+void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                              double *own);
+void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                             fu_system *system);
 double fu_contact_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
 /* couplings/contact/results.c */
-void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
-                        const fu_accelerator *work, double *out);
+void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                        const double *acceleration, const fu_accelerator *work, double *out);
 double fu_contact_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work);
-double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends);
+double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                              const fu_accelerator *work);
+double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                       int by_ends);
 void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state);
 void fu_contact_update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state);

@@ -1,6 +1,8 @@
-/* Derivatives of the force of contact at a point, and of its reaction on the body that the surface is on, by the coordinates of both.
+/* Derivatives of the force of contact at a point, and of its reaction on the body that the surface is on, by the
+ * coordinates of both.
  *
- * How the velocity of a surface's point changes at fixed rates of its body is left out, as Newton's method does without it.
+ * How the velocity of a surface's point changes at fixed rates of its body is left out, as Newton's method does without
+ * it.
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -9,9 +11,9 @@
 
 #include <string.h>
 
-/* How a point moves with its coordinates, and turns, if it rolls: P (dim x n) that of where it touches, T; `moved` and `turned` have the
- * point and the turn by the unknowns; `by_rate` its velocity by these at fixed rates; K, if it is of a body, the derivative of P' f by
- * them at fixed arms of the force. */
+/* How a point moves with its coordinates, and turns, if it rolls: P (dim x n) that of where it touches, T; `moved` and
+ * `turned` have the point and the turn by the unknowns; `by_rate` its velocity by these at fixed rates; K, if it is of
+ * a body, the derivative of P' f by them at fixed arms of the force. */
 typedef struct {
     int n, at[FU_ATTACHMENT_COORDINATES];
     double P[3 * FU_ATTACHMENT_COORDINATES], T[3 * FU_ATTACHMENT_COORDINATES], moved[3 * FU_ATTACHMENT_COORDINATES],
@@ -26,8 +28,8 @@ static void moment_of(int dim, const double *x, const double *f, double m[3])
 }
 
 /* Makes how a point of a body moves, and where it touches. */
-static void motion_of_point(const fu_model *model, const fu_contact *contact, const fu_state *state, int number, const fu_contact_point *point,
-                            const double *psi, motion *out)
+static void motion_of_point(const fu_model *model, const fu_contact *contact, const fu_state *state, int number,
+                            const fu_contact_point *point, const double *psi, motion *out)
 {
     const fu_attachment *to = &contact->attachments[number];
     const int dim = model->dim, rolls = fu_contact_rolls(contact);
@@ -84,10 +86,12 @@ static void turn_of(int dim, const double *T, int n, int i, const double *x, dou
     }
 }
 
-/* Makes, of a surface on a body, how its point at r moves, and where the force acts, and what a turn of it adds to the force on what
- * touches it there: own (dim x n). K has the derivative of P' f by the unknowns where r and the arm stay. */
-static void motion_of_surface(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
-                              const fu_contact_point *point, const double *psi, motion *out, double *own)
+/* Makes, of a surface on a body, how its point at r moves, and where the force acts, and what a turn of it adds to the
+ * force on what touches it there: own (dim x n). K has the derivative of P' f by the unknowns where r and the arm stay.
+ */
+static void motion_of_surface(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                              const fu_state *state, const fu_contact_point *point, const double *psi, motion *out,
+                              double *own)
 {
     const int dim = model->dim, n = on->n;
     const double *f = point->f, *T = out->turned;
@@ -125,28 +129,32 @@ static void motion_of_surface(const fu_model *model, const fu_contact *contact, 
     }
 }
 
-/* The changes of what a motion changes by each of its coordinates i, column i of all (dim x n): the force, and where it acts less where
- * the point is. */
+/* The changes of what a motion changes by each of its coordinates i, column i of all (dim x n): the force, and where it
+ * acts less where the point is. */
 typedef struct {
     double force[3 * FU_ATTACHMENT_COORDINATES], arm[3 * FU_ATTACHMENT_COORDINATES];
 } changes;
 
-/* Adds what depends on where a sphere touches: the arm follows the normal, and the stretch the turn past the surface; sign: 1 of the
- * sphere, -1 of the surface, which takes the normal and the arm along as it turns. */
-static void add_rolling(int dim, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point, const motion *of,
-                        double sign, changes *out)
+/* Adds what depends on where a sphere touches: the arm follows the normal, and the stretch the turn past the surface;
+ * sign: 1 of the sphere, -1 of the surface, which takes the normal and the arm along as it turns. */
+static void add_rolling(int dim, const fu_contact *contact, const fu_attachment_state *on,
+                        const fu_contact_point *point, const motion *of, double sign, changes *out)
 {
     const int n = of->n;
-    const double share = fu_dot(dim, point->mark->normal, point->mark->normal) > 0.0 ? 0.5 : 1.0; /* of this normal in the mean one */
+    const double share =
+        fu_dot(dim, point->mark->normal, point->mark->normal) > 0.0 ? 0.5 : 1.0; /* of this normal in the mean one */
     double about[3] = {0.0, 0.0, point->turn[2]};
     if (dim == 3) fu_surface_out(dim, on, point->turn, about);
     for (int i = 0; i < n; ++i) {
-        double by_normal[3] = {0.0}, by_turn[3] = {0.0}, angle[3] = {0.0, 0.0, of->turned[i]}, half[3], rolled[3], stretch[3];
+        double by_normal[3] = {0.0}, by_turn[3] = {0.0}, angle[3] = {0.0, 0.0, of->turned[i]}, half[3], rolled[3],
+               stretch[3];
         for (int d = 0; d < 3 && dim == 3; ++d) angle[d] = of->turned[d * n + i];
         for (int d = 0; d < dim; ++d)
-            for (int c = 0; c < dim; ++c) by_normal[d] -= sign * contact->radius * point->distance.H[d * dim + c] * of->moved[c * n + i];
+            for (int c = 0; c < dim; ++c)
+                by_normal[d] -= sign * contact->radius * point->distance.H[d * dim + c] * of->moved[c * n + i];
         fu_cross(angle, point->arm, by_turn);
-        fu_cross(about, angle, half); /* of a turn that has been, the vector of it changes by so much less (to first order) */
+        fu_cross(about, angle,
+                 half); /* of a turn that has been, the vector of it changes by so much less (to first order) */
         for (int d = 0; d < 3; ++d) angle[d] -= 0.5 * half[d];
         fu_cross(angle, point->arm, rolled);
         fu_cross(about, by_normal, stretch);
@@ -159,8 +167,9 @@ static void add_rolling(int dim, const fu_contact *contact, const fu_attachment_
 }
 
 /* Makes the changes of the force by the coordinates of what touches, or of the surface, which adds its own. */
-static void changes_by(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point,
-                       fu_weights weights, const motion *of, double sign, const double *own, changes *out)
+static void changes_by(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                       const fu_contact_point *point, fu_weights weights, const motion *of, double sign,
+                       const double *own, changes *out)
 {
     const int dim = model->dim, n = of->n;
     memset(out->arm, 0, sizeof(double) * (size_t)(dim * n));
@@ -168,17 +177,18 @@ static void changes_by(const fu_model *model, const fu_contact *contact, const f
         for (int i = 0; i < n; ++i) {
             double sum = own ? own[d * n + i] : 0.0;
             for (int c = 0; c < dim; ++c)
-                sum += sign * (point->by_place[d * dim + c] * of->moved[c * n + i] +
-                               point->by_rate[d * dim + c] * (weights.rate * of->P[c * n + i] + of->by_rate[c * n + i]));
+                sum +=
+                    sign * (point->by_place[d * dim + c] * of->moved[c * n + i] +
+                            point->by_rate[d * dim + c] * (weights.rate * of->P[c * n + i] + of->by_rate[c * n + i]));
             out->force[d * n + i] = sum;
         }
     if (fu_contact_rolls(contact)) add_rolling(dim, contact, on, point, of, sign, out);
 }
 
-/* Adds to a system how the force along the motion `of` changes by the coordinates `by`; lever: what the place that it acts at changes by,
- * null where it has no moment; K: what changes at fixed forces and arms, or null. */
-static void add_block(const fu_model *model, const motion *of, const motion *by, const double *f, const double *force, const double *lever,
-                      const double *K, double scale, fu_system *system)
+/* Adds to a system how the force along the motion `of` changes by the coordinates `by`; lever: what the place that it
+ * acts at changes by, null where it has no moment; K: what changes at fixed forces and arms, or null. */
+static void add_block(const fu_model *model, const motion *of, const motion *by, const double *f, const double *force,
+                      const double *lever, const double *K, double scale, fu_system *system)
 {
     const int dim = model->dim, n = by->n;
     for (int i = 0; i < of->n; ++i)
@@ -194,9 +204,9 @@ static void add_block(const fu_model *model, const motion *of, const motion *by,
         }
 }
 
-void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
-                                int element, int number, const fu_contact_point *point, const double *psi, fu_weights weights,
-                                fu_system *system)
+void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                                const fu_state *state, int element, int number, const fu_contact_point *point,
+                                const double *psi, fu_weights weights, fu_system *system)
 {
     const int dim = model->dim, rolls = fu_contact_rolls(contact);
     const double scale = weights.stiffness * fu_contact_weight(contact, element, number), *f = point->f;

@@ -1,9 +1,10 @@
 /* Contact over a step, for the integrator that balances energy: residuals, their derivatives, and what goes to heat.
  *
- * On a body that moves the step is taken along the shape's own axes, where a point's place is y = A'(r - p). The force there has the
- * product -(U_next - U) with the way y_next - y. As y is bilinear in A and r - p, its change is, with means over the step,
- * mean(A)'(change of r - p) + (change of A)' mean(r - p): so mean(A) times the force acts on the point, and its opposite on the body
- * at the lever mean(r - p). Both have the same line, and keep momentum and angular momentum as they keep energy.
+ * On a body that moves the step is taken along the shape's own axes, where a point's place is y = A'(r - p). The force
+ * there has the product -(U_next - U) with the way y_next - y. As y is bilinear in A and r - p, its change is, with
+ * means over the step, mean(A)'(change of r - p) + (change of A)' mean(r - p): so mean(A) times the force acts on the
+ * point, and its opposite on the body at the lever mean(r - p). Both have the same line, and keep momentum and angular
+ * momentum as they keep energy.
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -16,22 +17,23 @@ static const fu_contact *of(const fu_coupling *coupling)
     return (const fu_contact *)coupling;
 }
 
-/* A surface over a step: at both ends, its mean p and A, and the frame in which points are placed: the ground's axes if it does not
- * move, else the shape's own. */
+/* A surface over a step: at both ends, its mean p and A, and the frame in which points are placed: the ground's axes if
+ * it does not move, else the shape's own. */
 typedef struct {
     int moves;
     fu_attachment_state ends[2], mean, frame;
 } surface_step;
 
-/* A point over a step: at both ends in the surface's frame, and its mean place in the ground's axes. Where its sphere touches, if it
- * rolls: the same of the particle of the body that is there in the mean, and the attachment to it. */
+/* A point over a step: at both ends in the surface's frame, and its mean place in the ground's axes. Where its sphere
+ * touches, if it rolls: the same of the particle of the body that is there in the mean, and the attachment to it. */
 typedef struct {
     fu_contact_point now, next;
     double middle[3], from[3], to[3], touched[3];
     fu_attachment particle;
 } point_step;
 
-static void surface_over_step(const fu_model *model, const fu_contact *contact, const fu_equations *at, surface_step *out)
+static void surface_over_step(const fu_model *model, const fu_contact *contact, const fu_equations *at,
+                              surface_step *out)
 {
     const int dim = model->dim;
     fu_attachment_state *const ends = out->ends;
@@ -52,13 +54,15 @@ static void surface_over_step(const fu_model *model, const fu_contact *contact, 
 }
 
 /* Returns whether any point of an element may touch at an end of the step. */
-static int may_touch(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int element)
+static int may_touch(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at,
+                     int element)
 {
     return fu_contact_may_be_active(model, contact, &on->ends[0], at->now, element, 0.0) ||
            fu_contact_may_be_active(model, contact, &on->ends[1], at->next, element, 0.0);
 }
 
-/* Places a point at an end of a step along the axes of the shape; forces of the step do not depend on its velocity there. */
+/* Places a point at an end of a step along the axes of the shape; forces of the step do not depend on its velocity
+ * there. */
 static void place_along_shape(int dim, const fu_attachment_state *end, fu_contact_point *point)
 {
     double from[3] = {0.0};
@@ -68,9 +72,10 @@ static void place_along_shape(int dim, const fu_attachment_state *end, fu_contac
     fu_surface_into(dim, end, from, point->r);
 }
 
-/* Makes the particle of a body that its sphere touches with in the mean of the step, and the arm to it, along the ground's axes. */
-static void particle_over_step(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int number,
-                               point_step *out)
+/* Makes the particle of a body that its sphere touches with in the mean of the step, and the arm to it, along the
+ * ground's axes. */
+static void particle_over_step(const fu_model *model, const fu_contact *contact, const surface_step *on,
+                               const fu_equations *at, int number, point_step *out)
 {
     const int dim = model->dim;
     const fu_state *states[2] = {at->now, at->next};
@@ -100,8 +105,8 @@ static void particle_over_step(const fu_model *model, const fu_contact *contact,
 }
 
 /* Makes a point over a step; returns whether it may touch in it. */
-static int point_over_step(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int element,
-                           int number, point_step *out)
+static int point_over_step(const fu_model *model, const fu_contact *contact, const surface_step *on,
+                           const fu_equations *at, int element, int number, point_step *out)
 {
     fu_contact_place(model, contact, &on->ends[0], at->now, element, number, &out->now);
     fu_contact_place(model, contact, &on->ends[1], at->next, element, number, &out->next);
@@ -130,9 +135,10 @@ static void turn_derivative(int dim, const fu_attachment_state *mean, double *by
         }
 }
 
-/* Adds what a force over a step puts on the body that the surface is on: at its point u with mean(A of the body) u the lever. */
-static void add_reaction(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at,
-                         const double *middle, const double *force, double weight, double *f)
+/* Adds what a force over a step puts on the body that the surface is on: at its point u with mean(A of the body) u the
+ * lever. */
+static void add_reaction(const fu_model *model, const fu_contact *contact, const surface_step *on,
+                         const fu_equations *at, const double *middle, const double *force, double weight, double *f)
 {
     const int dim = model->dim;
     fu_attachment there = contact->surface.on[0];
@@ -149,9 +155,11 @@ static void add_reaction(const fu_model *model, const fu_contact *contact, const
     fu_contact_add_along(dim, on->ends[0].n, on->ends[0].at, P, force, weight, f);
 }
 
-/* Adds a force over a step on a point, `to` of a body, and its reaction, to what stands on the left of the equations. */
-static void add_step_force(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at, int element,
-                           int number, const fu_attachment *to, const double *middle, const double *own, double *f)
+/* Adds a force over a step on a point, `to` of a body, and its reaction, to what stands on the left of the equations.
+ */
+static void add_step_force(const fu_model *model, const fu_contact *contact, const surface_step *on,
+                           const fu_equations *at, int element, int number, const fu_attachment *to,
+                           const double *middle, const double *own, double *f)
 {
     const int dim = model->dim;
     const double weight = fu_contact_weight(contact, element, number);
@@ -161,7 +169,8 @@ static void add_step_force(const fu_model *model, const fu_contact *contact, con
         add_reaction(model, contact, on, at, middle, force, weight, f);
     }
     if (contact->cable >= 0) {
-        const int n = model->cables[contact->cable].coordinates / dim, first = fu_contact_first(model, contact, element);
+        const int n = model->cables[contact->cable].coordinates / dim,
+                  first = fu_contact_first(model, contact, element);
         const double *N = fu_contact_shapes(contact, n, element, number);
         for (int k = 0; k < n; ++k)
             for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
@@ -173,8 +182,8 @@ static void add_step_force(const fu_model *model, const fu_contact *contact, con
     fu_contact_add_along(dim, end.n, end.at, end.P, force, -weight, f);
 }
 
-/* Does for a step what the force does for an instant; returns the energy that goes to heat in it and that the contact stores, J.
- * f may be null. */
+/* Does for a step what the force does for an instant; returns the energy that goes to heat in it and that the contact
+ * stores, J. f may be null. */
 static double over_step(const fu_model *model, const fu_contact *contact, const fu_equations *at, double *f)
 {
     const int dim = model->dim, rolls = fu_contact_rolls(contact);
@@ -187,7 +196,8 @@ static double over_step(const fu_model *model, const fu_contact *contact, const 
             point_step point;
             double force[3], friction[3], unused[2][9];
             if (!point_over_step(model, contact, &on, at, e, k, &point)) continue;
-            fu_contact_step(model, contact, &on.frame, at->h, &point.now, &point.next, force, friction, unused[0], unused[1]);
+            fu_contact_step(model, contact, &on.frame, at->h, &point.now, &point.next, force, friction, unused[0],
+                            unused[1]);
             const double weight = fu_contact_weight(contact, e, k);
             for (int d = 0; d < dim; ++d) {
                 if (rolls) lost -= weight * friction[d] * (point.to[d] - point.from[d]);
@@ -201,15 +211,17 @@ static double over_step(const fu_model *model, const fu_contact *contact, const 
     return lost;
 }
 
-void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                              double *own)
 {
     (void)own;
     over_step(model, of(coupling), at, f);
 }
 
-/* The middle moves by half of psi, which weights.stiffness has: what the end does counts twice. How bodies turn in the step is taken as
- * at its middle. */
-void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+/* The middle moves by half of psi, which weights.stiffness has: what the end does counts twice. How bodies turn in the
+ * step is taken as at its middle. */
+void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                             fu_system *system)
 {
     const fu_contact *contact = of(coupling);
     const int dim = model->dim;
@@ -227,7 +239,8 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
             fu_contact_point *next = &point.next;
             double force[3], friction[3];
             if (!point_over_step(model, contact, &on, at, e, k, &point)) continue;
-            fu_contact_step(model, contact, &on.frame, at->h, &point.now, next, force, friction, next->by_place, next->by_stretch);
+            fu_contact_step(model, contact, &on.frame, at->h, &point.now, next, force, friction, next->by_place,
+                            next->by_stretch);
             for (int i = 0; i < dim * dim; ++i) {
                 next->by_place[i] *= 2.0;
                 next->by_stretch[i] *= 2.0;
@@ -242,13 +255,15 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
             }
             if (on.moves || !n) {
                 memcpy(next->r, point.middle, sizeof next->r);
-                for (int d = 0; d < dim && fu_contact_rolls(contact); ++d) next->arm[d] = point.touched[d] - point.middle[d];
+                for (int d = 0; d < dim && fu_contact_rolls(contact); ++d)
+                    next->arm[d] = point.touched[d] - point.middle[d];
                 fu_contact_add_derivatives(model, contact, &on_middle, at->middle, e, k, next, 0, at->weights, system);
                 continue;
             }
             if (!touches++) memset(K, 0, sizeof(double) * (size_t)(n * n));
             const double *N = fu_contact_shapes(contact, n / dim, e, k);
-            fu_add_element_product(dim, n, -at->weights.stiffness * fu_contact_weight(contact, e, k), N, N, next->by_place, K);
+            fu_add_element_product(dim, n, -at->weights.stiffness * fu_contact_weight(contact, e, k), N, N,
+                                   next->by_place, K);
         }
         if (touches) fu_add_element_matrix(model, fu_contact_first(model, contact, e), n, K, system);
     }

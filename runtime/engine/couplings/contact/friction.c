@@ -1,5 +1,5 @@
-/* Friction of contact at a point: the stretch of its spring at the end of its way since the mark (couplings/common/stick_friction.c), and how
- * that changes with where the point is and how it moves.
+/* Friction of contact at a point: the stretch of its spring at the end of its way since the mark
+ * (couplings/common/stick_friction.c), and how that changes with where the point is and how it moves.
  */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
@@ -9,8 +9,8 @@
 
 #define DIRECTION_PARTS 8 /* of a step: those that the direction of what slides is summed over */
 
-/* The way of a point since its mark, along the shape's axes: by the end of it, by its beginning; the stretch as if nothing slid, with its
- * direction; where the way is not known in time, as in statics, h is 0. */
+/* The way of a point since its mark, along the shape's axes: by the end of it, by its beginning; the stretch as if
+ * nothing slid, with its direction; where the way is not known in time, as in statics, h is 0. */
 typedef struct {
     double normal[3], change[3], begin[3], x[3], along[3], size, from;
     fu_friction_path way;
@@ -44,35 +44,42 @@ static void begin_at_touch(int dim, const fu_contact_point *point, friction_cour
     }
 }
 
-void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_point *point, const double *normal, double change[3])
+void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_point *point, const double *normal,
+                       double change[3])
 {
     const fu_friction_mark *mark = point->mark;
-    const double before = fu_dot(dim, mark->normal, mark->normal), now = fu_dot(dim, normal, normal), h = fmax(point->since, 0.0);
+    const double before = fu_dot(dim, mark->normal, mark->normal), now = fu_dot(dim, normal, normal),
+                 h = fmax(point->since, 0.0);
     const double sunk = mark->gap + point->depth, rates[2] = {h * mark->gap_rate, -h * point->sinking};
     const double halfway = -1.5 * sunk - 0.25 * (rates[0] + rates[1]);
     double roll[3] = {0.0};
     if (fu_contact_rolls(contact)) fu_contact_roll(dim, contact, point->turn, normal, mark, roll);
     for (int d = 0; d < dim; ++d) change[d] = point->distance.y[d] - mark->place[d] + roll[d];
     if (!(before > 0.0)) return;
-    /* what it sinks by is not along the surface: the integral of the normal times the rate of the gap, both by cubics, by Simpson's rule */
+    /* what it sinks by is not along the surface: the integral of the normal times the rate of the gap, both by cubics,
+     * by Simpson's rule */
     for (int d = 0; d < dim; ++d) {
-        const double n[2] = {mark->normal[d] / before, normal[d] / now}, turned = mark->normal_rate[d] / before - point->normal_rate[d] / now;
+        const double n[2] = {mark->normal[d] / before, normal[d] / now},
+                     turned = mark->normal_rate[d] / before - point->normal_rate[d] / now;
         const double middle = 0.5 * (n[0] + n[1]) + 0.125 * h * turned;
         change[d] -= h > 0.0 ? (n[0] * rates[0] + 4.0 * middle * halfway + n[1] * rates[1]) / 6.0 : -middle * sunk;
     }
 }
 
-/* Makes a stretch along the surface at the mark that along it at the end: turned as the normal has, by the shortest way. */
+/* Makes a stretch along the surface at the mark that along it at the end: turned as the normal has, by the shortest
+ * way. */
 static void turn_along(int dim, const fu_friction_mark *mark, const double *normal, double stretch[3])
 {
     const double before = sqrt(fu_dot(dim, mark->normal, mark->normal)), now = sqrt(fu_dot(dim, normal, normal));
     memcpy(stretch, mark->stretch, sizeof(double[3]));
     if (!(before > 0.0)) return;
-    const double share = fu_dot(dim, normal, mark->stretch) / now / (1.0 + fu_dot(dim, normal, mark->normal) / (before * now));
+    const double share =
+        fu_dot(dim, normal, mark->stretch) / now / (1.0 + fu_dot(dim, normal, mark->normal) / (before * now));
     for (int d = 0; d < dim; ++d) stretch[d] -= share * (mark->normal[d] / before + normal[d] / now);
 }
 
-static void path_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point, friction_course *out)
+static void path_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                    const fu_contact_point *point, friction_course *out)
 {
     const int dim = model->dim;
     const fu_friction_mark *mark = point->mark;
@@ -97,8 +104,8 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     out->way.stretch.rate[1] = fu_dot(dim, out->along, point->slip);
 }
 
-/* Makes the stretch, m, of a spring that slides along the way, in so many equal parts of it: in each it is stretched at the velocity at
- * the part's end, and slides back to the bound. */
+/* Makes the stretch, m, of a spring that slides along the way, in so many equal parts of it: in each it is stretched at
+ * the velocity at the part's end, and slides back to the bound. */
 static void slide(int dim, const fu_contact_point *point, const friction_course *of, int parts, double out[3])
 {
     const double whole = 1.0 - of->from, normal = fu_dot(dim, of->normal, of->normal);
@@ -115,9 +122,9 @@ static void slide(int dim, const fu_contact_point *point, const friction_course 
     }
 }
 
-/* Turns the stretch of a point that slides, in space: it lags behind the velocity, by the way along which it is stretched as much. Summed
- * over parts of the step and half as many (Richardson); the sum over the step alone would be of the first order. Returns the time that the
- * way takes, s, 0 where nothing is turned. */
+/* Turns the stretch of a point that slides, in space: it lags behind the velocity, by the way along which it is
+ * stretched as much. Summed over parts of the step and half as many (Richardson); the sum over the step alone would be
+ * of the first order. Returns the time that the way takes, s, 0 where nothing is turned. */
 static double turn_to_slip(int dim, const fu_contact_point *point, int parts, friction_course *of)
 {
     const double h = (1.0 - of->from) * of->way.h;
@@ -136,8 +143,8 @@ static double turn_to_slip(int dim, const fu_contact_point *point, int parts, fr
     return h;
 }
 
-void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point,
-                     fu_friction_path *way, double along[3])
+void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                     const fu_contact_point *point, fu_friction_path *way, double along[3])
 {
     friction_course of;
     path_of(model, contact, on, point, &of);
@@ -145,7 +152,8 @@ void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_
     memcpy(along, of.along, sizeof of.along);
 }
 
-double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point)
+double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                             const fu_contact_point *point)
 {
     const int dim = model->dim;
     double square = 0.0;
@@ -158,7 +166,8 @@ double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, c
     return sqrt(square) * fabs(point->friction_end.stretch);
 }
 
-void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point)
+void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                        fu_contact_point *point)
 {
     const int dim = model->dim;
     const double most = contact->law.friction * point->press / contact->law.tangential;
@@ -178,7 +187,8 @@ void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const 
     point->energy += 0.5 * contact->law.tangential * fu_dot(dim, x, x);
 }
 
-/* Adds what follows from a way that touches only after a part of the step: of that the place and the velocity at the end count less. */
+/* Adds what follows from a way that touches only after a part of the step: of that the place and the velocity at the
+ * end count less. */
 static void add_touching(int dim, const fu_attachment_state *on, const friction_course *of, fu_contact_point *point)
 {
     const double h = of->way.h, *n = point->distance.n;
@@ -209,7 +219,8 @@ static void add_touching(int dim, const fu_attachment_state *on, const friction_
 }
 
 /* Makes the derivatives of friction that has slid within the step and then sticks, or slides to its end. */
-static void add_sliding(int dim, const fu_contact *contact, const fu_attachment_state *on, const friction_course *of, const double *x, fu_contact_point *point)
+static void add_sliding(int dim, const fu_contact *contact, const fu_attachment_state *on, const friction_course *of,
+                        const double *x, fu_contact_point *point)
 {
     const fu_distance *at = &point->distance;
     const fu_friction_end *end = &point->friction_end;
@@ -239,7 +250,8 @@ static void add_sliding(int dim, const fu_contact *contact, const fu_attachment_
         }
 }
 
-void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point)
+void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                                     fu_contact_point *point)
 {
     const int dim = model->dim;
     const fu_distance *at = &point->distance;
@@ -248,7 +260,8 @@ void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *co
     path_of(model, contact, on, point, &of);
     const double h = turn_to_slip(dim, point, DIRECTION_PARTS, &of);
     fu_surface_out(dim, on, of.x, x);
-    if (fu_dot(dim, point->mark->normal, point->mark->normal) > 0.0) /* half of what it sinks by turns with this normal, half with that before */
+    if (fu_dot(dim, point->mark->normal, point->mark->normal) >
+        0.0) /* half of what it sinks by turns with this normal, half with that before */
         for (int d = 0; d < dim; ++d) x[d] -= 0.5 * (point->depth + point->mark->gap) * at->n[d];
     if (point->friction_end.slid && of.size > 0.0) add_sliding(dim, contact, on, &of, x, point);
     else {

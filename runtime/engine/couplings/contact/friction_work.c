@@ -1,5 +1,5 @@
-/* What friction by springs takes within a step, by the cubics through places and velocities at its ends; and how far off the stretch is
- * that the spring has at its end.
+/* What friction by springs takes within a step, by the cubics through places and velocities at its ends; and how far
+ * off the stretch is that the spring has at its end.
  */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
@@ -42,8 +42,8 @@ static double taken_on_way(const fu_model *model, const fu_contact *contact, ste
     return taken(model, contact, of, 0);
 }
 
-/* Returns how far off the stretch may be at the end, m: by how much another way leads elsewhere, the parabola without the velocities at
- * the beginning, and by the parts of the step that its direction is summed over. */
+/* Returns how far off the stretch may be at the end, m: by how much another way leads elsewhere, the parabola without
+ * the velocities at the beginning, and by the parts of the step that its direction is summed over. */
 static double astray(const fu_model *model, const fu_contact *contact, step_point *of)
 {
     const int dim = model->dim;
@@ -63,7 +63,8 @@ static double astray(const fu_model *model, const fu_contact *contact, step_poin
 typedef double visitor(const fu_model *model, const fu_contact *contact, step_point *of);
 
 /* Makes a point over the step; returns whether it touches at one of the ends. */
-static int point_over_step(const fu_model *model, const fu_contact *contact, const fu_state *to, int element, int number, step_point *out)
+static int point_over_step(const fu_model *model, const fu_contact *contact, const fu_state *to, int element,
+                           int number, step_point *out)
 {
     const int dim = model->dim;
     fu_contact_point *end = &out->end;
@@ -78,8 +79,10 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
     return 1;
 }
 
-/* Calls `visit` with each point that touches at an end of the step; returns the largest value, or their sum by weight. */
-static double visit_points(const fu_model *model, const fu_contact *contact, const fu_state *from, const fu_state *to, visitor *visit, int largest)
+/* Calls `visit` with each point that touches at an end of the step; returns the largest value, or their sum by weight.
+ */
+static double visit_points(const fu_model *model, const fu_contact *contact, const fu_state *from, const fu_state *to,
+                           visitor *visit, int largest)
 {
     double found = 0.0;
     step_point of;
@@ -88,7 +91,9 @@ static double visit_points(const fu_model *model, const fu_contact *contact, con
     fu_surface_at(model, &contact->surface, from, &before);
     fu_surface_at(model, &contact->surface, to, &of.on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_be_active(model, contact, &before, from, e, 0.0) && !fu_contact_may_be_active(model, contact, &of.on, to, e, 0.0)) continue;
+        if (!fu_contact_may_be_active(model, contact, &before, from, e, 0.0) &&
+            !fu_contact_may_be_active(model, contact, &of.on, to, e, 0.0))
+            continue;
         for (int k = 0; k < contact->n_points; ++k) {
             if (!point_over_step(model, contact, to, e, k, &of)) continue;
             const double value = visit(model, contact, &of);
@@ -98,13 +103,15 @@ static double visit_points(const fu_model *model, const fu_contact *contact, con
     return found;
 }
 
-double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends)
+double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                       int by_ends)
 {
     const fu_contact *contact = (const fu_contact *)coupling;
     return contact->law.tangential * visit_points(model, contact, from, to, by_ends ? taken_by_ends : taken_on_way, 0);
 }
 
-double fu_contact_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+double fu_contact_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
+                                const fu_state *to)
 {
     return visit_points(model, (const fu_contact *)coupling, from, to, astray, 1);
 }

@@ -1,5 +1,6 @@
-/* Kinks of contact within a step: where a point touches or comes off, begins to slide or sticks. The force is continuous there, its rate
- * jumps, and a rule of quadrature that an integrator has is off by a part of that. Estimates of its error rest on smooth forces.
+/* Kinks of contact within a step: where a point touches or comes off, begins to slide or sticks. The force is
+ * continuous there, its rate jumps, and a rule of quadrature that an integrator has is off by a part of that. Estimates
+ * of its error rest on smooth forces.
  */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
@@ -7,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#define INTERVALS 16   /* of a step, that a force is summed over by Simpson's rule */
-#define ROUNDING_OF_STRETCH 1e-9   /* of a stretch: what it may be below the bound of one that slides */
+#define INTERVALS 16             /* of a step, that a force is summed over by Simpson's rule */
+#define ROUNDING_OF_STRETCH 1e-9 /* of a stretch: what it may be below the bound of one that slides */
 
 /* A point over a step, as friction has it; without friction the way has no bound. */
 typedef struct {
@@ -24,9 +25,11 @@ static void forces_at(const step_point *of, double x, double out[2])
 {
     const fu_contact *contact = of->contact;
     const double depth = fu_value_within(&of->way.depth, of->way.h, x);
-    out[0] = depth > 0.0 ? fu_normal_force_at(contact, depth, fu_rate_within(&of->way.depth, of->way.h, x), depth).p : 0.0;
+    out[0] =
+        depth > 0.0 ? fu_normal_force_at(contact, depth, fu_rate_within(&of->way.depth, of->way.h, x), depth).p : 0.0;
     out[1] = contact->law.friction > 0.0 && x > 0.0 ? -contact->law.tangential * fu_friction_within(&of->way, x) : 0.0;
-    if (contact->law.friction > 0.0 && x == 0.0) out[1] = -contact->law.tangential * of->way.stretch.value[0] * (of->way.from == 0.0);
+    if (contact->law.friction > 0.0 && x == 0.0)
+        out[1] = -contact->law.tangential * of->way.stretch.value[0] * (of->way.from == 0.0);
 }
 
 /* Makes by how much the mean forces of a rule are off. */
@@ -50,10 +53,13 @@ static int slides_at(const step_point *of, double x)
 {
     double at[2];
     forces_at(of, x, at);
-    return fabs(at[1]) >= (1.0 - ROUNDING_OF_STRETCH) * of->contact->law.friction * at[0] ? (at[1] < 0.0) - (at[1] > 0.0) : 0;
+    return fabs(at[1]) >= (1.0 - ROUNDING_OF_STRETCH) * of->contact->law.friction * at[0]
+               ? (at[1] < 0.0) - (at[1] > 0.0)
+               : 0;
 }
 
-/* Returns whether the force has a kink: the point is pressed at one end alone, or does not stick, or slide one way, all the while. */
+/* Returns whether the force has a kink: the point is pressed at one end alone, or does not stick, or slide one way, all
+ * the while. */
 static int has_kink(const step_point *of)
 {
     double at[2][2];
@@ -65,8 +71,8 @@ static int has_kink(const step_point *of)
 }
 
 /* Makes a point over the step; returns whether it touches at one of the ends. */
-static int point_over_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state on[2], const fu_state *from,
-                           const fu_state *to, int element, int number, step_point *out)
+static int point_over_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state on[2],
+                           const fu_state *from, const fu_state *to, int element, int number, step_point *out)
 {
     fu_contact_point begin;
     out->contact = contact;
@@ -87,8 +93,8 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
     return 1;
 }
 
-int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int n, const double *b,
-                     const double *c, double *f)
+int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
+                                const fu_state *to, int n, const double *b, const double *c, double *f)
 {
     const fu_contact *contact = (const fu_contact *)coupling;
     const int dim = model->dim;
@@ -98,7 +104,9 @@ int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupli
     fu_surface_at(model, &contact->surface, from, &on[0]);
     fu_surface_at(model, &contact->surface, to, &on[1]);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_be_active(model, contact, &on[0], from, e, 0.0) && !fu_contact_may_be_active(model, contact, &on[1], to, e, 0.0)) continue;
+        if (!fu_contact_may_be_active(model, contact, &on[0], from, e, 0.0) &&
+            !fu_contact_may_be_active(model, contact, &on[1], to, e, 0.0))
+            continue;
         for (int k = 0; k < contact->n_points; ++k) {
             double off[2], along[3];
             if (!point_over_step(model, contact, on, from, to, e, k, &of) || !has_kink(&of)) continue;

@@ -34,8 +34,10 @@ int fu_contact_first(const fu_model *model, const fu_contact *contact, int eleme
     return cable->first + element * cable->per_node;
 }
 
-/* Returns whether a sphere about an element's first node, larger than need be but cheap, is off the surface by more than `beyond`. */
-static int is_far(int dim, int n, const fu_contact *contact, const fu_attachment_state *on, int element, const double *q, double beyond)
+/* Returns whether a sphere about an element's first node, larger than need be but cheap, is off the surface by more
+ * than `beyond`. */
+static int is_far(int dim, int n, const fu_contact *contact, const fu_attachment_state *on, int element,
+                  const double *q, double beyond)
 {
     const double *spread = contact->spread + (contact->stride ? (long)element * n : 0);
     const double *end = q + n / 2 * dim;
@@ -49,8 +51,8 @@ static int is_far(int dim, int n, const fu_contact *contact, const fu_attachment
 }
 
 /* Returns whether any point of an element may be nearer to the surface than `below` is beyond the radius. */
-int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
-                         double below)
+int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                             const fu_state *state, int element, double below)
 {
     const int dim = model->dim;
     if (contact->cable < 0) {
@@ -66,7 +68,9 @@ int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, c
         for (int d = 0; d < dim; ++d) {
             double *x = points + k * 3 + d;
             *x = 0.0;
-            for (int i = 0; i < n; ++i) *x += contact->hull[((long)(contact->stride ? element : 0) * contact->n_hull + k) * n + i] * q[i * dim + d];
+            for (int i = 0; i < n; ++i)
+                *x += contact->hull[((long)(contact->stride ? element : 0) * contact->n_hull + k) * n + i] *
+                      q[i * dim + d];
             middle[d] += *x / contact->n_hull;
         }
     for (int k = 0; k < contact->n_hull; ++k) {
@@ -78,8 +82,8 @@ int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, c
 }
 
 /* Makes the place and the velocity of a point, its mark, and the turn since then. */
-void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, int element,
-                      int point, fu_contact_point *out)
+void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                      const fu_state *state, int element, int point, fu_contact_point *out)
 {
     const int dim = model->dim;
     out->mark = contact->law.friction > 0.0 ? fu_contact_mark(contact, state, element, point) : 0;
@@ -97,7 +101,9 @@ void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu
     }
     const fu_cable *cable = &model->cables[contact->cable];
     const int n = cable->coordinates / dim;
-    const double *N = fu_contact_shapes(contact, n, element, point), *q = state->q + fu_contact_first(model, contact, element), *v = state->v + fu_contact_first(model, contact, element);
+    const double *N = fu_contact_shapes(contact, n, element, point),
+                 *q = state->q + fu_contact_first(model, contact, element),
+                 *v = state->v + fu_contact_first(model, contact, element);
     for (int k = 0; k < n; ++k)
         for (int d = 0; d < dim; ++d) {
             out->r[d] += N[k] * q[k * dim + d];
@@ -112,10 +118,11 @@ void fu_contact_add_along(int dim, int n, const int *at, const double *P, const 
         for (int i = 0; i < n; ++i) sum[at[i]] += factor * P[d * n + i] * f[d];
 }
 
-/* Adds the force where a point touches, and its reaction on the body that the surface is on, to what stands on the left of the
- * equations. */
-void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state, const fu_attachment_state *on, int element,
-                          int number, const fu_contact_point *point, double *f)
+/* Adds the force where a point touches, and its reaction on the body that the surface is on, to what stands on the left
+ * of the equations. */
+void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state,
+                          const fu_attachment_state *on, int element, int number, const fu_contact_point *point,
+                          double *f)
 {
     const int dim = model->dim;
     const double weight = fu_contact_weight(contact, element, number), *force = point->f;
@@ -126,7 +133,8 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
         fu_contact_add_along(dim, on->n, on->at, P, force, weight, f);
     }
     if (contact->cable >= 0) {
-        const int n = model->cables[contact->cable].coordinates / dim, first = fu_contact_first(model, contact, element);
+        const int n = model->cables[contact->cable].coordinates / dim,
+                  first = fu_contact_first(model, contact, element);
         const double *N = fu_contact_shapes(contact, n, element, number);
         for (int k = 0; k < n; ++k)
             for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
@@ -138,7 +146,8 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
     fu_contact_add_along(dim, end.n, end.at, P, force, -weight, f);
 }
 
-void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state, fu_contact_visitor *visit, void *context)
+void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state,
+                      fu_contact_visitor *visit, void *context)
 {
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);

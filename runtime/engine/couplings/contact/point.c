@@ -1,11 +1,13 @@
-/* The force of contact at a point, by the kernels of derive/couplings/surface.py: an instant's, its derivatives, a step's. */
+/* The force of contact at a point, by the kernels of derive/couplings/surface.py: an instant's, its derivatives, a
+ * step's. */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
 
 #include <math.h>
 #include <string.h>
 
-void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point)
+void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                     fu_contact_point *point)
 {
     const int dim = model->dim;
     double w[3], normal[3], turned[3], arm[3] = {0.0}, turning[3] = {0.0};
@@ -29,7 +31,8 @@ void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_
 }
 
 /* Makes how a point touches, but for derivatives; returns whether it does. */
-int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point)
+int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                         fu_contact_point *point)
 {
     const int dim = model->dim;
     fu_contact_slip(model, contact, on, point);
@@ -46,7 +49,8 @@ int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const
 }
 
 /* Makes the derivatives of the force on a point that touches. */
-void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, fu_contact_point *point)
+void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                            fu_contact_point *point)
 {
     const int dim = model->dim;
     const fu_surface_kernels *kernel = contact->surface.kernel;
@@ -60,9 +64,11 @@ void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, co
     if (point->mark && of.p > 0.0) fu_contact_friction_derivatives(model, contact, on, point);
 }
 
-/* Makes friction over a step: that of the mean stretch, which at the end is as what presses allows; by_depth: what that changes by. */
-static void step_friction(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double press, double by_depth,
-                          const fu_contact_point *now, const fu_contact_point *next, double f[3], double by_next[9], double by_stretch[9])
+/* Makes friction over a step: that of the mean stretch, which at the end is as what presses allows; by_depth: what that
+ * changes by. */
+static void step_friction(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double press,
+                          double by_depth, const fu_contact_point *now, const fu_contact_point *next, double f[3],
+                          double by_next[9], double by_stretch[9])
 {
     const int dim = model->dim;
     fu_contact_point end = *next, begin = *now;
@@ -75,19 +81,23 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
     if (now->depth > 0.0) fu_contact_stretch(model, contact, on, &begin);
     fu_contact_stretch(model, contact, on, &end);
     for (int d = 0; d < dim; ++d) f[d] = 0.5 * (begin.f[d] + end.f[d]);
-    const double part = now->mark->gap > 0.0 ? next->depth / (next->depth + now->mark->gap) : 1.0; /* of the way, after it touches */
+    const double part =
+        now->mark->gap > 0.0 ? next->depth / (next->depth + now->mark->gap) : 1.0; /* of the way, after it touches */
     const fu_distance *at = &end.distance;
     const double none[3] = {0.0}, law[3] = {press, by_depth, 0.0};
     double own[3], x[3], of_end[3], by_place[9], by_rate[9];
     if (!end.slides)
         for (int d = 0; d < dim; ++d)
-            for (int e = 0; e < dim; ++e) by_place[d * dim + e] = by_stretch[d * dim + e] = contact->law.tangential * (at->n[d] * at->n[e] - (d == e));
+            for (int e = 0; e < dim; ++e)
+                by_place[d * dim + e] = by_stretch[d * dim + e] =
+                    contact->law.tangential * (at->n[d] * at->n[e] - (d == e));
     else if (press > 0.0) {
         fu_friction_path way;
         fu_contact_path(model, contact, on, &end, &way, own);
         for (int d = 0; d < dim; ++d) own[d] *= way.stretch.value[1];
         fu_surface_out(dim, on, own, x);
-        contact->surface.kernel->sliding(at->n, at->H, none, law, x, contact->law.friction, of_end, by_place, by_rate, by_stretch);
+        contact->surface.kernel->sliding(at->n, at->H, none, law, x, contact->law.friction, of_end, by_place, by_rate,
+                                         by_stretch);
     } else memset(by_place, 0, sizeof by_place);
     for (int i = 0; i < dim * dim; ++i) {
         by_stretch[i] *= 0.5 * part;
@@ -95,12 +105,12 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
     }
 }
 
-/* Makes the normal force and friction over a step of h, s, between two places of a point in axes where the surface stays, and what they
- * do by the place, and by the stretch alone, at the end: of the normal force's elastic part a discrete gradient (Gonzalez 1996). Returns
- * the energy that its damping takes, J. */
+/* Makes the normal force and friction over a step of h, s, between two places of a point in axes where the surface
+ * stays, and what they do by the place, and by the stretch alone, at the end: of the normal force's elastic part a
+ * discrete gradient (Gonzalez 1996). Returns the energy that its damping takes, J. */
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
-                       const fu_contact_point *now, const fu_contact_point *next, double f[3], double friction[3], double by_next[9],
-                       double by_stretch[9])
+                       const fu_contact_point *now, const fu_contact_point *next, double f[3], double friction[3],
+                       double by_next[9], double by_stretch[9])
 {
     const int dim = model->dim;
     const double from = fmax(now->depth, 0.0), to = fmax(next->depth, 0.0), sunk = next->depth - now->depth;
@@ -113,20 +123,25 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
     if (from == 0.0 && to == 0.0) return 0.0;
     fu_surface_step_normal(dim, &contact->surface, on, now->r, next->r, -sunk, &at, n);
     const double part = from > 0.0 && to > 0.0 ? 1.0 : (to - from) / sunk, rate = sunk / h;
-    const fu_normal_force of = fu_normal_force_at(contact, from, rate, to), end = fu_normal_force_at(contact, to, 0.0, to);
+    const fu_normal_force of = fu_normal_force_at(contact, from, rate, to),
+                          end = fu_normal_force_at(contact, to, 0.0, to);
     const double elastic = part * of.mean, press = fmax(0.0, elastic * (1.0 + contact->law.damping * rate));
     /* of the end's depth: (U' - mean)/change, which is half of the stiffness where the law is linear */
     const double stiffness = from > 0.0 && contact->law.hertz == 0 && to > 0.0 ? 0.5 * end.by_depth
-                             : fabs(sunk) > 1e-9 * fmax(from, to) ? (end.elastic - elastic) / sunk : 0.5 * end.by_depth;
-    const double by_depth = press > 0.0 ? stiffness * (1.0 + contact->law.damping * rate) + elastic * contact->law.damping / h : 0.0;
+                             : fabs(sunk) > 1e-9 * fmax(from, to)              ? (end.elastic - elastic) / sunk
+                                                                               : 0.5 * end.by_depth;
+    const double by_depth =
+        press > 0.0 ? stiffness * (1.0 + contact->law.damping * rate) + elastic * contact->law.damping / h : 0.0;
     for (int d = 0; d < dim; ++d) {
         f[d] = press * n[d];
-        for (int e = 0; e < dim; ++e) by_next[d * dim + e] = 0.5 * press * at.H[d * dim + e] - by_depth * n[d] * next->distance.n[e];
+        for (int e = 0; e < dim; ++e)
+            by_next[d * dim + e] = 0.5 * press * at.H[d * dim + e] - by_depth * n[d] * next->distance.n[e];
     }
     if (!now->mark || !(press > 0.0)) return (press - elastic) * sunk;
-    /* the bound at the end, with the rate there by that at the beginning: the mean over the step would lag by half of it */
+    /* the bound at the end, with the rate there by that at the beginning: the mean over the step would lag by half of
+     * it */
     const fu_normal_force last = fu_normal_force_at(contact, to, 2.0 * rate + now->mark->gap_rate, to);
-    step_friction(model, contact, on, to > 0.0 ? last.p : 0.0, to > 0.0 ? last.by_depth + 2.0 * last.by_rate / h : 0.0, now, next, friction,
-                  by_next, by_stretch);
+    step_friction(model, contact, on, to > 0.0 ? last.p : 0.0, to > 0.0 ? last.by_depth + 2.0 * last.by_rate / h : 0.0,
+                  now, next, friction, by_next, by_stretch);
     return (press - elastic) * sunk;
 }

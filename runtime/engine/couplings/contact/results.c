@@ -11,8 +11,8 @@ static const fu_contact *of(const fu_coupling *coupling)
     return (const fu_contact *)coupling;
 }
 
-static void add_energy(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
-                       const fu_contact_point *point, void *context)
+static void add_energy(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element,
+                       int number, const fu_contact_point *point, void *context)
 {
     (void)model, (void)on;
     *(double *)context += fu_contact_weight(contact, element, number) * point->energy;
@@ -25,15 +25,16 @@ double fu_contact_energy(const fu_model *model, const fu_coupling *coupling, con
     return sum;
 }
 
-static void add_power(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element, int number,
-                      const fu_contact_point *point, void *context)
+static void add_power(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int element,
+                      int number, const fu_contact_point *point, void *context)
 {
     (void)model, (void)on;
     *(double *)context += fu_contact_weight(contact, element, number) * point->power;
 }
 
 /* That of damping in the normal force; friction's is counted step by step. */
-double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work)
+double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                              const fu_accelerator *work)
 {
     double sum = 0.0;
     (void)work;
@@ -44,10 +45,12 @@ double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state)
 {
     const fu_contact *contact = of(coupling);
-    if (coupling->n_numbers) memcpy(state->numbers + coupling->numbers, contact->marks, sizeof(double) * (size_t)coupling->n_numbers);
+    if (coupling->n_numbers)
+        memcpy(state->numbers + coupling->numbers, contact->marks, sizeof(double) * (size_t)coupling->n_numbers);
 }
 
-/* Takes the marks along: the stretch of friction's springs, and where the points are; what does not touch has no stretch. */
+/* Takes the marks along: the stretch of friction's springs, and where the points are; what does not touch has no
+ * stretch. */
 void fu_contact_update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_contact *contact = of(coupling);
@@ -76,7 +79,8 @@ void fu_contact_update_history(const fu_model *model, const fu_coupling *couplin
     if (fu_contact_rolls(contact)) fu_contact_axes(model, contact, &on, state, begin->axes, unused);
 }
 
-/* Sums over the points of a contact in their order, and the ends of what touches: what is between two points is linear. */
+/* Sums over the points of a contact in their order, and the ends of what touches: what is between two points is linear.
+ */
 typedef struct {
     fu_contact_output *numbers;
     double s, depth;
@@ -101,8 +105,8 @@ static void take_into_length(tally *sum, double s, double depth)
     sum->begun = 1;
 }
 
-void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
-                        const fu_accelerator *work, double *out)
+void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                        const double *acceleration, const fu_accelerator *work, double *out)
 {
     const fu_contact *contact = of(coupling);
     const int n = fu_contact_elements(model, contact);

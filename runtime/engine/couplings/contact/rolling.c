@@ -1,8 +1,10 @@
-/* Spheres of a body that roll on a surface: friction acts where they touch, off their centres, and is stretched by their turning too.
+/* Spheres of a body that roll on a surface: friction acts where they touch, off their centres, and is stretched by
+ * their turning too.
  *
- * Of a sphere of the radius R that touches along the normal n, the point of contact is at a = -R n from the centre. Its velocity past
- * the surface is that of the centre plus w x a, with the angular velocity w past the surface: over a step, with the turn p of it, the
- * place changes by p x a on top of the way of the centre, with the mean of the normals at both ends of the step.
+ * Of a sphere of the radius R that touches along the normal n, the point of contact is at a = -R n from the centre. Its
+ * velocity past the surface is that of the centre plus w x a, with the angular velocity w past the surface: over a
+ * step, with the turn p of it, the place changes by p x a on top of the way of the centre, with the mean of the normals
+ * at both ends of the step.
  */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
@@ -20,8 +22,8 @@ fu_friction_begin *fu_contact_begin_of(const fu_contact *contact, const fu_state
     return (fu_friction_begin *)(state->numbers + contact->base.numbers + contact->base.n_numbers) - 1;
 }
 
-void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state, double axes[9],
-                     double spin[3])
+void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                     const fu_state *state, double axes[9], double spin[3])
 {
     const int dim = model->dim;
     double about[3], with[3];
@@ -57,7 +59,8 @@ static void turn_between(int dim, const double *from, const double *to, double t
     for (int d = 0; d < 3 && sine > 0.0; ++d) turn[d] *= angle / sine;
 }
 
-void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal, const fu_friction_mark *mark, double out[3])
+void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal,
+                     const fu_friction_mark *mark, double out[3])
 {
     const double *before = fu_dot(dim, mark->normal, mark->normal) > 0.0 ? mark->normal : normal;
     double arm[3] = {0.0};
@@ -65,8 +68,8 @@ void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], c
     fu_cross(turn, arm, out);
 }
 
-void fu_contact_turning(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, const fu_state *state,
-                        fu_contact_point *point)
+void fu_contact_turning(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                        const fu_state *state, fu_contact_point *point)
 {
     double axes[9];
     fu_contact_axes(model, contact, on, state, axes, point->spin);

@@ -1,6 +1,8 @@
-/* The closest points of the two lines of a crossing: found by Newton's method from where they were, over all elements of a cable.
+/* The closest points of the two lines of a crossing: found by Newton's method from where they were, over all elements
+ * of a cable.
  *
- * Beyond its ends a cable goes on straight, so that points have arc-lengths there, too, from which the way to the end is known.
+ * Beyond its ends a cable goes on straight, so that points have arc-lengths there, too, from which the way to the end
+ * is known.
  */
 #include "bodies/model.h"
 #include "couplings/crossing/crossing.h"
@@ -9,10 +11,12 @@
 #include <string.h>
 
 #define MAX_ITERATIONS 40
-#define ROUNDING_OF_LENGTH 1e-15 /* of the line's size and s: a correction that is rounding ends the iteration */
-#define LENGTH_TOLERANCE 1e-11    /* of the size: a correction as good as rounding where rounding keeps it from shrinking */
-#define FARTHEST 2.0   /* elements that a correction goes at most */
-#define SAMPLES_AN_ELEMENT 4      /* of an element, where the search begins anew */
+/* of the line's size and s: a correction that is rounding ends the iteration */
+#define ROUNDING_OF_LENGTH 1e-15
+/* of the size: a correction as good as rounding where rounding keeps it from shrinking */
+#define LENGTH_TOLERANCE 1e-11
+#define FARTHEST 2.0         /* elements that a correction goes at most */
+#define SAMPLES_AN_ELEMENT 4 /* of an element, where the search begins anew */
 
 /* Returns the element of a cable that holds s. */
 static int element_at(const fu_cable *cable, double s)
@@ -55,7 +59,8 @@ static fu_attachment on_bar(const fu_crossing *crossing, double s)
 }
 
 /* A bar is straight: its slope is the way to the point one metre on. */
-static void point_of_bar(const fu_model *model, const fu_crossing *crossing, const fu_state *state, double s, fu_line_point *out)
+static void point_of_bar(const fu_model *model, const fu_crossing *crossing, const fu_state *state, double s,
+                         fu_line_point *out)
 {
     fu_attachment_state at, next;
     out->on = on_bar(crossing, s);
@@ -82,7 +87,8 @@ void fu_line_point_of(const fu_model *model, const fu_crossing *crossing, int li
 }
 
 /* Makes how fast the second derivatives by arc-length change: those of a cable are linear in its coordinates. */
-static void bends_of_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state, double s, double *out)
+static void bends_of_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state, double s,
+                          double *out)
 {
     fu_line_point rates;
     memset(out, 0, sizeof(double[3]));
@@ -91,8 +97,8 @@ static void bends_of_line(const fu_model *model, const fu_crossing *crossing, in
     memcpy(out, rates.k, sizeof rates.k);
 }
 
-void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                      fu_line_bends *out)
+void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
+                      const fu_closest_points *points, fu_line_bends *out)
 {
     const int dim = model->dim;
     double every[9 * FU_MAX_COORDINATES];
@@ -100,7 +106,8 @@ void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const 
     for (int line = 0; line < dim - 1 && crossing->cables[line] >= 0; ++line) {
         const fu_cable *cable = &model->cables[crossing->cables[line]];
         const int n = cable->coordinates / dim, element = points->line[line].element;
-        const double *q = state->q + cable->first + element * cable->per_node, *v = state->v + cable->first + element * cable->per_node;
+        const double *q = state->q + cable->first + element * cable->per_node,
+                     *v = state->v + cable->first + element * cable->per_node;
         const double s = points->s[line];
         if (s < 0.0 || s > fu_cable_length(cable)) continue; /* straight beyond the ends */
         cable->kernel->slopes(fu_element_length(cable, element), s - fu_cable_start(cable, element), every);
@@ -115,8 +122,8 @@ void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const 
 }
 
 /* Takes a quantity and its rate along the cubic through both ends of a step. */
-static void along_cubic(const fu_moment *at, const double *a, const double *a_t, const double *b, const double *b_t, double *value,
-                        double *rate)
+static void along_cubic(const fu_moment *at, const double *a, const double *a_t, const double *b, const double *b_t,
+                        double *value, double *rate)
 {
     const double x = at->x, rest = 1.0 - x, h = at->h;
     for (int d = 0; d < 3; ++d) {
@@ -127,7 +134,8 @@ static void along_cubic(const fu_moment *at, const double *a, const double *a_t,
 }
 
 /* Makes a line's point at a moment; a bar's is not on its carrier within a step. */
-static void point_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_moment *at, double s, fu_line_point *out)
+static void point_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_moment *at, double s,
+                     fu_line_point *out)
 {
     fu_line_point_of(model, crossing, line, at->now, s, out);
     if (!at->next) return;
@@ -143,7 +151,8 @@ static void point_at(const fu_model *model, const fu_crossing *crossing, int lin
 }
 
 /* Makes both points at out->s as the kernels take them. */
-static void put_together(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, fu_closest_points *out)
+static void put_together(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment,
+                         fu_closest_points *out)
 {
     const int dim = model->dim;
     for (int line = 0; line < FU_LINES; ++line) {
@@ -187,15 +196,18 @@ static int converge(const fu_model *model, const fu_crossing *crossing, const fu
     return 0;
 }
 
-/* Returns the square of the distance of a point from the second line, and the arc-length there; a cable's by its samples. */
-static double distance_from_second(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, const double *r,
-                                   double *s)
+/* Returns the square of the distance of a point from the second line, and the arc-length there; a cable's by its
+ * samples. */
+static double distance_from_second(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment,
+                                   const double *r, double *s)
 {
-    const int dim = model->dim, cable = crossing->cables[1], n = cable >= 0 ? SAMPLES_AN_ELEMENT * model->cables[cable].n_elements : 0;
+    const int dim = model->dim, cable = crossing->cables[1],
+              n = cable >= 0 ? SAMPLES_AN_ELEMENT * model->cables[cable].n_elements : 0;
     double least = INFINITY;
     fu_line_point point;
     for (int i = 0; i <= n; ++i) {
-        double square = 0.0, along = 0.0, slope = 0.0, at = cable >= 0 ? i * fu_cable_length(&model->cables[cable]) / n : 0.0;
+        double square = 0.0, along = 0.0, slope = 0.0,
+               at = cable >= 0 ? i * fu_cable_length(&model->cables[cable]) / n : 0.0;
         point_at(model, crossing, 1, moment, at, &point);
         for (int d = 0; d < dim; ++d) {
             square += (r[d] - point.r[d]) * (r[d] - point.r[d]);
@@ -232,13 +244,14 @@ static double search(const fu_model *model, const fu_crossing *crossing, const f
     return sqrt(least);
 }
 
-void fu_find_closest_within(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, const double s[FU_LINES],
-                            fu_closest_points *out)
+void fu_find_closest_within(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment,
+                            const double s[FU_LINES], fu_closest_points *out)
 {
     memcpy(out->s, s, sizeof out->s);
     out->found = converge(model, crossing, moment, out);
     if (out->found) return;
-    const double apart = search(model, crossing, moment, out->s), reach = fu_line_size(model, crossing, 0) / SAMPLES_AN_ELEMENT;
+    const double apart = search(model, crossing, moment, out->s),
+                 reach = fu_line_size(model, crossing, 0) / SAMPLES_AN_ELEMENT;
     out->found = converge(model, crossing, moment, out);
     out->apart = fmax(apart - reach - crossing->law[0], 0.0);
 }
@@ -249,7 +262,8 @@ void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const f
     fu_find_closest_within(model, crossing, &moment, state->numbers + crossing->base.numbers + FU_CROSSING_S, out);
 }
 
-void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *out)
+void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
+                          fu_closest_points *out)
 {
     const double *kept = state->numbers + crossing->base.numbers + FU_CROSSING_S;
     const fu_moment moment = {.now = state};

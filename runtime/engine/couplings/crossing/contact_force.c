@@ -8,8 +8,8 @@
 void fu_crossing_contact_at(const fu_crossing *crossing, const fu_closest_points *points, fu_crossing_contact *out)
 {
     memset(out, 0, sizeof *out);
-    crossing->kernel->contact(points->d, points->t, points->u, crossing->law, out->normal, out->depth, &out->size, out->force,
-                              &out->energy, &out->dissipated);
+    crossing->kernel->contact(points->d, points->t, points->u, crossing->law, out->normal, out->depth, &out->size,
+                              out->force, &out->energy, &out->dissipated);
 }
 
 int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const fu_crossing_contact *contact)
@@ -26,7 +26,8 @@ double fu_crossing_distance_to_ends(const fu_crossing *crossing, const fu_closes
     return way;
 }
 
-double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact)
+double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_points *points,
+                             const fu_crossing_contact *contact)
 {
     const double damping = crossing->law[FU_LAW_DAMPING];
     double margin = contact->depth[0];

@@ -1,10 +1,11 @@
-/* Lines that touch within a step and not at its ends, as where they graze, or fly through each other and past an end of one of them.
+/* Lines that touch within a step and not at its ends, as where they graze, or fly through each other and past an end of
+ * one of them.
  *
- * Between the ends of the step all points of the lines are taken along the cubics of their places and velocities there (Hermite's).
- * The closest points of the lines so placed are followed through the step. As their distance changes by no more than the ways of
- * points of both lines, lines can go as far as they are off without touching; so they are led on from one such line_place to the next
- * (conservative advancement; Mirtich 1996). Where they are led on by more, since so little is left, the cubic of the gap through both
- * places tells whether it dips below zero between them.
+ * Between the ends of the step all points of the lines are taken along the cubics of their places and velocities there
+ * (Hermite's). The closest points of the lines so placed are followed through the step. As their distance changes by no
+ * more than the ways of points of both lines, lines can go as far as they are off without touching; so they are led on
+ * from one such line_place to the next (conservative advancement; Mirtich 1996). Where they are led on by more, since
+ * so little is left, the cubic of the gap through both places tells whether it dips below zero between them.
  */
 #include "bodies/model.h"
 #include "couplings/crossing/crossing.h"
@@ -12,23 +13,27 @@
 #include <math.h>
 #include <string.h>
 
-#define MAX_ADVANCE 0.0625 /* of a step: lines are led on by no more, and by so much where nothing tells how far they can go */
-#define MIN_ADVANCE 1e-4  /* of a step: lines are led on by no less */
-#define ADVANCE_SHARE 0.25     /* of the distance at which lines touch: what points go at least from line_place to line_place */
-#define CAUTION 0.5    /* of the way that closest points have to the ends of their lines, at their rate */
-#define CORNER 1e-2    /* of a bracket: how far from its ends the bottom of a dip is looked for */
-#define GRAZING_TOLERANCE 1e-2      /* of a dip: how far from zero its bottom may be predicted and yet be looked at */
+/* of a step: lines are led on by no more, and by so much where nothing tells how far they can go */
+#define MAX_ADVANCE 0.0625
+#define MIN_ADVANCE 1e-4 /* of a step: lines are led on by no less */
+/* of the distance at which lines touch: what points go at least from line_place to line_place */
+#define ADVANCE_SHARE 0.25
+#define CAUTION 0.5 /* of the way that closest points have to the ends of their lines, at their rate */
+#define CORNER 1e-2 /* of a bracket: how far from its ends the bottom of a dip is looked for */
+/* of a dip: how far from zero its bottom may be predicted and yet be looked at */
+#define GRAZING_TOLERANCE 1e-2
 
 enum { SECTIONS = 8 }; /* of a bracket of the bottom of a dip */
 
-/* The contact after a part x of a step: how far lines are in contact, m; the gap and its rate by x; the part for which lines do not
- * touch; whether the closest points are known. */
+/* The contact after a part x of a step: how far lines are in contact, m; the gap and its rate by x; the part for which
+ * lines do not touch; whether the closest points are known. */
 typedef struct {
     double x, margin, gap, rate, free;
     int found;
 } line_place;
 
-/* What is followed through a step: the numbers of the closest points and the normal; the way that lines go at most, m. */
+/* What is followed through a step: the numbers of the closest points and the normal; the way that lines go at most, m.
+ */
 typedef struct {
     const fu_model *model;
     const fu_crossing *crossing;
@@ -41,7 +46,8 @@ static void rates_of_points(const fu_crossing *crossing, const fu_closest_points
 {
     const int dim = crossing->kernel->dim, lines = dim - 1;
     double F[3], F_d[9], F_t[18], F_u[9], s_d[6], s_t[12];
-    crossing->kernel->force(points->d, points->t, points->k, points->w, points->u, crossing->law, F, F_d, F_t, F_u, s_d, s_t);
+    crossing->kernel->force(points->d, points->t, points->k, points->w, points->u, crossing->law, F, F_d, F_t, F_u, s_d,
+                            s_t);
     for (int line = 0; line < FU_LINES; ++line) {
         rates[line] = 0.0;
         if (line >= lines) continue;
@@ -86,12 +92,13 @@ static line_place follow(approach *of, double x)
     out.rate = -of->at.h * contact.depth[1];
     out.margin = fu_crossing_margin_of(crossing, &points, &contact);
     out.free = out.margin > 0.0 ? out.margin / of->way : fmax(out.gap / of->way, part_beyond_ends(of, &points));
-    if (!(out.free > 0.0)) out.free = out.gap < 0.0 ? MAX_ADVANCE : of->shortest; /* damping would turn the force round */
+    if (!(out.free > 0.0))
+        out.free = out.gap < 0.0 ? MAX_ADVANCE : of->shortest; /* damping would turn the force round */
     return out;
 }
 
-/* Returns the part of the step at which lines touch between two places of it, or nearly, as against the gap at its ends; 0 where they
- * do not: by the bottom of the gap, where its rate passes zero. */
+/* Returns the part of the step at which lines touch between two places of it, or nearly, as against the gap at its
+ * ends; 0 where they do not: by the bottom of the gap, where its rate passes zero. */
 static double touch_between(const approach *of, line_place from, line_place to, double ends, double least)
 {
     if (!from.found || !to.found || !(from.gap >= 0.0 && from.rate < 0.0 && to.rate > 0.0)) return 0.0;
@@ -110,9 +117,10 @@ static double touch_between(const approach *of, line_place from, line_place to, 
     return 0.0;
 }
 
-/* Returns the largest size of points of a line's cubic by differences, m in a step: of three numbers, the velocities at its ends and
- * that between them that its control points give. */
-static double largest_way(int dim, const double *a, const double *b, const double *v, const double *w, const double *mean, double h)
+/* Returns the largest size of points of a line's cubic by differences, m in a step: of three numbers, the velocities at
+ * its ends and that between them that its control points give. */
+static double largest_way(int dim, const double *a, const double *b, const double *v, const double *w,
+                          const double *mean, double h)
 {
     double squares[3] = {0.0};
     for (int d = 0; d < dim; ++d) {
@@ -149,7 +157,8 @@ static double way_of_line(const approach *of, int line, const double *mean)
         double most = 0.0;
         for (int node = 0; node <= cable->n_elements && share != 0.0; ++node) {
             const int at = cable->first + node * cable->per_node + k * dim;
-            most = fmax(most, largest_way(dim, now->q + at, next->q + at, now->v + at, next->v + at, k ? still : mean, of->at.h));
+            most = fmax(most, largest_way(dim, now->q + at, next->q + at, now->v + at, next->v + at, k ? still : mean,
+                                          of->at.h));
         }
         sum += share * most;
     }
@@ -176,8 +185,8 @@ static void begin(approach *of)
     of->shortest = fmin(fmax(ADVANCE_SHARE * of->crossing->law[0] / of->way, MIN_ADVANCE), MAX_ADVANCE);
 }
 
-double fu_crossing_detect_within(const fu_model *model, const fu_crossing *crossing, const fu_state *now, const fu_state *next, double h,
-                        double least)
+double fu_crossing_detect_within(const fu_model *model, const fu_crossing *crossing, const fu_state *now,
+                                 const fu_state *next, double h, double least)
 {
     approach of = {.model = model, .crossing = crossing, .at = {now, next, h, 0.0}};
     double first = 0.0;

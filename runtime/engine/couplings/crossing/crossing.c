@@ -1,6 +1,6 @@
-/* Two lines that touch at their closest points (derive/couplings/crossing.py). The force is a function of the state. In a Newton
- * matrix its change and the ways of the closest points along both lines are unknowns of their own, so that two cables that cross do
- * not widen the band: with them the matrix is that of the equations without them.
+/* Two lines that touch at their closest points (derive/couplings/crossing.py). The force is a function of the state. In
+ * a Newton matrix its change and the ways of the closest points along both lines are unknowns of their own, so that two
+ * cables that cross do not widen the band: with them the matrix is that of the equations without them.
  */
 #include "bodies/rotation.h"
 #include "bodies/unknowns.h"
@@ -17,7 +17,8 @@ static const fu_crossing *crossing_of(const fu_coupling *coupling)
 }
 
 /* Makes the part of the force that is friction; adds that which sticks. */
-static void add_friction(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points, fu_crossing_contact *contact)
+static void add_friction(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
+                         fu_crossing_contact *contact)
 {
     fu_crossing_stick grip;
     for (int d = 0; d < 3 && crossing->law[FU_LAW_FRICTION] > 0.0; ++d)
@@ -32,9 +33,10 @@ static void add_friction(const fu_crossing *crossing, const fu_state *state, con
     }
 }
 
-/* Makes the force on the first line; the closest points, and what the contact tells. Not a number where there are no such points. */
-static void contact_force(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *points,
-                          fu_crossing_contact *contact, double force[3])
+/* Makes the force on the first line; the closest points, and what the contact tells. Not a number where there are no
+ * such points. */
+static void contact_force(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
+                          fu_closest_points *points, fu_crossing_contact *contact, double force[3])
 {
     const int touches = state->flags[crossing->base.flags];
     fu_find_closest(model, crossing, state, points);
@@ -95,15 +97,17 @@ static void add_friction_derivatives(const fu_model *model, const fu_crossing *c
     memcpy(by->F_k, of.F_k, sizeof by->F_k);
 }
 
-/* How a line's point moves by the unknowns: its derivatives turned, and those of its velocity and of the slope's rate by the place. */
+/* How a line's point moves by the unknowns: its derivatives turned, and those of its velocity and of the slope's rate
+ * by the place. */
 typedef struct {
     fu_line_moves moves, turned;
-    double by_place[3 * FU_ATTACHMENT_COORDINATES], slope_by_place[3 * FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    double by_place[3 * FU_ATTACHMENT_COORDINATES], slope_by_place[3 * FU_ATTACHMENT_COORDINATES],
+        K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
 } line_changes;
 
 /* The rate of a bar's slope is that of the point one metre on less that of the point. */
-static void turn_slope(const fu_model *model, const fu_crossing *crossing, const fu_equations *at, const fu_line_point *point,
-                       fu_attachment_state *end, line_changes *out)
+static void turn_slope(const fu_model *model, const fu_crossing *crossing, const fu_equations *at,
+                       const fu_line_point *point, fu_attachment_state *end, line_changes *out)
 {
     const int n = out->moves.n;
     const double none[3] = {0.0};
@@ -135,18 +139,20 @@ static void changes_of(const fu_model *model, const fu_crossing *crossing, int l
 }
 
 /* Change of a component of friction by one of a line's unknowns, through the rate of its slope and its curvature. */
-static double change_by_rates(const fu_crossing *crossing, int line, const line_changes *c, const derivatives *by, double rate, int d, int i)
+static double change_by_rates(const fu_crossing *crossing, int line, const line_changes *c, const derivatives *by,
+                              double rate, int d, int i)
 {
     const int dim = crossing->kernel->dim, n = c->moves.n, first = (d * (dim - 1) + line) * dim;
     double change = crossing->cables[line] < 0 ? 0.0 : by->F_k[first + i % dim] * by->bends.N_xx[line][i / dim];
-    for (int k = 0; k < dim; ++k) change += by->F_w[first + k] * (c->slope_by_place[k * n + i] + rate * c->moves.T[k * n + i]);
+    for (int k = 0; k < dim; ++k)
+        change += by->F_w[first + k] * (c->slope_by_place[k * n + i] + rate * c->moves.T[k * n + i]);
     return change;
 }
 
-/* Adds to a system what a line's coordinates have in the rows and columns of the own unknowns, the first of them in `row`: dim
- * of the force, in N, and one of each arc-length, times the stiffness, in N. */
-static void add_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_equations *at, const line_changes *c,
-                     const derivatives *by, int row, double unit, fu_system *system)
+/* Adds to a system what a line's coordinates have in the rows and columns of the own unknowns, the first of them in
+ * `row`: dim of the force, in N, and one of each arc-length, times the stiffness, in N. */
+static void add_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_equations *at,
+                     const line_changes *c, const derivatives *by, int row, double unit, fu_system *system)
 {
     const int dim = model->dim, n = c->moves.n, lines = dim - 1;
     const double sign = line ? -1.0 : 1.0, stiffness = at->weights.stiffness, rate = at->weights.rate;
@@ -173,7 +179,8 @@ static void add_line(const fu_model *model, const fu_crossing *crossing, int lin
             }
             fu_add(model, system, row + dim + l, c->moves.at[i], -stiffness * crossing->stiffness * change);
         }
-        if (line < lines) fu_add(model, system, c->moves.at[i], row + dim + line, -sign * unit * along / crossing->stiffness);
+        if (line < lines)
+            fu_add(model, system, c->moves.at[i], row + dim + line, -sign * unit * along / crossing->stiffness);
         for (int j = 0; j < n && crossing->cables[line] < 0; ++j)
             fu_add(model, system, c->moves.at[i], c->moves.at[j], -sign * stiffness * c->K[i * n + j]);
     }
@@ -190,8 +197,8 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     for (int i = 0; i < coupling->n_forces; ++i) fu_add(model, system, row + i, row + i, unit);
     if (!at->next->flags[coupling->flags]) return;
     fu_find_closest(model, crossing, at->next, &points);
-    crossing->kernel->force(points.d, points.t, points.k, points.w, points.u, crossing->law, by.F, by.F_d, by.F_t, by.F_u, by.s_d,
-                            by.s_t);
+    crossing->kernel->force(points.d, points.t, points.k, points.w, points.u, crossing->law, by.F, by.F_d, by.F_t,
+                            by.F_u, by.s_d, by.s_t);
     if (crossing->friction > 0.0) add_friction_derivatives(model, crossing, at->next, &points, &by);
     for (int line = 0; line < FU_LINES; ++line) {
         changes_of(model, crossing, line, at, &points.line[line], by.F, &changes);
@@ -215,14 +222,15 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
     for (int i = 0; i < coupling->n_forces; ++i) state->forces[coupling->force + i] = 0.0;
 }
 
-/* The force on the first line and the size of that along the normal; how deep the lines are in each other; arc-lengths of the closest
- * points, and the one on the first line's axis; the part of the force that is friction, and whether that sticks. */
+/* The force on the first line and the size of that along the normal; how deep the lines are in each other; arc-lengths
+ * of the closest points, and the one on the first line's axis; the part of the force that is friction, and whether that
+ * sticks. */
 typedef struct {
     double force[3], normal_force, penetration, s, s_b, position[3], friction_force[3], sticking;
 } fu_crossing_output;
 
-static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
-                    const fu_accelerator *work, double *out)
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                    const double *acceleration, const fu_accelerator *work, double *out)
 {
     fu_crossing_output *numbers = (fu_crossing_output *)out;
     fu_closest_points points;
@@ -260,12 +268,15 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     return contact.dissipated;
 }
 
-/* Returns what friction that sticks takes as it slides. What contact had stored when it ended goes to heat in the step after. */
+/* Returns what friction that sticks takes as it slides. What contact had stored when it ended goes to heat in the step
+ * after. */
 static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                            int by_ends)
 {
     if (!from->flags[coupling->flags]) return from->numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND];
-    return crossing_of(coupling)->friction > 0.0 ? fu_crossing_slip_work(model, crossing_of(coupling), from, to, by_ends) : 0.0;
+    return crossing_of(coupling)->friction > 0.0
+               ? fu_crossing_slip_work(model, crossing_of(coupling), from, to, by_ends)
+               : 0.0;
 }
 
 /* Notes in the state where the closest points are, unless the lines have been parallel. */
@@ -327,7 +338,8 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_proximity_operations proximity_of_lines = {.clearance = fu_crossing_clearance, .between = fu_crossing_between};
+static const fu_proximity_operations proximity_of_lines = {.clearance = fu_crossing_clearance,
+                                                           .between = fu_crossing_between};
 static const fu_history_operations history = {.update = carry, .error = fu_crossing_history_error};
 
 static const fu_output output_fields[] = {
@@ -343,10 +355,25 @@ static const fu_output output_fields[] = {
 };
 
 const fu_coupling_type fu_crossing_type = {
-    .name = "crossing", .size = sizeof(fu_crossing), .fields = fields, .output_fields = output_fields, .n_numbers = FU_CROSSING_NUMBERS,
-    .n_flags = 1, .residual = residual, .tangent = tangent,
-    .step_residual = fu_crossing_step_residual, .step_tangent = step_tangent, .step_dissipation = fu_crossing_step_dissipation, .force = own_force,
-    .take_forces = take_forces, .outputs = outputs, .energy = energy, .dissipation = dissipation, .lost_in_step = lost_in_step, .reset = reset, .detect = touch,
+    .name = "crossing",
+    .size = sizeof(fu_crossing),
+    .fields = fields,
+    .output_fields = output_fields,
+    .n_numbers = FU_CROSSING_NUMBERS,
+    .n_flags = 1,
+    .residual = residual,
+    .tangent = tangent,
+    .step_residual = fu_crossing_step_residual,
+    .step_tangent = step_tangent,
+    .step_dissipation = fu_crossing_step_dissipation,
+    .force = own_force,
+    .take_forces = take_forces,
+    .outputs = outputs,
+    .energy = energy,
+    .dissipation = dissipation,
+    .lost_in_step = lost_in_step,
+    .reset = reset,
+    .detect = touch,
     .proximity = &proximity_of_lines,
     .history = &history,
 };

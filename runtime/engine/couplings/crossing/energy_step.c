@@ -1,13 +1,13 @@
-/* Lines that touch over a step, for the integrator that balances energy (derive/couplings/crossing.py): the force acts at the points
- * that are closest in the middle of the step, along a discrete gradient of the gap.
+/* Lines that touch over a step, for the integrator that balances energy (derive/couplings/crossing.py): the force acts
+ * at the points that are closest in the middle of the step, along a discrete gradient of the gap.
  */
 #include "bodies/model.h"
 #include "couplings/crossing/crossing.h"
 
 #include <math.h>
 
-/* A crossing over a step: how the points half-way move with the coordinates, the forces on them and on the slopes, and what goes to
- * heat, J. */
+/* A crossing over a step: how the points half-way move with the coordinates, the forces on them and on the slopes, and
+ * what goes to heat, J. */
 typedef struct {
     fu_line_moves moves[FU_LINES];
     double force[3], on_slopes[6], lost;
@@ -22,8 +22,8 @@ fu_state fu_crossing_middle(const fu_equations *at)
 }
 
 /* Makes the closest points of a state and the contact there; returns whether there are such points. */
-static int touch_at(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_closest_points *points,
-                    fu_crossing_contact *contact)
+static int touch_at(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
+                    fu_closest_points *points, fu_crossing_contact *contact)
 {
     fu_find_closest(model, crossing, state, points);
     fu_crossing_contact_at(crossing, points, contact);
@@ -70,7 +70,8 @@ static void over_step(const fu_model *model, const fu_crossing *crossing, const 
         for (int d = 0; d < dim; ++d) out->force[d] = NAN;
 }
 
-void fu_crossing_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+void fu_crossing_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                               double *own)
 {
     const int dim = model->dim;
     touching_step step;

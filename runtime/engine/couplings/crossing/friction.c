@@ -1,5 +1,5 @@
-/* Friction that sticks where lines touch: a spring, stretched by how far particles of both lines have slid past each other since
- * the last step, and no longer than friction allows (derive/couplings/crossing.py, stretch.py).
+/* Friction that sticks where lines touch: a spring, stretched by how far particles of both lines have slid past each
+ * other since the last step, and no longer than friction allows (derive/couplings/crossing.py, stretch.py).
  */
 #include "bodies/model.h"
 #include "couplings/crossing/crossing.h"
@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-/* State of the last step: the closest points, the way between them and the slopes there, with their rates; along and across the last line
- * the stretch and the velocity of particles past each other; not zero where it has slid, as then the stretch is just what friction allows;
- * the penetration and its rate; the time. */
+/* State of the last step: the closest points, the way between them and the slopes there, with their rates; along and
+ * across the last line the stretch and the velocity of particles past each other; not zero where it has slid, as then
+ * the stretch is just what friction allows; the penetration and its rate; the time. */
 typedef struct {
     double s[FU_LINES], s_rate[FU_LINES], way[3], way_rate[3], slopes[6], slope_rates[6];
     double stretch[2], slid, rate[2], depth, sinking, time;
@@ -41,12 +41,14 @@ static double bound(const void *of, double depth, double rate)
     fu_crossing_contact at;
     double d[3] = {0.0}, u[3] = {0.0};
     memset(&at, 0, sizeof at);
-    crossing->kernel->contact(d, t, u, crossing->law, at.normal, at.depth, &at.size, at.force, &at.energy, &at.dissipated);
+    crossing->kernel->contact(d, t, u, crossing->law, at.normal, at.depth, &at.size, at.force, &at.energy,
+                              &at.dissipated);
     for (int k = 0; k < dim; ++k) {
         d[k] = (at.depth[0] - depth) * at.normal[k];
         u[k] = -rate * at.normal[k];
     }
-    crossing->kernel->contact(d, t, u, crossing->law, at.normal, at.depth, &at.size, at.force, &at.energy, &at.dissipated);
+    crossing->kernel->contact(d, t, u, crossing->law, at.normal, at.depth, &at.size, at.force, &at.energy,
+                              &at.dissipated);
     return crossing->friction * fmax(at.size, 0.0);
 }
 
@@ -65,8 +67,9 @@ static void slip_of(int dim, const fu_closest_points *points, const fu_crossing_
 }
 
 /* Makes how friction's spring goes from the last step to points; the grip has the stretches by the kernel. */
-static void travel_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points, const fu_crossing_contact *contact,
-                         double time, const fu_crossing_stick *grip, fu_friction_travel *travel, fu_friction_path *way)
+static void travel_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points,
+                         const fu_crossing_contact *contact, double time, const fu_crossing_stick *grip,
+                         fu_friction_travel *travel, fu_friction_path *way)
 {
     const int dim = crossing->kernel->dim;
     memset(travel, 0, sizeof *travel);
@@ -76,7 +79,8 @@ static void travel_since(const fu_crossing *crossing, const last_step *last, con
     }
     in_space(dim, grip->along, contact->normal, last->rate, travel->rates[0]);
     slip_of(dim, points, contact, travel->rates[1]);
-    *way = (fu_friction_path){.h = time - last->time, .stiffness = crossing->tangential, .bound = bound, .of = crossing};
+    *way =
+        (fu_friction_path){.h = time - last->time, .stiffness = crossing->tangential, .bound = bound, .of = crossing};
     way->depth = (fu_step_ends){{last->depth, contact->depth[0]}, {last->sinking, contact->depth[1]}};
 }
 
@@ -92,19 +96,22 @@ static int slid_before(const last_step *last)
     return last->slid != 0.0 && fu_dot(2, last->stretch, last->stretch) > 0.0;
 }
 
-/* Whether a stretch takes the direction of turn_to_slip: in the plane there is one direction; against the slip it is unloaded. */
+/* Whether a stretch takes the direction of turn_to_slip: in the plane there is one direction; against the slip it is
+ * unloaded. */
 static int turns(int dim, const fu_crossing_stick *grip, const fu_friction_travel *travel)
 {
     const double *now = grip->without_sliding;
-    return dim == 3 && grip->slides && grip->end.slid > 0 && fu_dot(3, now, travel->change) > 0.0 && fu_dot(3, now, travel->rates[1]) > 0.0
-           && fu_dot(3, now, grip->old) >= 0.0;
+    return dim == 3 && grip->slides && grip->end.slid > 0 && fu_dot(3, now, travel->change) > 0.0 &&
+           fu_dot(3, now, travel->rates[1]) > 0.0 && fu_dot(3, now, grip->old) >= 0.0;
 }
 
 /* Direction of a stretch that slides as the step ends, as turned_stretch in derive/couplings/crossing_stretch.py. */
-static void turn_to_slip(const fu_crossing *crossing, const last_step *last, double time, const fu_closest_points *points,
-                         const fu_crossing_contact *contact, const fu_crossing_stick *grip, double along[3])
+static void turn_to_slip(const fu_crossing *crossing, const last_step *last, double time,
+                         const fu_closest_points *points, const fu_crossing_contact *contact,
+                         const fu_crossing_stick *grip, double along[3])
 {
-    const double least = crossing->law[FU_LAW_LEAST], r = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
+    const double least = crossing->law[FU_LAW_LEAST],
+                 r = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
     const double slid = slid_before(last), r_0 = slid_stretch(last);
     double squares[3] = {0.0}, slip[2][3], change[3];
     in_space(3, grip->along, contact->normal, last->rate, slip[0]);
@@ -117,16 +124,16 @@ static void turn_to_slip(const fu_crossing *crossing, const last_step *last, dou
     const double path = sqrt(squares[0] + least * least), speed = sqrt(squares[1] + least * least);
     const double A = path / (r + slid * (r_0 - r) / 2.0 + least);
     for (int d = 0; d < 3; ++d) {
-        along[d] = grip->without_sliding[d] + slid * (r - r_0) / (2.0 * r_0) * grip->old[d] + A * (0.5 + 0.25 * A) * change[d]
-                   + path * A / 12.0 * (1.0 + 0.5 * A * A) * slip[1][d] / speed
-                   - time_since(last, time) * A * (1.0 + A) / 12.0 * slip[0][d];
+        along[d] = grip->without_sliding[d] + slid * (r - r_0) / (2.0 * r_0) * grip->old[d] +
+                   A * (0.5 + 0.25 * A) * change[d] + path * A / 12.0 * (1.0 + 0.5 * A * A) * slip[1][d] / speed -
+                   time_since(last, time) * A * (1.0 + A) / 12.0 * slip[0][d];
         squares[2] += along[d] * along[d];
     }
     for (int d = 0; d < 3 && squares[2] > 0.0; ++d) along[d] /= sqrt(squares[2]);
 }
 
-static void grip_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points, const fu_crossing_contact *contact,
-                       double time, fu_crossing_stick *out)
+static void grip_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points,
+                       const fu_crossing_contact *contact, double time, fu_crossing_stick *out)
 {
     const int dim = crossing->kernel->dim;
     const double most = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
@@ -135,9 +142,9 @@ static void grip_since(const fu_crossing *crossing, const last_step *last, const
     fu_friction_path way;
     memset(out, 0, sizeof *out);
     moved_since(last, points, e);
-    crossing->kernel->stretch(points->d, points->t, points->k, points->w, points->u, crossing->law, e, time_since(last, time), last->way,
-                              last->way_rate, last->slopes, last->slope_rates, last->s_rate, last->stretch, last->rate,
-                              out->without_sliding, out->old, out->along);
+    crossing->kernel->stretch(points->d, points->t, points->k, points->w, points->u, crossing->law, e,
+                              time_since(last, time), last->way, last->way_rate, last->slopes, last->slope_rates,
+                              last->s_rate, last->stretch, last->rate, out->without_sliding, out->old, out->along);
     travel_since(crossing, last, points, contact, time, out, &travel, &way);
     const double size = fu_path_length(dim, &travel, along, &way);
     if (way.h > 0.0) out->end = fu_end_of_friction(&way);
@@ -154,15 +161,15 @@ static void grip_since(const fu_crossing *crossing, const last_step *last, const
 }
 
 void fu_crossing_stick_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                         const fu_crossing_contact *contact, fu_crossing_stick *out)
+                          const fu_crossing_contact *contact, fu_crossing_stick *out)
 {
     grip_since(crossing, before_of(crossing, state), points, contact, state->t, out);
 }
 
-/* Makes the derivatives of what has slid within the step and then sticks: parts of those that stick, as a velocity at the end also
- * moves where it slid last, and of those that slide. */
-static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_stick *grip, double h, const fu_crossing_stick_changes *stuck,
-                            fu_crossing_stick_changes *by)
+/* Makes the derivatives of what has slid within the step and then sticks: parts of those that stick, as a velocity at
+ * the end also moves where it slid last, and of those that slide. */
+static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_stick *grip, double h,
+                            const fu_crossing_stick_changes *stuck, fu_crossing_stick_changes *by)
 {
     const int dim = crossing->kernel->dim;
     const fu_cubic at = fu_cubic_at(grip->end.part);
@@ -176,12 +183,14 @@ static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_stick
     for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim && square > 0.0; ++j) {
             const int ij = i * dim + j;
-            by->F_u[ij] = at.change * by->F_u[ij] + (1.0 - at.change) * stuck->F_u[ij] + lag * grip->stretch[i] * grip->stretch[j] / square;
+            by->F_u[ij] = at.change * by->F_u[ij] + (1.0 - at.change) * stuck->F_u[ij] +
+                          lag * grip->stretch[i] * grip->stretch[j] / square;
         }
 }
 
 void fu_crossing_stick_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                                  const fu_line_bends *bends, const fu_crossing_contact *contact, fu_crossing_stick_changes *by)
+                                   const fu_line_bends *bends, const fu_crossing_contact *contact,
+                                   fu_crossing_stick_changes *by)
 {
     const last_step *last = before_of(crossing, state);
     const fu_crossing_kernels *kernel = crossing->kernel;
@@ -194,22 +203,24 @@ void fu_crossing_stick_derivatives(const fu_crossing *crossing, const fu_state *
     memset(by, 0, sizeof *by);
     memset(&stuck, 0, sizeof stuck);
     if (grip.end.slid)
-        kernel->sliding(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate, crossing->law, friction,
-                        crossing->tangential, e, h, last->way, last->way_rate, last->slopes, last->slope_rates, last->s_rate,
-                        last->stretch, last->rate, grip.turns ? slid_before(last) : 0.0, slid_stretch(last), grip.turns, by->F, by->F_d,
-                        by->F_t, by->F_u, by->F_w, by->F_k);
+        kernel->sliding(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate, crossing->law,
+                        friction, crossing->tangential, e, h, last->way, last->way_rate, last->slopes,
+                        last->slope_rates, last->s_rate, last->stretch, last->rate,
+                        grip.turns ? slid_before(last) : 0.0, slid_stretch(last), grip.turns, by->F, by->F_d, by->F_t,
+                        by->F_u, by->F_w, by->F_k);
     if (!grip.slides)
-        kernel->sticking(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate, crossing->law,
-                         crossing->tangential, e, h, last->way, last->way_rate, last->slopes, last->slope_rates, last->s_rate,
-                         last->stretch, last->rate, stuck.F, stuck.F_d, stuck.F_t, stuck.F_u, stuck.F_w, stuck.F_k);
+        kernel->sticking(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate,
+                         crossing->law, crossing->tangential, e, h, last->way, last->way_rate, last->slopes,
+                         last->slope_rates, last->s_rate, last->stretch, last->rate, stuck.F, stuck.F_d, stuck.F_t,
+                         stuck.F_u, stuck.F_w, stuck.F_k);
     if (!grip.end.slid) *by = stuck;
     else if (!grip.slides) mix_derivatives(crossing, &grip, state->t - last->time, &stuck, by);
     memcpy(by->F, grip.force, sizeof by->F);
 }
 
 /* Takes the stretch of a grip, null for none, along to points. */
-static void take_along(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact, double time,
-                       const fu_crossing_stick *grip, const double *line, last_step *last)
+static void take_along(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
+                       double time, const fu_crossing_stick *grip, const double *line, last_step *last)
 {
     const int dim = crossing->kernel->dim;
     double across[3] = {0.0}, slip[3];
@@ -217,7 +228,8 @@ static void take_along(const fu_crossing *crossing, const fu_closest_points *poi
     memcpy(last->s, points->s, sizeof last->s);
     memcpy(last->way, points->d, sizeof(double) * (size_t)dim);
     memcpy(last->slopes, points->t, sizeof(double) * (size_t)(dim * (dim - 1)));
-    crossing->kernel->motion(points->d, points->t, points->k, points->w, points->u, last->s_rate, last->slope_rates, last->way_rate);
+    crossing->kernel->motion(points->d, points->t, points->k, points->w, points->u, last->s_rate, last->slope_rates,
+                             last->way_rate);
     last->depth = contact->depth[0];
     last->sinking = contact->depth[1];
     last->time = time;
@@ -243,17 +255,18 @@ void fu_crossing_begin_stick(const fu_crossing *crossing, const fu_closest_point
     take_along(crossing, points, &contact, state->t, 0, grip.along, before_of(crossing, state));
 }
 
-void fu_crossing_update_stick(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
-                            fu_state *state)
+void fu_crossing_update_stick(const fu_crossing *crossing, const fu_closest_points *points,
+                              const fu_crossing_contact *contact, fu_state *state)
 {
     fu_crossing_stick grip;
     fu_crossing_stick_at(crossing, state, points, contact, &grip);
     take_along(crossing, points, contact, state->t, &grip, grip.along, before_of(crossing, state));
 }
 
-/* Makes the grip at the end of a step, and the way to it; returns whether lines that touch have closest points there. */
-static int grip_over_step(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, fu_crossing_stick *grip,
-                          fu_friction_travel *travel, fu_friction_path *way)
+/* Makes the grip at the end of a step, and the way to it; returns whether lines that touch have closest points there.
+ */
+static int grip_over_step(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to,
+                          fu_crossing_stick *grip, fu_friction_travel *travel, fu_friction_path *way)
 {
     const last_step *last = before_of(crossing, from);
     fu_closest_points end;
@@ -267,7 +280,8 @@ static int grip_over_step(const fu_model *model, const fu_crossing *crossing, co
 }
 
 /* By how much another way leads elsewhere, the parabola without the velocities at the beginning. */
-double fu_crossing_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
+double fu_crossing_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
+                                 const fu_state *to)
 {
     const fu_crossing *crossing = (const fu_crossing *)coupling;
     const int dim = model->dim;
@@ -289,7 +303,8 @@ double fu_crossing_history_error(const fu_model *model, const fu_coupling *coupl
     return sqrt(square);
 }
 
-double fu_crossing_slip_work(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to, int by_ends)
+double fu_crossing_slip_work(const fu_model *model, const fu_crossing *crossing, const fu_state *from,
+                             const fu_state *to, int by_ends)
 {
     fu_crossing_stick grip;
     fu_friction_travel travel;

@@ -1,16 +1,17 @@
-/* Inertia of the fluid around cables and bodies (derive/couplings/added_mass.py): the kinetic energy T = w . M w/2 of what they carry
- * along at w = v - U past the fluid, and the force on the mass displaced where the fluid itself is accelerated.
+/* Inertia of the fluid around cables and bodies (derive/couplings/added_mass.py): the kinetic energy T = w . M w/2 of
+ * what they carry along at w = v - U past the fluid, and the force on the mass displaced where the fluid itself is
+ * accelerated.
  *
- * Lagrange's equations of T, with p = M w: along a cable p' + G' p with each particle, and -g with the slope, g = dT/dr_x; on a
- * body p' + G' p with the point, and the moment w x p with its turn. G is the gradient of U, and w' = a - dU/dt - G v. M a, of the
- * accelerations, is the mass, which Newton's matrix and that of eq 38 have as well. On the displaced mass acts its part of
- * DU/Dt = dU/dt + G U, as in the undisturbed fluid.
+ * Lagrange's equations of T, with p = M w: along a cable p' + G' p with each particle, and -g with the slope, g =
+ * dT/dr_x; on a body p' + G' p with the point, and the moment w x p with its turn. G is the gradient of U, and w' = a -
+ * dU/dt - G v. M a, of the accelerations, is the mass, which Newton's matrix and that of eq 38 have as well. On the
+ * displaced mass acts its part of DU/Dt = dU/dt + G U, as in the undisturbed fluid.
  *
- * Of what is partly wet, T and the displaced mass count by the wet part c (derive/couplings/wetness.py): the rate of the impulse has
- * that of c, and the derivative of T by the place acts as well.
+ * Of what is partly wet, T and the displaced mass count by the wet part c (derive/couplings/wetness.py): the rate of
+ * the impulse has that of c, and the derivative of T by the place acts as well.
  *
- * The fluid gives the power -p' . U - (G' p) . v, work from outside, where T counts as kinetic energy. In the matrix second
- * derivatives of U are left out: Newton's method converges without.
+ * The fluid gives the power -p' . U - (G' p) . v, work from outside, where T counts as kinetic energy. In the matrix
+ * second derivatives of U are left out: Newton's method converges without.
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -18,24 +19,26 @@
 
 #include <string.h>
 
-/* What the change of the wet part adds: the derivative of T by the place; derivatives of force by velocity and place, and of what acts
- * on the slope, or turns, by the place. */
+/* What the change of the wet part adds: the derivative of T by the place; derivatives of force by velocity and place,
+ * and of what acts on the slope, or turns, by the place. */
 typedef struct {
     double pull[3], by_v[9], force_place[9], other_place[9];
 } of_wet_part;
 
-/* What the kernels give: impulse, its rate, and their derivatives, of a cable or of a body's point. p_rate_t, p_rate_turn and p_rate_w
- * are derivatives of the rate less the pull. */
+/* What the kernels give: impulse, its rate, and their derivatives, of a cable or of a body's point. p_rate_t,
+ * p_rate_turn and p_rate_w are derivatives of the rate less the pull. */
 typedef struct {
     double p[3], p_rate[3], g[3], M[9], p_t[9], p_rate_t[9], p_rate_t_rate[9], p_rate_w[9], g_t[9], g_w[9];
     of_wet_part wet; /* nil where all is wet */
 } of_length;
 typedef struct {
-    double p[3], p_rate[3], moment[3], M[9], p_turn[9], p_rate_turn[9], moment_turn[9], p_rate_omega[9], p_rate_w[9], moment_w[9];
+    double p[3], p_rate[3], moment[3], M[9], p_turn[9], p_rate_turn[9], moment_turn[9], p_rate_omega[9], p_rate_w[9],
+        moment_w[9];
     of_wet_part wet;
 } of_point;
 
-fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v, const double *a)
+fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v,
+                            const double *a)
 {
     const int dim = model->dim;
     fu_fluid_past out;
@@ -46,7 +49,8 @@ fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t
         out.w_rate[d] = a[d] - out.flow.rate[d] - fu_dot(dim, gradient, v);
         out.material[d] = out.flow.rate[d] + fu_dot(dim, gradient, out.flow.U);
     }
-    const fu_wetness wet = drag->wet == FU_ALL_WET ? (fu_wetness){1.0, 0.0, 0.0} : fu_wet_at_height(drag, fu_drag_height(model, drag, r));
+    const fu_wetness wet =
+        drag->wet == FU_ALL_WET ? (fu_wetness){1.0, 0.0, 0.0} : fu_wet_at_height(drag, fu_drag_height(model, drag, r));
     out.wet = wet.part;
     out.curvature = wet.curvature;
     for (int d = 0; d < dim; ++d) out.by_place[d] = wet.slope * drag->flow.up[d];
@@ -62,8 +66,8 @@ static void back(int dim, const fu_fluid_past *at, const double *x, double out[3
     }
 }
 
-void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_fluid_past *at, const double *p, const double *p_rate,
-                         const double *v, double part, double left[3], fu_drag_powers *power)
+void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_fluid_past *at, const double *p,
+                           const double *p_rate, const double *v, double part, double left[3], fu_drag_powers *power)
 {
     const int dim = model->dim;
     const double displaced = at->wet * drag->displaced;
@@ -86,9 +90,10 @@ static void take_part(int n, const fu_fluid_past *past, double *x)
     for (int i = 0; i < n; ++i) x[i] *= past->wet;
 }
 
-/* Makes the derivatives by the place of force and of n other numbers, which are those where all is wet, times the wet part. */
-static void by_wet_part(int dim, const fu_drag *drag, const fu_fluid_past *past, const double *p, const double *p_rate, int n,
-                        const double *other, of_wet_part *out)
+/* Makes the derivatives by the place of force and of n other numbers, which are those where all is wet, times the wet
+ * part. */
+static void by_wet_part(int dim, const fu_drag *drag, const fu_fluid_past *past, const double *p, const double *p_rate,
+                        int n, const double *other, of_wet_part *out)
 {
     double strained[3];
     back(dim, past, p, strained);
@@ -100,23 +105,26 @@ static void by_wet_part(int dim, const fu_drag *drag, const fu_fluid_past *past,
         for (int j = 0; j < dim; ++j) out->other_place[i * dim + j] = other[i] * past->by_place[j];
 }
 
-/* Adds to the derivative of the force by the place that by the derivative n of the wet part, which changes along the vertical. */
+/* Adds to the derivative of the force by the place that by the derivative n of the wet part, which changes along the
+ * vertical. */
 static void by_curvature(int dim, const fu_drag *drag, const fu_fluid_past *past, const double *f_n, of_wet_part *out)
 {
     const double *up = drag->flow.up;
     for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) out->force_place[i * dim + j] += past->curvature * fu_dot(dim, f_n + i * dim, up) * up[j];
+        for (int j = 0; j < dim; ++j)
+            out->force_place[i * dim + j] += past->curvature * fu_dot(dim, f_n + i * dim, up) * up[j];
 }
 
 /* Takes the wet part of a length, with what its change adds. */
-static void wet_length(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const fu_fluid_past *past, of_length *out)
+static void wet_length(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const fu_fluid_past *past,
+                       of_length *out)
 {
     const int dim = model->dim;
     double p_rate[3], f_t[9], f_w[9], f_n[9];
     by_wet_part(dim, drag, past, out->p, out->p_rate, dim, out->g, &out->wet);
     take_part((int)(offsetof(of_length, wet) / sizeof(double)), past, (double *)out);
-    drag->kernel->entry_of_cable(at->r_x, drag->added, past->w, at->v, past->by_place, p_rate, out->wet.pull, f_t, f_w, out->wet.by_v,
-                                 f_n);
+    drag->kernel->entry_of_cable(at->r_x, drag->added, past->w, at->v, past->by_place, p_rate, out->wet.pull, f_t, f_w,
+                                 out->wet.by_v, f_n);
     by_curvature(dim, drag, past, f_n, &out->wet);
     add_to(dim, p_rate, out->p_rate);
     add_to(dim * dim, f_t, out->p_rate_t);
@@ -124,31 +132,33 @@ static void wet_length(const fu_model *model, const fu_drag *drag, const fu_drag
 }
 
 /* The same of a body's point, which moves at v. */
-static void wet_point(const fu_model *model, const fu_drag *drag, const fu_attachment_state *end, const fu_fluid_past *past, of_point *out)
+static void wet_point(const fu_model *model, const fu_drag *drag, const fu_attachment_state *end,
+                      const fu_fluid_past *past, of_point *out)
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
     double p_rate[3], f_turn[9], f_w[9], f_n[9];
     by_wet_part(dim, drag, past, out->p, out->p_rate, turns, out->moment, &out->wet);
     take_part((int)(offsetof(of_point, wet) / sizeof(double)), past, (double *)out);
-    drag->kernel->entry_of_point(end->A, drag->added, past->w, end->v, past->by_place, p_rate, out->wet.pull, f_turn, f_w,
-                                 out->wet.by_v, f_n);
+    drag->kernel->entry_of_point(end->A, drag->added, past->w, end->v, past->by_place, p_rate, out->wet.pull, f_turn,
+                                 f_w, out->wet.by_v, f_n);
     by_curvature(dim, drag, past, f_n, &out->wet);
     add_to(dim, p_rate, out->p_rate);
     add_to(dim * turns, f_turn, out->p_rate_turn);
     add_to(dim * dim, f_w, out->p_rate_w);
 }
 
-static void terms_of_length(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const fu_fluid_past *past,
-                            of_length *out)
+static void terms_of_length(const fu_model *model, const fu_drag *drag, const fu_drag_place *at,
+                            const fu_fluid_past *past, of_length *out)
 {
-    drag->kernel->inertia_of_cable(at->r_x, at->r_x_rate, past->w, past->w_rate, drag->added, out->p, out->p_rate, out->g,
-                                   out->M, out->p_t, out->p_rate_t, out->p_rate_t_rate, out->p_rate_w, out->g_t, out->g_w);
+    drag->kernel->inertia_of_cable(at->r_x, at->r_x_rate, past->w, past->w_rate, drag->added, out->p, out->p_rate,
+                                   out->g, out->M, out->p_t, out->p_rate_t, out->p_rate_t_rate, out->p_rate_w, out->g_t,
+                                   out->g_w);
     if (drag->wet == FU_ALL_WET) memset(&out->wet, 0, sizeof out->wet);
     else wet_length(model, drag, at, past, out);
 }
 
-void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point, const double *left,
-                           const double *on_slope, const fu_drag_sums *sums)
+void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point,
+                         const double *left, const double *on_slope, const fu_drag_sums *sums)
 {
     const int dim = model->dim, n = model->cables[drag->cable].coordinates / dim;
     for (int d = 0; d < dim; ++d) {
@@ -158,7 +168,8 @@ void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, 
     }
 }
 
-static void on_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a, const fu_drag_sums *sums)
+static void on_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                     const fu_drag_sums *sums)
 {
     const fu_cable *cable = &model->cables[drag->cable];
     const int dim = model->dim;
@@ -210,10 +221,10 @@ void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling,
     }
 }
 
-/* Makes the derivatives of a force on particles by the slope and by the place, and those of g (dim x dim each); rate: that of
- * velocities by places. */
-static void derivatives(const fu_drag *drag, int dim, const of_length *of, const fu_fluid_past *past, double rate, double by_slope[9],
-                        double by_place[9], double g_place[9])
+/* Makes the derivatives of a force on particles by the slope and by the place, and those of g (dim x dim each); rate:
+ * that of velocities by places. */
+static void derivatives(const fu_drag *drag, int dim, const of_length *of, const fu_fluid_past *past, double rate,
+                        double by_slope[9], double by_place[9], double g_place[9])
 {
     const double *G = past->flow.gradient;
     for (int i = 0; i < dim; ++i)
@@ -267,7 +278,7 @@ static void tangent_of_cable(const fu_model *model, const fu_drag *drag, const f
 
 /* Makes the state of a body's point with its axes, its acceleration, and what the kernel gives of it. */
 static fu_fluid_past at_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
-                       fu_attachment_state *end, of_point *out)
+                             fu_attachment_state *end, of_point *out)
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
     double acceleration[3], omega[3] = {0.0};
@@ -278,15 +289,16 @@ static fu_fluid_past at_body(const fu_model *model, const fu_drag *drag, const f
     for (int k = 0; k < turns; ++k)
         for (int i = 0; i < end->n; ++i) omega[k] += end->T[k * end->n + i] * state->v[end->at[i]];
     const fu_fluid_past past = fu_past_fluid(model, drag, state->t, end->p, end->v, acceleration);
-    drag->kernel->inertia_of_point(end->A, drag->added, omega, past.w, past.w_rate, out->p, out->p_rate, out->moment, out->M,
-                                   out->p_turn, out->p_rate_turn, out->moment_turn, out->p_rate_omega, out->p_rate_w,
-                                   out->moment_w);
+    drag->kernel->inertia_of_point(end->A, drag->added, omega, past.w, past.w_rate, out->p, out->p_rate, out->moment,
+                                   out->M, out->p_turn, out->p_rate_turn, out->moment_turn, out->p_rate_omega,
+                                   out->p_rate_w, out->moment_w);
     if (drag->wet == FU_ALL_WET) memset(&out->wet, 0, sizeof out->wet);
     else wet_point(model, drag, end, &past, out);
     return past;
 }
 
-static void on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a, const fu_drag_sums *sums)
+static void on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                    const fu_drag_sums *sums)
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
     double left[3];
@@ -367,14 +379,14 @@ static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu
 }
 
 void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
-                             const fu_drag_sums *sums)
+                          const fu_drag_sums *sums)
 {
     if (drag->cable >= 0) on_cable(model, drag, state, a, sums);
     else on_body(model, drag, state, a, sums);
 }
 
 void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
-                              const double *psi, fu_weights weights, fu_system *system)
+                           const double *psi, fu_weights weights, fu_system *system)
 {
     if (drag->cable >= 0) tangent_of_cable(model, drag, state, a, weights, system);
     else tangent_of_body(model, drag, state, a, psi, weights, system);

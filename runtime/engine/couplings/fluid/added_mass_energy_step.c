@@ -1,11 +1,11 @@
-/* Inertia of the fluid around cables and bodies over a step, for the integrator that balances energy: the kinetic energy T changes
- * by the work of the force, and by that of the fluid, from outside.
+/* Inertia of the fluid around cables and bodies over a step, for the integrator that balances energy: the kinetic
+ * energy T changes by the work of the force, and by that of the fluid, from outside.
  *
- * The impulse's rate is its change over the step; on the slope of a cable acts a discrete gradient, and on a body a moment of the
- * same kind (derive/couplings/added_mass.py). Moments act along the axes in the middle of the step.
+ * The impulse's rate is its change over the step; on the slope of a cable acts a discrete gradient, and on a body a
+ * moment of the same kind (derive/couplings/added_mass.py). Moments act along the axes in the middle of the step.
  *
- * Of a wet part c both are those of the mean of c, and the impulse changes by that of c times its own mean, too. T changes with c by
- * D of added_mass.py, so D times the change of c over that of the height acts along the vertical.
+ * Of a wet part c both are those of the mean of c, and the impulse changes by that of c times its own mean, too. T
+ * changes with c by D of added_mass.py, so D times the change of c over that of the height acts along the vertical.
  */
 #include "bodies/model.h"
 #include "couplings/fluid/drag.h"
@@ -13,7 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-#define NO_RISE 1e-7 /* of the extent: below it the change of the wet part over the rise is its derivative in between */
+/* of the extent: below it the change of the wet part over the rise is its derivative in between */
+#define NO_RISE 1e-7
 
 /* The wet part over a step: its mean, its change, and the derivative by the place that gives this change. */
 typedef struct {
@@ -33,9 +34,10 @@ static wet_step wet_over_step(const fu_model *model, const fu_drag *drag, const 
     return out;
 }
 
-/* Takes the wet part of the change dp of an impulse, which is p at both ends of a step by the masses M, and makes the force that acts on the place. */
-static void take_wet_step(int dim, const wet_step *wet, const fu_fluid_past past[2], double p[2][3], double M[2][9], double dp[3],
-                          double on_place[3])
+/* Takes the wet part of the change dp of an impulse, which is p at both ends of a step by the masses M, and makes the
+ * force that acts on the place. */
+static void take_wet_step(int dim, const wet_step *wet, const fu_fluid_past past[2], double p[2][3], double M[2][9],
+                          double dp[3], double on_place[3])
 {
     double a[3], b[3], D = 0.0;
     for (int d = 0; d < dim; ++d) {
@@ -44,14 +46,15 @@ static void take_wet_step(int dim, const wet_step *wet, const fu_fluid_past past
         dp[d] = wet->mean * dp[d] + wet->change * 0.5 * (p[0][d] + p[1][d]);
     }
     for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j)
-            D += 0.25 * (a[i] * a[j] - b[i] * b[j]) * (M[0][i * dim + j] + M[1][i * dim + j]);
+        for (int j = 0; j < dim; ++j) D += 0.25 * (a[i] * a[j] - b[i] * b[j]) * (M[0][i * dim + j] + M[1][i * dim + j]);
     for (int d = 0; d < dim; ++d) on_place[d] = D * wet->by_place[d];
 }
 
-/* Takes the wet part of the change of an impulse over a step, of what acts on the slope, and of the impulse half-way. */
-static void wet_length_over_step(const fu_model *model, const fu_drag *drag, const fu_drag_place place[2], const fu_fluid_past past[2],
-                                 const fu_fluid_past *halfway, double dp[3], double g[3], double mean[3], double on_place[3])
+/* Takes the wet part of the change of an impulse over a step, of what acts on the slope, and of the impulse half-way.
+ */
+static void wet_length_over_step(const fu_model *model, const fu_drag *drag, const fu_drag_place place[2],
+                                 const fu_fluid_past past[2], const fu_fluid_past *halfway, double dp[3], double g[3],
+                                 double mean[3], double on_place[3])
 {
     const wet_step wet = wet_over_step(model, drag, place[0].r, place[1].r);
     double p[2][3], M[2][9];
@@ -63,7 +66,8 @@ static void wet_length_over_step(const fu_model *model, const fu_drag *drag, con
     }
 }
 
-static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
+static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at,
+                             const fu_drag_sums *sums)
 {
     const fu_cable *cable = &model->cables[drag->cable];
     const int dim = model->dim;
@@ -85,10 +89,12 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
             const fu_fluid_past halfway = fu_past_fluid(model, drag, at->middle->t, middle.r, middle.v, middle.a);
             drag->kernel->inertia_step(place[0].r_x, place[1].r_x, past[0].w, past[1].w, drag->added, dp, g);
             drag->kernel->impulse_of_cable(middle.r_x, halfway.w, drag->added, mean, M);
-            if (drag->wet != FU_ALL_WET) wet_length_over_step(model, drag, place, past, &halfway, dp, g, mean, on_place);
+            if (drag->wet != FU_ALL_WET)
+                wet_length_over_step(model, drag, place, past, &halfway, dp, g, mean, on_place);
             for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
             fu_fluid_on_particles(model, drag, &halfway, mean, rate, middle.v, point.weight, left, sums->power);
-            if (sums->power) /* that T changes by, with the velocities at both ends; fu_fluid_on_particles has -rate . U half-way */
+            if (sums->power) /* that T changes by, with the velocities at both ends; fu_fluid_on_particles has -rate . U
+                                half-way */
                 for (int d = 0; d < dim; ++d)
                     sums->power->external += point.weight * rate[d] *
                                              (0.5 * (past[0].w[d] + past[1].w[d]) - middle.v[d] + halfway.flow.U[d]);
@@ -99,11 +105,13 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
     }
 }
 
-/* A body's point at both ends of a step, on its way, and the fluid past it there; theta: the Cayley vector of its turn. */
+/* A body's point at both ends of a step, on its way, and the fluid past it there; theta: the Cayley vector of its turn.
+ */
 typedef struct {
     fu_attachment_state ends[2], turning;
     fu_fluid_past past[2], halfway;
-    double v[3], theta[3], change[3]; /* way over the step's length; change of the velocity of turning, as the kernel takes it */
+    double v[3], theta[3],
+        change[3]; /* way over the step's length; change of the velocity of turning, as the kernel takes it */
 } body_step;
 
 static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, body_step *out)
@@ -120,7 +128,8 @@ static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_
     fu_attachment_at(model, on, at->middle, 0.0, FU_AXES, &out->turning);
     memset(out->theta, 0, sizeof out->theta);
     for (int k = 0; k < turns; ++k)
-        for (int i = 0; i < out->turning.n; ++i) out->theta[k] += out->turning.T[k * out->turning.n + i] * at->psi[dof + i];
+        for (int i = 0; i < out->turning.n; ++i)
+            out->theta[k] += out->turning.T[k * out->turning.n + i] * at->psi[dof + i];
     for (int d = 0; d < dim; ++d) {
         middle[d] = 0.5 * (ends[0].p[d] + ends[1].p[d]);
         out->v[d] = (ends[1].p[d] - ends[0].p[d]) / at->h;
@@ -137,8 +146,8 @@ static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_
 }
 
 /* The same of a body, whose moment takes the work of the impulse's change with the turn as well. */
-static void wet_body_over_step(const fu_model *model, const fu_drag *drag, const body_step *of, double dp[3], double mean[3],
-                               double moment[3], double on_place[3])
+static void wet_body_over_step(const fu_model *model, const fu_drag *drag, const body_step *of, double dp[3],
+                               double mean[3], double moment[3], double on_place[3])
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
     const wet_step wet = wet_over_step(model, drag, of->ends[0].p, of->ends[1].p);
@@ -154,14 +163,15 @@ static void wet_body_over_step(const fu_model *model, const fu_drag *drag, const
     for (int k = 0; k < turns; ++k) moment[k] = wet.mean * moment[k] + with[k];
 }
 
-static void on_body_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
+static void on_body_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at,
+                            const fu_drag_sums *sums)
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
     double dp[3], mean[3], moment[3], more[3], rate[3], left[3], on_place[3] = {0.0}, P[3 * FU_ATTACHMENT_COORDINATES];
     body_step of;
     body_over_step(model, drag, at, &of);
-    drag->kernel->inertia_of_point_step(of.ends[0].A, of.ends[1].A, drag->added, of.past[0].w, of.past[1].w, of.theta, of.change,
-                                        dp, mean, moment, more);
+    drag->kernel->inertia_of_point_step(of.ends[0].A, of.ends[1].A, drag->added, of.past[0].w, of.past[1].w, of.theta,
+                                        of.change, dp, mean, moment, more);
     if (drag->wet != FU_ALL_WET) wet_body_over_step(model, drag, &of, dp, mean, moment, on_place);
     for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
     fu_fluid_on_particles(model, drag, &of.halfway, mean, rate, of.v, 1.0, left, sums->power);
@@ -180,7 +190,8 @@ static void on_body_in_step(const fu_model *model, const fu_drag *drag, const fu
     }
 }
 
-void fu_added_mass_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums)
+void fu_added_mass_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at,
+                               const fu_drag_sums *sums)
 {
     if (drag->cable >= 0) on_cable_in_step(model, drag, at, sums);
     else on_body_in_step(model, drag, at, sums);

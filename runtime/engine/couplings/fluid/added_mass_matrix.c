@@ -1,4 +1,5 @@
-/* The mass that fluids add to cables and bodies, and its kinetic energy: M of T = w . M w/2 (couplings/fluid/added_mass.c). */
+/* The mass that fluids add to cables and bodies, and its kinetic energy: M of T = w . M w/2
+ * (couplings/fluid/added_mass.c). */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/fluid/drag.h"
@@ -15,8 +16,8 @@ static void wet_impulse(const fu_model *model, const fu_drag *drag, const double
 }
 
 /* Makes the impulse M w of a length of cable at a point of quadrature, with M. */
-static void impulse(const fu_model *model, const fu_drag *drag, const double *q, const double *v, fu_quadrature_point point,
-                    double w[3], double p[3], double M[9])
+static void impulse(const fu_model *model, const fu_drag *drag, const double *q, const double *v,
+                    fu_quadrature_point point, double w[3], double p[3], double M[9])
 {
     fu_drag_place at;
     fu_drag_place_on_axis(model, drag, q, v, 0, point, &at);
@@ -25,7 +26,8 @@ static void impulse(const fu_model *model, const fu_drag *drag, const double *q,
     wet_impulse(model, drag, at.r, p, M);
 }
 
-void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f)
+void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
+                         double *f)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     const int dim = model->dim;
@@ -57,7 +59,8 @@ void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, con
     }
 }
 
-void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system)
+void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+                          fu_system *system)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     const int dim = model->dim;
@@ -94,8 +97,8 @@ void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, co
     }
 }
 
-double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
-                               int past_fluid)
+double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
+                                    const double *v, int past_fluid)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     const int dim = model->dim;

@@ -1,9 +1,9 @@
 /* The force of a fluid on cables and bodies: drag by the square of the velocity of the fluid past them
- * (derive/couplings/drag.py), and buoyancy; with the inertia of the fluid, which couplings/fluid/added_mass.c adds. Along a cable it is
- * integrated by Gauss quadrature on each element.
+ * (derive/couplings/drag.py), and buoyancy; with the inertia of the fluid, which couplings/fluid/added_mass.c adds.
+ * Along a cable it is integrated by Gauss quadrature on each element.
  *
- * With the velocity U of the fluid and w = U - v, the power of drag f on what moves at v is f . U - f . w: the fluid gives the first,
- * work from outside, and the second, which is never negative, goes to heat.
+ * With the velocity U of the fluid and w = U - v, the power of drag f on what moves at v is f . U - f . w: the fluid
+ * gives the first, work from outside, and the second, which is never negative, goes to heat.
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -131,8 +131,8 @@ static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu
     }
 }
 
-/* Makes the place of a body's point, and how the point moves with the coordinates; over a step that conserves energy, the place in
- * its middle, with the velocity that the step has on average. */
+/* Makes the place of a body's point, and how the point moves with the coordinates; over a step that conserves energy,
+ * the place in its middle, with the velocity that the step has on average. */
 static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
                           fu_drag_place *at, fu_attachment_state *end)
 {
@@ -153,8 +153,8 @@ static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_s
 }
 
 /* Does for a body what on_cable does for a cable. */
-static void on_body(const fu_model *model, const fu_drag *drag, double t, const fu_state *state, const fu_equations *step,
-                    const fu_drag_sums *sums)
+static void on_body(const fu_model *model, const fu_drag *drag, double t, const fu_state *state,
+                    const fu_equations *step, const fu_drag_sums *sums)
 {
     fu_attachment_state end;
     fu_drag_place at;
@@ -223,7 +223,8 @@ static void add_all(const fu_model *model, const fu_coupling *coupling, const fu
 }
 
 /* Adds the same over a step. */
-static void add_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_drag_sums *sums)
+static void add_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                     const fu_drag_sums *sums)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     add(model, drag, at->middle, at, sums);
@@ -242,7 +243,8 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     force(model, coupling, at->next, f);
 }
 
-static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                          double *own)
 {
     const fu_drag_sums sums = {.f = f};
     (void)own;
@@ -255,7 +257,8 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     const fu_drag *drag = (const fu_drag *)coupling;
     if (drag->cable >= 0) matrix_of_cable(model, drag, state, weights, system);
     else matrix_of_body(model, drag, state, psi, weights, system);
-    if (coupling->has_inertia) fu_added_mass_tangent(model, drag, state, weights.inertia != 0.0 ? a : 0, psi, weights, system);
+    if (coupling->has_inertia)
+        fu_added_mass_tangent(model, drag, state, weights.inertia != 0.0 ? a : 0, psi, weights, system);
 }
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
@@ -269,7 +272,8 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
     matrix(model, coupling, at->middle, at->next->acceleration, 0, at->weights, system);
 }
 
-static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work)
+static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const fu_accelerator *work)
 {
     fu_drag_powers power = {0.0, 0.0};
     const fu_drag_sums sums = {.power = &power};
@@ -302,8 +306,8 @@ static double step_work(const fu_model *model, const fu_coupling *coupling, cons
     return at->h * power.external;
 }
 
-static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
-                    const fu_accelerator *work, double *out)
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                    const double *acceleration, const fu_accelerator *work, double *out)
 {
     const fu_drag_sums sums = {.total = out};
     (void)work;
@@ -367,7 +371,8 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_inertia_operations inertia = {.force = fu_added_mass_force, .matrix = fu_added_mass_matrix, .kinetic_energy = fu_added_mass_kinetic_energy};
+static const fu_inertia_operations inertia = {
+    .force = fu_added_mass_force, .matrix = fu_added_mass_matrix, .kinetic_energy = fu_added_mass_kinetic_energy};
 static const fu_supply_operations supply = {.power = external_power, .step_work = step_work};
 
 typedef struct {
@@ -379,9 +384,19 @@ static const fu_output output_fields[] = {
 };
 
 const fu_coupling_type fu_drag_type = {
-    .name = "drag", .size = sizeof(fu_drag), .fields = fields, .output_fields = output_fields, .n_flags = FU_DRAG_FLAGS, .residual = residual, .tangent = tangent,
-    .step_residual = step_residual, .step_tangent = step_tangent, .step_dissipation = step_dissipation,
-    .force = force, .dissipation = dissipation, .outputs = outputs,
+    .name = "drag",
+    .size = sizeof(fu_drag),
+    .fields = fields,
+    .output_fields = output_fields,
+    .n_flags = FU_DRAG_FLAGS,
+    .residual = residual,
+    .tangent = tangent,
+    .step_residual = step_residual,
+    .step_tangent = step_tangent,
+    .step_dissipation = step_dissipation,
+    .force = force,
+    .dissipation = dissipation,
+    .outputs = outputs,
     .inertia = &inertia,
     .supply = &supply,
 };

@@ -6,48 +6,51 @@
 #include "couplings/common/coupling.h"
 #include "couplings/fluid/velocity_field.h"
 
-#define FU_NO_SURFACE 1e300  /* m: beyond all heights (runtime/parts/fluid.py) */
+#define FU_NO_SURFACE 1e300          /* m: beyond all heights (runtime/parts/fluid.py) */
 #define FU_SURFACE_EVENT_FUNCTIONS 4 /* events of its two surfaces */
 
-/* What of a cable's section or of a body's volume a fluid wets: all of it, or what is below its surface and above its bottom, of a
- * circle, a sphere, or a column (couplings/fluid/wetness.c). */
+/* What of a cable's section or of a body's volume a fluid wets: all of it, or what is below its surface and above its
+ * bottom, of a circle, a sphere, or a column (couplings/fluid/wetness.c). */
 enum { FU_ALL_WET, FU_WET_SECTION, FU_WET_SPHERE, FU_WET_COLUMN };
 
 /* The force of a fluid on a whole cable, or on a point of a body. */
 typedef struct {
-    fu_coupling base;          /* base.has_inertia: that of the fluid is in it */
+    fu_coupling base; /* base.has_inertia: that of the fluid is in it */
     const fu_drag_kernels *kernel;
     fu_flow flow;
-    int cable;                 /* -1: on a body, at its attachment */
-    double coefficients[3];    /* as the kernel takes them */
-    double lift[2];            /* of a cable, as the kernel takes them: none where the first is zero */
-    int is_foil;               /* not zero: a force by the angle of attack, of a body with a span or of a beam with a chord */
-    double foil[2], span[3], chord[3]; /* of a body: as the kernel takes them; along its axes, span[0] in the plane its sense */
-    double foil_lift;                  /* coefficient without a polar: drag is by `coefficients` then */
-    double section[3];                 /* of a beam, as the kernel takes them */
-    int n_angles;                      /* polynomials of the angle, as a signal's of time, of each coefficient; */
+    int cable;              /* -1: on a body, at its attachment */
+    double coefficients[3]; /* as the kernel takes them */
+    double lift[2];         /* of a cable, as the kernel takes them: none where the first is zero */
+    int is_foil; /* not zero: a force by the angle of attack, of a body with a span or of a beam with a chord */
+    double foil[2], span[3],
+        chord[3];      /* of a body: as the kernel takes them; along its axes, span[0] in the plane its sense */
+    double foil_lift;  /* coefficient without a polar: drag is by `coefficients` then */
+    double section[3]; /* of a beam, as the kernel takes them */
+    int n_angles;      /* polynomials of the angle, as a signal's of time, of each coefficient; */
     const double *angles, *polar_drag, *polar_lift, *polar_moment; /* that of the moment of a beam alone */
-    double buoyancy[3];        /* N/m a length of the undeformed cable, N on a body */
-    int wet;                   /* see above */
-    double extent;             /* half the height of what is wetted, m */
-    double surface, bottom;    /* heights between which the fluid is, m */
-    double displaced;          /* mass of the fluid displaced: kg/m, kg */
-    double added[9];           /* mass added: of a length of cable across and along it, kg/m; of a body in its axes (dim x dim), kg */
-    int n_points;              /* of quadrature on an element: weights in m, shape functions, their slopes, */
-    int stride;                /* each of the first element; points from one element's to the next's: 0 where they are equal */
+    double buoyancy[3];     /* N/m a length of the undeformed cable, N on a body */
+    int wet;                /* see above */
+    double extent;          /* half the height of what is wetted, m */
+    double surface, bottom; /* heights between which the fluid is, m */
+    double displaced;       /* mass of the fluid displaced: kg/m, kg */
+    double added[9]; /* mass added: of a length of cable across and along it, kg/m; of a body in its axes (dim x dim),
+                        kg */
+    int n_points;    /* of quadrature on an element: weights in m, shape functions, their slopes, */
+    int stride;      /* each of the first element; points from one element's to the next's: 0 where they are equal */
     const double *weights, *N, *N_x, *N_chord; /* N_chord of a beam's foil: of the director along the chord */
     fu_attachment attachments[1];
 } fu_drag;
 extern const fu_coupling_type fu_drag_type;
 
-/* A point of quadrature on an element: its weight in m, shape functions, their slopes, and those of the chord or null. */
+/* A point of quadrature on an element: its weight in m, shape functions, their slopes, and those of the chord or null.
+ */
 typedef struct {
     double weight;
     const double *N, *N_x, *N_chord;
 } fu_quadrature_point;
 
-/* Those of an element that act, with the shape functions of those that stand in no table, their places in it, m, and the part between
- * two cuts that each is on. */
+/* Those of an element that act, with the shape functions of those that stand in no table, their places in it, m, and
+ * the part between two cuts that each is on. */
 #define FU_DRAG_POINTS 200
 typedef struct {
     int n;
@@ -62,15 +65,16 @@ typedef struct {
     double part, slope, curvature;
 } fu_wetness;
 
-/* Where the fluid acts: a point of a cable's axis, or of a body. r_x, its rate, and `a`, acceleration, only of a cable; the
- * director along the chord and its rate only of a beam's foil. */
+/* Where the fluid acts: a point of a cable's axis, or of a body. r_x, its rate, and `a`, acceleration, only of a cable;
+ * the director along the chord and its rate only of a beam's foil. */
 typedef struct {
     double r[3], r_x[3], v[3], r_x_rate[3], a[3], chord[3], chord_rate[3];
 } fu_drag_place;
 
-/* What the fluid does at a place: its velocity with derivatives, that past the place; drag and lift with their derivatives, and
- * buoyancy, all of the wet part; by_wet: derivative of their sum by the place where the wet part changes.
- * of_section: of a beam's foil the forces on r, r_x and chord, with their derivatives by r_x, chord and w; f has the first. */
+/* What the fluid does at a place: its velocity with derivatives, that past the place; drag and lift with their
+ * derivatives, and buoyancy, all of the wet part; by_wet: derivative of their sum by the place where the wet part
+ * changes. of_section: of a beam's foil the forces on r, r_x and chord, with their derivatives by r_x, chord and w; f
+ * has the first. */
 typedef struct {
     fu_flow_state flow;
     double w[3], f[3], buoyancy[3], by_wet[9], by_slope[9], by_w[9], by_turn[9], of_section[9], section_by[81];
@@ -81,7 +85,8 @@ typedef struct {
     double dissipated, external;
 } fu_drag_powers;
 
-/* What is asked of a sum of forces: each may be null. f: on the left of the equations of motion; total: on the cable or body. */
+/* What is asked of a sum of forces: each may be null. f: on the left of the equations of motion; total: on the cable or
+ * body. */
 typedef struct {
     double *f, *total;
     fu_drag_powers *power;
@@ -95,11 +100,11 @@ static inline int fu_drag_on_section(const fu_drag *drag)
 
 /* couplings/fluid/quadrature.c */
 fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point);
-void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
-                           fu_quadrature_point point, fu_drag_place *at);
+void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v,
+                           const double *a, fu_quadrature_point point, fu_drag_place *at);
 
-/* couplings/fluid/wetness.c: the wet part at a height; the height of a place, m; the points of an element with the coordinates e,
- * and of one with these at both ends of a step. */
+/* couplings/fluid/wetness.c: the wet part at a height; the height of a place, m; the points of an element with the
+ * coordinates e, and of one with these at both ends of a step. */
 fu_wetness fu_wet_at_height(const fu_drag *drag, double height);
 double fu_wet_reach(const fu_drag *drag); /* how far from a surface the wet part changes, m */
 double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *r);
@@ -107,8 +112,9 @@ void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, 
 void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int element, const double *e, const double *e_next,
                          fu_drag_points *out);
 
-/* couplings/fluid/drag.c: makes at the points of all elements of a cable the number of the element, that of the part, the place in the element and
- * the weight, m, and drag with buoyancy, N/m (3): out (points x FU_DRAG_DENSITIES). Returns how many they are. */
+/* couplings/fluid/drag.c: makes at the points of all elements of a cable the number of the element, that of the part,
+ * the place in the element and the weight, m, and drag with buoyancy, N/m (3): out (points x FU_DRAG_DENSITIES).
+ * Returns how many they are. */
 #define FU_DRAG_DENSITIES 7
 int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 
@@ -116,44 +122,52 @@ int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const 
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
                  fu_drag_action *out);
 
-/* couplings/fluid/section_moment.c: forces on slope and chord of a beam's foil at a point of quadrature, and what they add to the matrix. */
+/* couplings/fluid/section_moment.c: forces on slope and chord of a beam's foil at a point of quadrature, and what they
+ * add to the matrix. */
 double fu_section_power(const fu_drag_place *at, const fu_drag_action *action);
 void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, double part, int n, double *f);
-void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all, double *K);
+void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all,
+                       double *K);
 
 /* Flags of a state are one of the table and one a watch of surfaces */
 #define FU_DRAG_FLAGS (1 + FU_SURFACE_EVENT_FUNCTIONS)
 
-/* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is minus the flow's gradient.
- * The wet part, its derivative by the place, and the second one by the height. */
+/* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is minus the
+ * flow's gradient. The wet part, its derivative by the place, and the second one by the height. */
 typedef struct {
     fu_flow_state flow;
     double w[3], w_rate[3], material[3], wet, by_place[3], curvature;
 } fu_fluid_past;
 
-/* couplings/fluid/added_mass.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or without, null. */
+/* couplings/fluid/added_mass.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or
+ * without, null. */
 void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
-                             const fu_drag_sums *sums);
+                          const fu_drag_sums *sums);
 void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
-                              const double *psi, fu_weights weights, fu_system *system);
-void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
-void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale, fu_system *system);
-/* Makes what it does a length of a cable without accelerations, at all points of quadrature: out (points x FU_ADDED_MASS_DENSITIES),
- * the force (3) and that on the slope (3), as they act on the cable, and the mass added (dim x dim of 9). */
+                           const double *psi, fu_weights weights, fu_system *system);
+void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
+                         double *f);
+void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+                          fu_system *system);
+/* Makes what it does a length of a cable without accelerations, at all points of quadrature: out (points x
+ * FU_ADDED_MASS_DENSITIES), the force (3) and that on the slope (3), as they act on the cable, and the mass added (dim
+ * x dim of 9). */
 #define FU_ADDED_MASS_DENSITIES 15
 void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
-double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *v,
-                               int past_fluid);
-fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v, const double *a);
-/* Makes the force with the particles, of an impulse p and its rate, as it stands on the left of the equations of motion, and adds
- * the power. */
-void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_fluid_past *at, const double *p, const double *p_rate,
-                           const double *v, double part, double left[3], fu_drag_powers *power);
+double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
+                                    const double *v, int past_fluid);
+fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v,
+                            const double *a);
+/* Makes the force with the particles, of an impulse p and its rate, as it stands on the left of the equations of
+ * motion, and adds the power. */
+void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_fluid_past *at, const double *p,
+                           const double *p_rate, const double *v, double part, double left[3], fu_drag_powers *power);
 /* Adds a force with the particles and one on the slope, at a point of quadrature, to those on an element's dofs. */
-void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point, const double *left,
-                         const double *on_slope, const fu_drag_sums *sums);
+void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point,
+                         const double *left, const double *on_slope, const fu_drag_sums *sums);
 
 /* couplings/fluid/added_mass_energy_step.c */
-void fu_added_mass_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at, const fu_drag_sums *sums);
+void fu_added_mass_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at,
+                               const fu_drag_sums *sums);
 
 #endif

@@ -1,5 +1,5 @@
-/* What a fluid does at a place of a cable or of a body: drag and lift by the velocity past it (derive/couplings/drag.py), with their
- * derivatives. */
+/* What a fluid does at a place of a cable or of a body: drag and lift by the velocity past it
+ * (derive/couplings/drag.py), with their derivatives. */
 #include "bodies/model.h"
 #include "couplings/fluid/drag.h"
 
@@ -22,10 +22,10 @@ static void cross(int dim, const double *a, const double *b, double out[3])
     fu_cross(a, b, out);
 }
 
-/* Makes n coefficients, of drag, lift and moment, each with its derivative by the angle of attack: that of the flow w from the chord,
- * across the span, about it. */
-static void coefficients_of(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w, int n,
-                            double *coefficients)
+/* Makes n coefficients, of drag, lift and moment, each with its derivative by the angle of attack: that of the flow w
+ * from the chord, across the span, about it. */
+static void coefficients_of(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w,
+                            int n, double *coefficients)
 {
     const double *of[3] = {drag->polar_drag, drag->polar_lift, drag->polar_moment};
     memset(coefficients, 0, sizeof(double) * 2 * (size_t)n);
@@ -108,14 +108,14 @@ static void take_wet_part(const fu_model *model, const fu_drag *drag, const fu_d
     scale(9, wet.part, out->by_turn);
 }
 
-void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A, fu_drag_action *out)
+void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
+                 fu_drag_action *out)
 {
     fu_flow_at(model, &drag->flow, t, at->r, &out->flow);
     for (int d = 0; d < model->dim; ++d) out->w[d] = out->flow.U[d] - at->v[d];
     if (drag->cable >= 0)
         drag->kernel->along_cable(at->r_x, out->w, drag->coefficients, out->f, out->by_slope, out->by_w);
-    else
-        drag->kernel->on_point(out->w, drag->coefficients, out->f, out->by_w);
+    else drag->kernel->on_point(out->w, drag->coefficients, out->f, out->by_w);
     if (drag->lift[0] != 0.0) add_lift(drag, at, out);
     if (fu_drag_on_section(drag)) add_section(drag, at, out);
     else if (drag->is_foil) add_foil(model->dim, drag, A, out);

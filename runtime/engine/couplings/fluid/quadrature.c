@@ -12,9 +12,10 @@ fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int p
                                  fu_drag_on_section(drag) ? drag->N_chord + k * n : 0};
 }
 
-/* Makes the place of a point of quadrature on an element with the coordinates e, rates v and accelerations a; null: without. */
-void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v, const double *a,
-                           fu_quadrature_point point, fu_drag_place *at)
+/* Makes the place of a point of quadrature on an element with the coordinates e, rates v and accelerations a; null:
+ * without. */
+void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v,
+                           const double *a, fu_quadrature_point point, fu_drag_place *at)
 {
     const fu_cable *cable = &model->cables[drag->cable];
     const int dim = model->dim, n = cable->coordinates / dim;

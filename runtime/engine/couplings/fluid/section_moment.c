@@ -1,5 +1,5 @@
-/* What a fluid does to slope and chord of a beam by the moment on its section (derive/couplings/section_flow.py), beside the force on
- * its axis that couplings/fluid/drag.c has as that of any cable.
+/* What a fluid does to slope and chord of a beam by the moment on its section (derive/couplings/section_flow.py),
+ * beside the force on its axis that couplings/fluid/drag.c has as that of any cable.
  */
 #include "bodies/cables.h"
 #include "couplings/fluid/drag.h"
@@ -17,18 +17,21 @@ void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, 
 {
     for (int k = 0; k < n; ++k)
         for (int d = 0; d < 3; ++d)
-            f[k * 3 + d] -= part * (point.N_x[k] * action->of_section[3 + d] + point.N_chord[k] * action->of_section[6 + d]);
+            f[k * 3 + d] -=
+                part * (point.N_x[k] * action->of_section[3 + d] + point.N_chord[k] * action->of_section[6 + d]);
 }
 
 /* Makes the derivatives of one of the three forces by one of r_x, chord and w. */
 static void block(const fu_drag_action *action, int force, int by, double out[9])
 {
-    for (int d = 0; d < 3; ++d) memcpy(out + 3 * d, action->section_by + 9 * (3 * force + d) + 3 * by, sizeof(double[3]));
+    for (int d = 0; d < 3; ++d)
+        memcpy(out + 3 * d, action->section_by + 9 * (3 * force + d) + 3 * by, sizeof(double[3]));
 }
 
-/* Adds to K (all x all) `scale` times their derivatives, and that of the force on the axis by the chord; rate: that of velocities by
- * places. */
-void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all, double *K)
+/* Adds to K (all x all) `scale` times their derivatives, and that of the force on the axis by the chord; rate: that of
+ * velocities by places. */
+void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all,
+                       double *K)
 {
     const double *shapes[3] = {point.N, point.N_x, point.N_chord};
     double by[9], by_w[9], by_place[9];

@@ -1,5 +1,5 @@
-/* The velocity of a fluid by place and time, with its derivatives: a velocity times a profile over height, or a table of splines,
- * times a signal. */
+/* The velocity of a fluid by place and time, with its derivatives: a velocity times a profile over height, or a table
+ * of splines, times a signal. */
 #include "bodies/model.h"
 #include "couplings/fluid/velocity_field.h"
 
@@ -26,14 +26,15 @@ typedef struct {
     double value[FU_FLOW_DEGREE + 1], slope[FU_FLOW_DEGREE + 1];
 } splines;
 
-/* Makes those of n splines with these knots (de Boor's recursion; derivatives from the splines of one degree less). Beyond the ends
- * of the axis the values at the ends stay. */
+/* Makes those of n splines with these knots (de Boor's recursion; derivatives from the splines of one degree less).
+ * Beyond the ends of the axis the values at the ends stay. */
 static splines splines_at(int degree, int n, const double *knots, double x)
 {
     splines out = {0, 1, {1.0}, {0.0}};
     if (n == 1) return out;
     const double low = knots[degree], high = knots[n], at = fmin(fmax(x, low), high);
-    const int left = fu_last_reached(knots, degree, n, at); /* knots[left] <= at < knots[left + 1], at the axis's end but for the equality */
+    const int left = fu_last_reached(
+        knots, degree, n, at); /* knots[left] <= at < knots[left + 1], at the axis's end but for the equality */
     out.first = left - degree;
     out.n = degree + 1;
     for (int k = 1; k <= degree; ++k) {
@@ -55,7 +56,8 @@ static splines splines_at(int degree, int n, const double *knots, double x)
 }
 
 /* Makes the place on the axes of a table: time, and the ground's directions. */
-static void place_in_table(const fu_model *model, const fu_flow *flow, double t, const double *r, double x[FU_FLOW_AXES])
+static void place_in_table(const fu_model *model, const fu_flow *flow, double t, const double *r,
+                           double x[FU_FLOW_AXES])
 {
     x[0] = t;
     for (int i = 0; i < 3; ++i) x[i + 1] = flow->origin[i] + fu_dot(model->dim, flow->axes + 3 * i, r);
@@ -78,12 +80,14 @@ static void table_at(const fu_model *model, const fu_flow *flow, double t, const
         for (int b = 0; b < of[1].n; ++b)
             for (int c = 0; c < of[2].n; ++c)
                 for (int d = 0; d < of[3].n; ++d) {
-                    const long at = (((long)(of[0].first + a) * n[1] + of[1].first + b) * n[2] + of[2].first + c) * n[3] +
-                                    of[3].first + d;
+                    const long at =
+                        (((long)(of[0].first + a) * n[1] + of[1].first + b) * n[2] + of[2].first + c) * n[3] +
+                        of[3].first + d;
                     const double *U = flow->table + at * dim, ab = of[0].value[a] * of[1].value[b];
                     const double cd = of[2].value[c] * of[3].value[d];
-                    const double by[FU_FLOW_AXES] = {of[0].slope[a] * of[1].value[b] * cd, of[0].value[a] * of[1].slope[b] * cd,
-                                                     ab * of[2].slope[c] * of[3].value[d], ab * of[2].value[c] * of[3].slope[d]};
+                    const double by[FU_FLOW_AXES] = {
+                        of[0].slope[a] * of[1].value[b] * cd, of[0].value[a] * of[1].slope[b] * cd,
+                        ab * of[2].slope[c] * of[3].value[d], ab * of[2].value[c] * of[3].slope[d]};
                     for (int i = 0; i < dim; ++i) {
                         out->U[i] += ab * cd * U[i];
                         out->rate[i] += by[0] * U[i];

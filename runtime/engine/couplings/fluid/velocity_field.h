@@ -10,16 +10,17 @@
 /* How the velocity changes with height: not at all; as a power of it; as a table. */
 enum { FU_UNIFORM, FU_POWER, FU_TABLE };
 
-/* The velocity of a fluid: a signal (-1: one) times `velocity` times the profile at the height base + up . r, or times a table. */
+/* The velocity of a fluid: a signal (-1: one) times `velocity` times the profile at the height base + up . r, or times
+ * a table. */
 typedef struct {
     double velocity[3], up[3], base; /* base: height of the origin, m */
     int signal, profile;
     double reference, exponent, least; /* of a power: (max(height, least)/reference)^exponent, heights in m */
     int n_pieces;                      /* of a table of the height: polynomials, as a signal's of time */
     const double *breaks, *coefficients;
-    /* Of a table of time and place: degree of its splines, 0 without one; along each axis how many of them and their knots, one
-     * axis after the other, one spline without knots where the velocity does not depend on it; their coefficients (t, x, y, z, dim).
-     * Place on the ground's axes: origin + axes r, axes (3 x 3) by rows. */
+    /* Of a table of time and place: degree of its splines, 0 without one; along each axis how many of them and their
+     * knots, one axis after the other, one spline without knots where the velocity does not depend on it; their
+     * coefficients (t, x, y, z, dim). Place on the ground's axes: origin + axes r, axes (3 x 3) by rows. */
     int degree, n_splines[FU_FLOW_AXES];
     const double *knots, *table;
     double origin[3], axes[9];

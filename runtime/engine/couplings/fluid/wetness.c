@@ -1,21 +1,25 @@
-/* Fluids with a surface: the wet part of a body or of a cable's section (derive/couplings/wetness.py), and the quadrature along an
- * element that a surface cuts.
+/* Fluids with a surface: the wet part of a body or of a cable's section (derive/couplings/wetness.py), and the
+ * quadrature along an element that a surface cuts.
  *
- * Along an element the wet part is 0, 1, or changes over the short length on which the surface cuts the section. The quadrature
- * ends where that length begins and ends, so that the integral is smooth in the coordinates. Within it points gather at both ends,
- * where the waterline has a root.
+ * Along an element the wet part is 0, 1, or changes over the short length on which the surface cuts the section. The
+ * quadrature ends where that length begins and ends, so that the integral is smooth in the coordinates. Within it
+ * points gather at both ends, where the waterline has a root.
  */
 #include "bodies/model.h"
 #include "couplings/fluid/drag.h"
 
 #include <math.h>
 
-#define COLUMN_ROUNDING 0.05 /* of half the height of a column: its ends are rounded by this to both sides (runtime/parts/drag.py) */
-#define MOST_DEPTH 0.99      /* of the radius of a section: beyond, matrices leave out the second derivative, which has a pole */
-#define SPANS_AN_ELEMENT 4              /* an element is cut into, on each of which heights are a cubic: exact for cubic elements */
-#define MAX_CUTS 24         /* of an element by the ends of a section that two surfaces cut, of two cubics */
-#define HEIGHT_VARIATION 0.35           /* of an element's length, times its steepest slope at the samples: what heights between them differ by */
-#define MIN_PART 1e-12         /* of an element: shorter parts of it hold no points */
+/* of half the height of a column: its ends are rounded by this to both sides (runtime/parts/drag.py) */
+#define COLUMN_ROUNDING 0.05
+/* of the radius of a section: beyond, matrices leave out the second derivative, which has a pole */
+#define MOST_DEPTH 0.99
+/* an element is cut into, on each of which heights are a cubic: exact for cubic elements */
+#define SPANS_AN_ELEMENT 4
+#define MAX_CUTS 24 /* of an element by the ends of a section that two surfaces cut, of two cubics */
+/* of an element's length, times its steepest slope at the samples: what heights between them differ by */
+#define HEIGHT_VARIATION 0.35
+#define MIN_PART 1e-12 /* of an element: shorter parts of it hold no points */
 
 static double end_of(const fu_drag *drag)
 {
@@ -79,7 +83,8 @@ static double slope_on(const heights *of, double x)
     return of->a[1] + x * (2.0 * of->a[2] + x * 3.0 * of->a[3]);
 }
 
-/* Returns where heights that rise or fall all the way from low to high are at a level between their ends (Newton, bisection). */
+/* Returns where heights that rise or fall all the way from low to high are at a level between their ends (Newton,
+ * bisection). */
 static double reached_at(const heights *of, double level, double low, double high)
 {
     const double sense = height_on(of, high) > height_on(of, low) ? 1.0 : -1.0;
@@ -135,13 +140,15 @@ static void cut_at(const heights *of, double level, double cuts[MAX_CUTS], int *
 /* Gauss's rules from 0 to 1. */
 static const double PLAIN[2][4] = {{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262},
                                    {0.1739274225687269, 0.32607257743127305, 0.32607257743127305, 0.1739274225687269}};
-static const double GATHERED[2][8] = {{0.019855071751231912, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751,
-                                       0.5917173212478248, 0.7627662049581645, 0.8983332387068134, 0.9801449282487681},
-                                      {0.05061426814518853, 0.11119051722668721, 0.15685332293894344, 0.18134189168918083,
-                                       0.18134189168918083, 0.15685332293894344, 0.11119051722668721, 0.05061426814518853}};
+static const double GATHERED[2][8] = {
+    {0.019855071751231912, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751, 0.5917173212478248,
+     0.7627662049581645, 0.8983332387068134, 0.9801449282487681},
+    {0.05061426814518853, 0.11119051722668721, 0.15685332293894344, 0.18134189168918083, 0.18134189168918083,
+     0.15685332293894344, 0.11119051722668721, 0.05061426814518853}};
 
 /* Adds a point at x of an element of n shape functions. */
-static void add_point(const fu_cable *cable, double length, int n, int part, double x, double weight, fu_drag_points *out)
+static void add_point(const fu_cable *cable, double length, int n, int part, double x, double weight,
+                      fu_drag_points *out)
 {
     double *N = out->shapes + (size_t)out->n * 2 * (size_t)n, *N_x = N + n;
     cable->kernel->on_axis(length, x, N, N_x);
@@ -156,9 +163,10 @@ typedef struct {
     heights of[SPANS_AN_ELEMENT];
 } shape;
 
-/* Adds the points of a part of an element, in the middle of which one or two shapes are wet so: none where all are dry. */
-static void add_part(const fu_cable *cable, double length, int n, int number, double from, double to, const fu_wetness *wet,
-                     int n_shapes, fu_drag_points *out)
+/* Adds the points of a part of an element, in the middle of which one or two shapes are wet so: none where all are dry.
+ */
+static void add_part(const fu_cable *cable, double length, int n, int number, double from, double to,
+                     const fu_wetness *wet, int n_shapes, fu_drag_points *out)
 {
     const double part = to - from;
     int is_wet = 0, is_cut = 0;
@@ -201,11 +209,13 @@ static int is_uncut(const fu_model *model, const fu_drag *drag, int n, int eleme
     }
     const double reach = drag->extent + HEIGHT_VARIATION * fu_element_length(cable, element) * steepest;
     *height = low;
-    return (low - reach > drag->surface || high + reach < drag->surface) && (low - reach > drag->bottom || high + reach < drag->bottom);
+    return (low - reach > drag->surface || high + reach < drag->surface) &&
+           (low - reach > drag->bottom || high + reach < drag->bottom);
 }
 
 /* Makes the heights of a shape, and adds where a surface begins or ceases to cut its section to the cuts. */
-static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double length, shape *of, double cuts[MAX_CUTS], int *n_cuts)
+static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double length, shape *of,
+                      double cuts[MAX_CUTS], int *n_cuts)
 {
     const double levels[4] = {drag->surface - drag->extent, drag->surface + drag->extent, drag->bottom - drag->extent,
                               drag->bottom + drag->extent};
@@ -217,14 +227,17 @@ static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double 
         slope[k] = span * along_axis(model, drag, n, N_x, of->e);
     }
     for (int k = 0; k < SPANS_AN_ELEMENT; ++k) {
-        of->of[k] = (heights){k * span, span, {h[k], slope[k], 3.0 * (h[k + 1] - h[k]) - 2.0 * slope[k] - slope[k + 1],
-                                               2.0 * (h[k] - h[k + 1]) + slope[k] + slope[k + 1]}};
+        of->of[k] = (heights){k * span,
+                              span,
+                              {h[k], slope[k], 3.0 * (h[k + 1] - h[k]) - 2.0 * slope[k] - slope[k + 1],
+                               2.0 * (h[k] - h[k + 1]) + slope[k] + slope[k + 1]}};
         for (int l = 0; l < 4; ++l) cut_at(&of->of[k], levels[l], cuts, n_cuts);
     }
 }
 
 /* Makes the points of an element that a surface cuts, or may cut, in one or two shapes. */
-static void cut_points(const fu_model *model, const fu_drag *drag, int n, int element, shape *shapes, int n_shapes, fu_drag_points *out)
+static void cut_points(const fu_model *model, const fu_drag *drag, int n, int element, shape *shapes, int n_shapes,
+                       fu_drag_points *out)
 {
     const fu_cable *cable = &model->cables[drag->cable];
     const double length = fu_element_length(cable, element), span = length / SPANS_AN_ELEMENT;
@@ -232,7 +245,8 @@ static void cut_points(const fu_model *model, const fu_drag *drag, int n, int el
     int n_cuts = 0;
     for (int s = 0; s < n_shapes; ++s) cut_shape(model, drag, n, length, &shapes[s], cuts, &n_cuts);
     for (int k = 0; k <= n_cuts; ++k) {
-        const double from = k ? cuts[k - 1] : 0.0, to = k < n_cuts ? cuts[k] : length, middle = 0.5 * (from + to) / span;
+        const double from = k ? cuts[k - 1] : 0.0, to = k < n_cuts ? cuts[k] : length,
+                     middle = 0.5 * (from + to) / span;
         const int in = middle < SPANS_AN_ELEMENT - 1 ? (int)middle : SPANS_AN_ELEMENT - 1;
         fu_wetness wet[2];
         for (int s = 0; s < n_shapes; ++s) wet[s] = fu_wet_at_height(drag, height_on(&shapes[s].of[in], middle - in));
@@ -241,7 +255,8 @@ static void cut_points(const fu_model *model, const fu_drag *drag, int n, int el
 }
 
 /* Makes the points of an element that acts in one or two shapes. */
-static void points_of(const fu_model *model, const fu_drag *drag, int element, shape *shapes, int n_shapes, fu_drag_points *out)
+static void points_of(const fu_model *model, const fu_drag *drag, int element, shape *shapes, int n_shapes,
+                      fu_drag_points *out)
 {
     const int n = model->cables[drag->cable].coordinates / model->dim;
     out->n = 0;

@@ -2,8 +2,10 @@
 #include "bodies/model.h"
 #include "couplings/force/point_force.h"
 
-/* Makes position and velocity of an attachment's point, and how it moves with its coordinates; returns its first dof. */
-int fu_force_point(const fu_model *model, const fu_attachment *on, const double *q, const double *v, fu_attachment_state *at)
+/* Makes position and velocity of an attachment's point, and how it moves with its coordinates; returns its first dof.
+ */
+int fu_force_point(const fu_model *model, const fu_attachment *on, const double *q, const double *v,
+                   fu_attachment_state *at)
 {
     const fu_state state = {.q = (double *)q, .v = (double *)v};
     fu_attachment_at(model, on, &state, 0.0, FU_POINT, at);

@@ -36,8 +36,9 @@ static int on_modes(const fu_model *model, const fu_load *load, const double *c,
     return n;
 }
 
-/* Makes the generalised force g of the part of a load that acts, at unit signal, and its derivative K by the dofs (row by row);
- * returns their number, and the first dof. On a body: translation of the force c, rotation of its moment about the mass centre. */
+/* Makes the generalised force g of the part of a load that acts, at unit signal, and its derivative K by the dofs (row
+ * by row); returns their number, and the first dof. On a body: translation of the force c, rotation of its moment about
+ * the mass centre. */
 static int generalised(const fu_model *model, const fu_load *load, const double *q, double *g, double *K, int *first)
 {
     double c[3];
@@ -97,8 +98,7 @@ static void matrix(const fu_model *model, const fu_load *load, double t, const d
     const double scale = stiffness * scale_at(model, load->signal, t);
     int first;
     const int n = generalised(model, load, q, g, K, &first);
-    if (psi && load->kind >= FU_BODY_FORCE)
-        fu_turn_columns(model->bodies[load->on].kernel, K, n, n, 0, psi + first);
+    if (psi && load->kind >= FU_BODY_FORCE) fu_turn_columns(model->bodies[load->on].kernel, K, n, n, 0, psi + first);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j)
             if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, -scale * K[i * n + j]);
@@ -129,8 +129,12 @@ static const fu_field fields[] = {
     {0},
 };
 
-const fu_coupling_type fu_load_type = {
-    .name = "load", .size = sizeof(fu_load), .fields = fields, .external_force = external_force, .tangent = tangent, .step_tangent = step_tangent};
+const fu_coupling_type fu_load_type = {.name = "load",
+                                       .size = sizeof(fu_load),
+                                       .fields = fields,
+                                       .external_force = external_force,
+                                       .tangent = tangent,
+                                       .step_tangent = step_tangent};
 
 /* Subtracts gravity and loads from f. */
 void fu_external_forces(const fu_model *model, double t, const double *q, double *f)

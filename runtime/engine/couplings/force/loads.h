@@ -14,8 +14,8 @@ typedef struct {
 } fu_dead_load;
 extern const fu_coupling_type fu_dead_load_type;
 
-/* A load that turns with what it acts on, or whose lever does: at x of a cable's element, at the point u of a body, at that of
- * a modal one. */
+/* A load that turns with what it acts on, or whose lever does: at x of a cable's element, at the point u of a body, at
+ * that of a modal one. */
 enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT };
 typedef struct {
     fu_coupling base;

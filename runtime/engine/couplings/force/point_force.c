@@ -1,5 +1,5 @@
-/* Forces between the points of two attachments by the kernels of a law (derive/couplings/point_law.py). In a Newton system
- * the force is an unknown of its own, so that two points far apart on cables do not widen the band.
+/* Forces between the points of two attachments by the kernels of a law (derive/couplings/point_law.py). In a Newton
+ * system the force is an unknown of its own, so that two points far apart on cables do not widen the band.
  */
 #include "bodies/rotation.h"
 #include "bodies/unknowns.h"
@@ -31,13 +31,14 @@ static double length(int dim, const double *gap)
     return sqrt(fu_dot(dim, gap, gap));
 }
 
-/* A point_motion over several pieces of a law without a damper: the distances at its ends, m, and the mean tension, N. */
+/* A point_motion over several pieces of a law without a damper: the distances at its ends, m, and the mean tension, N.
+ */
 typedef struct {
     double from, to, tension;
 } point_motion;
 
-/* Returns the point_motion from one gap to another. The tension of each piece counts for as much of it as lies on the piece: what the mean does
- * on the point_motion is the change of the energy. */
+/* Returns the point_motion from one gap to another. The tension of each piece counts for as much of it as lies on the
+ * piece: what the mean does on the point_motion is the change of the energy. */
 static point_motion way_of(const fu_point_force *between, const double gap[3], const double gap_next[3])
 {
     const int dim = between->dim;
@@ -55,9 +56,10 @@ static point_motion way_of(const fu_point_force *between, const double gap[3], c
     return (point_motion){from, to, work / (high - low)};
 }
 
-/* Makes the derivatives of the mean force by the gap in the middle, which moves by half of what its end does: those across the mean
- * direction are of the mean tension. */
-static void mean_stiffness(const fu_point_force *between, const double gap[3], const double gap_next[3], int piece, double by_gap[9])
+/* Makes the derivatives of the mean force by the gap in the middle, which moves by half of what its end does: those
+ * across the mean direction are of the mean tension. */
+static void mean_stiffness(const fu_point_force *between, const double gap[3], const double gap_next[3], int piece,
+                           double by_gap[9])
 {
     const point_motion w = way_of(between, gap, gap_next);
     const int dim = between->dim;
@@ -76,7 +78,8 @@ static int step_piece(const fu_model *model, const fu_point_force *between, cons
     return between->base.is_damped ? fu_force_segment(between, at->next) : fu_segment_at(model, between, at->next);
 }
 
-/* Returns whether the force over a step is that of several pieces: those of a law without a damper that the distance goes over. */
+/* Returns whether the force over a step is that of several pieces: those of a law without a damper that the distance
+ * goes over. */
 static int is_of_several(const fu_model *model, const fu_point_force *between, const fu_equations *at)
 {
     if (between->base.is_damped || between->n_pieces == 1) return 0;
@@ -112,7 +115,8 @@ static void add_force(int dim, int first, int e, const fu_attachment_state *at, 
 }
 
 /* Adds what a force on the first point, and its opposite on the second, puts on the left of the equations of motion. */
-static void add_forces(const fu_model *model, const fu_point_force *between, const double *q, const double *force, double *f)
+static void add_forces(const fu_model *model, const fu_point_force *between, const double *q, const double *force,
+                       double *f)
 {
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
@@ -134,8 +138,8 @@ static void add_step_forces(const fu_model *model, const fu_point_force *between
     }
 }
 
-void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece, double factor,
-                         double *f)
+void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece,
+                         double factor, double *f)
 {
     double gap[3], rate[3], force[3], other[3];
     fu_gap(model, between, state->q, state->v, gap, rate);
@@ -153,8 +157,7 @@ static void own_rows(const fu_coupling *coupling, const fu_equations *at, const 
         own[coupling->unknown + d] = -at->weights.stiffness * (unknown[d] - force[d]);
 }
 
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                             double *own)
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
 {
     double force[3];
     add_forces(model, (const fu_point_force *)coupling, at->next->q, at->next->forces + coupling->force, f);
@@ -163,7 +166,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
 }
 
 static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                                  double *own)
+                          double *own)
 {
     double force[3];
     add_step_forces(model, (const fu_point_force *)coupling, at, at->next->forces + coupling->force, f);
@@ -171,8 +174,8 @@ static void step_residual(const fu_model *model, const fu_coupling *coupling, co
     own_rows(coupling, at, force, own);
 }
 
-void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own, const double *psi,
-                   const fu_attachment_state *at, double *turned, double *by_place, double *K)
+void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own,
+                   const double *psi, const fu_attachment_state *at, double *turned, double *by_place, double *K)
 {
     const fu_body *body = &model->bodies[on->body];
     const double *turn = psi ? psi + body->dof : 0;
@@ -192,10 +195,10 @@ void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_stat
     fu_turn_columns(body->kernel, K, n, n, 0, turn);
 }
 
-/* Adds the derivatives of the equations at a state to a system, by the law of a piece; own: the forces; psi as in fu_equations;
- * known: the derivatives by the gap of a force that does not follow that law, else null. */
-static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int piece, const double *own,
-                   const double *psi, const double *known, fu_weights weights, fu_system *system)
+/* Adds the derivatives of the equations at a state to a system, by the law of a piece; own: the forces; psi as in
+ * fu_equations; known: the derivatives by the gap of a force that does not follow that law, else null. */
+static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int piece,
+                   const double *own, const double *psi, const double *known, fu_weights weights, fu_system *system)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int dim = between->dim, row = fu_extra(model, coupling->unknown);
@@ -218,7 +221,8 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
             double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
             fu_turn_point(model, &between->attachments[e], state, own, psi, &at, turned, by_place, K);
             for (int i = 0; i < n; ++i)
-                for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, sign * stiffness * K[i * n + j]);
+                for (int j = 0; j < n; ++j)
+                    fu_add(model, system, first + i, first + j, sign * stiffness * K[i * n + j]);
         }
         for (int i = 0; i < n; ++i)
             for (int d = 0; d < dim; ++d) {
@@ -239,8 +243,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
 }
 
 /* The middle moves by half of psi, which weights.stiffness has. */
-static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
-                                 fu_system *system)
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int several = is_of_several(model, between, at), piece = step_piece(model, between, at);
@@ -250,7 +253,8 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
         fu_gap(model, between, at->next->q, model->zero, gap_next, unused);
         mean_stiffness(between, gap, gap_next, piece, by_gap);
     }
-    matrix(model, coupling, at->middle, piece, at->next->forces + coupling->force, 0, several ? by_gap : 0, at->weights, system);
+    matrix(model, coupling, at->middle, piece, at->next->forces + coupling->force, 0, several ? by_gap : 0, at->weights,
+           system);
 }
 
 static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
@@ -268,7 +272,7 @@ static void own_force(const fu_model *model, const fu_coupling *coupling, const 
 
 /* work: null in a state of rest, where the force is an unknown. */
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
-                            const double *acceleration, const fu_accelerator *work, double *out)
+                    const double *acceleration, const fu_accelerator *work, double *out)
 {
     (void)acceleration;
     if (work) force_at(model, coupling, state, out);
@@ -280,7 +284,8 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
     outputs(model, coupling, state, 0, work, state->forces + coupling->force);
 }
 
-/* Returns the stored energy, J: that of the piece that the points' distance is on, whether the force follows its law or not. */
+/* Returns the stored energy, J: that of the piece that the points' distance is on, whether the force follows its law or
+ * not. */
 static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
@@ -305,7 +310,8 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     return power;
 }
 
-/* Returns the stored energy that comes back to nobody, J: of a spring whose damper would push, so that it has no force. */
+/* Returns the stored energy that comes back to nobody, J: of a spring whose damper would push, so that it has no force.
+ */
 static double energy_without_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
@@ -343,8 +349,20 @@ static const fu_output output_fields[] = {
     FU_LAST_OUTPUT(fu_point_force_output),
 };
 
-const fu_coupling_type fu_point_force_type = {
-    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .output_fields = output_fields, .n_flags = 1, .detect = fu_detect_segment, .residual = residual, .tangent = tangent, .step_residual = step_residual,
-    .step_tangent = step_tangent, .step_dissipation = step_dissipation, .force = own_force, .take_forces = take_forces,
-    .outputs = outputs, .energy = energy, .dissipation = dissipation,
-    .lost_in_step = lost_in_step};
+const fu_coupling_type fu_point_force_type = {.name = "point_force",
+                                              .size = sizeof(fu_point_force),
+                                              .fields = fields,
+                                              .output_fields = output_fields,
+                                              .n_flags = 1,
+                                              .detect = fu_detect_segment,
+                                              .residual = residual,
+                                              .tangent = tangent,
+                                              .step_residual = step_residual,
+                                              .step_tangent = step_tangent,
+                                              .step_dissipation = step_dissipation,
+                                              .force = own_force,
+                                              .take_forces = take_forces,
+                                              .outputs = outputs,
+                                              .energy = energy,
+                                              .dissipation = dissipation,
+                                              .lost_in_step = lost_in_step};

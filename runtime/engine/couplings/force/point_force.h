@@ -10,9 +10,9 @@ enum { FU_PUSHES_ALONE = -1, FU_PULLS_AND_PUSHES = 0, FU_PULLS_ALONE = 1, FU_HAS
 
 /* A force between the points of two attachments, by a law and its parameters.
  *
- * The parameters may differ by the distance of the points: n_pieces sets of them, one after the other, and the distances
- * `bounds` at which one piece ends and the next begins (couplings/force/segments.c). The flag of a state is the piece whose
- * law the force follows. */
+ * The parameters may differ by the distance of the points: n_pieces sets of them, one after the other, and the
+ * distances `bounds` at which one piece ends and the next begins (couplings/force/segments.c). The flag of a state is
+ * the piece whose law the force follows. */
 typedef struct {
     fu_coupling base;
     const fu_point_law_kernels *law;
@@ -27,19 +27,21 @@ typedef struct {
 
 extern const fu_coupling_type fu_point_force_type;
 
-/* couplings/force/gap.c; the first makes position and velocity of an attachment's point, and how it moves with its coordinates; returns
- * its first dof. */
-int fu_force_point(const fu_model *model, const fu_attachment *on, const double *q, const double *v, fu_attachment_state *at);
+/* couplings/force/gap.c; the first makes position and velocity of an attachment's point, and how it moves with its
+ * coordinates; returns its first dof. */
+int fu_force_point(const fu_model *model, const fu_attachment *on, const double *q, const double *v,
+                   fu_attachment_state *at);
 void fu_gap(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
             double rate[3]);
 /* couplings/force/point_force.c */
-/* Makes, for an attachment to a body, whose point's derivatives P change with its coordinates: `turned`, P by the unknowns, from P;
- * adds to `by_place` the derivatives of the point's velocity by them at fixed rates; K, those of P' own, of a force `own`. */
-void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own, const double *psi,
-                   const fu_attachment_state *at, double *turned, double *by_place, double *K);
+/* Makes, for an attachment to a body, whose point's derivatives P change with its coordinates: `turned`, P by the
+ * unknowns, from P; adds to `by_place` the derivatives of the point's velocity by them at fixed rates; K, those of P'
+ * own, of a force `own`. */
+void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own,
+                   const double *psi, const fu_attachment_state *at, double *turned, double *by_place, double *K);
 /* Adds to f, times a factor, by how much the forces at a state differ from those by the law of another piece. */
-void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece, double factor,
-                         double *f);
+void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece,
+                         double factor, double *f);
 
 /* couplings/force/segments.c */
 int fu_force_segment(const fu_point_force *between, const fu_state *state);

@@ -1,8 +1,8 @@
 /* Forces between two points whose law differs by pieces of their distance: springs that pull alone, free play, tables.
  *
- * Within a step the force follows the law of one piece, the flag of the state, so that each step is smooth. A piece that
- * pulls alone, or pushes alone, is left where its force, the damper's part of it included, turns round; it is entered where
- * the points are on it and its force has its sense. Steps end where the force passes from piece to piece.
+ * Within a step the force follows the law of one piece, the flag of the state, so that each step is smooth. A piece
+ * that pulls alone, or pushes alone, is left where its force, the damper's part of it included, turns round; it is
+ * entered where the points are on it and its force has its sense. Steps end where the force passes from piece to piece.
  */
 #include "bodies/model.h"
 #include "couplings/force/point_force.h"

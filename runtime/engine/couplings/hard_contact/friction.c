@@ -1,13 +1,17 @@
-/* Friction of hard contacts: how the point of a body that touches goes past the surface, and against what friction is. */
+/* Friction of hard contacts: how the point of a body that touches goes past the surface, and against what friction is.
+ */
 #include "bodies/model.h"
 #include "couplings/hard_contact/hard_contact.h"
 
 #include <math.h>
 #include <string.h>
 
-#define SLIDING_SPEED 1e-6  /* of the velocity below which a point comes to rest: what turns the direction of sliding */
-#define STICKING_COMPLIANCE 1e-10 /* m/s^2 over N: so little do points that stick give way, and share by their normal forces what holds them */
-#define WEIGHT_TOLERANCE 1e-9 /* of the weight: so much more is held, as a point may bear nothing, and be held by rounding */
+/* of the velocity below which a point comes to rest: what turns the direction of sliding */
+#define SLIDING_SPEED 1e-6
+/* m/s^2 over N: so little do points that stick give way, and share by their normal forces what holds them */
+#define STICKING_COMPLIANCE 1e-10
+/* of the weight: so much more is held, as a point may bear nothing, and be held by rounding */
+#define WEIGHT_TOLERANCE 1e-9
 #define MIN_ACCELERATION 1e-10 /* m/s^2: normal force over mass, below which it counts as that */
 
 /* Makes directions across the normal: one in the plane, two in space. */
@@ -30,10 +34,13 @@ static void across(int dim, const double *n, double t[2][3])
     fu_cross(n, t[0], t[1]);
 }
 
-/* Makes the direction of sliding: that of the velocity while it goes on forwards, that of the last step where it has turned. */
-static void find_direction(int dim, const fu_hard_contact *contact, const fu_state *state, const double *n, const double *past, double *out)
+/* Makes the direction of sliding: that of the velocity while it goes on forwards, that of the last step where it has
+ * turned. */
+static void find_direction(int dim, const fu_hard_contact *contact, const fu_state *state, const double *n,
+                           const double *past, double *out)
 {
-    const double *last = fu_hard_numbers_of(&contact->contact.base, state)->direction, slow = SLIDING_SPEED * contact->rest_velocity;
+    const double *last = fu_hard_numbers_of(&contact->contact.base, state)->direction,
+                 slow = SLIDING_SPEED * contact->rest_velocity;
     const int forwards = fu_dot(dim, last, past) > 0.0;
     double along = 0.0, square = 0.0;
     for (int d = 0; d < dim; ++d) out[d] = forwards ? past[d] + slow * last[d] : last[d];
@@ -45,8 +52,8 @@ static void find_direction(int dim, const fu_hard_contact *contact, const fu_sta
     for (int d = 0; d < dim; ++d) out[d] = square > 0.0 ? out[d] / sqrt(square) : 0.0;
 }
 
-void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, const fu_hard_row *row,
-                      fu_hard_along *out)
+void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state,
+                      const fu_hard_row *row, fu_hard_along *out)
 {
     const int dim = model->dim;
     fu_attachment_state point, on;
@@ -57,8 +64,9 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
     fu_surface_motion(dim, &point, r, P);
     fu_surface_motion(dim, &on, r, Q);
     memset(out->past, 0, sizeof out->past);
-    contact->contact.surface.kernel->slip(row->normal, row->curvature, point.p, point.v, point.bias, on.p, on.v, on.bias, on.omega,
-                                          on.alpha, contact->contact.radius, point.omega, point.alpha, out->past, bias);
+    contact->contact.surface.kernel->slip(row->normal, row->curvature, point.p, point.v, point.bias, on.p, on.v,
+                                          on.bias, on.omega, on.alpha, contact->contact.radius, point.omega,
+                                          point.alpha, out->past, bias);
     const double along = fu_dot(dim, out->past, row->normal);
     for (int d = 0; d < dim; ++d) out->past[d] -= along * row->normal[d];
     across(dim, row->normal, out->t);
@@ -78,7 +86,8 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
 /* Returns what friction can take of a point that sticks, N. */
 double fu_hard_friction_limit(const fu_hard_contact *contact, double multiplier)
 {
-    return contact->friction * fmax(WEIGHT_TOLERANCE * contact->weight - multiplier, WEIGHT_TOLERANCE * contact->weight);
+    return contact->friction *
+           fmax(WEIGHT_TOLERANCE * contact->weight - multiplier, WEIGHT_TOLERANCE * contact->weight);
 }
 
 double fu_hard_softness(const fu_hard_contact *contact, double multiplier)

@@ -1,5 +1,6 @@
-/* Hard contact of a point with a surface: while it is closed its distance is a constraint like those of a joint, eq 38, whose multiplier
- * may press alone. events/hard_contact.c has when it closes and opens, events/impact.c what then happens.
+/* Hard contact of a point with a surface: while it is closed its distance is a constraint like those of a joint, eq 38,
+ * whose multiplier may press alone. events/hard_contact.c has when it closes and opens, events/impact.c what then
+ * happens.
  */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
@@ -48,12 +49,13 @@ void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const
         out->H[point.n + i] = 0.0;
         for (int d = 0; d < dim; ++d) out->H[point.n + i] -= distance.n[d] * P[d * on.n + i];
     }
-    contact->contact.surface.kernel->motion(distance.n, distance.H, point.p, point.v, point.bias, on.p, on.v, on.bias, on.omega,
-                                            on.alpha, &out->rate, &out->bias);
+    contact->contact.surface.kernel->motion(distance.n, distance.H, point.p, point.v, point.bias, on.p, on.v, on.bias,
+                                            on.omega, on.alpha, &out->rate, &out->bias);
 }
 
 /* Adds rows of what friction holds, or what it is against where the point slides. */
-static void friction_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_hard_row *row, fu_rows *rows)
+static void friction_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const fu_hard_row *row, fu_rows *rows)
 {
     const fu_hard_contact *contact = contact_of(coupling);
     fu_hard_along along;
@@ -98,27 +100,32 @@ static double compliance(const fu_coupling *coupling, fu_weights weights)
 /* Writes the equation of the own unknown: what is left of the distance, or that it is nil. */
 static void own_row(const fu_coupling *coupling, const fu_equations *at, double g, double *own)
 {
-    const double multiplier = at->next->forces[coupling->force], left = g - compliance(coupling, at->weights) * multiplier;
-    if (is_closed(coupling, at->next)) own[coupling->unknown] = -fu_row_unit(at->weights.inertia, coupling->scale[0]) * left;
+    const double multiplier = at->next->forces[coupling->force],
+                 left = g - compliance(coupling, at->weights) * multiplier;
+    if (is_closed(coupling, at->next))
+        own[coupling->unknown] = -fu_row_unit(at->weights.inertia, coupling->scale[0]) * left;
     else own[coupling->unknown] = -at->weights.stiffness * at->next->forces[coupling->force];
 }
 
 /* Adds friction: against sliding, or the forces that keep velocities past the surface nil, as lengths over a step. */
-static void friction_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_hard_row *row,
-                              double *f, double *own)
+static void friction_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                              const fu_hard_row *row, double *f, double *own)
 {
     const fu_hard_contact *contact = contact_of(coupling);
-    const double *multipliers = at->next->forces + coupling->force, unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
+    const double *multipliers = at->next->forces + coupling->force,
+                 unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
     fu_hard_along along;
     fu_hard_along_at(model, contact, at->next, row, &along);
     if (!fu_hard_flags_of(coupling, at->next)->sticks) {
         for (int i = 0; i < row->n; ++i) f[row->at[i]] -= contact->friction * along.slip[i] * multipliers[0];
         return;
     }
-    const double step = 1.0 / at->weights.rate, soft = step * step * fu_hard_softness(contact, at->now->forces[coupling->force]);
+    const double step = 1.0 / at->weights.rate,
+                 soft = step * step * fu_hard_softness(contact, at->now->forces[coupling->force]);
     for (int k = 1; k < coupling->n_forces; ++k) {
         for (int i = 0; i < row->n; ++i) f[row->at[i]] += along.H[k - 1][i] * multipliers[k];
-        own[coupling->unknown + k] = -unit * (step * fu_dot(model->dim, along.t[k - 1], along.past) - soft * multipliers[k]);
+        own[coupling->unknown + k] =
+            -unit * (step * fu_dot(model->dim, along.t[k - 1], along.past) - soft * multipliers[k]);
     }
 }
 
@@ -135,13 +142,15 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     own_row(coupling, at, row.g, own);
 }
 
-/* Adds what friction's forces are by its own unknowns, and its rows by velocities; how both turn with the unknowns is left out. */
-static void friction_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_hard_row *row,
-                             fu_system *system)
+/* Adds what friction's forces are by its own unknowns, and its rows by velocities; how both turn with the unknowns is
+ * left out. */
+static void friction_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                             const fu_hard_row *row, fu_system *system)
 {
     const fu_hard_contact *contact = contact_of(coupling);
     const fu_weights weights = at->weights;
-    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), step = weights.rate > 0.0 ? 1.0 / weights.rate : 0.0;
+    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]),
+                 step = weights.rate > 0.0 ? 1.0 / weights.rate : 0.0;
     const int first = fu_extra(model, coupling->unknown), sticks = fu_hard_flags_of(coupling, at->next)->sticks;
     fu_hard_along along;
     fu_hard_along_at(model, contact, at->next, row, &along);
@@ -155,8 +164,8 @@ static void friction_tangent(const fu_model *model, const fu_coupling *coupling,
 }
 
 /* Adds, of a contact that is closed, how its distance and the force of its multiplier change with the unknowns. */
-static void tangent_of_closed(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, const fu_hard_row *row,
-                              fu_system *system)
+static void tangent_of_closed(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                              const fu_hard_row *row, fu_system *system)
 {
     const fu_hard_contact *contact = contact_of(coupling);
     const int dim = model->dim, own = fu_extra(model, coupling->unknown);
@@ -221,7 +230,8 @@ static void step_row(const fu_model *model, const fu_hard_contact *contact, cons
     out->g = g[1];
 }
 
-static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                          double *own)
 {
     fu_hard_row row = {.g = 0.0};
     if (is_closed(coupling, at->next)) {
@@ -252,11 +262,12 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
         state->forces[coupling->force + k] = closed ? work->multipliers[coupling->multiplier + k] : 0.0;
 }
 
-static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
-                    const fu_accelerator *work, double *out)
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                    const double *acceleration, const fu_accelerator *work, double *out)
 {
     fu_hard_contact_output *numbers = (fu_hard_contact_output *)out;
-    const double *multiplier = work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* or statics' */
+    const double *multiplier =
+        work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* or statics' */
     const double press = is_closed(coupling, state) ? -*multiplier : 0.0;
     fu_hard_along along;
     fu_hard_row row;
@@ -284,7 +295,8 @@ static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_st
     if (is_closed(coupling, state)) out[0] = row.g;
 }
 
-static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const fu_accelerator *work)
+static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const fu_accelerator *work)
 {
     const double press = -(work ? work->multipliers + coupling->multiplier : state->forces + coupling->force)[0];
     fu_hard_row row;
@@ -306,14 +318,16 @@ static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *
     memcpy(fu_hard_numbers_of(coupling, state)->direction, along.direction, sizeof(double) * (size_t)model->dim);
 }
 
-/* In statics a point touches where it presses, or is nearer than that: the active set follows from both (Hintermueller). */
+/* In statics a point touches where it presses, or is nearer than that: the active set follows from both
+ * (Hintermueller). */
 static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_hard_contact *contact = contact_of(coupling);
     fu_hard_row row;
     fu_hard_row_at(model, contact, state, &row);
     const double press = -state->forces[coupling->force];
-    fu_hard_flags_of(coupling, state)->mode = press > contact->stiffness * (row.g - CONTACT_TOLERANCE) ? FU_CLOSED : FU_APART;
+    fu_hard_flags_of(coupling, state)->mode =
+        press > contact->stiffness * (row.g - CONTACT_TOLERANCE) ? FU_CLOSED : FU_APART;
 }
 
 static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
@@ -346,10 +360,22 @@ static const fu_output output_fields[] = {
 };
 
 const fu_coupling_type fu_hard_contact_type = {
-    .name = "hard_contact", .size = sizeof(fu_hard_contact), .fields = fields,
+    .name = "hard_contact",
+    .size = sizeof(fu_hard_contact),
+    .fields = fields,
     .output_fields = output_fields,
-    .n_flags = (int)(sizeof(fu_hard_flags) / sizeof(int)), .n_numbers = (int)(sizeof(fu_hard_numbers) / sizeof(double)),
-    .residual = residual, .tangent = tangent, .step_residual = step_residual, .step_tangent = step_tangent, .rows = rows,
-    .take_forces = take_forces, .outputs = outputs, .gaps = gaps, .dissipation = dissipation, .detect = touch, .is_possible = is_possible,
+    .n_flags = (int)(sizeof(fu_hard_flags) / sizeof(int)),
+    .n_numbers = (int)(sizeof(fu_hard_numbers) / sizeof(double)),
+    .residual = residual,
+    .tangent = tangent,
+    .step_residual = step_residual,
+    .step_tangent = step_tangent,
+    .rows = rows,
+    .take_forces = take_forces,
+    .outputs = outputs,
+    .gaps = gaps,
+    .dissipation = dissipation,
+    .detect = touch,
+    .is_possible = is_possible,
     .history = &history,
 };

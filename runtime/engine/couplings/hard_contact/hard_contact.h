@@ -7,20 +7,21 @@
 
 #define FU_MOST_HARD_CONTACTS FU_MOST_COMPLEMENTARY /* of a scene: model/hard_contacts.py */
 
-/* One point, the contact's only one. A row g = 0 of its distance, less its radius, has a multiplier while it is closed: minus the
- * force that presses. */
+/* One point, the contact's only one. A row g = 0 of its distance, less its radius, has a multiplier while it is closed:
+ * minus the force that presses. */
 typedef struct {
-    fu_contact contact;      /* surface, point, radius */
-    double restitution;      /* of the normal velocity, 0 to 1 */
-    double rest_velocity;    /* m/s: what would leave more slowly stays */
-    double friction;         /* Coulomb's coefficient */
-    double weight;           /* N: of the body, or where there is no gravity as under 1 m/s^2 */
-    double stiffness;        /* N/m: in statics; that of a contact which gives way by little, so that points that hold the same share it */
+    fu_contact contact;   /* surface, point, radius */
+    double restitution;   /* of the normal velocity, 0 to 1 */
+    double rest_velocity; /* m/s: what would leave more slowly stays */
+    double friction;      /* Coulomb's coefficient */
+    double weight;        /* N: of the body, or where there is no gravity as under 1 m/s^2 */
+    double stiffness; /* N/m: in statics; that of a contact which gives way by little, so that points that hold the same
+                         share it */
 } fu_hard_contact;
 extern const fu_coupling_type fu_hard_contact_type;
 
-/* A point's own part of a state: how it is, what has happened to it, whether friction holds it, and when, s; the direction in which it
- * slides, or did last. */
+/* A point's own part of a state: how it is, what has happened to it, whether friction holds it, and when, s; the
+ * direction in which it slides, or did last. */
 typedef struct {
     int mode, news, sticks;
 } fu_hard_flags;
@@ -37,14 +38,16 @@ typedef struct {
     double force[3], friction_force[3], gap;
 } fu_hard_contact_output;
 
-/* How a point goes along the surface: velocity past it, two directions across the normal, rows of them over the dofs of the row, what
- * the rates of these velocities are where accelerations are zero, and the direction that friction is against. */
+/* How a point goes along the surface: velocity past it, two directions across the normal, rows of them over the dofs of
+ * the row, what the rates of these velocities are where accelerations are zero, and the direction that friction is
+ * against. */
 typedef struct {
-    double past[3], t[2][3], H[2][2 * FU_ATTACHMENT_COORDINATES], bias[2], direction[3], slip[2 * FU_ATTACHMENT_COORDINATES];
+    double past[3], t[2][3], H[2][2 * FU_ATTACHMENT_COORDINATES], bias[2], direction[3],
+        slip[2 * FU_ATTACHMENT_COORDINATES];
 } fu_hard_along;
 
-/* A point's row: distance g and its rate, what g'' is where accelerations of the coordinates are zero, normal; H over the n dofs
- * `at`, those of the body, then those of the body that the surface is on. */
+/* A point's row: distance g and its rate, what g'' is where accelerations of the coordinates are zero, normal; H over
+ * the n dofs `at`, those of the body, then those of the body that the surface is on. */
 typedef struct {
     double g, rate, bias, normal[3], curvature[9];
     int n, at[2 * FU_ATTACHMENT_COORDINATES];
@@ -60,8 +63,8 @@ void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const
 double fu_hard_beyond(const fu_model *model, const fu_hard_contact *hard, const fu_state *state);
 
 /* couplings/hard_contact/friction.c */
-void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, const fu_hard_row *row,
-                      fu_hard_along *out);
+void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state,
+                      const fu_hard_row *row, fu_hard_along *out);
 double fu_hard_friction_limit(const fu_hard_contact *contact, double multiplier);
 double fu_hard_softness(const fu_hard_contact *contact, double multiplier);
 

@@ -23,7 +23,8 @@ typedef struct {
 
 static const double nil[9] = {0.0};
 
-/* Makes what a joint sees of a state; s_rate: of the slides that its ends are on, null where no velocities are wanted. */
+/* Makes what a joint sees of a state; s_rate: of the slides that its ends are on, null where no velocities are wanted.
+ */
 static void look(const fu_model *model, const fu_joint *joint, const fu_state *state, const double s_rate[2],
                  joint_view *view)
 {
@@ -95,7 +96,8 @@ void fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_s
     double by_moves[6 * MOVES], K[MOVES * MOVES];
     joint_view view;
     look(model, joint, state, 0, &view);
-    joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, state->forces + joint->base.force, out->phi, by_moves, K);
+    joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, state->forces + joint->base.force, out->phi, by_moves,
+                         K);
     for (int e = 0; e < 2; ++e) {
         take_coordinates(&view, e, &out->n[e], out->at[e]);
         over_coordinates(model->dim, &view, e, joint->kernel->rows, by_moves, out->J[e]);
@@ -116,8 +118,8 @@ static int any(int n, const double *numbers)
     return 0;
 }
 
-/* Adds to K (n_f x n_e) what an attachment f has of the derivative by the coordinates of e, of which that of the work by the moves
- * is `half` (moves x n_e). */
+/* Adds to K (n_f x n_e) what an attachment f has of the derivative by the coordinates of e, of which that of the work
+ * by the moves is `half` (moves x n_e). */
 static void add_elastic(int dim, const joint_view *view, int f, int n_e, const double *half, double *K)
 {
     const fu_attachment_state *at = &view->at[f];
@@ -133,7 +135,8 @@ static void add_elastic(int dim, const joint_view *view, int f, int n_e, const d
 void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out)
 {
     const int rows = joint->kernel->rows, dim = model->dim;
-    double phi[6], by_moves[6 * MOVES], of_moves[MOVES * MOVES], g[MOVES] = {0.0}, half[MOVES * FU_ATTACHMENT_COORDINATES];
+    double phi[6], by_moves[6 * MOVES], of_moves[MOVES * MOVES], g[MOVES] = {0.0},
+                                                                 half[MOVES * FU_ATTACHMENT_COORDINATES];
     const double *multipliers = state->forces + joint->base.force;
     joint_view view;
     look(model, joint, state, 0, &view);
@@ -169,7 +172,8 @@ static const fu_rows *rows_of_slide(const fu_model *model, const fu_joint *joint
     return &work->rows[model->slides[joint->attachments[e].slide].base.row];
 }
 
-/* Makes H and W over the joint's coordinates those over the dofs: s of an attachment on a slide follows (eq 24, 31, 37). */
+/* Makes H and W over the joint's coordinates those over the dofs: s of an attachment on a slide follows (eq 24, 31,
+ * 37). */
 static void replace_s(const fu_model *model, const fu_joint *joint, const joint_view *view,
                       double J[2][6 * FU_ATTACHMENT_COORDINATES], const fu_accelerator *work, fu_rows *rows)
 {
@@ -222,12 +226,14 @@ void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_
     look(model, joint, state, s_rate, &view);
     const fu_attachment_state *one = &view.at[0], *two = &view.at[1];
     const double *turning[2] = {joint->of_points ? nil : one->omega, joint->of_points ? nil : two->omega};
-    joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, state->forces + joint->base.force, rows->C, by_moves, K);
+    joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, state->forces + joint->base.force, rows->C, by_moves,
+                         K);
     for (int e = 0; e < 2; ++e) over_coordinates(dim, &view, e, m, by_moves, J[e]);
     for (int d = 0; d < 3; ++d) gap_rate[d] = two->v[d] - one->v[d];
     const double driving[2] = {view.rate, view.second};
     double Q_d[6];
-    joint->kernel->motion(view.gap, view.A[0], view.A[1], view.c, gap_rate, turning[0], turning[1], driving, rows->rate, Q_d);
+    joint->kernel->motion(view.gap, view.A[0], view.A[1], view.c, gap_rate, turning[0], turning[1], driving, rows->rate,
+                          Q_d);
     double bias[MOVES] = {0.0};
     for (int d = 0; d < dim; ++d) bias[d] = two->bias[d] - one->bias[d];
     for (int d = 0; d < view.turns; ++d) {
@@ -247,7 +253,8 @@ void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_
         }
 }
 
-/* Returns whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row says so. */
+/* Returns whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row says
+ * so. */
 int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
 {
     for (int e = 0; e < 2 && at >= model->n_dof; ++e) {

@@ -31,8 +31,10 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
             const int n = at.n[e], last = n - 1, on_slide = joint->attachments[e].slide >= 0;
             if (!n) continue; /* the ground */
             const double *J = at.J[e] + r * n;
-            double *on = f + at.at[e][0]; /* an attachment's coordinates stand together, but s, the last of them on a slide */
-            if (n == FU_FRAME_DOFS && !on_slide) add_row(FU_FRAME_DOFS, multipliers[r], J, on); /* a loop without remainder */
+            double *on =
+                f + at.at[e][0]; /* an attachment's coordinates stand together, but s, the last of them on a slide */
+            if (n == FU_FRAME_DOFS && !on_slide)
+                add_row(FU_FRAME_DOFS, multipliers[r], J, on); /* a loop without remainder */
             else add_row(n - on_slide, multipliers[r], J, on);
             if (on_slide && fu_joint_moves(model, joint, next, at.at[e][last]))
                 own[at.at[e][last] - model->n_dof] -= scale * (J[last] * multipliers[r]);
@@ -48,7 +50,8 @@ static void unit_rows(const fu_model *model, const fu_joint *joint, int which, d
         if (which >> r & 1) fu_add(model, system, first + r, first + r, fu_row_unit(inertia, joint->base.scale[r]));
 }
 
-static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, fu_system *system)
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations,
+                    fu_system *system)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
     const fu_weights w = equations->weights;
@@ -63,7 +66,8 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     unit_rows(model, joint, joint->redundant_rows, w.inertia, system);
     for (int r = 0; r < rows; ++r) at[r] = fu_extra(model, coupling->unknown) + r;
     const fu_side own = {rows, at, 1};
-    fu_side columns[2], moving[2]; /* those that have a row of their own: s of a slide that does not slide has another */
+    fu_side columns[2],
+        moving[2]; /* those that have a row of their own: s of a slide that does not slide has another */
     for (int e = 0; e < 2; ++e) {
         columns[e] = moving[e] = (fu_side){by.n[e], by.at[e], joint->attachments[e].body >= 0};
         if (by.n[e]) moving[e].n -= !fu_joint_moves(model, joint, equations->next, by.at[e][by.n[e] - 1]);
@@ -107,17 +111,17 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
            sizeof(double) * (size_t)coupling->n_forces);
 }
 
-static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
-                    const fu_accelerator *work, double *out)
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                    const double *acceleration, const fu_accelerator *work, double *out)
 {
-    const double *multipliers = work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* of rest */
+    const double *multipliers =
+        work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* of rest */
     (void)acceleration;
-    fu_joint_outputs(model, (const fu_joint *)coupling, state, multipliers,
-                     (fu_joint_output *)out);
+    fu_joint_outputs(model, (const fu_joint *)coupling, state, multipliers, (fu_joint_output *)out);
 }
 
-/* Returns whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature
- * does. */
+/* Returns whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its
+ * curvature does. */
 int fu_ties_a_frame(const fu_model *model, int which)
 {
     for (int k = 0; k < model->n_couplings; ++k) {
@@ -132,12 +136,9 @@ int fu_ties_a_frame(const fu_model *model, int which)
 }
 
 static const fu_field fields[] = {
-    FU_FIELD(fu_joint, kernel, FU_KERNELS, 0),
-    FU_FIELD_ARRAY(fu_joint, attachments, FU_ATTACHMENT),
-    FU_FIELD_AS("drive", fu_joint, signal, FU_INTEGER),
-    FU_FIELD(fu_joint, of_points, FU_INTEGER, 0),
-    FU_FIELD_AS("base", fu_joint, c0, FU_REAL),
-    {0},
+    FU_FIELD(fu_joint, kernel, FU_KERNELS, 0),          FU_FIELD_ARRAY(fu_joint, attachments, FU_ATTACHMENT),
+    FU_FIELD_AS("drive", fu_joint, signal, FU_INTEGER), FU_FIELD(fu_joint, of_points, FU_INTEGER, 0),
+    FU_FIELD_AS("base", fu_joint, c0, FU_REAL),         {0},
 };
 
 static const fu_output output_fields[] = {

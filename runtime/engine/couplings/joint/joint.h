@@ -1,4 +1,5 @@
-/* Joints between two attachments: couplings/joint/equations.c has their equations, couplings/joint/joint.c what couplings do. */
+/* Joints between two attachments: couplings/joint/equations.c has their equations, couplings/joint/joint.c what
+ * couplings do. */
 #ifndef FUNICULAR_COUPLINGS_JOINT_JOINT_H
 #define FUNICULAR_COUPLINGS_JOINT_JOINT_H
 
@@ -7,7 +8,7 @@
 
 /* A joint between two attachments; c = distance or angle = its base + its signal drives it. */
 typedef struct {
-    fu_coupling base;   /* as many forces, multipliers, as equations */
+    fu_coupling base; /* as many forces, multipliers, as equations */
     const fu_joint_kernels *kernel;
     fu_attachment attachments[2];
     int signal;
@@ -22,15 +23,15 @@ typedef struct {
     double force[3], moment[3], residual; /* on the second attachment, at its point; the largest of phi */
 } fu_joint_output;
 
-/* A joint's equations at a state: phi; of both attachments the numbers of their n coordinates for fu_add, and the derivatives J
- * of phi by these (rows x n). */
+/* A joint's equations at a state: phi; of both attachments the numbers of their n coordinates for fu_add, and the
+ * derivatives J of phi by these (rows x n). */
 typedef struct {
     int n[2], at[2][FU_ATTACHMENT_COORDINATES];
     double phi[6], J[2][6 * FU_ATTACHMENT_COORDINATES];
 } fu_joint_rows_at;
 
-/* Derivatives of both attachments likewise; K[f][e]: those of J[f]' multipliers by the coordinates of e (n[f] x n[e]), which are
- * stored behind J[e]; nil between two attachments unless `across`. */
+/* Derivatives of both attachments likewise; K[f][e]: those of J[f]' multipliers by the coordinates of e (n[f] x n[e]),
+ * which are stored behind J[e]; nil between two attachments unless `across`. */
 typedef struct {
     int n[2], at[2][FU_ATTACHMENT_COORDINATES], across;
     double *K[2][2], J[2][(6 + 2 * FU_ATTACHMENT_COORDINATES) * FU_ATTACHMENT_COORDINATES];

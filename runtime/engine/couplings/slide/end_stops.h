@@ -2,8 +2,8 @@
 #ifndef FUNICULAR_COUPLINGS_SLIDE_END_STOPS_H
 #define FUNICULAR_COUPLINGS_SLIDE_END_STOPS_H
 
-/* What waits for a slide at an end of its cable: the restitution of a hard stop; the length before the end, m, the stiffness,
- * N/m, and the damping, N s/m, of a buffer. */
+/* What waits for a slide at an end of its cable: the restitution of a hard stop; the length before the end, m, the
+ * stiffness, N/m, and the damping, N s/m, of a buffer. */
 enum { FU_END_IS_ERROR, FU_END_IS_OPEN, FU_END_IS_HARD, FU_END_IS_BUFFERED };
 typedef struct {
     int kind;

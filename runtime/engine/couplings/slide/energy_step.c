@@ -21,13 +21,13 @@ static void discrete_gradient(const fu_model *model, const fu_coupling *coupling
     const int j = coupling->index;
     const double start = fu_element_start(model, j, now->piece[j]);
     const double length = fu_element_length(&model->cables[slide->cable], now->piece[j]);
-    slide->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start,
-                                     now->q + first, next->q + first, rider_at(model, now, slide),
-                                     rider_at(model, next, slide), G);
+    slide->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + first, next->q + first,
+                                     rider_at(model, now, slide), rider_at(model, next, slide), G);
 }
 
 /* Adds the force's discrete work to f, and the equations of s and of the force to own. */
-void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f, double *own)
+void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f,
+                        double *own)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = step->next;
@@ -37,8 +37,8 @@ void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, cons
     int at[FU_SLIDE_COORDINATES + 1];
     fu_slide_coordinates(model, next, j, at);
     discrete_gradient(model, coupling, step, at[0], G);
-    slide->kernel->residual(fu_element_length(&model->cables[slide->cable], step->now->piece[j]), next->s[j] - start, next->q + at[0],
-                            rider_at(model, next, slide), slide->rider.u, force, phi, unused);
+    slide->kernel->residual(fu_element_length(&model->cables[slide->cable], step->now->piece[j]), next->s[j] - start,
+                            next->q + at[0], rider_at(model, next, slide), slide->rider.u, force, phi, unused);
     own += coupling->unknown;
     for (int d = 0; d < slide->kernel->dim; ++d) {
         for (int i = 0; i < s; ++i) f[at[i]] += force[d] * G[d * n + i];
@@ -48,8 +48,8 @@ void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, cons
     own[0] = -step->weights.stiffness * along;
 }
 
-/* Adds the derivatives: rows of the constraint at the end of the step, columns of its discrete gradient, and half the derivative
- * of the force there. */
+/* Adds the derivatives: rows of the constraint at the end of the step, columns of its discrete gradient, and half the
+ * derivative of the force there. */
 void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *step,
                                 fu_system *system)
 {

@@ -42,8 +42,8 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
 }
 
 /* Makes rows over (element, point, `more`) rows over (element, rider, `more`). */
-static void expand(const fu_slide *slide, const slide_view *view, int n_rows, int n_element, int more, const double *given,
-                   double *rows)
+static void expand(const fu_slide *slide, const slide_view *view, int n_rows, int n_element, int more,
+                   const double *given, double *rows)
 {
     const int dim = slide->kernel->dim, n = view->rider.n;
     const int from = n_element + dim + more, to = n_element + n + more;
@@ -60,8 +60,8 @@ static void expand(const fu_slide *slide, const slide_view *view, int n_rows, in
     }
 }
 
-/* Finds the numbers for fu_add of a slide's coordinates, and after them of s; the force follows s. Returns how many stand before
- * s. */
+/* Finds the numbers for fu_add of a slide's coordinates, and after them of s; the force follows s. Returns how many
+ * stand before s. */
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at)
 {
     const fu_slide *slide = &model->slides[j];
@@ -80,7 +80,8 @@ void fu_slide_residual(const fu_model *model, const fu_state *state, int j, doub
     double of_point[FU_MAX_COORDINATES];
     slide_view v;
     look(model, state, j, &v);
-    slide->kernel->residual(v.length, v.x, v.e, v.b, v.u, state->forces + slide->base.force, phi, slide->rider_is_rigid ? g : of_point);
+    slide->kernel->residual(v.length, v.x, v.e, v.b, v.u, state->forces + slide->base.force, phi,
+                            slide->rider_is_rigid ? g : of_point);
     if (!slide->rider_is_rigid) expand(slide, &v, 1, model->cables[slide->cable].coordinates, 1, of_point, g);
 }
 
@@ -169,8 +170,10 @@ double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, do
     return fu_signal_at(&model->signals[model->slides[j].drive], state->t, rate, second);
 }
 
-/* Makes the derivatives of the constraints by s at this s, m, and the tangent frame there; returns the Newton step for s. */
-static double constraints_at(const fu_model *model, const fu_state *state, int j, double s, double C_s[3], double A_t[9])
+/* Makes the derivatives of the constraints by s at this s, m, and the tangent frame there; returns the Newton step for
+ * s. */
+static double constraints_at(const fu_model *model, const fu_state *state, int j, double s, double C_s[3],
+                             double A_t[9])
 {
     const fu_slide *slide = &model->slides[j];
     double C[3], step;

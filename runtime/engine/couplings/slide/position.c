@@ -4,10 +4,14 @@
 
 #include <math.h>
 
-#define MAX_ITERATIONS 50 /* of Newton's method: it converges quadratically, or there is no such point of the cable near */
-#define ROUNDING_OF_LENGTH 1e-15     /* of an element and of s: a correction that is rounding ends the iteration */
-#define LENGTH_TOLERANCE 1e-12        /* of an element: a correction that is as good as rounding where rounding keeps it from shrinking */
-#define ALONG 0.99         /* cosine of the angle between tangent and director from which on another axis takes over: 8 degrees */
+/* of Newton's method: it converges quadratically, or there is no such point of the cable near */
+#define MAX_ITERATIONS 50
+/* of an element and of s: a correction that is rounding ends the iteration */
+#define ROUNDING_OF_LENGTH 1e-15
+/* of an element: a correction that is as good as rounding where rounding keeps it from shrinking */
+#define LENGTH_TOLERANCE 1e-12
+/* cosine of the angle between tangent and director from which on another axis takes over: 8 degrees */
+#define ALONG 0.99
 
 /* Returns the Newton step for s of a slide, m, and the unit tangent there. */
 static double evaluate_constraint(const fu_model *model, const fu_state *state, int j, double s, double i[3])
@@ -19,7 +23,8 @@ static double evaluate_constraint(const fu_model *model, const fu_state *state, 
     return step;
 }
 
-/* Finds s by Newton's method for C_l(s) = 0, eq 21 on the curve of the element that holds s; returns 0 where it converged. */
+/* Finds s by Newton's method for C_l(s) = 0, eq 21 on the curve of the element that holds s; returns 0 where it
+ * converged. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, double *s)
 {
     const double length = model->cables[model->slides[j].cable].length;
@@ -32,8 +37,8 @@ int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, doub
     return fabs(step) <= LENGTH_TOLERANCE * length ? 0 : 1;
 }
 
-/* Turns the director that no element gives with the tangent: it becomes its part across the tangent, of unit length. Where the
- * tangent has swung onto it, the axis least along the tangent takes over. */
+/* Turns the director that no element gives with the tangent: it becomes its part across the tangent, of unit length.
+ * Where the tangent has swung onto it, the axis least along the tangent takes over. */
 void fu_update_director(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;

@@ -2,8 +2,8 @@
  * r_x, from the tangent t = r_x, the velocity u of the rider's point over the cable's particle and the whole force f.
  *
  * R stands in the row of s, f . r_x = R (eq 30 has zero there), and in eq 38 as G' R. A locked slide needs none: the
- * force along the cable is then that of the lock. Of a slide that is driven R is a part of that force: the drive gives the
- * rest, and R counts for the drive's power and for the energy dissipated.
+ * force along the cable is then that of the lock. Of a slide that is driven R is a part of that force: the drive gives
+ * the rest, and R counts for the drive's power and for the energy dissipated.
  */
 #include "bodies/model.h"
 #include "couplings/common/accelerator.h"
@@ -13,8 +13,10 @@
 #include <math.h>
 #include <string.h>
 
-#define FIRST_SHARE 0.1          /* of the change that the law asks for: the first step of R, lest it turn the normal force round */
-#define MIN_SECANT_SLOPE 0.1          /* slope of the secant below which R takes the change that its law asks for */
+/* of the change that the law asks for: the first step of R, lest it turn the normal force round */
+#define FIRST_SHARE 0.1
+/* slope of the secant below which R takes the change that its law asks for */
+#define MIN_SECANT_SLOPE 0.1
 #define LEAST_NORMAL 1e-30 /* N: of a normal force of zero there is no direction */
 
 /* Returns whether R acts on a slide as it is. */
@@ -50,8 +52,8 @@ static const fu_end_stop *pressed(const fu_model *model, const fu_state *state, 
     return flags->contact && stop->kind == FU_END_IS_BUFFERED ? stop : 0;
 }
 
-void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const double *t, const double *u, const double *f,
-              fu_resistance *resistance)
+void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
+                      const double *f, fu_resistance *resistance)
 {
     const fu_slide *slide = &model->slides[j];
     const fu_end_stop *stop = pressed(model, state, j);
@@ -61,8 +63,8 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
     const double buffer[4] = {stop ? stop->stiffness : 0.0, stop ? stop->damping : 0.0,
                               stop ? fu_compression(model, state, j, side) : 0.0, side};
     double by_x;
-    slide->resistance->force(t, u, f, friction, buffer, &resistance->R, resistance->by_t, resistance->by_u, resistance->by_f,
-                             &by_x);
+    slide->resistance->force(t, u, f, friction, buffer, &resistance->R, resistance->by_t, resistance->by_u,
+                             resistance->by_f, &by_x);
     resistance->by_s = side * by_x;
 }
 
@@ -83,7 +85,8 @@ static double power_of(const fu_model *model, const fu_state *state, int j, cons
     return -(resistance.R - spring) * along / square;
 }
 
-/* Returns the energy in the springs of the buffers that a slide is in, J: of those alone that it does not touch, or of all. */
+/* Returns the energy in the springs of the buffers that a slide is in, J: of those alone that it does not touch, or of
+ * all. */
 static double energy_in_buffers(const fu_model *model, const fu_state *state, int j, int all)
 {
     double energy = 0.0;
@@ -102,7 +105,8 @@ double fu_buffer_energy(const fu_model *model, const fu_coupling *coupling, cons
     return energy_in_buffers(model, state, coupling->index, 1);
 }
 
-double fu_lost_in_buffers(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to, int by_ends)
+double fu_lost_in_buffers(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                          int by_ends)
 {
     const int j = coupling->index;
     (void)by_ends;
@@ -133,10 +137,10 @@ void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const 
     }
 }
 
-/* Makes the derivatives of R by the slide's coordinates and s, and by the rates of the former, at a fixed force: those of t and u are
- * second derivatives of phi, of which fu_slide_tangent has those along a vector. */
-void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, const double *J, const fu_resistance *resistance,
-                   double *by_place, double *by_rate)
+/* Makes the derivatives of R by the slide's coordinates and s, and by the rates of the former, at a fixed force: those
+ * of t and u are second derivatives of phi, of which fu_slide_tangent has those along a vector. */
+void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, const double *J,
+                        const fu_resistance *resistance, double *by_place, double *by_rate)
 {
     double unused[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
     int at[FU_SLIDE_COORDINATES + 1];
@@ -166,8 +170,8 @@ static void along(const fu_model *model, const fu_slide_state *slide_state, doub
     }
 }
 
-/* Returns by how much R should change where its law asks for `change`: by the secant of the last sweep, as what friction presses on
- * the cable or takes off it depends on R almost linearly. */
+/* Returns by how much R should change where its law asks for `change`: by the secant of the last sweep, as what
+ * friction presses on the cable or takes off it depends on R almost linearly. */
 static double secant_step(fu_slide_state *last, double change)
 {
     const double slope = last->step != 0.0 ? (last->change - change) / last->step : 0.0;
@@ -176,8 +180,8 @@ static double secant_step(fu_slide_state *last, double change)
     return last->step;
 }
 
-double fu_resistance_update(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
-                           fu_accelerator *work)
+double fu_resistance_update(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                            const double *lambda, fu_accelerator *work)
 {
     const int j = coupling->index, dim = model->dim;
     fu_slide_state *slide_state = fu_slide_state_of(model, work, j);
@@ -202,9 +206,10 @@ double fu_resistance_update(const fu_model *model, const fu_coupling *coupling, 
     return change != 0.0 ? fabs(change) / size : 0.0;
 }
 
-/* Finds, of a slide that is driven, the part of the force along the cable that its drive does not give, and what it takes. */
-void fu_resistance_accept(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
-                           fu_accelerator *work)
+/* Finds, of a slide that is driven, the part of the force along the cable that its drive does not give, and what it
+ * takes. */
+void fu_resistance_accept(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const double *lambda, fu_accelerator *work)
 {
     const int j = coupling->index;
     fu_slide_state *slide_state = fu_slide_state_of(model, work, j);
@@ -238,7 +243,7 @@ double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupl
  * friction of the mean normal force differs from the mean friction, by at least the error made. The rider's speed stays
  * wrong, and its position is off by that times the time that is left. */
 double fu_resistance_friction_error(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
-                          const double *weights, const double *multipliers, double square)
+                                    const double *weights, const double *multipliers, double square)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     double mean[2] = {0.0, 0.0}, all = 0.0;

@@ -1,5 +1,5 @@
-/* What a slide does as a coupling. Own unknowns: s and the force f on the rider. Their equations are f . r_x = R, equilibrium
- * along the cable, eq 30, and phi = r - p = 0.
+/* What a slide does as a coupling. Own unknowns: s and the force f on the rider. Their equations are f . r_x = R,
+ * equilibrium along the cable, eq 30, and phi = r - p = 0.
  */
 #include "base/workspace.h"
 #include "bodies/unknowns.h"
@@ -11,9 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Makes t = r_x and u, as couplings/slide/resistance.c has them, from the derivatives J of phi by the coordinates and s, and R by the own
- * force. */
-static void resistance_of(const fu_model *model, const fu_state *state, int j, const double *J, fu_resistance *resistance)
+/* Makes t = r_x and u, as couplings/slide/resistance.c has them, from the derivatives J of phi by the coordinates and
+ * s, and R by the own force. */
+static void resistance_of(const fu_model *model, const fu_state *state, int j, const double *J,
+                          fu_resistance *resistance)
 {
     double t[3], u[3];
     fu_slide_motion(model, state, j, J, t, u);
@@ -36,22 +37,26 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = equations->next;
     const int j = coupling->index, mode = fu_slide_flags_of(model, next, j)->mode;
-    const double scale = equations->weights.stiffness, unit = fu_row_unit(equations->weights.inertia, slide->base.scale[0]);
+    const double scale = equations->weights.stiffness,
+                 unit = fu_row_unit(equations->weights.inertia, slide->base.scale[0]);
     double phi[3], g[FU_SLIDE_COORDINATES + 1], rate, second;
     int at[FU_SLIDE_COORDINATES + 1];
     const int s = fu_slide_coordinates(model, next, j, at);
     own += coupling->unknown;
     fu_slide_residual(model, next, j, phi, g);
     for (int i = 0; i < s; ++i) f[at[i]] += g[i];
-    own[0] = mode == FU_SLIDES ? -scale * g[s]
-        : -unit * (next->s[j] - (mode == FU_LOCKED ? fu_slide_locked_s(model, next, j, &rate, &second) : equations->now->s[j]));
+    own[0] = mode == FU_SLIDES
+                 ? -scale * g[s]
+                 : -unit * (next->s[j] - (mode == FU_LOCKED ? fu_slide_locked_s(model, next, j, &rate, &second)
+                                                            : equations->now->s[j]));
     if (slide->resistance && mode == FU_SLIDES) own[0] += scale * resisted(model, next, j);
     for (int d = 0; d < slide->kernel->dim; ++d)
         own[1 + d] = mode == FU_LEFT ? -scale * next->forces[coupling->force + d] : -unit * phi[d];
 }
 
 /* Adds what R adds to the row of s; J: derivatives of phi by the coordinates themselves. */
-static void resistance_matrix(const fu_model *model, int j, const fu_equations *equations, const double *J, fu_system *system)
+static void resistance_matrix(const fu_model *model, int j, const fu_equations *equations, const double *J,
+                              fu_system *system)
 {
     const fu_slide *slide = &model->slides[j];
     const fu_weights w = equations->weights;
@@ -62,13 +67,13 @@ static void resistance_matrix(const fu_model *model, int j, const fu_equations *
     resistance_of(model, equations->next, j, J, &resistance);
     fu_resistance_rows(model, equations->next, j, J, &resistance, by_place, by_rate);
     fu_turn_attachment(model, &slide->rider, equations->psi, by_place, 1, n, model->cables[slide->cable].coordinates);
-    for (int k = 0; k < n; ++k)
-        fu_add(model, system, at[s], at[k], -w.stiffness * (by_place[k] + w.rate * by_rate[k]));
+    for (int k = 0; k < n; ++k) fu_add(model, system, at[s], at[k], -w.stiffness * (by_place[k] + w.rate * by_rate[k]));
     for (int d = 0; d < model->dim; ++d)
         fu_add(model, system, at[s], at[s] + 1 + d, -fu_row_unit(w.inertia, slide->base.scale[0]) * resistance.by_f[d]);
 }
 
-static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, fu_system *system)
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations,
+                    fu_system *system)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = equations->next;
@@ -126,9 +131,10 @@ static void rates(const fu_model *model, const fu_coupling *coupling, const fu_a
     *rate = fu_slide_state_of(model, work, coupling->index)->s_rate;
 }
 
-/* Adds the force along the cable on a slide's rider that comes of joints whose frame goes with the slide: what their moments put
- * on s, which stands in their rows as G. */
-static void add_force_of_frame(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
+/* Adds the force along the cable on a slide's rider that comes of joints whose frame goes with the slide: what their
+ * moments put on s, which stands in their rows as G. */
+static void add_force_of_frame(const fu_model *model, const fu_accelerator *work, int j, const double *lambda,
+                               double *f)
 {
     const int dim = model->dim;
     const double *G = fu_slide_state_of(model, work, j)->by_point + (dim - 1) * dim;
@@ -183,7 +189,8 @@ static double of_frame(const fu_model *model, const fu_state *state, int j)
         fu_joint_equations(model, joint, state, &at);
         for (int e = 0; e < 2; ++e)
             for (int r = 0; r < joint->kernel->rows && joint->attachments[e].slide == j; ++r)
-                if (!(joint->redundant_rows >> r & 1)) sum += at.J[e][(r + 1) * at.n[e] - 1] * state->forces[joint->base.force + r];
+                if (!(joint->redundant_rows >> r & 1))
+                    sum += at.J[e][(r + 1) * at.n[e] - 1] * state->forces[joint->base.force + r];
     }
     return sum;
 }
@@ -210,8 +217,8 @@ static void outputs_at_rest(const fu_model *model, const fu_state *state, int j,
 }
 
 /* work: null in a state of rest. */
-static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
-                    const fu_accelerator *work, double *out)
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                    const double *acceleration, const fu_accelerator *work, double *out)
 {
     if (work == 0) outputs_at_rest(model, state, coupling->index, (fu_slide_output *)out);
     else fu_slide_outputs(model, state, coupling->index, acceleration, work, (fu_slide_output *)out);
@@ -275,7 +282,7 @@ static const char *excess(const fu_coupling *coupling)
 
 static const char *const role[] = {"slide", 0}, *const resistance_role[] = {"resistance", 0};
 
-#define OF_STOPS(name, member, kind, words) \
+#define OF_STOPS(name, member, kind, words)                                                                            \
     {name, kind, offsetof(fu_slide, stops[0].member), 2, sizeof(fu_end_stop), words}
 
 static const fu_field fields[] = {
@@ -302,7 +309,8 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_reaction_operations reaction = {.update = fu_resistance_update, .accept = fu_resistance_accept, .friction_error = fu_resistance_friction_error};
+static const fu_reaction_operations reaction = {
+    .update = fu_resistance_update, .accept = fu_resistance_accept, .friction_error = fu_resistance_friction_error};
 static const fu_coordinate_operations coordinates = {.rates = rates, .solve = solve};
 static const fu_history_operations history = {.update = fu_update_director};
 

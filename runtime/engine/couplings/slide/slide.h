@@ -1,4 +1,5 @@
-/* Slides: couplings/slide/kinematics.c has their kernels over their coordinates, couplings/slide/slide.c what couplings do. */
+/* Slides: couplings/slide/kinematics.c has their kernels over their coordinates, couplings/slide/slide.c what couplings
+ * do. */
 #ifndef FUNICULAR_COUPLINGS_SLIDE_SLIDE_H
 #define FUNICULAR_COUPLINGS_SLIDE_SLIDE_H
 
@@ -10,9 +11,10 @@
 
 /* A slide's own part of a state: its flags, and its numbers.
  *
- * mode: it slides; s is locked, at a signal or where it stands; the rider has left the cable. slip_direction: 1 or -1 where
- * friction is against that direction whatever the speed. contact: 1 or -1 where it lies against what is at the end or at the
- * start. locked_s: s where it is locked, m. director: a unit vector across the tangent, carried along with the slide. */
+ * mode: it slides; s is locked, at a signal or where it stands; the rider has left the cable. slip_direction: 1 or -1
+ * where friction is against that direction whatever the speed. contact: 1 or -1 where it lies against what is at the
+ * end or at the start. locked_s: s where it is locked, m. director: a unit vector across the tangent, carried along
+ * with the slide. */
 enum { FU_SLIDES, FU_LOCKED, FU_LEFT };
 typedef struct {
     int mode, slip_direction, contact;
@@ -22,18 +24,18 @@ typedef struct {
 } fu_slide_numbers;
 
 struct fu_slide {
-    fu_coupling base;        /* one coordinate, s; as many forces as dimensions, on the rider */
+    fu_coupling base; /* one coordinate, s; as many forces as dimensions, on the rider */
     const fu_slide_kernels *kernel;
     int cable;
     fu_attachment rider;
-    int rider_is_rigid;      /* the kernels take the rider's own configuration: it is a rigid body */
-    int drive;               /* signal that s follows, -1 */
-    int carries_director;    /* the element has none of its own */
+    int rider_is_rigid;                      /* the kernels take the rider's own configuration: it is a rigid body */
+    int drive;                               /* signal that s follows, -1 */
+    int carries_director;                    /* the element has none of its own */
     const fu_resistance_kernels *resistance; /* null where there are neither friction nor buffers */
-    int sticks;              /* friction holds it at rest, else it rises with the speed */
+    int sticks;                              /* friction holds it at rest, else it rises with the speed */
     double friction, static_friction, viscous, velocity; /* coefficients sliding and at rest; N s/m; m/s */
-    fu_end_stop stops[2];    /* at the start and at the end */
-    double start_s, director[FU_SPACE]; /* of the state as it is drawn, as is the next */
+    fu_end_stop stops[2];                                /* at the start and at the end */
+    double start_s, director[FU_SPACE];                  /* of the state as it is drawn, as is the next */
     int start_piece;
 };
 extern const fu_coupling_type fu_slide_type;
@@ -41,14 +43,14 @@ extern const fu_coupling_type fu_slide_type;
 /* How a slide moves at a state (eq 20-37), and its resistance R there. */
 typedef struct {
     double C[3], G[FU_SLIDE_COORDINATES], s_rate, s_bias;
-    double by_point[9];      /* derivatives of the rows in use by the rider's point, row by row */
-    double R, driven_R;      /* of one that slides; of one that is driven */
-    double power;            /* W: that goes to heat */
-    double step, change;     /* of R: the last step, and the change that the law asked for */
+    double by_point[9];  /* derivatives of the rows in use by the rider's point, row by row */
+    double R, driven_R;  /* of one that slides; of one that is driven */
+    double power;        /* W: that goes to heat */
+    double step, change; /* of R: the last step, and the change that the law asked for */
 } fu_slide_state;
 
-/* A slide's numbers in a row of output. traction: the force on the rider along the cable; of a slide that is driven what its
- * drive gives, over s: times s_rate it is the drive's power. */
+/* A slide's numbers in a row of output. traction: the force on the rider along the cable; of a slide that is driven
+ * what its drive gives, over s: times s_rate it is the drive's power. */
 typedef struct {
     double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3];
 } fu_slide_output;
@@ -67,11 +69,13 @@ double fu_slide_frame(const fu_model *model, const fu_state *state, int j, doubl
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9]);
 
 /* couplings/slide/energy_step.c: residual and tangent over a step that conserves energy. */
-void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f, double *own);
+void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f,
+                        double *own);
 void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *step,
                                 fu_system *system);
 
-/* couplings/slide/position.c: s where C_l = 0, eq 21, not zero where there is none; and the director that goes with it. */
+/* couplings/slide/position.c: s where C_l = 0, eq 21, not zero where there is none; and the director that goes with it.
+ */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int slide, double *s);
 void fu_update_director(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
