@@ -19,6 +19,7 @@ from .penetrations import Penetrations
 from .reduced_strain import ReducedStrain
 from .sensitivity import Sensitivity
 from .slack_growth import SlackMotion
+from .spinning_sections import SpinningSections
 from .straight_struts import StraightStruts
 from .straightened import Straightened
 from .surface_ends import SurfaceEnds
@@ -63,7 +64,7 @@ class RowNotes:
             "straightened": Straightened(scene, model), "sensitivity": self.sensitivity, "slack motion": self.slack,
             "meeting points": MeetingPoints(scene, model), "fast turns": self.turns,
             "folds": Folds(scene, model), "unseen contact": UnseenContact(scene, model),
-            "normal forces": self.normal_forces}
+            "normal forces": self.normal_forces, "spinning sections": SpinningSections(scene, model)}
         self._noted: dict[str, Noted] = {**self._watched, **self._seen_in_steps}
 
     def see(self, engine: Engine) -> None:

@@ -1,0 +1,77 @@
+"""Thin beams whose elements are too long for their torsion, in runs; `statics.spinning_sections` has states of rest.
+
+Where an element bends by an angle a under the tension N, a twist between its nodes turns the half-way frame away from
+the chord, which lets the element lengthen: N (a L)² times a small number, against the torsional stiffness GJ. In beams
+far thinner than their elements are long, sections then spin though nothing twists them: an instability of the mesh,
+which ends as elements become shorter.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...model.model import CableModel, Model
+from ...parts.cable import Cable
+from ...parts.scene_data import SceneData
+
+STABLE_RATIO = 20.0
+"""Of N (a L)²/GJ, up to which sections rest: ropes of 0.1 to 10 mm over 100 m do so at 19 to 49, and spin at 120."""
+UNSTABLE_RATIO = 60.0
+"""Of the same, above which a run is noted."""
+LAW = "structural"
+"""The law whose half-way frame the twist turns; the laws of a continuum have none."""
+
+
+class SpinningSections:
+    """The largest N (a L)²/GJ of each thin beam over a run.
+
+    found: ratio, time in s, by the cable's name.
+    """
+
+    def __init__(self, scene: SceneData, model: Model):
+        self._scene = scene
+        self._cables = [cable for cable in model.cables
+                        if has_sections(cable) and str(scene.cables[cable.name].law).startswith(LAW)]
+        self.found: dict[str, Any] = {}
+
+    def see(self, rows: dict[str, np.ndarray]) -> None:
+        """Take further output rows."""
+        for cable in self._cables:
+            part = self._scene.cables[cable.name]
+            ratios = torsion_ratio(cable, part, rows["q"][:, cable.coordinates].reshape(-1, *cable.shape))
+            k = int(np.argmax(ratios))
+            if ratios[k] > self.found.get(cable.name, (0.0, 0.0))[0]:
+                self.found[cable.name] = [float(ratios[k]), float(rows["time"][k])]
+
+    def notes(self) -> list[str]:
+        """Return a note for each cable whose sections may spin."""
+        of_name = {cable.name: cable for cable in self._cables}
+        return [f'cable "{name}": elements of {of_name[name].mesh.lengths.max():.3g} m are too long for the torsion of '
+                f"so thin a beam: sections may spin, and errors may grow from rounding (N (a L)²/GJ reached "
+                f"{ratio:.3g} at t = {time:.4g} s; up to {STABLE_RATIO:g} is stable); take elements of at most "
+                f'{stable_length(of_name[name], ratio):.2g} m, or element="cable12", which has no torsion'
+                for name, (ratio, time) in self.found.items() if ratio > UNSTABLE_RATIO]
+
+
+def has_sections(cable: CableModel) -> bool:
+    """Return whether a cable has directors of its sections."""
+    return {"r_y", "r_z"} <= set(cable.vectors)
+
+
+def torsion_ratio(cable: CableModel, part: Cable, nodal: np.ndarray) -> np.ndarray:
+    """Return the largest N (a L)²/GJ of the elements, (...), of nodal vectors (..., nodes, vectors, 3)."""
+    slope = nodal[..., cable.vectors.index("r_x"), :]
+    stretch = np.linalg.norm(slope, axis=-1)
+    tangent = slope / stretch[..., None]
+    angle = np.arccos(np.clip((tangent[..., 1:, :] * tangent[..., :-1, :]).sum(axis=-1), -1.0, 1.0))
+    section, material = part.section, part.material
+    tension = material.youngs_modulus * section.area * ((stretch[..., 1:] + stretch[..., :-1]) / 2 - 1.0)
+    torsion = material.lame()[1] * section.torsion_constant
+    return (tension * (angle * cable.mesh.lengths) ** 2).max(axis=-1) / torsion
+
+
+def stable_length(cable: CableModel, ratio: float) -> float:
+    """Return how long elements may be, m, where those of now have this ratio: it grows as the fourth power."""
+    return float(cable.mesh.lengths.max()) * (STABLE_RATIO / ratio) ** 0.25 if ratio > 0.0 else np.inf
