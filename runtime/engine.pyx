@@ -19,11 +19,11 @@ from libc.string cimport memcpy
 
 from funicular.base.interruptions import check_interrupted
 from funicular.base.operating_system import machine_memory
-from scipy.linalg import cython_lapack
 
 include "engine/cython/engine.pxi"
 
 cdef fu_lapack LAPACK
+cdef bint has_lapack = False
 
 
 cdef size_t _own_tables() except 0:
@@ -37,15 +37,22 @@ cdef size_t _own_tables() except 0:
 
 
 cdef _take_lapack():
-    """Fill in the functions of LAPACK that the engine names, as scipy has them."""
+    """Fill in the functions of LAPACK that the engine names, as scipy has them.
+
+    A run asks for them, not `import funicular`: SciPy takes as long as all the rest of that import.
+    """
+    global has_lapack
     cdef int k = 0
+    if has_lapack:
+        return
+    from scipy.linalg import cython_lapack
+
     while fu_lapack_name(k) != NULL:
         function = cython_lapack.__pyx_capi__[fu_lapack_name(k).decode()]
         fu_lapack_attach(&LAPACK, k, PyCapsule_GetPointer(function, PyCapsule_GetName(function)))
         k += 1
+    has_lapack = True
 
-
-_take_lapack()
 
 Output = namedtuple("Output", "first size units turns")
 Output.__doc__ = """A number or vector of a coupling in a row of output (base/fields.h): the first of its numbers, how many they are, their

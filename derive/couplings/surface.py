@@ -258,7 +258,7 @@ class _Passing:
 
 
 def motion(dim: int) -> Program:
-    """Return the kernel of both rates of a distance; the second at zero accelerations: -gamma (eq 10)."""
+    """Return the kernel of both rates of a distance; the second at zero accelerations: -gamma of eq 10."""
     p = _program(dim, "motion", "rates of the distance of a moving point from a moving surface")
     of = _Passing(p, dim)
     g_t = p.define("rate", of.n.dot(of.past))

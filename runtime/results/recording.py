@@ -14,7 +14,7 @@ from ..model.part_states import States, part_states
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from ..solve.motion.run import FAILED, Simulation
+from ..solve.motion.run import FAILED_STATUSES, Simulation
 from ..solve.notes.coincident_points import MeetingPoints
 from ..solve.notes.diagnosis import stopped
 
@@ -82,7 +82,7 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
     }
     return Recording(
         **vars(rows),
-        status="no_convergence" if status in FAILED else status,
+        status="no_convergence" if status in FAILED_STATUSES else status,
         message=_message(simulation, scene, settings),
         report=report,
     )
@@ -112,7 +112,7 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
                 f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; '
                 "what was computed up to there is kept"
             )
-        case _ if status in FAILED:
+        case _ if status in FAILED_STATUSES:
             now, q, *_ = engine.now()
             points = MeetingPoints(scene, model)
             points.see({"time": np.array([now]), "q": q[None]})

@@ -390,3 +390,25 @@ def test_a_scene_file_has_it_and_a_run_goes_on_from_its_state(tmp_path):
     rest = again.run(duration=0.1, output_step=0.1, integrator="explicit", initial=first.at(4.9))
     assert rest["ball.position"][-1] == pytest.approx(whole["ball.position"][-1], abs=1e-6)
     assert rest["foot.force"][-1, 1] == pytest.approx(2 * G)
+
+
+def on_feet(n):
+    """A plate at rest on n feet."""
+    scene = fu.Scene()
+    scene.rigid_body("A", mass=1.0, inertia=(0.1,) * 3, position=(0, 0.1, 0))
+    scene.surface("ground", fu.Plane())
+    feet = [(0.3, -0.1, 0.3), (-0.3, -0.1, 0.3), (0.3, -0.1, -0.3), (-0.3, -0.1, -0.3)]
+    scene.contact("A", "ground", restitution=0.0, points=feet[:n], name="c")
+    return scene
+
+
+@pytest.mark.parametrize(("was", "now"), [(3, 4), (4, 3)])
+def test_a_state_of_rest_with_other_hard_contacts(was, now):
+    """Its forces are of other points: a search for rest finds them anew; modes about it were those of wrong forces, or
+    ended in an IndexError.
+    """
+    state = on_feet(was).equilibrium()
+    rest = on_feet(now).equilibrium(start=state)
+    assert rest["c.force"][1] == pytest.approx(9.81)
+    with pytest.raises(fu.SceneError, match="has other hard contacts"):
+        on_feet(now).modes(3, about=state)

@@ -60,7 +60,7 @@ def moved(engine, forces: float) -> dict:
     engine.set_state(0.3)
     engine.move(1e-3 * rng.standard_normal(engine.unknowns))
     kept = engine.state()
-    for name in ("force", "multipliers"):
+    for name in [key for key in kept if key not in ("q", "s")]:
         kept[name] = forces * rng.standard_normal(kept[name].shape)
     return kept
 

@@ -49,7 +49,7 @@ def test_a_run_of_few_steps_says_nothing():
 
 def test_knots_of_a_table_are_named_as_what_the_steps_are_for(monkeypatch):
     """The rate of a motion that goes from sample to sample in straight lines jumps at each of them."""
-    monkeypatch.setattr(long_runs, "MANY_STEPS", 500)
+    monkeypatch.setattr(long_runs, "MANY_STEPS_LIMIT", 500)
     time = np.linspace(0, 0.1, 1001)
     scene = stiff(pinned=False)
     polygon = TableSignal(time=tuple(time), value=tuple(1e-3 * np.cos(90 * time) - 1e-3), interpolation="linear")

@@ -13,11 +13,10 @@ SLIDE = (1.35843121, 0.00076473)
 
 def test_the_rigid_link_moves_as_the_reference_says(validated):
     run = load_scene("paper52_rigid").run(duration=1.5, tol=1e-6, output_step=0.5)
-    for row, (time, place) in enumerate(BALL.items(), start=1):
-        assert run.time[row] == pytest.approx(time)
-        validated("Slides", "example 5.2 of the paper, rigid link with a ball", f"position of the ball at {time} s",
-                  place, run["ball.position"][row, :2], unit="m", scale=1.0, bound=1e-6,
-                  source="independent formulation")
+    assert run.time[1:] == pytest.approx([*BALL])
+    validated("Slides", "example 5.2 of the paper, rigid link with a ball", "position of the ball at 0.5, 1 and 1.5 s",
+              [*BALL.values()], run["ball.position"][1:, :2], unit="m", scale=1.0, bound=1e-6,
+              source="independent formulation")
     top = 2 * run["link.position"][-1] - run["ball.position"][-1]
     np.testing.assert_allclose(top[:2], SLIDE, atol=1e-6)
     assert run["trolley.residual"].max() < 1e-12

@@ -67,7 +67,7 @@ def noted(run, said: str) -> list[str]:
 def test_rows_on_disk_are_noted_too(said, tmp_path, monkeypatch):
     """Of a streamed run the last rows alone were looked at, in which nothing is pressed any more."""
     whole = SCENES[said]().run(**SETTINGS)
-    monkeypatch.setattr(pauses, "BUFFER", 1.0)
+    monkeypatch.setattr(pauses, "MAX_BUFFERED_BYTES", 1.0)
     streamed = SCENES[said]().run(**SETTINGS, save=tmp_path / "run.nc")
     assert len(noted(whole, said)) == 1
     assert noted(streamed, said) == noted(whole, said)

@@ -79,9 +79,9 @@ def test_links_with_a_cable_may_follow_from_others():
 @pytest.mark.parametrize("name", ["paper51", "cable_car"])
 def test_rates_by_sparse_matrices_are_those_by_arrays(name, monkeypatch):
     model = build(load_scene(name))
-    monkeypatch.setattr(integrator_choice, "DENSE", 10**9)
+    monkeypatch.setattr(integrator_choice, "MAX_DENSE_UNKNOWNS", 10**9)
     by_arrays = integrator_choice.fastest_rates(model, Engine(model))
-    monkeypatch.setattr(integrator_choice, "DENSE", 0)
+    monkeypatch.setattr(integrator_choice, "MAX_DENSE_UNKNOWNS", 0)
     assert integrator_choice.fastest_rates(model, Engine(model)) == pytest.approx(by_arrays, rel=1e-9)
 
 

@@ -4,8 +4,8 @@ import re
 
 import funicular
 import pytest
+from funicular.guides.site import printed as printing
 from funicular.guides.site.parts_page import meanings_of
-from funicular.guides.site.printed import printed
 from funicular.parts.kinds import PARTS
 from funicular.parts.scene_text import SETTINGS
 from pages import PAGES, ROOT, SUBJECTS, page
@@ -59,9 +59,16 @@ def test_each_machine_has_a_guide_or_says_what_is_not_modelled():
 
 
 def test_printed_pages_are_what_the_code_says():
-    for name, text in printed().items():
+    for name, text in printing.printed().items():
         assert (FOLDER / name).read_text(encoding="utf-8") == text, \
             "write it anew: python -m funicular.guides.site.printed"
+
+
+def test_an_installed_package_prints_no_pages(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(printing, "FOLDER", tmp_path / "pages")
+    assert printing.main() == 1
+    assert capsys.readouterr().err.endswith("print them in a copy of the repository\n")
+    assert not (tmp_path / "pages").exists()
 
 
 def test_every_argument_and_result_of_every_part_is_printed():

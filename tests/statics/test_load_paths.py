@@ -201,7 +201,7 @@ def test_eulers_loads_are_bifurcations(validated):
 def test_a_strut_beyond_eulers_load_buckles(element, validated):
     """Load over Euler's 1/cos-like: tip of the elastica at P/Pe = 1.1517, turned by 60 degrees (Timoshenko & Gere,
     Theory of Elastic Stability, table 2-4: x 0.741, y 0.593)."""
-    with pytest.warns(FunicularWarning, match="the search went on to a stable one; nothing says to which side"):
+    with pytest.warns(FunicularWarning, match="the search went on to a stable one; the branch that the search"):
         state = strut(1.1517 * EULER, element).equilibrium()
     x, y, z = state["strut.position"][-1]
     assert state.stable

@@ -27,7 +27,7 @@ def test_a_taut_string(element, of_each, validated):
 
 def test_sparse_and_dense_solvers_agree(monkeypatch):
     from funicular.solve.linear import spectrum
-    from funicular.solve.modes.modes import modes as modal
+    from funicular.solve.modes import modes as modal
 
     dense = string(12).modes(6).angular_frequency
     monkeypatch.setattr(modal, "DENSE", 0)

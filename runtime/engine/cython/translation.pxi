@@ -50,6 +50,7 @@ cdef class Translation(Arrays):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model, blocks=True):
+        _take_lapack()
         tables = [_own_tables(), *model.tables]
         self._bodies_and_cables(model, tables, blocks)
         m = &self.model

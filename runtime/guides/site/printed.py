@@ -21,7 +21,11 @@ def printed() -> dict[str, str]:
 
 
 def main() -> int:
-    """Write the pages into the folder `guides/pages` of the repository; returns 0."""
+    """Write the pages into the folder `guides/pages` of the repository; returns 0, or 1 where there is none."""
+    if not FOLDER.is_dir():
+        print(f"error: {FOLDER} does not exist: an installed funicular is without these pages; print them in a copy of "
+              "the repository", file=sys.stderr)
+        return 1
     for name, text in printed().items():
         (FOLDER / name).write_text(text, encoding="utf-8")
         print(FOLDER / name)

@@ -119,6 +119,10 @@ def _begin(static: StaticState, about: RestState | None, as_drawn: bool) -> list
     """Go to the state that modes are about; return what is to be said of it. Raises SceneError, see `modes`."""
     if about is not None:
         about.check_supports(static.model, static.scene)
+        own = static.keep()
+        if any(values.shape != own[name].shape for name, values in about.static_state.items()):
+            raise SceneError("scene", "the state that modes are about has other hard contacts",
+                             "take an equilibrium of this scene")
         static.restore(about.static_state)
         return []
     left = balance(static)

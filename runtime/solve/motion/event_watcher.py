@@ -17,8 +17,8 @@ from ...model.states import body_rates, body_state, spatial
 from ...parts.event import Event
 from ...parts.scene_data import SceneData
 
-LEAVES_TABLE = "leaves the table of its fluid"
-"""What the engine says of it (engine/events/fluid_table.c)."""
+LEAVES_TABLE_TEXT = "leaves the table of its fluid"
+"""Text of the engine's event (engine/events/fluid_table.c)."""
 
 
 class Watch:
@@ -159,7 +159,7 @@ class EventWatcher:
         """Return a message for each drag that has left the table of its fluid."""
         first: dict[str, float] = {}
         for happened in self.happened:
-            if happened.get("what") == LEAVES_TABLE:
+            if happened.get("what") == LEAVES_TABLE_TEXT:
                 first.setdefault(happened["name"], happened["time"])
         return [f'drag "{name}" leaves the table of its fluid at t = {time:.6g} s: beyond the edges the velocity stays '
                 "as it is there; take a larger table" for name, time in first.items()]

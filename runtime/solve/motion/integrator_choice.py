@@ -22,48 +22,50 @@ from ...parts.slide import Slide
 from ..linear.condensation import without_forces
 from ..notes.supersonic_loads import outrunning
 
-ITERATIONS = 20
-"""Of the power iteration."""
+POWER_ITERATIONS = 20
+"""Number of power iterations."""
 
-DENSE = 120
-"""Unknowns up to which matrices are arrays: sparse ones take longer to make than their zeros to multiply."""
-
-
-NEAR = 8.0
-"""Ratio of expected costs up to which the implicit method is put on trial where it is expected to be the dearer one."""
-
-WORTH_A_TRIAL = 3000.0
-"""Evaluations of eq 38 that the explicit method takes at least where it is a rival to one on trial."""
+MAX_DENSE_UNKNOWNS = 120
+"""Unknowns up to which matrices are arrays: assembly of sparse ones takes longer than products with zeros."""
 
 
-LOOSE = 4e-3
-"""The tol from which on the method of low order begins: it is the cheaper one at errors above 1e-3 of the motion."""
+MAX_TRIAL_COST_RATIO = 8.0
+"""Ratio of expected costs, implicit over explicit, up to which the implicit method runs a trial."""
 
-LOOSE_FOR_FRICTION = 4e-2
-"""The same where slides rub: at tighter ones the error of genalpha can be many times tol there."""
+MIN_TRIAL_EVALUATIONS = 3000.0
+"""Lower bound of the explicit method's evaluations of eq 38 for a trial against it."""
 
-PART_OF_TOL = 0.25
-"""What the method of low order gets of tol, as its error can be some times as large (tests/benchmarks/choice.py)."""
 
-LOW_ORDER_MOST = 3.0
-"""Times the cost that is expected of radau: what the method of low order may cost."""
+LOW_ORDER_TOL = 4e-3
+"""The tol from which on the method of low order is the first choice: it is cheaper at errors above 1e-3 of the
+motion."""
 
-LOW_ORDER_EVALUATIONS = 42.0
-"""Evaluations of eq 38 that a radian of the motion as a whole costs with genalpha at tol = 1, by
-tests/benchmarks/exudyn_side_by_side.py; they grow with the square root of 1/tol."""
+LOW_ORDER_TOL_WITH_FRICTION = 4e-2
+"""The same for slides with friction: at tighter tol the error of genalpha can be many times tol."""
 
-LOW_ORDER_MARGIN = 1.3
-"""Times the cost that is expected of genalpha: what radau may cost before genalpha takes its place."""
+LOW_ORDER_TOL_FRACTION = 0.25
+"""Fraction of tol for the method of low order, whose error can exceed its tol several times
+(tests/benchmarks/choice.py)."""
 
-LOW_ORDER_TIGHTEST = 1e-5
-"""The tol down to which genalpha may take radau's place."""
+MAX_LOW_ORDER_COST_RATIO = 3.0
+"""Upper bound of the cost of the method of low order over the expected cost of radau."""
 
-LOW_ORDER_WORTH = 1500.0
-"""Evaluations of eq 38 that the explicit method takes at least where the method of low order is tried before it."""
+LOW_ORDER_EVALUATIONS_PER_RADIAN = 42.0
+"""Evaluations of eq 38 that genalpha needs per radian of the overall motion at tol = 1
+(tests/benchmarks/exudyn_side_by_side.py); they grow with the square root of 1/tol."""
 
-FAST_TURNS = 10.0
-"""Times the rate of the motion as a whole: bodies that turn faster make errors that the method of low order does not
-see."""
+RADAU_COST_MARGIN = 1.3
+"""Cost of radau over the expected cost of genalpha above which genalpha replaces it."""
+
+MIN_LOW_ORDER_TOL = 1e-5
+"""Smallest tol at which genalpha may replace radau."""
+
+MIN_LOW_ORDER_EVALUATIONS = 1500.0
+"""Lower bound of the explicit method's evaluations of eq 38 for a first trial of the method of low order."""
+
+FAST_TURN_RATIO = 10.0
+"""Rate of a turning body over that of the overall motion above which the error control of the method of low order
+misses its errors."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
     found = cheapest(demands, settings.duration)
     if not suits_low_order(demands, scene, model):
         return found
-    with_low_order = begin_with_low_order if demands.tol >= LOOSE else end_with_low_order
+    with_low_order = begin_with_low_order if demands.tol >= LOW_ORDER_TOL else end_with_low_order
     return with_low_order(demands, settings.duration, *found)
 
 
@@ -100,7 +102,8 @@ def tol_of(settings: RunSettings, method: Integrator) -> float:
     and not asked for.
     """
     own = settings.integrator == AUTO and settings.step is None and "spectral_radius" not in settings.model_fields_set
-    return settings.tol * PART_OF_TOL if own and method.name == stable_at(fixed_step=True).name else settings.tol
+    reduced = own and method.name == stable_at(fixed_step=True).name
+    return settings.tol * LOW_ORDER_TOL_FRACTION if reduced else settings.tol
 
 
 def _asked_for(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
@@ -124,9 +127,9 @@ def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival 
     said = {one: cost for one in INTEGRATORS.values() if (cost := one.cost(demands)) is not None}
     stable, limited = stable_at(fixed_step=False), min(said, key=lambda one: (one.stability is None, said[one][0]))
     why, sure = ", ".join(text for _, text in said.values()), said[limited][0]
-    if said[stable][0] > sure * (1.0 if demands.friction else NEAR):
+    if said[stable][0] > sure * (1.0 if demands.friction else MAX_TRIAL_COST_RATIO):
         return _made(limited), why, None
-    worth = sure * duration >= WORTH_A_TRIAL
+    worth = sure * duration >= MIN_TRIAL_EVALUATIONS
     if not worth and said[stable][0] > sure:
         return _made(limited), why, None
     return _made(stable), why, Rival(_made(limited), sure * duration) if worth else None
@@ -138,8 +141,8 @@ def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
     """
     fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
     return (bool(model.cables) and not model.motions
-            and (demands.tol >= LOOSE_FOR_FRICTION or not demands.friction)
-            and fastest <= FAST_TURNS * demands.slow and not outrunning(scene))
+            and (demands.tol >= LOW_ORDER_TOL_WITH_FRICTION or not demands.friction)
+            and fastest <= FAST_TURN_RATIO * demands.slow and not outrunning(scene))
 
 
 def begin_with_low_order(demands: Demands, duration: float, method: Integrator, why: str,
@@ -150,10 +153,10 @@ def begin_with_low_order(demands: Demands, duration: float, method: Integrator, 
     The rival is sure where the explicit method's cost is the least. What radau costs is expected alone.
     """
     explicit, radau = Explicit.cost(demands)[0], Radau.cost(demands)[0]
-    if explicit * duration < LOW_ORDER_WORTH:
+    if explicit * duration < MIN_LOW_ORDER_EVALUATIONS:
         return method, why, rival
     low = _made(stable_at(fixed_step=True))
-    most = duration * min(explicit, LOW_ORDER_MOST * radau)
+    most = duration * min(explicit, MAX_LOW_ORDER_COST_RATIO * radau)
     return low, f"{why}; tol is loose: {low.name} has the cheapest steps", Rival(method, most, rival)
 
 
@@ -164,9 +167,10 @@ def end_with_low_order(demands: Demands, duration: float, method: Integrator, wh
 
     The rival gives way where it costs four times what is expected of it.
     """
-    expected = duration * LOW_ORDER_EVALUATIONS * demands.slow / math.sqrt(PART_OF_TOL * demands.tol)
-    most = LOW_ORDER_MARGIN * expected
-    if not isinstance(method, Radau) or demands.tol < LOW_ORDER_TIGHTEST or (rival is not None and rival.cost < most):
+    tol = LOW_ORDER_TOL_FRACTION * demands.tol
+    expected = duration * LOW_ORDER_EVALUATIONS_PER_RADIAN * demands.slow / math.sqrt(tol)
+    most = RADAU_COST_MARGIN * expected
+    if not isinstance(method, Radau) or demands.tol < MIN_LOW_ORDER_TOL or (rival is not None and rival.cost < most):
         return method, why, rival
     last = Rival(method, 4.0 * expected) if rival is None or rival.cost > 4.0 * expected else rival
     return method, why, Rival(_made(stable_at(fixed_step=True)), most, last)
@@ -270,9 +274,9 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     n = model.n_band + model.n_border_dof
     if n == 0:
         return 0.0, 0.0
-    matrix: Callable[[float, float, float], Any] = engine.dense_matrix if n <= DENSE else engine.matrix
+    matrix: Callable[[float, float, float], Any] = engine.dense_matrix if n <= MAX_DENSE_UNKNOWNS else engine.matrix
     mass = matrix(1.0, 0.0, 0.0)[:n, :n]
-    by_mass = np.linalg.inv(mass).dot if n <= DENSE else splu(mass.tocsc(), permc_spec="NATURAL").solve
+    by_mass = np.linalg.inv(mass).dot if n <= MAX_DENSE_UNKNOWNS else splu(mass.tocsc(), permc_spec="NATURAL").solve
     stiffness = without_forces(matrix(0.0, 0.0, 1.0), slice(n), model)
     decay = 0.0
     if model.is_damped:
@@ -289,7 +293,7 @@ def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]
     """
     symmetric = (matrix + matrix.T) / 2
     x = np.random.default_rng(0).normal(size=matrix.shape[0])
-    for _ in range(ITERATIONS - 1):
+    for _ in range(POWER_ITERATIONS - 1):
         x = by_mass(symmetric.dot(x))
         size = math.sqrt(x.dot(x))
         if size == 0.0:

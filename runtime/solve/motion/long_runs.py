@@ -17,18 +17,18 @@ from .event_watcher import EventWatcher
 from .integrator_choice import fastest_rates
 from .progress import Meter
 
-MANY_STEPS = 1_000_000
-"""A run that needs more of them says so."""
-PREDICTED_AFTER = 2000
-"""Steps after which their number is predicted: the first ones are short."""
-WINDOW = 4.0
-"""s of wall time over which the rates are taken."""
-OFTEN = 0.02
-"""Events or crossings of elements for each step, above which they are what the steps are for."""
-REJECTED = 0.3
-"""The same of rejected steps."""
-NEAR = 0.3
-"""Of the stability limit: steps beyond this part of it are what stability allows."""
+MANY_STEPS_LIMIT = 1_000_000
+"""Number of steps above which a run reports it."""
+MIN_STEPS_FOR_PREDICTION = 2000
+"""Steps before the first prediction of their number: the first steps are short."""
+RATE_WINDOW = 4.0
+"""Wall time in s over which rates are averaged."""
+FREQUENT_EVENT_RATE = 0.02
+"""Events or node passages per step above which they determine the step size."""
+HIGH_REJECTION_RATE = 0.3
+"""Rejected steps per step above which they determine the number of steps."""
+STABILITY_LIMIT_FRACTION = 0.3
+"""Steps longer than this fraction of the stability limit are limited by stability."""
 
 
 class LongRun:
@@ -46,16 +46,16 @@ class LongRun:
             self._meter(reached)
         now = time.monotonic()
         self._marks.append((now, reached, self._steps))
-        if self._steps < PREDICTED_AFTER:
+        if self._steps < MIN_STEPS_FOR_PREDICTION:
             return
-        while len(self._marks) > 2 and now - self._marks[1][0] > WINDOW:
+        while len(self._marks) > 2 and now - self._marks[1][0] > RATE_WINDOW:
             self._marks.popleft()
         since, start, before = self._marks[0]
         made = self._steps - before
-        if made < PREDICTED_AFTER or reached <= start or now <= since:
+        if made < MIN_STEPS_FOR_PREDICTION or reached <= start or now <= since:
             return
         more = (self._settings.duration - reached) * made / (reached - start)
-        if self._steps + more <= MANY_STEPS:
+        if self._steps + more <= MANY_STEPS_LIMIT:
             return
         rate = made / (now - since)
         self._meter.tell(f"{self._steps:.3g} of about {self._steps + more:.2g} steps, {rate:.2g} a second, "
@@ -69,7 +69,7 @@ class LongRun:
         """Return, for the report, how many steps the run has taken or was to take, and why; empty for a run of few
         steps.
         """
-        if self._steps > MANY_STEPS:
+        if self._steps > MANY_STEPS_LIMIT:
             return [f"the run took {self._steps:.3g} steps: {self._why()}"]
         if self._warned and self._engine.time < self._settings.duration:
             return [f"the run took {self._steps:.3g} steps to t = {self._engine.time:.3g} s of "
@@ -88,22 +88,22 @@ class LongRun:
             return f"the step is fixed at {settings.step:.3g} s. Take a larger one, or none, so that tol chooses it"
         if settings.output_step < 2 * mean:
             return f"a step ends at each output time. Take an output_step larger than {settings.output_step:.3g} s"
-        if self._engine.knots_passed > OFTEN * counts["steps"]:
+        if self._engine.knots_passed > FREQUENT_EVENT_RATE * counts["steps"]:
             return (f"a step ends at each of the {self._engine.knots_passed} knots of signals so far. Give tables "
                     'fewer samples, or interpolation="cubic"')
         events = len(self._watcher.happened) + counts["element_crossings"]
-        if events > OFTEN * counts["steps"]:
+        if events > FREQUENT_EVENT_RATE * counts["steps"]:
             return (f"there were {events} events and crossings of elements in {counts['steps']} steps, and a step ends "
                     "at each. Look at the slides that stick, strike or cross nodes")
         _, dof, coupling = engine.failure  # of the last step that was rejected
         where = f", most of all at {describe_dof(self._model, dof, coupling)}" if counts["rejected_steps"] else ""
         damped = damping(self._model, max(dof, 0), coupling)
-        if counts["rejected_steps"] > REJECTED * counts["steps"]:
+        if counts["rejected_steps"] > HIGH_REJECTION_RATE * counts["steps"]:
             return (f"{counts['rejected_steps']} steps were rejected beside {counts['steps']} taken{where}: forces "
                     f"change within a step, as at contacts and kinks of friction. Take a larger tol{damped}")
         frequency, decay = self._fastest()
         stability = INTEGRATORS[engine.integrator].stability
-        if stability is not None and stability.part(mean, frequency, decay) > NEAR:
+        if stability is not None and stability.part(mean, frequency, decay) > STABILITY_LIMIT_FRACTION:
             return (f"stability asks the {engine.integrator} method for steps of {mean:.2g} s: the highest frequency "
                     f"is {frequency:.3g} rad/s, the fastest decay {decay:.3g} 1/s. Take "
                     f'integrator="{stable_at(fixed_step=False).name}"'

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-PAUSES = 100
-"""The least number of pauses of a run with so many output times."""
-BUFFER = 8e6
+MIN_PAUSES = 100
+"""Smallest number of pauses of a run with at least as many output times."""
+MAX_BUFFERED_BYTES = 8e6
 """Bytes of rows that are kept in memory."""
 
 
@@ -19,6 +19,6 @@ class Pauses(NamedTuple):
 
 def pauses(rows: int, row_bytes: int) -> Pauses:
     """Return when a run pauses: it must not depend on the clock, nor on whether results are saved."""
-    most = max(1, int(BUFFER // row_bytes))
-    every = min(most, -(-rows // PAUSES))
+    most = max(1, int(MAX_BUFFERED_BYTES // row_bytes))
+    every = min(most, -(-rows // MIN_PAUSES))
     return Pauses(every, min(rows, most // every * every) + 2)  # the start, and where a run is cut short

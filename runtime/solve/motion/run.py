@@ -44,10 +44,10 @@ from .trial_run import on_trial
 
 LOG = logging.getLogger(__name__)
 
-FAILED = "no_convergence", "singular", "unstable"
-"""How runs end that could not go on: their message says why, and no note says what their results are worth."""
+FAILED_STATUSES = "no_convergence", "singular", "unstable"
+"""Statuses of runs that failed: their message gives the cause, and notes do not assess their results."""
 
-MOST_OUTPUT = 4e9
+MAX_OUTPUT_BYTES = 4e9
 """Bytes of results that a run may keep in memory."""
 
 
@@ -130,7 +130,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     cpu, ended = clock() - cpu, time.perf_counter()
     run.row_notes.see(run.engine)
     messages += _controlled_alone(run.engine, settings)
-    if status not in FAILED:
+    if status not in FAILED_STATUSES:
         grows = [] if settings.estimate else [*sensitive(run.engine, settings, run.row_notes.sensitivity),
                                               *grown(run.engine, settings, run.row_notes.slack,
                                                      partial(_rows_again, scene, initial, method)),
@@ -297,7 +297,7 @@ def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
 def _check_size(row_bytes: int, settings: RunSettings, stream: Sink | None) -> None:
     """Refuse what no memory holds or, for a stream, what does not fit on its disk. Raises SceneError."""
     need = row_bytes * settings.duration / settings.output_step
-    most, where = (MOST_OUTPUT, "") if stream is None else (stream.free, " that are free on the disk")
+    most, where = (MAX_OUTPUT_BYTES, "") if stream is None else (stream.free, " that are free on the disk")
     if not need < most:
         raise SceneError("run", f"output_step {settings.output_step:.6g} s makes {need:.3g} bytes of results, more "
                          f"than the {most:.3g}{where}", "take a larger output_step")

@@ -11,8 +11,8 @@ if TYPE_CHECKING:  # bring SciPy
     from ...integrators import Integrator
     from .integrator_choice import Rival
 
-ALIKE = 2.0
-"""Times the cost that the rival has in the first scene: what costs more is tried anew."""
+MAX_COST_RATIO = 2.0
+"""Cost of a scene over that of the first scene's rival above which the scene runs a trial of its own."""
 
 
 @dataclass
@@ -40,7 +40,7 @@ class SharedTrials:
 
     def _lost(self, method: Integrator, rival: Rival) -> bool:
         """Return whether the first scene lost this trial, with a rival that was not much cheaper."""
-        return rival.cost <= ALIKE * self.lost.get((method.name, rival.method.name), 0.0)
+        return rival.cost <= MAX_COST_RATIO * self.lost.get((method.name, rival.method.name), 0.0)
 
     def note(self, scene: SceneData, method: Integrator, rival: Rival) -> None:
         """Take note that a trial of a method was lost, if it is the first scene's."""

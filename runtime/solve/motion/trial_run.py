@@ -14,21 +14,21 @@ from .integrator_choice import Rival
 from .long_runs import LongRun
 from .sink import Sink
 
-PART = 0.25
-"""Of the duration: what is run on trial."""
+TRIAL_DURATION_FRACTION = 0.25
+"""Fraction of the duration that a trial runs."""
 
-SHARE = 0.05
-"""Of the other's cost: after each such share it is judged anew what remains."""
+ASSESSMENT_COST_FRACTION = 0.05
+"""The remaining cost is assessed each time the trial has used this fraction of the rival's cost."""
 
 
-SETTLED = 4
-"""Shares after which the rate counts as it is: the motion may begin with a shock."""
+SETTLING_ASSESSMENTS = 4
+"""Number of assessments before the rate is used: the motion may begin with a shock."""
 
-MOST_WORK = 1e15
-"""Evaluations that no trial comes to: a count of more, as of absurd stiffnesses, is none that C can hold."""
+MAX_EVALUATIONS = 1e15
+"""Upper bound of the evaluations of a trial; larger counts, as of absurd stiffnesses, do not fit an integer of C."""
 
-CLEARLY = 10.0
-"""Times the other's cost that what remains must take before."""
+EARLY_STOP_COST_RATIO = 10.0
+"""Remaining cost over the rival's cost above which a trial stops before that."""
 
 
 def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, every: int, follow: LongRun,
@@ -39,17 +39,17 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
     Returns the status that the run has come to, "running" where there is more of it, and why the rival is the cheaper
     one, or "" where it is not. The first share of the cost, in which steps find their size, does not count.
     """
-    share = max(1, int(min(SHARE * rival.cost / method.cost_of_evaluation, MOST_WORK)))
+    share = max(1, int(min(ASSESSMENT_COST_FRACTION * rival.cost / method.cost_of_evaluation, MAX_EVALUATIONS)))
     before, shares = engine.time, 0
     while True:
         shares += 1
         status = engine.advance(follow, every, stream, most_evaluations=shares * share)
         time = engine.time
-        if status != "running" or time >= PART * duration:
+        if status != "running" or time >= TRIAL_DURATION_FRACTION * duration:
             return status, ""
-        remains = SHARE * (duration - time) / max(time - before, 1e-12 * duration)
-        if shares > 1 and remains > (CLEARLY if shares < SETTLED else 1.0):
-            spent = shares * SHARE * rival.cost
+        remains = ASSESSMENT_COST_FRACTION * (duration - time) / max(time - before, 1e-12 * duration)
+        if shares > 1 and remains > (EARLY_STOP_COST_RATIO if shares < SETTLING_ASSESSMENTS else 1.0):
+            spent = shares * ASSESSMENT_COST_FRACTION * rival.cost
             return status, (f"{method.name} on trial took work like {spent:.3g} to t = {time:.3g} s: what remains "
                             f"would take {remains:.2g} times the work that calls for {rival.method.name}")
         before = time

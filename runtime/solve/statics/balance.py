@@ -10,10 +10,10 @@ from scipy.sparse import csr_array
 from ..notes.diagnosis import describe_dof
 from .static_problem import StaticState, coordinates_of, units_of
 
-BALANCED = 1e-6
-"""Of the largest load: what may be left over."""
-ROUNDED = 1e-15
-"""Of what the largest row of the stiffness adds up to: the rounding of a force; 9e-17 was measured."""
+BALANCE_TOLERANCE = 1e-6
+"""Residual force of a state in balance, as a fraction of the largest load."""
+FORCE_ROUNDING = 1e-15
+"""Rounding error of a force, as a fraction of the largest row sum of the stiffness; 9e-17 was measured."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def balance(static: StaticState) -> Balance:
     left = np.abs(static.residual()[rows]) / units
     load = np.max(np.abs(static.load_vector()[rows]) / units, initial=0.0)
     sums = np.max(_size_of_sums(static, stiffness[rows][:, rows]) / units, initial=0.0)
-    at_rest = bool(np.all(left <= BALANCED * load + ROUNDED * sums))
+    at_rest = bool(np.all(left <= BALANCE_TOLERANCE * load + FORCE_ROUNDING * sums))
     if not at_rest:
         static.restore(drawn)
     most = int(np.argmax(left)) if len(left) else 0

@@ -15,14 +15,14 @@ from ...model.model import Model
 from ...parts.scene_data import SceneData
 from .static_problem import StaticProblem
 
-BEDS = ("flat", "terrain")
+BED_SHAPES = ("flat", "terrain")
 """Shapes of surfaces that a cable does not fall off."""
-NEAR = 0.1
-"""Of the radius of a cable: a smaller gap is none as drawn."""
-LITTLE = 0.1
-"""Of the length on which a cable lies as drawn: it has left what it touches with less."""
-STEP = 0.02
-"""The same, of a step: the root of the mean square over the nodes."""
+GAP_TOLERANCE = 0.1
+"""Gaps below this fraction of a cable's radius count as closed in the drawing."""
+MIN_CONTACT_FRACTION = 0.1
+"""A cable has left its bed if it touches less than this fraction of the length on which it lies as drawn."""
+MAX_RMS_STEP = 0.02
+"""Root mean square over the nodes of a step, as a fraction of the same length."""
 
 
 class Lying(NamedTuple):
@@ -39,14 +39,14 @@ def lying(scene: SceneData, model: Model, q: np.ndarray) -> list[Lying]:
     found = []
     for k, contact in enumerate(model.contacts):
         part = scene.contacts[contact.name]
-        if contact.cable < 0 or scene.surfaces[part.b].geometry.word in BEDS:
+        if contact.cable < 0 or scene.surfaces[part.b].geometry.word in BED_SHAPES:
             continue
         thick = max(contact.radius, float(np.sqrt(scene.cables[part.a].section.moments()[0] / np.pi)))
-        on = np.flatnonzero(distances(model, scene, contact, q[None]).ravel() <= contact.radius + NEAR * thick)
+        on = np.flatnonzero(distances(model, scene, contact, q[None]).ravel() <= contact.radius + GAP_TOLERANCE * thick)
         nodes = model.cables[contact.cable].n_elements + 1
         if len(on):
             found.append(Lying(k, float(contact.arc[on[0]]), float(contact.arc[on[-1]]),
-                               STEP * thick * float(np.sqrt(nodes))))
+                               MAX_RMS_STEP * thick * float(np.sqrt(nodes))))
     return found
 
 
@@ -57,7 +57,7 @@ def left(problem: StaticProblem, places: list[Lying]) -> list[str]:
     touching = outputs_by_name("contact", problem.engine.static_outputs("contact"))["touching"]
     return [f"{_lies(problem, place)}, and has left it: it slid off, or the search carried it past the surface. Take "
             "scene.relax(), or more friction" for place in places
-            if touching[place.contact] < LITTLE * (place.last - place.first)]
+            if touching[place.contact] < MIN_CONTACT_FRACTION * (place.last - place.first)]
 
 
 def not_held(problem: StaticProblem, places: list[Lying]) -> str:

@@ -16,16 +16,16 @@ from scipy.sparse import block_array
 from .stability import Stability, stability
 from .static_problem import StaticProblem, solver
 
-MOST_STATES = 1000
-MOST_CORRECTIONS = 12
-GROWTH = 10.0
-"""Of a correction over the least one before: it does not converge."""
-SMALLEST_STEP = 1e-8
-"""Of the path, in units of the load fraction or of the scene's size: shorter steps make no progress."""
-TURN = 0.8
-"""Cosine of the angle between the directions of states that follow each other, at least."""
-SHARP = 1e-6
-"""Of the load fraction: how well critical points are found."""
+MAX_STATES = 1000
+MAX_CORRECTIONS = 12
+MAX_CORRECTION_GROWTH = 10.0
+"""Ratio of a correction to the smallest one before above which the iteration does not converge."""
+MIN_PATH_STEP = 1e-8
+"""Smallest step along the path, in units of the load fraction or of the scene's size."""
+MIN_DIRECTION_COSINE = 0.8
+"""Lower bound of the cosine of the angle between the directions of consecutive states."""
+CRITICAL_POINT_TOLERANCE = 1e-6
+"""Accuracy of critical points, as a load fraction."""
 
 
 @dataclass
@@ -73,10 +73,10 @@ def follow(problem: StaticProblem, fraction: float, heading: np.ndarray | None) 
     if point is None:
         return
     step = largest / problem.settings.load_steps
-    for _ in range(MOST_STATES):
+    for _ in range(MAX_STATES):
         step = min(step, largest / float(np.max(np.abs(point.heading))))
         following = None
-        while step > SMALLEST_STEP:
+        while step > MIN_PATH_STEP:
             following = _advance(problem, point, step)
             if following is not None and following.fraction >= 1.0:
                 following = _at_full_load(problem, point, following)
@@ -84,7 +84,7 @@ def follow(problem: StaticProblem, fraction: float, heading: np.ndarray | None) 
                     yield from _critical(problem, point, following)
                     yield following
                     return
-            if following is not None and point.heading @ following.heading > TURN:
+            if following is not None and point.heading @ following.heading > MIN_DIRECTION_COSINE:
                 break
             following = None
             step *= 0.25
@@ -127,14 +127,14 @@ def _advance(problem: StaticProblem, point: Point, advance: float) -> Point | No
     problem.move(advance * point.along)
     problem.load(point.fraction + advance * point.rate)
     tolerance, least = problem.settings.tolerance, np.inf
-    for _ in range(MOST_CORRECTIONS):
+    for _ in range(MAX_CORRECTIONS):
         problem.iterations += 1
         try:
             change = _bordered(problem, point.heading)(np.append(-problem.residual(), 0.0))
         except RuntimeError:
             return None
         size = problem.length(change[:-1])
-        if not size < min(GROWTH * least, problem.size):
+        if not size < min(MAX_CORRECTION_GROWTH * least, problem.size):
             return None
         problem.move(change[:-1])
         problem.load(problem.fraction + float(change[-1]))
@@ -180,14 +180,15 @@ def _sharp(near: Point, far: Point, start: float) -> bool:
     by more than the arc-length between them times its rate at either end.
     """
     width, rate = far.advance - start, max(abs(near.rate), abs(far.rate))
-    return width < SMALLEST_STEP or width * rate <= SHARP * max(abs(far.fraction), SHARP)
+    accuracy = CRITICAL_POINT_TOLERANCE * max(abs(far.fraction), CRITICAL_POINT_TOLERANCE)
+    return width < MIN_PATH_STEP or width * rate <= accuracy
 
 
 def _add(found: list[Critical], near: Point, far: Point) -> None:
     """Add a critical point; two changes at one load are one: at a limit point the load turns and stability changes."""
     turns = near.kind[1] != far.kind[1]
     more = far.stability.unstable - near.stability.unstable
-    if found and abs(far.fraction - found[-1].point.fraction) <= 10 * SHARP * abs(far.fraction) and (
+    if found and abs(far.fraction - found[-1].point.fraction) <= 10 * CRITICAL_POINT_TOLERANCE * abs(far.fraction) and (
             turns != (found[-1].kind == "limit")):
         found[-1] = Critical(found[-1].point, "limit", found[-1].directions + more)
         return

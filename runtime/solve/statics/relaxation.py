@@ -41,37 +41,38 @@ LOG = logging.getLogger(__name__)
 
 S = TypeVar("S", bound=RestState)
 
-FIRST_STEP = 1e-3
-"""Of the time in which the scene's size is fallen through."""
-LONGEST_STEP = 100.0
-"""Of the same time."""
-SHORTEST_STEP = 1e-10
-"""Of the same time: what needs shorter ones does not come to rest."""
-STEPS = 40
-"""Between two looks at the size of steps, where the kinetic energy has passed no maximum before."""
-PASSED = 0.7
-"""Of its largest value: a kinetic energy that has fallen below that has passed its maximum."""
-MANY, SOME = 12, 6
-"""Steps up to a maximum: after so many, steps become longer."""
-GROWTH, SLOW_GROWTH, DOUBLE_GROWTH = 2.0, 1.2, 4.0
-"""Of steps after many, after some, and where no maximum was reached."""
-REJECTED, FAILED = 0.25, 0.125
-"""Of the step where the energy has risen, and where a step could not be made."""
-ROUNDED = 1e-12
-"""Of an energy: what rounding may add."""
-NEAR = 1e-2
-"""Of the largest load: the force left over at which Newton's method is tried; a third of it after each failure."""
-VERY_NEAR = 1e-6
-"""Of the largest load: the same where the scene is still close to an unstable state that it was pushed off."""
-LEFT = 10.0
-"""Times the push: how far a scene goes from an unstable state before Newton's method, which leads back, is tried."""
-TAKEN = 0.1
-"""Of the scene's size: farther than that Newton's method finds another state of rest."""
-PUSH = 1e-3
-"""Of the scene's size: by which a state at rest is pushed off an unstable branch."""
-MOST_PUSHES = 5
-G = 9.81
-"""m/s²: of scenes without gravity, for the time above."""
+FIRST_TIME_STEP = 1e-3
+"""First step, as a fraction of the time of a free fall over the scene's size."""
+MAX_TIME_STEP = 100.0
+"""Longest step, as a multiple of the same time."""
+MIN_TIME_STEP = 1e-10
+"""Shortest step, as a fraction of the same time: a scene that needs shorter ones does not come to rest."""
+STEP_REVIEW_INTERVAL = 40
+"""Steps between two reviews of the step size while the kinetic energy passes no maximum."""
+ENERGY_MAXIMUM_RATIO = 0.7
+"""The kinetic energy has passed its maximum if it falls below this fraction of its largest value."""
+MANY_STEPS, SOME_STEPS = 12, 6
+"""Steps up to a maximum of the kinetic energy after which steps become longer."""
+STEP_GROWTH, SLOW_STEP_GROWTH, DOUBLE_STEP_GROWTH = 2.0, 1.2, 4.0
+"""Growth of the step size after many steps, after some, and if no maximum was reached."""
+REJECTED_STEP_RATIO, FAILED_STEP_RATIO = 0.25, 0.125
+"""Ratio of the step size to that of a step in which the energy has risen, and of a step that failed."""
+ENERGY_ROUNDING = 1e-12
+"""Rounding error of an energy, as a fraction of it."""
+NEWTON_RESIDUAL = 1e-2
+"""Residual force at which Newton's method is tried, as a fraction of the largest load; each failure reduces it to a
+third."""
+NEWTON_RESIDUAL_AFTER_PUSH = 1e-6
+"""The same while the scene is close to an unstable state that it was pushed off."""
+MIN_DISTANCE_AFTER_PUSH = 10.0
+"""Distance from an unstable state, as a multiple of the push, below which Newton's method would lead back to it."""
+MAX_NEWTON_MOVE = 0.1
+"""Largest move of Newton's method to the same state of rest, as a fraction of the scene's size."""
+PUSH_SIZE = 1e-3
+"""Size of the push off an unstable branch, as a fraction of the scene's size."""
+MAX_PUSHES = 5
+DEFAULT_GRAVITY = 9.81
+"""Gravity in m/s² of scenes without gravity, for the time above."""
 
 
 class _PassedError(Exception):
@@ -113,8 +114,8 @@ class _Motion:
         self.largest_load = float(np.max(np.abs(problem.load_vector() / self.units), initial=0.0))
         self.has_energy = not (any(isinstance(load, LoadModel) for load in self.model.loads) or self.model.drags
                                or any(contact.friction for contact in self.model.contacts))
-        self.time = float(np.sqrt(problem.size / (np.linalg.norm(scene.gravity) or G)))
-        self.step = FIRST_STEP * self.time
+        self.time = float(np.sqrt(problem.size / (np.linalg.norm(scene.gravity) or DEFAULT_GRAVITY)))
+        self.step = FIRST_TIME_STEP * self.time
         self.report = Relaxation()
 
     def over_unknowns(self, dofs: np.ndarray) -> np.ndarray:
@@ -148,11 +149,11 @@ class _Motion:
             slide.place_at(float(place), self.model.cables[slide.cable])
 
     def leg(self) -> _Leg:
-        """Move until the kinetic energy has passed a maximum, or for `STEPS` steps."""
+        """Move until the kinetic energy has passed a maximum, or for `STEP_REVIEW_INTERVAL` steps."""
         engine = Engine(self.model)
         drop_redundant_rows(self.model, engine)
         engine.watch(_NoEvents())
-        start, duration = (self.model.q.copy(), self.model.v.copy()), STEPS * self.step
+        start, duration = (self.model.q.copy(), self.model.v.copy()), STEP_REVIEW_INTERVAL * self.step
         status, _ = engine.start(duration=duration, output_step=duration, tol=1e-2, step=self.step,
                                  method=GeneralisedAlpha(0.0), first_step=self.step)
         s, largest, steps = engine.now()[3], 0.0, 0
@@ -162,7 +163,7 @@ class _Motion:
             steps += 1
             now = self.kinetic_energy(engine.now()[2])
             largest = max(largest, now)
-            if now < PASSED * largest:
+            if now < ENERGY_MAXIMUM_RATIO * largest:
                 raise _PassedError
 
         if status is None:
@@ -208,7 +209,7 @@ class _Search(Generic[S]):
             self._turn()
         self.sticking = [n for n, slide in scene.slides.items() if slide.friction is not None]
         self.last: _Place | None = None
-        self.near, self.pushes, self.force = NEAR, 0, np.zeros(0)
+        self.near, self.pushes, self.force = NEWTON_RESIDUAL, 0, np.zeros(0)
         self.branch: dict | None = None
 
     def _turn(self) -> None:
@@ -227,14 +228,15 @@ class _Search(Generic[S]):
     def found(self) -> S:
         """Return the state at rest, or raise EquilibriumError."""
         motion = self.motion
-        while motion.report.steps < self.settings.max_steps and motion.step > SHORTEST_STEP * motion.time:
+        while motion.report.steps < self.settings.max_steps and motion.step > MIN_TIME_STEP * motion.time:
             leg = motion.leg()
             rows = leg.engine.rows()
             if leg.from_rest and len(rows["acceleration"]):
                 self.force, here = motion.force(rows["acceleration"][0]), leg.begin
                 here.energy = motion.energy(rows, here.q)
-                if self.last and motion.has_energy and here.energy > self.last.energy + ROUNDED * abs(self.last.energy):
-                    motion.step *= REJECTED
+                if (self.last and motion.has_energy
+                        and here.energy > self.last.energy + ENERGY_ROUNDING * abs(self.last.energy)):
+                    motion.step *= REJECTED_STEP_RATIO
                     motion.put(self.last.q, self.last.s)
                     continue
                 self.last = here
@@ -253,7 +255,8 @@ class _Search(Generic[S]):
         motion.report.note(here.energy, left * load)
         if self.sticking:
             return _held(self.problem, motion, here, self.sticking, self.made) if left <= self.settings.tol else None
-        if not (left <= self.near and (left <= VERY_NEAR or _is_away(self.problem, here, self.branch))):
+        if not (left <= self.near
+                and (left <= NEWTON_RESIDUAL_AFTER_PUSH or _is_away(self.problem, here, self.branch))):
             return None
         found = _polished(self.problem, here)
         if found is None:
@@ -261,7 +264,7 @@ class _Search(Generic[S]):
                 return _unpolished(self.problem, motion, here, self.made)
             self.near /= 3.0
             return None
-        if not (found.unstable and self.pushes < MOST_PUSHES):
+        if not (found.unstable and self.pushes < MAX_PUSHES):
             return _finished(self.problem, motion, found, self.pushes, self.made)
         self._push()
         return None
@@ -270,7 +273,7 @@ class _Search(Generic[S]):
         """Move the scene off an unstable state, along its lowest direction, and forget the last place."""
         problem = self.problem
         self.pushes, self.branch = self.pushes + 1, problem.keep()
-        problem.move(PUSH * problem.size * lowest_direction(problem))
+        problem.move(PUSH_SIZE * problem.size * lowest_direction(problem))
         pushed = problem.keep()
         self.motion.put(pushed["q"], pushed["s"])
         self.last = None
@@ -283,20 +286,21 @@ def _go_on(motion: _Motion, leg: _Leg, last: _Place | None) -> None:
         case "passed":
             motion.put(q, s)
             motion.report.resets += 1
-            motion.step *= GROWTH if leg.steps > MANY else SLOW_GROWTH if leg.steps >= SOME else 1.0
+            motion.step *= (STEP_GROWTH if leg.steps > MANY_STEPS
+                            else SLOW_STEP_GROWTH if leg.steps >= SOME_STEPS else 1.0)
         case "completed":
             motion.put(q, s, v)
-            motion.step *= DOUBLE_GROWTH
+            motion.step *= DOUBLE_STEP_GROWTH
         case _:
             motion.put(*((last.q, last.s) if last else (leg.begin.q, leg.begin.s)))
-            motion.step *= FAILED
-    motion.step = min(motion.step, LONGEST_STEP * motion.time)
+            motion.step *= FAILED_STEP_RATIO
+    motion.step = min(motion.step, MAX_TIME_STEP * motion.time)
 
 
 def _is_away(problem: StaticProblem, here: _Place, branch: dict | None) -> bool:
     """Return whether a place is far from the unstable state that the scene was pushed off, if any."""
     problem.engine.set_state(0.0, q=here.q, s=here.s)
-    return branch is None or problem.distance(branch) > LEFT * PUSH * problem.size
+    return branch is None or problem.distance(branch) > MIN_DISTANCE_AFTER_PUSH * PUSH_SIZE * problem.size
 
 
 def _polished(problem: StaticProblem, here: _Place) -> Stability | None:
@@ -304,7 +308,7 @@ def _polished(problem: StaticProblem, here: _Place) -> Stability | None:
     problem.engine.set_state(0.0, q=here.q, s=here.s)
     _share_forces(problem)
     kept = problem.keep()
-    if problem.newton() and problem.distance(kept) <= TAKEN * problem.size:
+    if problem.newton() and problem.distance(kept) <= MAX_NEWTON_MOVE * problem.size:
         return stability(problem)
     return None
 

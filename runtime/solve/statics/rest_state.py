@@ -23,12 +23,12 @@ from .stability import Stability
 from .static_problem import StaticState
 from .turns import prescribed_angles
 
-SAME = 1e-12
-"""Of an adjusted value: what rounding may change."""
-MOVED = 1e-6
-"""Of the scene's size: what is taken for the same place."""
+VALUE_ROUNDING = 1e-12
+"""Rounding error of an adjusted value, as a fraction of it."""
+POSITION_TOLERANCE = 1e-6
+"""Distance of two equal positions, as a fraction of the scene's size."""
 
-OTHER_VALUE = "let its signal start at the value of the state, or take the equilibrium of this scene"
+SIGNAL_START_REMEDY = "let its signal start at the value of the state, or take the equilibrium of this scene"
 
 
 def in_loads(fraction: float) -> str:
@@ -238,7 +238,7 @@ class RestState(NamedArrays):
         """Raise SceneError where the scene lacks the values that were adjusted for the state, as it would not rest."""
         for name, value in self.adjusted.items():
             here = value_at(scene, path_of(scene, name, "adjust"))
-            if here is None or abs(here - value) > SAME * abs(value):
+            if here is None or abs(here - value) > VALUE_ROUNDING * abs(value):
                 raise SceneError("scene", f"the state to start from is at rest with {name} = {value:.9g}, to which it "
                                  f"was adjusted, here it is {here}", "take the state's own scene: rest.scene")
 
@@ -255,7 +255,7 @@ class RestState(NamedArrays):
             moved = float(np.linalg.norm(is_open - was_open))
             if "distance" in joint.kernel:
                 moved = max(moved, abs(joint.base - was.base))
-            if moved > MOVED * size:
+            if moved > POSITION_TOLERANCE * size:
                 raise SceneError("scene", f'the state to start from has an end of the joint "{joint.name}" '
                                  f"{moved:.3g} m from where it is here", "take an equilibrium of this scene")
         if model.cables:
@@ -263,7 +263,7 @@ class RestState(NamedArrays):
             fixed = model.unknown_of_dof[own] == -1
             fixed[[motion.dof for motion in model.motions if motion.dof < own.stop]] = False
             moved = np.abs(self.static_state["q"][own] - model.q[own]) * model.weight[own] * fixed
-            if np.max(moved) > MOVED * max(cable.mesh.total for cable in model.cables):
+            if np.max(moved) > POSITION_TOLERANCE * max(cable.mesh.total for cable in model.cables):
                 raise SceneError("scene", f"the state to start from has a support {np.max(moved):.3g} m from where it "
                                  "is here", "take an equilibrium of this scene")
         self._check_prescribed(model, scene)
@@ -271,14 +271,15 @@ class RestState(NamedArrays):
     def _check_prescribed(self, model: Model, scene: SceneData) -> None:
         """Raise SceneError where motions or angles of joints prescribe other values at t = 0 than the state has."""
         for label, angle in prescribed_angles(scene, model).items():
-            if abs(angle - self.turned.get(label, angle)) > MOVED * (1 + abs(angle)):
+            if abs(angle - self.turned.get(label, angle)) > POSITION_TOLERANCE * (1 + abs(angle)):
                 raise SceneError("scene", f'the angle of "{label}" is {show(angle, "rad")} at t = 0, but the state to '
-                                 f'start from has {show(self.turned[label], "rad")}', OTHER_VALUE)
+                                 f'start from has {show(self.turned[label], "rad")}', SIGNAL_START_REMEDY)
         moved = {dof: abs(value - self.static_state["q"][dof]) * model.weight[dof]
                  for dof, value in model.prescribed_at(0.0).items()}
-        if moved and (most := max(moved.values())) > MOVED * max(cable.mesh.total for cable in model.cables):
+        if moved and (most := max(moved.values())) > POSITION_TOLERANCE * max(
+                cable.mesh.total for cable in model.cables):
             raise SceneError("scene", f"a motion begins {show(most, 'm')} from where the state to start from has it",
-                             OTHER_VALUE)
+                             SIGNAL_START_REMEDY)
 
     def start(self, model: Model, scene: SceneData) -> None:
         """Put a freshly built model of the scene into this state. Raises SceneError where supports are elsewhere."""

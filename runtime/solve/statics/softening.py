@@ -8,8 +8,8 @@ from ...model.constants import constants
 from ...parts.section_stiffness import section_stiffness
 from .static_problem import StaticProblem
 
-BENDING = 12.0
-"""EA l²/EI of the shortest element, at least: softer along its axis than in bending it would fold up."""
+MIN_AXIAL_STIFFNESS_RATIO = 12.0
+"""Lower bound of EA l²/EI of the shortest element: an element softer along its axis than in bending folds up."""
 
 
 class Softening:
@@ -26,7 +26,7 @@ class Softening:
             S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
             if S.shape not in ((2,), (3,)):  # EA, EI, and EA of the upper modes of an assumed strain
                 continue
-            least = max(load, BENDING * S[1] / float(model.mesh.lengths.min()) ** 2) / S[0]
+            least = max(load, MIN_AXIAL_STIFFNESS_RATIO * S[1] / float(model.mesh.lengths.min()) ** 2) / S[0]
             if least < 1.0:
                 self.cables.append((k, cable, least))
         self.factor = min((least for *_, least in self.cables), default=None)

@@ -10,8 +10,8 @@ from ..notes.spinning_sections import has_sections, stable_length, torsion_ratio
 from .stability import lowest_direction
 from .static_problem import StaticProblem
 
-AT_REST = 0.1
-"""Of how sections turn: how the axis turns at most where sections spin about it."""
+MAX_AXIS_TURN_RATIO = 0.1
+"""Upper bound of the turn of the axis over the turn of the sections that spin about it."""
 
 
 def spinning(problem: StaticProblem) -> str:
@@ -24,7 +24,7 @@ def spinning(problem: StaticProblem) -> str:
         axis, turned = _turns(cable, (dofs @ direction).reshape(cable.shape))
         part, nodal = problem.scene.cables[cable.name], q[cable.coordinates].reshape(cable.shape)
         longest = stable_length(cable, float(torsion_ratio(cable, part, nodal)))
-        if turned > 0.0 and axis <= AT_REST * turned and longest < cable.mesh.lengths.max():
+        if turned > 0.0 and axis <= MAX_AXIS_TURN_RATIO * turned and longest < cable.mesh.lengths.max():
             return (f'; sections of cable "{cable.name}" spin in it while its axis rests: elements of '
                     f"{cable.mesh.lengths.max():.3g} m are too long for the torsion of so thin a beam, take elements "
                     f'of at most {longest:.2g} m, or element="cable12", which has no torsion')

@@ -12,12 +12,12 @@ from scipy.sparse.linalg import ArpackNoConvergence, eigsh
 from ..linear.inertia import ZERO, inertia, scaled
 from .static_problem import StaticProblem
 
-ASYMMETRY = 1e-9
-"""Of the stiffness: what rounding leaves; more comes from loads that turn with what they act on."""
-ALL_REAL = 1500
+ASYMMETRY_ROUNDING = 1e-9
+"""Asymmetry of the stiffness due to rounding, relative; follower loads cause more."""
+MAX_UNSYMMETRIC_UNKNOWNS = 1500
 """Unknowns up to which all eigenvalues of an unsymmetric stiffness are computed."""
-DENSE = 600
-"""Unknowns up to which the lowest direction is found by LAPACK."""
+MAX_DENSE_UNKNOWNS = 600
+"""Unknowns up to which LAPACK finds the lowest direction."""
 
 
 @dataclass(frozen=True)
@@ -67,10 +67,10 @@ def count(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
 
 
 def _counted(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
-    if abs(K - K.T).max() <= ASYMMETRY * (abs(K).max() or 1.0):
+    if abs(K - K.T).max() <= ASYMMETRY_ROUNDING * (abs(K).max() or 1.0):
         found = inertia(K, C, units)
         return Stability(found.negative, found.zero)
-    if K.shape[0] > ALL_REAL:
+    if K.shape[0] > MAX_UNSYMMETRIC_UNKNOWNS:
         found = inertia((K + K.T) / 2, C, units)
         return Stability(found.negative, found.zero, follower=True, bound=found.negative > 0)
     K, C, _ = scaled(K, C, units)
@@ -87,7 +87,7 @@ def lowest_direction(problem: StaticProblem) -> np.ndarray:
     K, C, units = problem.stiffness()
     n = K.shape[0]
     K, C, scale = scaled((K + K.T) / 2, C, units)
-    if n <= DENSE:
+    if n <= MAX_DENSE_UNKNOWNS:
         free = _free(C, n)
         found = free @ eigh(free.T @ (K @ free), subset_by_index=(0, 0))[1][:, 0]
     else:

@@ -16,22 +16,22 @@ from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem
 from .string_start import hang
 
-MOST_RELAXATIONS = 400
-MOST_SHORT_STEPS = 1000
-"""Of a relaxation whose steps are no longer than a tenth of a cable's radius."""
-LARGEST_MOVE = 0.2
-"""Of the scene's size, in a step."""
-GONE = 10.0
-"""Times the scene's size: who has come so far will not come to rest."""
-LEAST_MASS = 1e-12
-"""Of the pseudo-dynamics, over that of the fastest vibration: below, steps are those of Newton."""
-PUSH = 1e-3
-"""Of the scene's size, by which a state is pushed off an unstable branch."""
-STIFFER = 100.0
-"""Times as stiff: the next stage of `stiffen`."""
+MAX_RELAXATIONS = 400
+MAX_SHORT_STEPS = 1000
+"""Steps of a relaxation that are shorter than a tenth of a cable radius."""
+MAX_STEP_MOVE = 0.2
+"""Largest move in a step, as a fraction of the scene's size."""
+MAX_DISTANCE = 10.0
+"""Distance, as a multiple of the scene's size, beyond which a scene does not come to rest."""
+MIN_MASS_RATIO = 1e-12
+"""Mass of the pseudo-dynamics over that of the fastest vibration, below which steps are those of Newton."""
+PUSH_SIZE = 1e-3
+"""Size of the push off an unstable branch, as a fraction of the scene's size."""
+STIFFENING_FACTOR = 100.0
+"""Ratio of the stiffnesses of two consecutive stages of `stiffen`."""
 
-CHOICE = ("; nothing says to which side it leaves the other, so that there may be more such states: draw the scene "
-          "slightly bent, or add a small load, to choose")
+BRANCH_CHOICE_REMEDY = ("; the branch that the search leaves on is not determined, and other such states may exist: "
+                        "draw the scene slightly bent, or add a small load, to choose")
 
 
 def find_rest(problem: StaticProblem) -> Stability | None:
@@ -47,7 +47,7 @@ def find_rest(problem: StaticProblem) -> Stability | None:
         away, messages = problem.keep(), problem.messages
         problem.restore(begin)
         problem.messages = told
-        if (held := relax(problem, min(place.step for place in places), MOST_SHORT_STEPS)) is not None:
+        if (held := relax(problem, min(place.step for place in places), MAX_SHORT_STEPS)) is not None:
             return held
         problem.restore(away)
         problem.messages = messages
@@ -80,7 +80,7 @@ def _search(problem: StaticProblem) -> Stability | None:
 def _tell(problem: StaticProblem, passed: Stability) -> None:
     """Add the message of an unstable state that was passed."""
     problem.messages.append(f"Newton's method found a state of rest that is {passed}; the search went on to a stable "
-                            f"one{CHOICE * problem.pushed}")
+                            f"one{BRANCH_CHOICE_REMEDY * problem.pushed}")
 
 
 def from_strings(problem: StaticProblem, every: bool = True) -> Stability | None:
@@ -96,7 +96,7 @@ def from_strings(problem: StaticProblem, every: bool = True) -> Stability | None
     found = stability(problem)
     if not found.unstable:
         return found
-    problem.move(PUSH * problem.size * lowest_direction(problem))
+    problem.move(PUSH_SIZE * problem.size * lowest_direction(problem))
     stable = relax(problem)
     if stable is not None:
         problem.pushed = True
@@ -104,7 +104,7 @@ def from_strings(problem: StaticProblem, every: bool = True) -> Stability | None
     return stable
 
 
-def relax(problem: StaticProblem, longest: float = np.inf, most: int = MOST_RELAXATIONS) -> Stability | None:
+def relax(problem: StaticProblem, longest: float = np.inf, most: int = MAX_RELAXATIONS) -> Stability | None:
     """Relax by pseudo-transient continuation (Kelley & Keyes 1998): implicit Euler without regard to accuracy, its step
     growing as the motion fades; to a stable state, or None.
 
@@ -113,9 +113,9 @@ def relax(problem: StaticProblem, longest: float = np.inf, most: int = MOST_RELA
     unstable branch is pushed off along the direction of the least curvature. Where any state of rest will do
     (seek_stable), neither is done. longest: of the steps, m; most: so many.
     """
-    longest = min(longest, LARGEST_MOVE * problem.size)
+    longest = min(longest, MAX_STEP_MOVE * problem.size)
     mass, near, kept, begin = 1e-3 * problem.fastest, 1e-5, problem.keep(), problem.keep()
-    least, descends = LEAST_MASS * problem.fastest, problem.settings.seek_stable
+    least, descends = MIN_MASS_RATIO * problem.fastest, problem.settings.seek_stable
     for _ in range(most):
         problem.iterations += 1
         change, size, heavier = _correction(problem, mass, descends, longest)
@@ -130,14 +130,14 @@ def relax(problem: StaticProblem, longest: float = np.inf, most: int = MOST_RELA
             mass *= 100.0
             continue
         kept = problem.keep()
-        if problem.distance(begin) > GONE * problem.size:
+        if problem.distance(begin) > MAX_DISTANCE * problem.size:
             return None
         mass = max(least, mass * (0.5 if size < 0.1 * longest else 1.0))
         if mass > 100 * least and size > near * problem.size:
             continue
         if descends and stability(problem).unstable:
             if size < 1e-6 * problem.size and mass <= least:
-                problem.move(PUSH * problem.size * lowest_direction(problem))
+                problem.move(PUSH_SIZE * problem.size * lowest_direction(problem))
                 kept = problem.keep()
                 problem.pushed = True
             continue
@@ -181,7 +181,7 @@ def stiffen(problem: StaticProblem) -> Stability | None:
     try:
         while True:
             softening.apply(factor)
-            if factor < softening.factor * STIFFER and found is None:
+            if factor < softening.factor * STIFFENING_FACTOR and found is None:
                 found = relax(problem)
             else:
                 kept = problem.keep()
@@ -191,6 +191,6 @@ def stiffen(problem: StaticProblem) -> Stability | None:
                     found = relax(problem)
             if found is None or factor == 1.0:
                 return found
-            factor = min(1.0, factor * STIFFER)
+            factor = min(1.0, factor * STIFFENING_FACTOR)
     finally:
         softening.apply(1.0)

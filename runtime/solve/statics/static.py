@@ -36,12 +36,12 @@ LOG = logging.getLogger(__name__)
 
 S = TypeVar("S", bound=RestState)
 
-SMALLEST_STEP = 1e-3
-"""Of the load: where smaller steps do not converge either, the search ends."""
-FEW = 1e-3
-"""Of the load: what moves things that are free without loads to their place."""
-MOVED = 1e-9
-"""Of the scene's size: what rounding may move."""
+MIN_LOAD_STEP = 1e-3
+"""The search ends if load steps of this fraction do not converge."""
+POSITIONING_LOAD = 1e-3
+"""Load fraction that moves unloaded free parts to their positions."""
+POSITION_ROUNDING = 1e-9
+"""Rounding error of positions, as a fraction of the scene's size."""
 
 
 def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestState | None, made: type[S]) -> S:
@@ -147,7 +147,7 @@ class _Search(Generic[S]):
         largest = step
         while reached < 1.0:
             kept, target = problem.keep(), reached + step
-            if target > 1.0 - SMALLEST_STEP / 2:  # a sum of steps is not 1 to the last digit
+            if target > 1.0 - MIN_LOAD_STEP / 2:  # a sum of steps is not 1 to the last digit
                 target = 1.0
             problem.load(target)
             if (found := turned_rest(problem)) is not None:
@@ -157,7 +157,7 @@ class _Search(Generic[S]):
             problem.restore(kept)
             problem.load(reached)
             step = 0.5 * (target - reached)
-            if step < SMALLEST_STEP:
+            if step < MIN_LOAD_STEP:
                 break
         return reached
 
@@ -172,7 +172,7 @@ class _Search(Generic[S]):
         self.state = self.made.of(problem, found or stability(problem))
         problem.begin = problem.keep()["q"]
         moved = problem.distance(drawn)
-        if found is not None and moved > MOVED * problem.size:
+        if found is not None and moved > POSITION_ROUNDING * problem.size:
             what = "loads" if problem.settings.scale_gravity else "loads, under its weight"
             problem.messages.append(f"the scene is drawn with stress: it first came to rest without {what}, which "
                                     f"moved points by up to {moved:.3g} m")
@@ -184,14 +184,15 @@ class _Search(Generic[S]):
         """
         problem = self.problem
         free = problem.keep()
-        problem.load(FEW)
+        problem.load(POSITIONING_LOAD)
         if (found := turned_rest(problem)) is None:
             problem.restore(free)
             problem.load(0.0)
             return 0.0
         self.remember(self.made.of(problem, found))
-        problem.messages.append(f"without loads something is free to move: the path begins at {100 * FEW:g} % of them")
-        return FEW
+        problem.messages.append("without loads something is free to move: the path begins at "
+                                f"{100 * POSITIONING_LOAD:g} % of them")
+        return POSITIONING_LOAD
 
     def along_path(self, start: RestState | None) -> float:
         """Follow the path from rest without loads, or from a state of rest on it; returns the fraction of the load

@@ -24,12 +24,12 @@ from ..linear.condensation import condensed, fastest
 from .guess_from_supports import with_moved_supports
 from .turns import Turns
 
-GROWTH = 1e3
-"""Of a correction over the least one before: Newton diverges."""
-ROUNDED = 1e-13
-"""Of a coordinate: what it may differ by from what a support makes of it."""
-FREE = 1e-14
-"""Of the fastest vibration's square: a stiffness this small is none."""
+MAX_CORRECTION_GROWTH = 1e3
+"""Ratio of a correction to the smallest one before above which Newton's method diverges."""
+COORDINATE_ROUNDING = 1e-13
+"""Relative difference, due to rounding, of a coordinate from the value that a support prescribes."""
+ZERO_STIFFNESS_RATIO = 1e-14
+"""Stiffnesses below this fraction of the fastest vibration's square count as zero."""
 
 
 class StaticState:
@@ -153,7 +153,7 @@ class StaticProblem(StaticState):
 
     def regular_tangent(self) -> csc_array:
         """Return dR/dx, with as much mass as keeps what is free to move from being singular."""
-        return self.tangent() + FREE * self.fastest * self.mass
+        return self.tangent() + ZERO_STIFFNESS_RATIO * self.fastest * self.mass
 
     def length(self, change: np.ndarray) -> float:
         """Return the size of a correction in m."""
@@ -174,7 +174,7 @@ class StaticProblem(StaticState):
             except RuntimeError:
                 return False
             size = self.length(change)
-            if not size < min(GROWTH * least, 10.0 * self.size):
+            if not size < min(MAX_CORRECTION_GROWTH * least, 10.0 * self.size):
                 return False
             least = min(least, size)
             self.move(change)
@@ -234,7 +234,7 @@ def fitted(kept: dict, model: Model) -> dict:
     q, drawn = kept["q"].copy(), model.q[own]
     change = q[own] - drawn
     left = as_supports_leave(change, model.unknown_of_dof[own], model.combinations)
-    q[own] = np.where(np.abs(left - change) > ROUNDED * (1 + np.abs(q[own])), drawn + left, q[own])
+    q[own] = np.where(np.abs(left - change) > COORDINATE_ROUNDING * (1 + np.abs(q[own])), drawn + left, q[own])
     return kept | {"q": q}
 
 

@@ -16,8 +16,8 @@ from ...model.joints import JointModel
 from ...model.loads import DeadLoadModel, LoadModel, PointForceModel
 from ...model.model import Model
 
-KNOWN_VECTORS = {"r", "r_x", "r_y", "r_z", "r_xx"}
-"""Nodal vectors that the shape of a string says."""
+STRING_VECTORS = {"r", "r_x", "r_y", "r_z", "r_xx"}
+"""Nodal vectors that follow from the shape of a string."""
 
 
 @dataclass
@@ -86,7 +86,7 @@ class StringNodes:
         own = self.of(group)
         return bool(self.fixed[own].any() and (self.unknown[own] >= -1).all()
                     and (self.joined | self.touched).isdisjoint(group.tolist())
-                    and all(KNOWN_VECTORS.issuperset(self.model.cables[c].vectors) for c in group))
+                    and all(STRING_VECTORS.issuperset(self.model.cables[c].vectors) for c in group))
 
     def smooth_ties(self, group: np.ndarray) -> list[SmoothTie]:
         """Return the ties of a group that join two ends of cables, and nothing else, with one direction."""

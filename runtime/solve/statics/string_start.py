@@ -18,17 +18,18 @@ from .string_nodes import SmoothTie, StringNodes, rests
 from .string_vectors import laid_vectors, slopes
 from .strings import Rest, Strings, rest_of
 
-ROUNDS = 3
-"""Shapes that follow from each other where loads depend on the shape."""
-LARGEST_TURN = 0.3
-"""rad: by which a string may turn from an element to the next, before elements have several links."""
-MOST_PARTS = 8
-TANGENT = 1e-3
-"""m: over which a height field is taken for its tangent plane."""
-SHORTEST = 0.95
-"""Of the length of links without tension: where bending alone keeps nodes so far apart, the shape is a start, too."""
-STRAIGHT = 1e-9
-"""Of the length: what nodes on a line may be off it, and by what a cable is slack."""
+SHAPE_ITERATIONS = 3
+"""Iterations of the shape where loads depend on it."""
+MAX_ELEMENT_TURN = 0.3
+"""Turn of a string between adjacent elements, in rad, above which elements have several links."""
+MAX_ELEMENT_LINKS = 8
+TANGENT_LENGTH = 1e-3
+"""Length in m over which the tangent plane replaces a height field."""
+MIN_LENGTH_RATIO = 0.95
+"""Lower bound of the length of links without tension over their length at rest: bending alone then keeps the nodes
+apart, and the shape is a valid start."""
+STRAIGHTNESS_TOLERANCE = 1e-9
+"""Distance of nodes from a line, and slack of a cable, that count as zero, as a fraction of the length."""
 
 
 def hang(problem: StaticProblem, every: bool) -> bool:
@@ -50,11 +51,11 @@ def hang(problem: StaticProblem, every: bool) -> bool:
         nodes.others.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, problem.as_drawn)))]
     found = False
     uneven = any(rests(contact) and contact.shape == "terrain" for contact in model.contacts)
-    for _ in range(ROUNDS if groups and (uneven or depend_on_shape(model)) else 1):
+    for _ in range(SHAPE_ITERATIONS if groups and (uneven or depend_on_shape(model)) else 1):
         force = string_loads(problem, q) if groups else q
         for group in groups:
             line, rest = _at_rest(problem, nodes, group, q, force)
-            if rest is not None and (rest.taut.all() or (every and rest.shortest > SHORTEST)):
+            if rest is not None and (rest.taut.all() or (every and rest.shortest > MIN_LENGTH_RATIO)):
                 q, found = line.laid(q, rest), True
             elif rest is not None:
                 problem.slack |= line.slack(rest)
@@ -68,8 +69,8 @@ def _at_rest(problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: n
     """Return cables as strings of as many links as elements, or of more where elements turn far, and their rest."""
     line = _Line(problem, nodes, group, q, 1)
     rest = rest_of(line.strings(force))
-    if rest is not None and (turn := line.turn(rest)) > LARGEST_TURN:
-        line = _Line(problem, nodes, group, q, min(int(np.ceil(turn / LARGEST_TURN)) + 1, MOST_PARTS))
+    if rest is not None and (turn := line.turn(rest)) > MAX_ELEMENT_TURN:
+        line = _Line(problem, nodes, group, q, min(int(np.ceil(turn / MAX_ELEMENT_TURN)) + 1, MAX_ELEMENT_LINKS))
         rest = rest_of(line.strings(force))
     return line, rest
 
@@ -80,9 +81,9 @@ def _is_straight_and_slack(nodes: StringNodes, group: np.ndarray, q: np.ndarray)
     for c in group:
         r, length = q[nodes.r[nodes.of(np.array([c]))]], nodes.model.cables[c].mesh.total
         drawn, chord = np.linalg.norm(np.diff(r, axis=0), axis=1).sum(), np.linalg.norm(r[-1] - r[0])
-        if drawn > (1 + STRAIGHT) * chord:
+        if drawn > (1 + STRAIGHTNESS_TOLERANCE) * chord:
             return False
-        slack |= bool(drawn < (1 - STRAIGHT) * length)
+        slack |= bool(drawn < (1 - STRAIGHTNESS_TOLERANCE) * length)
     return slack
 
 
@@ -219,9 +220,9 @@ class _Line:
         steps, nodes = np.arange(len(free)) / self.parts, np.arange(len(r))
         points = np.zeros((n, 3))
         points[:, :dim] = np.stack([np.interp(steps, nodes, column) for column in r.T], axis=1)[free]
-        off = TANGENT * np.eye(3)[:dim, None]
+        off = TANGENT_LENGTH * np.eye(3)[:dim, None]
         above = self.surfaces[contact.name].distance
-        gradient = ((above(points + off) - above(points - off)) / (2 * TANGENT)).T
+        gradient = ((above(points + off) - above(points - off)) / (2 * TANGENT_LENGTH)).T
         size = np.linalg.norm(gradient, axis=1)
         normals = gradient / size[:, None]
         return normals, (normals * points[:, :dim]).sum(axis=1) - above(points) / size

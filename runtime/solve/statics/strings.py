@@ -21,14 +21,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
-TOLERANCE = 1e-8
-"""Of all loads together: forces left over, and tensions of links that are not taut."""
-MOST_ITERATIONS = 60
-TO_BOUNDARY = 0.95
-"""Of the way to where a constraint or a multiplier becomes zero: a step goes no further."""
-SLACK = 1e-4
-"""Of half the squared length: by which a link is slack."""
-TINY = 1e-300
+FORCE_TOLERANCE = 1e-8
+"""Residual forces, and tensions of links that are not taut, as a fraction of the sum of all loads."""
+MAX_ITERATIONS = 60
+MAX_BOUNDARY_FRACTION = 0.95
+"""A step covers at most this fraction of the distance to where a constraint or a multiplier becomes zero."""
+SLACK_TOLERANCE = 1e-4
+"""Links are taut if their slack is below this fraction of half the squared length."""
+DIVISION_GUARD = 1e-300
 
 
 @dataclass
@@ -196,7 +196,7 @@ class _Search:
         short = self.slack <= 0  # links that are too short at first bear what stretches them by more
         self.tension[short] += 1.5 * (1e-12 - self.slack[short]) / self.gives[short]
         below = self.height <= 0
-        self.pressure[below] += 1.5 * (1e-3 - self.height[below]) / np.maximum(self.yields[below], TINY)
+        self.pressure[below] += 1.5 * (1e-3 - self.height[below]) / np.maximum(self.yields[below], DIVISION_GUARD)
         self._look()
 
     def _look(self) -> None:
@@ -263,9 +263,9 @@ class _Search:
     def _length(self, step: _Step) -> float:
         """Return how much of a step leaves constraints and multipliers positive; those of links fall by a square, too.
         """
-        far = TO_BOUNDARY * self.slack
-        parts = [2 * far / np.maximum(np.sqrt(step.closing**2 + 4 * step.square * far) - step.closing, TINY)]
-        parts += [TO_BOUNDARY * value / np.maximum(-rate, TINY)
+        far = MAX_BOUNDARY_FRACTION * self.slack
+        parts = [2 * far / np.maximum(np.sqrt(step.closing**2 + 4 * step.square * far) - step.closing, DIVISION_GUARD)]
+        parts += [MAX_BOUNDARY_FRACTION * value / np.maximum(-rate, DIVISION_GUARD)
                   for value, rate in ((self.tension, step.more), (self.height, step.rise),
                                       (self.pressure, step.harder))]
         return min(1.0, *(float(part.min(initial=1.0)) for part in parts))
@@ -281,7 +281,7 @@ class _Search:
     def is_at_rest(self) -> bool:
         """Return whether forces balance, and slack links have no tension."""
         loose = (self.tension * self.slack / self.strings.length).max(initial=0.0)
-        return bool(max(np.abs(self.out_of_balance()).max(), loose) < TOLERANCE * self.scale)
+        return bool(max(np.abs(self.out_of_balance()).max(), loose) < FORCE_TOLERANCE * self.scale)
 
 
 def rest_of(strings: Strings) -> Rest | None:
@@ -291,9 +291,9 @@ def rest_of(strings: Strings) -> Rest | None:
     with np.errstate(all="ignore"):  # of what nothing holds in a direction, which is found at the end of a step
         try:
             search = _Search(strings)
-            for iteration in range(MOST_ITERATIONS):
+            for iteration in range(MAX_ITERATIONS):
                 if search.is_at_rest():
-                    return Rest(search.r, search.slack < SLACK, search.shortest(), iteration)
+                    return Rest(search.r, search.slack < SLACK_TOLERANCE, search.shortest(), iteration)
                 search.step()
                 if not np.isfinite(search.mean()):
                     return None

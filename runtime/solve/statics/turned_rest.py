@@ -5,7 +5,7 @@ from __future__ import annotations
 from .stability import Stability
 from .stable_search import find_rest
 from .static_problem import StaticProblem
-from .turns import FOLLOWED, SMALLEST, STEP, largest_turn, too_long
+from .turns import ANGLE_STEP, MAX_DIRECTION_TURN, MIN_STEP_FRACTION, largest_turn, too_long
 
 
 def turned_rest(problem: StaticProblem) -> Stability | None:
@@ -15,7 +15,7 @@ def turned_rest(problem: StaticProblem) -> Stability | None:
     turns = problem.turns
     if turns.fraction == 1.0:
         return find_rest(problem)
-    begin, whole = problem.keep(), STEP / turns.largest
+    begin, whole = problem.keep(), ANGLE_STEP / turns.largest
     reached, step = turns.fraction, whole
     moving = find_rest(problem) is not None
     while moving and reached < 1.0:
@@ -23,8 +23,8 @@ def turned_rest(problem: StaticProblem) -> Stability | None:
         turns.go(min(1.0, reached + step))
         problem.restore(kept)
         found = problem.newton() or find_rest(problem) is not None
-        if found and (largest_turn(problem.model, kept["q"], problem.keep()["q"]) <= FOLLOWED
-                      or step <= SMALLEST * whole):  # it snaps
+        if found and (largest_turn(problem.model, kept["q"], problem.keep()["q"]) <= MAX_DIRECTION_TURN
+                      or step <= MIN_STEP_FRACTION * whole):  # it snaps
             turns.lost = too_long(problem.model, problem.keep()["q"], begin["q"])
             reached = turns.furthest = turns.fraction
             step = min(2 * step, whole)
@@ -33,7 +33,7 @@ def turned_rest(problem: StaticProblem) -> Stability | None:
         turns.go(reached)
         problem.restore(kept)
         step /= 2
-        moving = step >= SMALLEST * whole
+        moving = step >= MIN_STEP_FRACTION * whole
     if moving:
         return find_rest(problem)
     turns.go(0.0)

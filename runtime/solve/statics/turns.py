@@ -1,7 +1,7 @@
 """Angles that motions and driven joints prescribe, followed by statics from where a state has them.
 
 A whole turn of a section leaves its axes as they were, but not the moment of a rod that it twists. A search for rest
-that meets an angle of more than `STEP` goes there in steps, each from the state of rest of the step before.
+that meets an angle of more than `ANGLE_STEP` goes there in steps, each from the state of rest of the step before.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from ...parts.locations import node_of
 from ...parts.scene_data import SceneData
 from ...parts.validation import show
 
-STEP = np.pi / 3
-"""rad, of an angle at a time: Newton's method finds the nearest of the states that are whole turns apart."""
-SMALLEST = 1 / 32
-"""Of `STEP`: where smaller ones do not converge either, the search ends."""
-FOLLOWED = np.pi / 2
-"""rad, by which directions of nodes may turn in a step for the state to be the one that the angle leads to."""
-WIDE = np.radians(120.0)
-"""Between directions of nodes that follow on each other: an element that turns further loses a turn."""
-WELL = np.radians(20.0)
-"""The same of an element that is short enough: a shaft's moment is then told to about a percent."""
+ANGLE_STEP = np.pi / 3
+"""Step of an angle in rad: Newton's method finds the nearest of the states that differ by whole turns."""
+MIN_STEP_FRACTION = 1 / 32
+"""The search ends if steps of this fraction of `ANGLE_STEP` do not converge."""
+MAX_DIRECTION_TURN = np.pi / 2
+"""Turn of nodal directions in a step, in rad, up to which the state belongs to the prescribed angle."""
+MAX_TURN_BETWEEN_NODES = np.radians(120.0)
+"""Angle in rad between directions of adjacent nodes: an element that turns further loses a turn."""
+ACCURATE_TURN_BETWEEN_NODES = np.radians(20.0)
+"""The same up to which a shaft's moment is accurate to about 1 %."""
 
 
 def turning(scene: SceneData, model: Model) -> Iterator[tuple[str, int]]:
@@ -61,7 +61,7 @@ class Turns:
         self.fraction, self.furthest = 1.0, 0.0
         self.lost = ""
         """Why the angles cannot be followed."""
-        if self.largest > STEP:
+        if self.largest > ANGLE_STEP:
             self.go(0.0)
 
     @property
@@ -109,11 +109,11 @@ def too_long(model: Model, q: np.ndarray, begin: np.ndarray) -> str:
     """
     for cable in model.cables:
         turned, before = (angles(at[:-1], at[1:]) for at in (directions(cable, q), directions(cable, begin)))
-        turned[before > WIDE] = 0.0
+        turned[before > MAX_TURN_BETWEEN_NODES] = 0.0
         k = int(np.argmax(turned))
-        if turned[k] > WIDE:
+        if turned[k] > MAX_TURN_BETWEEN_NODES:
             start, length = cable.mesh.start(k), cable.mesh.length(k)
             return (f'cable "{cable.name}" turns by {np.degrees(turned[k]):.0f} degrees within element {k}, from s = '
                     f"{start:.6g} m to {start + length:.6g} m, and would lose a turn: take elements of at most "
-                    f"{length * WELL / turned[k]:.2g} m there")
+                    f"{length * ACCURATE_TURN_BETWEEN_NODES / turned[k]:.2g} m there")
     return ""

@@ -12,16 +12,17 @@ from ...model.model import CableModel, Model
 def carried(kept: Mapping[str, np.ndarray], was: Model, model: Model, drawn: Mapping[str, np.ndarray]) -> dict:
     """Return a static state on the meshes of another model of the same parts; on the same meshes that itself.
 
-    kept: of `was`; drawn: the state that the other model has, of which stays what belongs to elements.
+    kept: of `was`; drawn: the state that the other model has, of which stays what belongs to elements, and forces of
+    contacts where the other model has more or fewer of these.
     """
+    fitting = {name: values for name, values in kept.items() if values.shape == np.shape(drawn[name])}
     pairs = list(zip(was.cables, model.cables, strict=True))
     if all(np.array_equal(one.mesh.node_s, other.mesh.node_s) for one, other in pairs):
-        return dict(kept)
+        return dict(drawn) | fitting
     q = drawn["q"].copy()
     for one, other in pairs:
         q[other.coordinates] = _nodal_vectors(kept["q"][one.coordinates].reshape(one.shape), one, other).ravel()
     q[model.cables[-1].coordinates.stop:] = kept["q"][was.cables[-1].coordinates.stop:]  # of bodies
-    fitting = {name: values for name, values in kept.items() if values.shape == np.shape(drawn[name])}
     return dict(drawn) | fitting | {"q": q}
 
 
