@@ -1,4 +1,4 @@
-"""Bodies that turn far within a step: no control shortens a fixed one, nor enough those of "genalpha" and "energy"."""
+"""Bodies that turn far within a step: no control shortens a fixed one, nor those of "genalpha" enough."""
 
 from __future__ import annotations
 

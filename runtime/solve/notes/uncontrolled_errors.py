@@ -12,10 +12,10 @@ from .supersonic_loads import outrunning
 
 
 def uncontrolled_errors(scene: SceneData, engine: Engine, settings: RunSettings, seen: RowNotes) -> list[str]:
-    """Return a note where the steps of "genalpha", "energy" or "radau" were chosen without errors that may be large."""
+    """Return a note where the steps of "genalpha" or "radau" were chosen without errors that may be large."""
     if settings.step is not None or not engine.moves:
         return []
-    found = {"genalpha": _of_genalpha, "energy": _of_energy, "radau": _of_radau}.get(engine.integrator)
+    found = {"genalpha": _of_genalpha, "radau": _of_radau}.get(engine.integrator)
     return [] if found is None else found(scene, engine, settings, seen)
 
 
@@ -26,11 +26,6 @@ def _of_genalpha(scene: SceneData, engine: Engine, settings: RunSettings, seen: 
               *(f'the shock before slide "{name}", which is faster than waves in its cable'
                 for name in outrunning(scene))]
     return _beyond_positions(engine, errors)
-
-
-def _of_energy(scene: SceneData, engine: Engine, settings: RunSettings, seen: RowNotes) -> list[str]:
-    """Bodies that turn fast."""
-    return _beyond_positions(engine, _turning(engine, settings, seen))
 
 
 def _turning(engine: Engine, settings: RunSettings, seen: RowNotes) -> list[str]:
