@@ -125,6 +125,8 @@ int fu_contact_first(const fu_model *model, const fu_contact *contact, int eleme
 void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state,
                           const fu_attachment_state *on, int element, int number, const fu_contact_point *point,
                           double *f);
+void fu_contact_add_on_cable(const fu_model *model, const fu_contact *contact, int element, int number,
+                             const double *force, double *f);
 void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum);
 
 /* couplings/contact/rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the

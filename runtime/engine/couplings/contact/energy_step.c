@@ -169,11 +169,7 @@ static void add_step_force(const fu_model *model, const fu_contact *contact, con
         add_reaction(model, contact, on, at, middle, force, weight, f);
     }
     if (contact->cable >= 0) {
-        const int n = model->cables[contact->cable].coordinates / dim,
-                  first = fu_contact_first(model, contact, element);
-        const double *N = fu_contact_shapes(contact, n, element, number);
-        for (int k = 0; k < n; ++k)
-            for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
+        fu_contact_add_on_cable(model, contact, element, number, force, f);
         return;
     }
     fu_attachment_state end;

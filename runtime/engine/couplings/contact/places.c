@@ -118,6 +118,18 @@ void fu_contact_add_along(int dim, int n, const int *at, const double *P, const 
         for (int i = 0; i < n; ++i) sum[at[i]] += factor * P[d * n + i] * f[d];
 }
 
+/* Adds a force on a point of a cable, times its weight, to what stands on the left of the equations of motion. */
+void fu_contact_add_on_cable(const fu_model *model, const fu_contact *contact, int element, int number,
+                             const double *force, double *f)
+{
+    const int dim = model->dim, n = model->cables[contact->cable].coordinates / dim;
+    const int first = fu_contact_first(model, contact, element);
+    const double *N = fu_contact_shapes(contact, n, element, number),
+                 weight = fu_contact_weight(contact, element, number);
+    for (int k = 0; k < n; ++k)
+        for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
+}
+
 /* Adds the force where a point touches, and its reaction on the body that the surface is on, to what stands on the left
  * of the equations. */
 void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state,
@@ -133,11 +145,7 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
         fu_contact_add_along(dim, on->n, on->at, P, force, weight, f);
     }
     if (contact->cable >= 0) {
-        const int n = model->cables[contact->cable].coordinates / dim,
-                  first = fu_contact_first(model, contact, element);
-        const double *N = fu_contact_shapes(contact, n, element, number);
-        for (int k = 0; k < n; ++k)
-            for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
+        fu_contact_add_on_cable(model, contact, element, number, force, f);
         return;
     }
     fu_attachment_state end;
