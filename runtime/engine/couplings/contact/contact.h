@@ -99,9 +99,11 @@ void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_poin
 void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                                      fu_contact_point *point);
 
+/* couplings/contact/normal_force.c */
+fu_normal_force fu_normal_force_at(const fu_contact *contact, double depth, double rate, double depth_next);
+
 /* couplings/contact/point.c; fu_contact_slip: makes distance, depth and velocities of a point, whether it touches or
  * not. */
-fu_normal_force fu_normal_force_at(const fu_contact *contact, double depth, double rate, double depth_next);
 void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                      fu_contact_point *point);
 int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
@@ -141,13 +143,17 @@ fu_friction_begin *fu_contact_begin_of(const fu_contact *contact, const fu_state
 void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal,
                      const fu_friction_mark *mark, double out[3]);
 
-/* couplings/contact/friction_work.c */
+/* couplings/contact/kinks.c */
 int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
                                 const fu_state *to, int n, const double *b, const double *c, double *f);
+
+/* couplings/contact/friction_work.c */
+double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                       int by_ends);
 double fu_contact_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
                                 const fu_state *to);
 
-/* Calls `visit` with each point that touches. */
+/* couplings/contact/places.c: calls `visit` with each point that touches. */
 typedef void fu_contact_visitor(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                                 int element, int number, const fu_contact_point *point, void *context);
 void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state,
@@ -172,8 +178,6 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
 double fu_contact_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                               const fu_accelerator *work);
-double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
-                       int by_ends);
 void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 void fu_contact_reset(const fu_coupling *coupling, fu_state *state);
 void fu_contact_update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state);

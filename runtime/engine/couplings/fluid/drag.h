@@ -145,17 +145,11 @@ void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_s
                           const fu_drag_sums *sums);
 void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                            const double *psi, fu_weights weights, fu_system *system);
-void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
-                         double *f);
-void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
-                          fu_system *system);
 /* Makes what it does a length of a cable without accelerations, at all points of quadrature: out (points x
  * FU_ADDED_MASS_DENSITIES), the force (3) and that on the slope (3), as they act on the cable, and the mass added (dim
  * x dim of 9). */
 #define FU_ADDED_MASS_DENSITIES 15
 void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
-double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
-                                    const double *v, int past_fluid);
 fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v,
                             const double *a);
 /* Makes the force with the particles, of an impulse p and its rate, as it stands on the left of the equations of
@@ -165,6 +159,14 @@ void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_
 /* Adds a force with the particles and one on the slope, at a point of quadrature, to those on an element's dofs. */
 void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point,
                          const double *left, const double *on_slope, const fu_drag_sums *sums);
+
+/* couplings/fluid/added_mass_matrix.c */
+void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
+                         double *f);
+void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+                          fu_system *system);
+double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
+                                    const double *v, int past_fluid);
 
 /* couplings/fluid/added_mass_energy_step.c */
 void fu_added_mass_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at,

@@ -55,11 +55,11 @@ typedef struct {
 } fu_hard_row;
 
 /* couplings/hard_contact/hard_contact.c */
-fu_hard_flags *fu_hard_flags_of(const fu_coupling *coupling, const fu_state *state);
-fu_hard_numbers *fu_hard_numbers_of(const fu_coupling *coupling, const fu_state *state);
 void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const fu_state *state, fu_hard_row *out);
 
-/* couplings/hard_contact/state.c: how far beyond the ends of its surface the point is, m. */
+/* couplings/hard_contact/state.c; the last: how far beyond the ends of its surface the point is, m. */
+fu_hard_flags *fu_hard_flags_of(const fu_coupling *coupling, const fu_state *state);
+fu_hard_numbers *fu_hard_numbers_of(const fu_coupling *coupling, const fu_state *state);
 double fu_hard_beyond(const fu_model *model, const fu_hard_contact *hard, const fu_state *state);
 
 /* couplings/hard_contact/friction.c */

@@ -79,13 +79,13 @@ void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupli
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int slide, double *s);
 void fu_update_director(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
-/* How one slide moves, and its ds/dt. */
+/* couplings/slide/slide.c: how one slide moves, its ds/dt, and its numbers in a row of output. */
 void fu_slide_now(const fu_model *model, const fu_state *state, int slide, fu_slide_state *slide_state);
 double fu_slide_rate(const fu_model *model, const fu_state *state, int slide);
-/* Its force on the rider by these multipliers; its numbers in a row of output. */
-void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f);
 void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const double *acceleration,
                       const fu_accelerator *work, fu_slide_output *out);
+/* couplings/slide/kinematics.c: the force on the rider by these multipliers. */
+void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f);
 
 /* couplings/slide/state.c */
 double fu_length(const fu_model *model, int slide);
